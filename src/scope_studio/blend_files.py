@@ -61,6 +61,7 @@ def set_time(time_s: float) -> None:
 
 
 def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict[str, Any]:
+    """Describe a camera of the file."""
     matrix = camera.matrix_world
     axes = matrix.to_3x3().normalized()
     bearing, tilt = _pan_tilt(axes @ Vector((0.0, 0.0, -1.0)))
@@ -77,6 +78,7 @@ def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict
 
 
 def _kebab(text: str) -> str:
+    """Convert a text to kebab case."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "camera"
 
 
@@ -92,6 +94,7 @@ def _kebab_names(texts: list[str]) -> list[str]:
 
 
 def _pan_tilt(direction: Vector) -> tuple[float, float]:
+    """Return the bearing and tilt of a direction in degrees."""
     pan, tilt = pan_tilt_deg(tuple(direction))
     return float(pan), float(tilt)
 

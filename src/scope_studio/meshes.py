@@ -38,6 +38,7 @@ def write(stage: Stage, out: Path) -> None:
 
 
 def _triangles(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    """Return the vertices (n, 3) and triangles (m, 3) of an evaluated object."""
     mesh = evaluated.to_mesh()
     mesh.calc_loop_triangles()
     vertices = np.empty(len(mesh.vertices) * 3, dtype=np.float32)

@@ -108,6 +108,7 @@ def use_gpu() -> str | None:
 
 
 def _prepare(viewpoint: Viewpoint, projection: dict[str, float], samples: int, seed: int) -> bpy.types.Scene:
+    """Set up the camera and the common render settings, and return the scene."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.render.use_persistent_data = True
@@ -144,6 +145,7 @@ def _prepare(viewpoint: Viewpoint, projection: dict[str, float], samples: int, s
 
 
 def _camera(scene: bpy.types.Scene) -> bpy.types.Object:
+    """Return the object that is used as the camera, and create it on first use."""
     name = "scope camera"
     found = bpy.data.objects.get(name)
     if found is None:
@@ -153,6 +155,7 @@ def _camera(scene: bpy.types.Scene) -> bpy.types.Object:
 
 
 def _passes(on: bool) -> None:
+    """Turn the passes for instance numbers and depth on or off."""
     layer = bpy.context.view_layer
     layer.use_pass_object_index = on
     layer.use_pass_z = on
@@ -160,6 +163,7 @@ def _passes(on: bool) -> None:
 
 
 def _render(scene: bpy.types.Scene, out: Path) -> None:
+    """Render a still image to ``out``. Raises RuntimeError if Blender writes no file."""
     scene.render.use_file_extension = False
     scene.render.filepath = str(out)
     bpy.ops.render.render(write_still=True)

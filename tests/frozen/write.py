@@ -44,12 +44,12 @@ def write(out: Path, scratch: Path, *, slow: bool) -> None:
         put(out / "gold.json", dict(zip(("code", "report"), adapter.check_gold(), strict=True)))
         rows = cases.plan_inputs()
         plans = cases.plans(rows, scratch / "instructions.jsonl")
-        lines_out = [
+        plan_lines = [
             json.dumps({"task": row["task"], "world": row["world"], "plan": plan}, ensure_ascii=False)
             for row, plan in zip(rows, plans, strict=True)
         ]
         with (out / "plans.jsonl.gz").open("wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=0) as packed:
-            packed.write(("\n".join(lines_out) + "\n").encode())
+            packed.write(("\n".join(plan_lines) + "\n").encode())
 
 
 if __name__ == "__main__":

@@ -147,6 +147,7 @@ def house(*, brick: Rgb, roof: Rgb, door: Rgb, width_m: float = 10.0, depth_m: f
 def _window(
     at: Point, side: int, frame: bpy.types.Material, glass: bpy.types.Material, blind: bpy.types.Material | None
 ) -> list[bpy.types.Object]:
+    """Create a framed window at a position, on the front (``side`` 1) or back."""
     x, y, z = at
     parts = [
         box("pane", (1.25, 0.04, 1.15), (x, y + side * 0.012, z), glass, bevel_m=0),

@@ -70,6 +70,7 @@ def overbridge(*, span_m: float, width_m: float = 9.0, deck_m: float = 6.9, numb
 
 
 def _piers(edge: float, under: float, concrete: bpy.types.Material) -> list[bpy.types.Object]:
+    """Create the piers in the middle of the span."""
     parts = [box("crosshead", (1.3, 2 * edge - 1.2, 0.9), (0, 0, under - 1.05), concrete, bevel_m=0.06)]
     for k in (-1, 0, 1):
         parts.append(
@@ -112,6 +113,7 @@ def paving_material() -> bpy.types.Material:
 
 
 def _rails(span_m: float, edge: float, deck_m: float) -> list[bpy.types.Object]:
+    """Create the handrails on both parapets."""
     steel = plain("galvanised", (0.42, 0.44, 0.45), 0.45, 0.7)
     parts = []
     reach = span_m / 2 + 4.4

@@ -82,6 +82,7 @@ Hole = tuple[float, float, float, float, int, int]
 
 
 def _upper_holes(spec: Terrace) -> list[Hole]:
+    """Return the window holes of the upper floors."""
     holes: list[Hole] = []
     pitch = spec.width_m / spec.columns
     for floor in range(1, spec.storeys):
@@ -94,6 +95,7 @@ def _upper_holes(spec: Terrace) -> list[Hole]:
 
 
 def _ground_floor_holes(spec: Terrace) -> list[Hole]:
+    """Return the window and door holes of a ground floor without a shop."""
     pitch = spec.width_m / spec.columns
     holes: list[Hole] = []
     for k in range(spec.columns):
@@ -126,7 +128,7 @@ def _shell(s: Solid, spec: Terrace, face: bpy.types.Material) -> None:
     """Add side walls with their gables, and the back wall."""
     w, d, h = spec.width_m / 2, DEPTH_M, spec.eaves_m
     top = h + (0.75 if spec.parapet else 0.0)
-    ridge = h + _rise(spec)
+    ridge = h + _roof_rise(spec)
     for x in (-w, w):
         outline = [(x, 0, 0), (x, -d, 0), (x, -d, h), (x, -d / 2, ridge), (x, -0.3, h + 0.1), (x, -0.3, top), (x, 0, top)]
         s.add(outline, [tuple(range(7)) if x < 0 else tuple(range(7))[::-1]], face)
@@ -138,7 +140,8 @@ def _shell(s: Solid, spec: Terrace, face: bpy.types.Material) -> None:
         s.box((spec.width_m, 0.09, 0.12), (0, 0.03, h - 0.22), trim(spec.stone), 0.02)
 
 
-def _rise(spec: Terrace) -> float:
+def _roof_rise(spec: Terrace) -> float:
+    """Return the height of the ridge above the eaves in metres."""
     return DEPTH_M / 2 * (0.80 if spec.roof == "clay" else 0.68)
 
 
@@ -157,7 +160,7 @@ def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: Terrace, rng: 
         [(1, 0, 3, 2)],
         pane,
     )
-    _dressing(s, x, z, w, h, back, rng, lit=lit)
+    _curtains(s, x, z, w, h, back, rng, lit=lit)
     for side in (-1, 1):
         s.box((0.07, 0.07, h), (x + side * (w / 2 - 0.035), back + 0.03, z + h / 2), joinery, 0.006)
     for v, deep in ((0.035, 0.09), (h - 0.035, 0.07), (h * 0.52, 0.06)):
@@ -188,7 +191,8 @@ def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: Terrace, rng: 
         s.box((w + 0.30, 0.06, 0.16), (x, 0.03, z + h + 0.08), stone, 0.012)
 
 
-def _dressing(s: Solid, x: float, z: float, w: float, h: float, back: float, rng: Random, *, lit: bool) -> None:
+def _curtains(s: Solid, x: float, z: float, w: float, h: float, back: float, rng: Random, *, lit: bool) -> None:
+    """Add curtains or a blind behind a window, or neither, at random."""
     kind = rng.random()
     cloth = plain(
         f"curtain {rng.randrange(4)} {lit}",
@@ -238,7 +242,7 @@ def lit_pane() -> bpy.types.Material:
 
 def _roof(s: Solid, spec: Terrace) -> None:
     cover = roofing(spec.roof)
-    w, d, h, rise = spec.width_m / 2, DEPTH_M, spec.eaves_m, _rise(spec)
+    w, d, h, rise = spec.width_m / 2, DEPTH_M, spec.eaves_m, _roof_rise(spec)
     front = -0.32 if spec.parapet else 0.28
     slope = rise / (d / 2)
     z0 = h - slope * front
@@ -263,7 +267,7 @@ def _roof(s: Solid, spec: Terrace) -> None:
 def _chimney(s: Solid, spec: Terrace, rng: Random) -> None:
     side = rng.choice((-1, 1))
     x, y = side * (spec.width_m / 2 - 0.35), -DEPTH_M / 2 + rng.choice((-0.6, 0.5))
-    top = spec.eaves_m + _rise(spec) + 1.25
+    top = spec.eaves_m + _roof_rise(spec) + 1.25
     stack = wall("brick", "brown" if spec.wall[0] != "brick" else spec.wall[1])
     s.box((0.62, 1.15, 2.6), (x, y, top - 1.3), stack, 0.01)
     s.box((0.74, 1.27, 0.12), (x, y, top - 0.10), stack, 0.02)

@@ -48,6 +48,7 @@ DIRT: Colour = (0.085, 0.070, 0.052)
 
 
 def _shared(name: str, make: Callable[[Shader], bpy.types.Material]) -> bpy.types.Material:
+    """Return the material with this name, which ``make`` creates on first use."""
     found = bpy.data.materials.get(name)
     return found if found is not None else make(Shader(name))
 

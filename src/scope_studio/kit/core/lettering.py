@@ -42,19 +42,21 @@ def extent(body: str, cap_height_m: float, *, bold: bool = True, spacing: float 
 
 
 def _spacing(bold: bool, spacing: float | None) -> float:
+    """Return the given letter spacing, or the default of the weight."""
     return spacing if spacing is not None else (1.12 if bold else 1.06)
 
 
 @cache
 def _outline(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
     """Return points and faces of a line with cap height 1."""
-    points, faces = _filled(body, spacing)
-    cap = max(y for _, y in _filled("H", 1.0)[0])
+    points, faces = _font_mesh(body, spacing)
+    cap = max(y for _, y in _font_mesh("H", 1.0)[0])
     return [(x / cap, y / cap) for x, y in points], faces
 
 
 @cache
-def _filled(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
+def _font_mesh(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
+    """Return points and faces of a line as Blender's font generates them."""
     curve = bpy.data.curves.new("letters", "FONT")
     curve.body = body
     curve.space_character = spacing

@@ -134,10 +134,11 @@ def text(
     """Create flat lettering and its text mark.
 
     Args:
-        facing: Direction towards the reader: "-Y", "+Y", "+X", "-X" or "+Z".
-        centre: Middle of the block when ``align`` is "CENTER", its left edge when it is "LEFT".
+        facing: Direction that the lettering faces: "-Y", "+Y", "+X", "-X" or "+Z".
+        centre: Middle of the text block if ``align`` is "CENTER", or its left edge if ``align`` is "LEFT".
 
-    The size in the mark is measured from the generated letters.
+    Returns:
+        The object, and its text mark with the measured size of the letters.
     """
     curve = bpy.data.curves.new(name, "FONT")
     curve.body = body

@@ -231,5 +231,6 @@ class Parts:
 
 
 def _outward(points: Sequence[Point], face: tuple[int, ...], middle: Vector) -> tuple[int, ...]:
+    """Return the face with the order of points that makes it face away from ``middle``."""
     a, b, c = (Vector(points[k]) for k in face[:3])
     return face if (b - a).cross(c - b).dot(a - middle) > 0 else face[::-1]

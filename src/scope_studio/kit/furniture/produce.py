@@ -24,6 +24,7 @@ def crate(colour: str = "timber") -> Built:
 
 
 def _crate(s: Solid, colour: str) -> None:
+    """Add an empty crate."""
     w, d, h = CRATE_M
     stuff = timber() if colour == "timber" else paint(colour, dirt=0.25, roughness=0.55)
     s.box((w, d, 0.012), (0, 0, 0.008), stuff, 0.0)
@@ -41,6 +42,7 @@ Maker = Callable[[Solid, random.Random, float, float, float], None]
 
 
 def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.92, name: str) -> Maker:
+    """Return a function that adds a round piece in one of the colours."""
     profile = [(0.15, -0.95), (0.7, -0.7), (1.0, 0.0), (0.75, 0.72), (0.3, 0.93), (0.08, 0.82)]
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
@@ -53,6 +55,8 @@ def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.9
 
 
 def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip: float = 0.3, name: str) -> Maker:
+    """Return a function that adds a long piece in one of the colours."""
+
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
         k = rng.randrange(len(tints))
         a = math.radians(rng.uniform(-14, 14))
@@ -64,6 +68,8 @@ def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip
 
 
 def _leafy(radius: float, low: tuple[float, float, float], high: tuple[float, float, float], name: str) -> Maker:
+    """Return a function that adds a leafy vegetable."""
+
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
         for k in range(7):
             a = 2 * math.pi * k / 7 + rng.uniform(-0.3, 0.3)

@@ -198,7 +198,7 @@ def drain() -> Built:
 
 
 def chevron_board(width: float = 1.6, *, direction: str = "right") -> Built:
-    """Build a black board on two posts, facing +y, with white chevrons that point to the reader's right or left."""
+    """Build a black board on two posts, facing +y, with white chevrons that point to the right or left as seen by a driver."""
     s = Solid("chevron board")
     height = 0.55
     with s.at(0, 0, 0.75 + height / 2):

@@ -18,6 +18,7 @@ from scope_studio.kit.signs.faces import write
 
 
 def _stripes(first: str, second: str) -> bpy.types.Material:
+    """Return the material of striped canvas."""
     name = f"awning {first} {second}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -194,6 +195,7 @@ def blooms(
 
 
 def _leaf(s: Solid, at: Point, size: float, turn: float, lift: float, material: bpy.types.Material) -> None:
+    """Add a flat leaf that grows from ``at``."""
     (x, y, z), c, w = at, size * math.cos(turn), size * math.sin(turn)
     up = lift * size
     points = [

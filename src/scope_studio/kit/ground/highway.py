@@ -132,6 +132,7 @@ def _patches(
     colour: Value,
     rough: Value,
 ) -> tuple[Value, Value]:
+    """Apply the patches to the colour and roughness of the asphalt, and return both."""
     old = s.mix(fine, (0.030, 0.030, 0.031), (0.052, 0.051, 0.050))
     fresh = s.mix(s.math("MULTIPLY", s.math("ADD", fine, grain), 0.5), (0.010, 0.010, 0.011), (0.026, 0.026, 0.027))
     groove = s.ramp(s.math("PINGPONG", u, 0.03), 0.004, 0.022)

@@ -71,6 +71,7 @@ def inside(s: Shader, u: Value, v: Value, patch: Patch, soft_m: float = 0.01, gr
 
 
 def _vector(s: Shader, u: Value, v: Value) -> Value:
+    """Combine u and v into a vector."""
     node = s.node("ShaderNodeCombineXYZ")
     s.feed(node.inputs[0], u)
     s.feed(node.inputs[1], v)

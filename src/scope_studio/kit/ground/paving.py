@@ -109,6 +109,7 @@ def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.t
 
 
 def _blend(s: Shader, factor: Value, a: Value, b: Value) -> Value:
+    """Mix two numbers: ``a`` where the factor is 0, ``b`` where it is 1."""
     node = s.node("ShaderNodeMix", data_type="FLOAT")
     for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
         s.feed(node.inputs[socket], value)

@@ -29,6 +29,7 @@ def carriageway(half_m: float, gutters: Sequence[Stencil]) -> Built:
 
 
 def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
+    """Return the material of wet asphalt with puddles, which are larger along the gutters."""
     s = Shader("wet asphalt")
     p = s.position()
     x, y, _ = s.xyz(p)
@@ -87,6 +88,7 @@ def road_paint(colour: str) -> bpy.types.Material:
 
 
 def _edges(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:
+    """Return a mask that is 1 along the gutters, with soft edges."""
     total: Value = 0.0
     for bar in gutters:
         mask = s.math("MULTIPLY", s.band(x, bar.u0, bar.u1, 0.35), s.band(y, bar.v0, bar.v1, 0.35))
@@ -95,7 +97,7 @@ def _edges(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:
 
 
 def footway(outline: Outline, *, slab: tuple[float, float] = (0.60, 0.45)) -> Built:
-    """Build paving over a convex outline (anticlockwise), with its top at ``KERB_M`` and granite kerbs all round."""
+    """Build paving over a convex outline (anticlockwise), with its top at ``KERB_M`` and granite kerbs on all sides."""
     s = Solid("footway")
     ring = [(x, y, KERB_M) for x, y in outline]
     s.add(ring, [tuple(range(len(ring)))], _paving(slab))
@@ -126,7 +128,7 @@ def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
 
 
 def _paving(slab: tuple[float, float]) -> bpy.types.Material:
-    """Return the material of wet concrete flags in running bond, with blotches, chewing gum, and water in the joints of a few."""
+    """Return the material of wet concrete flags in running bond, with blotches, chewing gum and small puddles."""
     s = Shader(f"wet paving {slab[0]:.2f}")
     p = s.position()
     brick = s.node("ShaderNodeTexBrick")
@@ -160,6 +162,7 @@ def _paving(slab: tuple[float, float]) -> bpy.types.Material:
 
 
 def _kerbstone() -> bpy.types.Material:
+    """Return the material of wet granite kerb stones."""
     found = bpy.data.materials.get("wet kerb")
     if found is not None:
         return found

@@ -141,6 +141,7 @@ def finish_materials(*, visibility_m: float = 1500.0, skip: tuple[str, ...] = ()
 
 
 def _dim(tree: bpy.types.NodeTree) -> None:
+    """Reduce the emission of a material to 5%."""
     for node in tree.nodes:
         if node.type == "BSDF_PRINCIPLED":
             node.inputs["Emission Strength"].default_value *= 0.05

@@ -68,6 +68,7 @@ def _layer(s: Shader, x: Value, y: Value, height: Value) -> Value:
 
 
 def _sun(scene: bpy.types.Scene, bearing_deg: float, strength: float) -> None:
+    """Add a weak, large sun lamp."""
     light = bpy.data.lights.new("Veiled sun", "SUN")
     light.energy = strength
     light.angle = math.radians(28)

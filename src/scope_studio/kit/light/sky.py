@@ -44,6 +44,7 @@ def setup(
 
 
 def _sun(bearing_deg: float, elevation_deg: float, strength: float) -> None:
+    """Add the sun lamp."""
     light = bpy.data.lights.new("Sun", "SUN")
     light.energy = strength
     light.angle = math.radians(2.5)
@@ -112,6 +113,7 @@ def finish_materials(*, visibility_m: float = 3600.0, skip: tuple[str, ...] = ()
 
 
 def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
+    """Mix a material with the colour of the haze by distance."""
     output = next((n for n in tree.nodes if n.type == "OUTPUT_MATERIAL" and n.is_active_output), None)
     if output is None or not output.inputs["Surface"].is_linked:
         return

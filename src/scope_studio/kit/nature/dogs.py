@@ -61,6 +61,7 @@ def dog(colour: str = "black", *, phase: float | None = None, lead_to: Point | N
 
 
 def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
+    """Add one leg, posed for the gait phase."""
     y, x = (0.20, 0.062) if front else (-0.27, 0.062)
     swing, lift = 0.0, 0.0
     if phase is not None:
@@ -76,12 +77,14 @@ def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
 
 
 def _collar() -> list[Point]:
+    """Return the points of a collar around the neck."""
     middle, along = Vector((0, 0.335, 0.565)), Vector((0, 0.14, 0.14)).normalized()
     u, v = Vector((1, 0, 0)), along.cross(Vector((1, 0, 0)))
     return [tuple(middle + 0.073 * (u * math.cos(a) + v * math.sin(a))) for a in (math.pi * k / 10 for k in range(20))]
 
 
 def _coat(colour: str) -> bpy.types.Material:
+    """Return the material of a dog's coat."""
     name = f"dog {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:

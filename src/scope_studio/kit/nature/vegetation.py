@@ -117,12 +117,14 @@ def _bough_shape(sp: Species, share: float) -> tuple[float, float]:
 
 
 def _droop(sp: Species) -> float:
+    """Return how strongly limbs bend upwards (positive) or downwards at each step."""
     return {"round": -0.03, "column": 0.12, "cone": -0.06, "weeping": -0.22}[sp.crown]
 
 
 def _limb(
     start: Vector, heading: Vector, length: float, rng: random.Random, steps: int, wander: float, lift: float
 ) -> list[Vector]:
+    """Return a random path that starts at ``start`` in direction ``heading``, bent upwards by ``lift`` at each step."""
     points, direction = [start.copy()], heading.copy()
     for _ in range(steps):
         direction += Vector((rng.uniform(-wander, wander), rng.uniform(-wander, wander), rng.uniform(-wander, wander) + lift))
@@ -132,11 +134,13 @@ def _limb(
 
 
 def _along(points: Sequence[Vector], index: float) -> Vector:
+    """Return the point of a path at a fractional index."""
     low = min(int(index), len(points) - 2)
     return points[low].lerp(points[low + 1], index - low)
 
 
 def _fork(points: Sequence[Vector], index: float, rng: random.Random, angle: float) -> Vector:
+    """Return a random direction that branches off a path at about ``angle`` radians."""
     low = min(int(index), len(points) - 2)
     ahead = (points[low + 1] - points[low]).normalized()
     turned = ahead.orthogonal().normalized()
@@ -148,6 +152,7 @@ def _fork(points: Sequence[Vector], index: float, rng: random.Random, angle: flo
 
 
 def _tubes(limbs: Sequence[Limb], sides: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points and quads of tapered tubes around the limbs."""
     points, faces, base = [], [], 0
     ring = [(math.cos(2 * math.pi * k / sides), math.sin(2 * math.pi * k / sides)) for k in range(sides)]
     for line, r0, r1 in limbs:

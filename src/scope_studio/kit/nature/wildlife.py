@@ -49,6 +49,7 @@ def fox(*, phase: float | None = None) -> Built:
 
 
 def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
+    """Add one leg, posed for the gait phase."""
     y, x = (0.17, 0.040) if front else (-0.19, 0.040)
     swing = lift = 0.0
     if phase is not None:

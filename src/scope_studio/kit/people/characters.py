@@ -37,6 +37,7 @@ class _Appearance:
 
 
 def _random_appearance(random: Random, hair: str | None, woman_share: float) -> _Appearance:
+    """Draw a random appearance. ``hair`` overrides the random hair colour."""
     woman = random.random() < woman_share
     height = random.gauss(1.67, 0.04) if woman else random.gauss(1.78, 0.045)
     tone = random.choices(range(6), (30, 26, 16, 12, 10, 6))[0]
@@ -55,11 +56,13 @@ def _random_appearance(random: Random, hair: str | None, woman_share: float) -> 
 
 
 def _add_skin(s: Solid, skin: Skin, material: object, rest: np.ndarray | None = None) -> None:
+    """Add a skin with a material and, optionally, rest coordinates of its points."""
     points, faces = skin
     s.add(points.tolist(), faces, material, None if rest is None else rest.tolist())
 
 
 def _head(s: Solid, joints: Joints, appearance: _Appearance, covered: bool) -> None:
+    """Add head and hair. ``covered`` shortens the hair under a helmet."""
     skin = heads.face(woman=appearance.woman, stout=0.9 + 0.12 * (appearance.girth - 0.95) / 0.25)
     _add_skin(
         s, heads.place(skin, joints.head), clothing.skin(appearance.tone, appearance.hair, stubble=appearance.stubble), skin[0]
@@ -184,6 +187,7 @@ def _person(
     holding: str | None,
     own_pose: Pose | None = None,
 ) -> Built:
+    """Build a person in a pose, with clothes and a prop."""
     if holding is not None and holding not in HOLDABLE:
         raise ValueError(f"no prop named {holding!r}; known props: {sorted(HOLDABLE)}")
     stance = own_pose or named(pose, phase, random)

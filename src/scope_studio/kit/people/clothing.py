@@ -35,6 +35,7 @@ HAIR: dict[str, Colour] = {
 
 
 def _rest(s: Shader) -> Value:
+    """Return the rest coordinates of the shading point."""
     return s.node("ShaderNodeAttribute", attribute_name=REST).outputs["Vector"]
 
 

@@ -26,6 +26,7 @@ TRUNK = [
 
 
 def _trunk_rows(joints: Joints, swell: float, girth: float, low: float, high: float) -> list[list[Vector]]:
+    """Return rings of points around the posed trunk, one for every 2 cm of height from ``low`` to ``high``."""
     rows = []
     heights = np.arange(low, high + 1e-6, 0.02)
     table = np.array(TRUNK)

@@ -88,6 +88,7 @@ class Joints:
 
 
 def _turn(pivot: tuple[float, float, float], lean: float, tilt: float, yaw: float) -> Matrix:
+    """Return a rotation (degrees) about a pivot."""
     rotation = Matrix.Rotation(math.radians(yaw), 4, "Z") @ Matrix.Rotation(math.radians(tilt), 4, "Y")
     rotation @= Matrix.Rotation(-math.radians(lean), 4, "X")
     return Matrix.Translation(pivot) @ rotation @ Matrix.Translation(-Vector(pivot))
@@ -106,6 +107,7 @@ def _bend(a: Vector, target: Vector, first: float, second: float, pole: Vector) 
 
 
 def _foot_frame(foot: Foot, side: int) -> Matrix:
+    """Return the transform of a foot from rest to posed coordinates."""
     pivot = (0.0, 0.135, 0.0) if foot.pitch < 0 else (0.0, -0.07, 0.0)
     rotation = Matrix.Translation(pivot) @ Matrix.Rotation(math.radians(foot.pitch), 4, "X") @ Matrix.Translation(-Vector(pivot))
     return Matrix.Translation((foot.x, foot.y, foot.lift)) @ Matrix.Rotation(-side * math.radians(foot.out), 4, "Z") @ rotation
@@ -142,6 +144,7 @@ def solve(pose: Pose) -> Joints:
 
 
 def _arm(arm: Arm, side: int, shoulder: Vector, chest: Matrix) -> tuple[Vector, Vector]:
+    """Return the positions of the elbow and the wrist."""
     if arm.hand is not None:
         pole = chest.to_3x3() @ Vector((side * arm.elbow[0], arm.elbow[1], arm.elbow[2]))
         return _bend(shoulder, chest @ Vector(arm.hand), UPPER_ARM, FOREARM, pole)

@@ -186,6 +186,7 @@ def _relative_width(line: str) -> float:
 
 
 def _line(s: Solid, line: str, cap: float, left: float, right: float, v: float, ink: str, align: str) -> None:
+    """Add one line of text. The part after a tab is aligned to ``right``."""
     head, _, tail = line.partition("\t")
     if head:
         write(s, head, cap, {"LEFT": left, "CENTER": (left + right) / 2, "RIGHT": right}[align], v, ink, align=align)

@@ -143,7 +143,7 @@ def triangle(
 def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | None = "400 m", *, stand: str = "frame") -> Built:
     """Build a lane diagram on white: an arrow for each open lane, a red T for each closed one.
 
-    ``closed`` counts lanes from the reader's left, starting at 0.
+    ``closed`` lists the indices of the closed lanes, counted from the left as seen by a driver.
     """
     s = Solid("lane closed sign")
     width, height = 0.32 * lanes + 0.30, 1.05

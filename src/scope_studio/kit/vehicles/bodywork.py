@@ -93,12 +93,14 @@ def shell(
 
 
 def _ring_point(station: Station, j: int, rows: int) -> Point:
+    """Return point ``j`` of a station's closed ring: the right side upwards, then the left side downwards."""
     row = j if j < rows else 2 * rows - 2 - j
     x, z = station.section[row]
     return (x if j < rows else -x, station.y + station.dy.get(row, 0.0), z)
 
 
 def _cap(bm: bmesh.types.BMesh, end: list[bmesh.types.BMVert], rows: int, push: float) -> None:
+    """Close an end of the body with quads that bulge by ``push`` metres."""
     ring = 2 * rows - 2
     spine = [end[0]]
     for row in range(2, rows - 2):
@@ -119,6 +121,7 @@ def _glaze(
     crease: bmesh.types.BMLayerItem,
     corner: bmesh.types.BMLayerItem,
 ) -> None:
+    """Turn a region of faces into a window with a sharp frame of black trim."""
     bmesh.ops.inset_region(bm, faces=region, thickness=pane.frame_m, use_even_offset=True, use_boundary=True)
     _crease_border(region, 0.9, crease, corner)
     rim = bmesh.ops.inset_region(bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True)
@@ -132,6 +135,7 @@ def _glaze(
 def _crease_border(
     region: list[bmesh.types.BMFace], strength: float, crease: bmesh.types.BMLayerItem, corner: bmesh.types.BMLayerItem
 ) -> None:
+    """Sharpen the edges around a region and the corners of its outline."""
     inside = set(region)
     for face in region:
         for edge in face.edges:
@@ -143,6 +147,7 @@ def _crease_border(
 
 
 def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.types.Mesh:
+    """Return the mesh after subdivision and subtraction of the cutters."""
     collection = bpy.context.scene.collection
     obj = bpy.data.objects.new("shell", data)
     collection.objects.link(obj)

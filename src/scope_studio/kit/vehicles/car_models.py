@@ -53,6 +53,7 @@ class CarModel:
 
 
 def _lower(width: float, floor: float = 0.19) -> list[tuple[float, float]]:
+    """Return the section points below the waist of a car."""
     return [(0.0, floor), (width - 0.14, floor), (width - 0.01, floor + 0.13), (width, 0.60)]
 
 
@@ -203,6 +204,7 @@ SUV = CarModel(
 
 
 def _van_side(width: float, belt: float, base: float) -> list[tuple[float, float]]:
+    """Return the section points of a van's side."""
     return [(0.0, 0.24), (width - 0.12, 0.24), (width - 0.01, 0.36), (width, 0.75), (width, belt), (width - 0.02, base)]
 
 

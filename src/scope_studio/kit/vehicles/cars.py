@@ -15,6 +15,7 @@ from scope_studio.kit.vehicles.car_models import HATCHBACK, PICKUP, SALOON, SUV,
 
 
 def _body(model: CarModel) -> Parts:
+    """Build the shared mesh of a model: shell, wheels, interior and fittings."""
     radius = model.wheel_radius
     cutters = bw.arches(model.axles, radius + 0.055, model.track_x - model.tyre_width / 2 - 0.10)
     for size, centre in model.extra_cutters:
@@ -109,6 +110,7 @@ def _arch_lip(parts: Parts, surface: bw.Surface, y: float, radius: float, sign: 
 
 
 def _mirror(parts: Parts, surface: bw.Surface, y: float, z: float, sign: int) -> None:
+    """Add a door mirror."""
     x = surface.side(y - 0.05, z - 0.03)
     parts.tube([(sign * (x - 0.03), y, z - 0.03), (sign * (x + 0.09), y + 0.01, z)], 0.022, pw.black_trim(), sides=6)
     outline = [
@@ -139,6 +141,7 @@ def _car(
     letters: list[bw.Lettering] | None = None,
     fittings: Parts | None = None,
 ) -> Built:
+    """Build a car of a model in a paint colour, with number plates."""
     mesh = bw.body_mesh(model.name, lambda: _body(model))
     surface = bw.Surface(mesh)
     front = max(surface.end(x, model.plate_z[0], True) for x in (0.0, 0.24)) + 0.008
@@ -188,6 +191,7 @@ def van(colour: str, *, plate: str, lettering: str | None, roof_beacon: bool = F
 
 
 def _light_bar(y: float, z: float, width: float) -> Parts:
+    """Return an orange light bar for a roof."""
     parts = Parts()
     parts.box((width, 0.22, 0.035), (0, y, z + 0.02), pw.black_trim())
     for sign in (-1, 1):

@@ -75,6 +75,7 @@ def bicycle(
 
 
 def _ring(hub: Point, radius: float, start: float = 0.0, stop: float = 360.0, steps: int = 36) -> list[Point]:
+    """Return points of a circular arc around a hub, in the plane of the wheel."""
     count = steps if stop - start >= 360 else steps + 1
     angles = [math.radians(start + (stop - start) * k / steps) for k in range(count)]
     return [(0.0, hub[1] + radius * math.cos(a), hub[2] + radius * math.sin(a)) for a in angles]
@@ -136,6 +137,7 @@ def _bars(s: Solid, model: _Kind) -> None:
 
 
 def _drive(s: Solid, crank_deg: float) -> None:
+    """Add chain ring, chain, cranks and pedals."""
     black, chrome = paint("black", dirt=0.1), steel()
     s.lathe([(0.02, -0.004), (0.085, -0.002), (0.085, 0.002)], chrome, (0.055, CRANK[1], CRANK[2]), "X", 28)
     for z, end in ((0.372, 0.385), (0.208, 0.305)):

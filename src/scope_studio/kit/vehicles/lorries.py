@@ -157,6 +157,7 @@ def tipper(cab_colour: str, body_colour: str, *, plate: str) -> Built:
 
 
 def _tank_outline(grow: float = 0.0) -> list[Flat]:
+    """Return the cross-section of the tank, enlarged by ``grow`` metres."""
     return [
         ((1.20 + grow) * math.cos(a), 2.12 + (0.90 + grow) * math.sin(a)) for a in (2 * math.pi * (k + 0.5) / 40 for k in range(40))
     ]

@@ -91,6 +91,7 @@ def paint(
 
 
 def _pattern(name: str, patches: Sequence[Patch], dirt_top_m: float, dirt: float, gloss: float) -> bpy.types.Material:
+    """Return the material that all colours of a model copy: patches, dirt and lacquer."""
     sh = shading.Shader(name)
     coords = sh.object_coords()
     x, y, z = sh.xyz(coords)
@@ -124,6 +125,7 @@ def _pattern(name: str, patches: Sequence[Patch], dirt_top_m: float, dirt: float
 
 
 def _blend(sh: shading.Shader, factor: shading.Value, a: shading.Value, b: shading.Value) -> shading.Value:
+    """Mix two numbers: ``a`` where the factor is 0, ``b`` where it is 1."""
     node = sh.node("ShaderNodeMix", data_type="FLOAT")
     for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
         sh.feed(node.inputs[socket], value)
@@ -139,6 +141,7 @@ def _within(sh: shading.Shader, value: shading.Value, limits: Range) -> shading.
 
 
 def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.Value, z: shading.Value) -> shading.Value:
+    """Return a mask that is 1 inside a patch."""
     if patch.y_per_z:
         y = sh.math("SUBTRACT", y, sh.math("MULTIPLY", z, patch.y_per_z))
     if patch.y_per_x:

@@ -82,7 +82,7 @@ def barrier_arm(length: float = 4.2, *, raised: bool = False) -> Built:
 
 
 def traffic_head(state: str = "red") -> Built:
-    """Build a small red and green lane signal on a post beside a barrier."""
+    """Build a small red and green lane signal on a post, to be placed next to a barrier."""
     s = Solid("lane signal")
     s.rod((0, 0, 0), (0, 0, 2.1), 0.04, steel())
     s.box((0.22, 0.14, 0.44), (0, 0.02, 2.3), paint("black", dirt=0.1), 0.02)
