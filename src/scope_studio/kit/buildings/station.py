@@ -50,7 +50,7 @@ def arch_panel(
 
 
 def arch_trim(
-    s: Solid, half: float, spring: float, material: bpy.types.Material, *, proud: float = 0.07, band: float = 0.28
+    s: Solid, half: float, spring: float, material: bpy.types.Material, *, projection: float = 0.07, band: float = 0.28
 ) -> None:
     """Add the voussoirs of an arch, with a keystone."""
     outer, inner = arc((0, spring), half + band, 0, 180, 14), arc((0, spring), half - 0.01, 0, 180, 14)
@@ -59,9 +59,9 @@ def arch_trim(
         quad = [inner[k], outer[k], outer[k + 1], inner[k + 1]]
         mid = (sum(u for u, _ in quad) / 4, sum(v for _, v in quad) / 4)
         s.prism([(mid[0] + (u - mid[0]) * (1 - gap * 4), mid[1] + (v - mid[1]) * (1 - gap * 4)) for u, v in quad],
-                (-0.1, proud), material, "XZ")  # fmt: skip
+                (-0.1, projection), material, "XZ")  # fmt: skip
     s.prism([(-0.14, spring + half - 0.06), (0.14, spring + half - 0.06), (0.20, spring + half + band + 0.12),
-             (-0.20, spring + half + band + 0.12)], (-0.1, proud + 0.06), material, "XZ")  # fmt: skip
+             (-0.20, spring + half + band + 0.12)], (-0.1, projection + 0.06), material, "XZ")  # fmt: skip
 
 
 def station_house(name: str) -> Built:

@@ -72,25 +72,25 @@ class Volume:
 
     def merge(self, voxel_m: float, smooth: int = 4) -> Skin:
         """Merge the shapes into one smoothed, watertight surface."""
-        mesh = bpy.data.meshes.new("melt")
+        mesh = bpy.data.meshes.new("merge")
         mesh.from_pydata(self.points, [], self.faces)
-        obj = bpy.data.objects.new("melt", mesh)
+        obj = bpy.data.objects.new("merge", mesh)
         remesh = obj.modifiers.new("remesh", "REMESH")
         remesh.mode, remesh.voxel_size = "VOXEL", voxel_m
         if smooth:
             soft = obj.modifiers.new("smooth", "SMOOTH")
             soft.factor, soft.iterations = 0.5, smooth
-        scratch = bpy.data.scenes.new("melt")  # evaluating a separate scene does not re-evaluate the stage
+        scratch = bpy.data.scenes.new("merge")  # evaluating a separate scene does not re-evaluate the stage
         scratch.collection.objects.link(obj)
         layer = scratch.view_layers[0]
         layer.update()
-        made = bpy.data.meshes.new_from_object(obj.evaluated_get(layer.depsgraph), depsgraph=layer.depsgraph)
-        points = np.empty(len(made.vertices) * 3)
-        made.vertices.foreach_get("co", points)
-        faces = [tuple(p.vertices) for p in made.polygons]
+        merged = bpy.data.meshes.new_from_object(obj.evaluated_get(layer.depsgraph), depsgraph=layer.depsgraph)
+        points = np.empty(len(merged.vertices) * 3)
+        merged.vertices.foreach_get("co", points)
+        faces = [tuple(p.vertices) for p in merged.polygons]
         bpy.data.scenes.remove(scratch)
         bpy.data.objects.remove(obj)
-        bpy.data.meshes.remove(made)
+        bpy.data.meshes.remove(merged)
         bpy.data.meshes.remove(mesh)
         return points.reshape(-1, 3), faces
 

@@ -1,4 +1,4 @@
-"""Pigeons."""
+"""Pigeons that stand, peck or sit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PLUMAGE = {
 
 
 def pigeon(colour: str = "grey", *, pose: str = "stand") -> Built:
-    """Build a town pigeon facing +y, about 0.30 m long. ``pose`` is "stand", "peck" (head down) or "rest" (squatting)."""
+    """Build a town pigeon facing +y, about 0.30 m long. ``pose`` is "stand", "peck" (head down) or "rest" (sitting)."""
     s = Solid(f"{colour} pigeon")
     lift = {"stand": 0.0, "peck": -0.004, "rest": -0.055}[pose]
     tip = Matrix.Rotation(-0.32 if pose == "peck" else 0.18 if pose == "stand" else 0.0, 4, "X")
@@ -53,7 +53,7 @@ _AIM = {"stand": Vector((0, 1, -0.30)), "peck": Vector((0, 0.65, -0.9)), "rest":
 
 
 def _body(frame: Matrix, pose: str) -> Skin:
-    """Return the body with neck, head, folded wings and tail as one skin, in the bird's own coordinates."""
+    """Return the body with neck, head, folded wings and tail as one skin, transformed by ``frame``."""
     v = Volume()
     v.ellipsoid((0, 0.02, 0.0), (0.058, 0.088, 0.056))
     v.ellipsoid((0, -0.055, 0.004), (0.046, 0.082, 0.040))

@@ -15,7 +15,7 @@ from scope_studio.kit.vehicles.car_models import HATCHBACK, PICKUP, SALOON, SUV,
 
 
 def _body(model: CarModel) -> Parts:
-    """Build the shared mesh of a model: shell, wheels, interior and fittings."""
+    """Return the parts of a model that all its cars share: shell, wheels, interior and fittings."""
     radius = model.wheel_radius
     cutters = bw.arches(model.axles, radius + 0.055, model.track_x - model.tyre_width / 2 - 0.10)
     for size, centre in model.extra_cutters:
