@@ -4,7 +4,8 @@
     python benchmarks/reading.py --tasks core
 
 Each view is aimed near a text, at a zoom at which its letters are large enough to be legible. All legible texts in the view count.
-A text counts as read if the engine's output at its position has a similarity of at least 5/6, ignoring case and spaces.
+A text counts as read if the engine's output at its position contains it or has a similarity of at least
+5/6, ignoring case, spaces and punctuation.
 
 With ``--tasks`` (a split or a task file), the views are those in which the reference programs of the OCR tasks read texts, and the
 benchmark's answer check decides whether the engine's output at the position of the answer is correct.
@@ -72,6 +73,7 @@ def main() -> int:
 
 
 def _measure(scene: Scene, engine: RapidOCR, views: int, seed: int) -> tuple[int, list[str]]:
+    """Read random views of a scene. Return the number of texts read, and descriptions of the texts that were not read."""
     number_read, missed = 0, []
     for viewpoint, pose, legible in _views(scene, views, random.Random(seed)):
         view = _perspective(pose)
@@ -88,6 +90,7 @@ def _measure(scene: Scene, engine: RapidOCR, views: int, seed: int) -> tuple[int
 
 
 def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> None:
+    """Read the views of OCR tasks and print how many tasks are answered correctly."""
     worlds, correct, missed = worlds_of(tasks), 0, []
     for task in tasks:
         scene, found = worlds[task.world], []

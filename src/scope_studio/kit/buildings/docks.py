@@ -12,6 +12,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
 
 OPEN_SHARE = {"closed": 0.0, "half open": 0.5, "open": 0.94}
+"""Fraction of the opening that the door leaves free, for each state."""
 
 
 def roller_door(

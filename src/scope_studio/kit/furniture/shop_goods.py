@@ -81,7 +81,7 @@ def bottle(colour: str = "green") -> Built:
 
 
 def book(colour: str = "red", *, seed: int = 0) -> Built:
-    """Build a book that stands open, 0.26 m high, with its cover towards +y."""
+    """Build an upright book that leans back, about 0.26 m high, with its front cover towards +y."""
     s, rng = Solid(f"{colour} book"), Random(f"book {seed}")
     cover, page = _goods_material(f"book {colour}", PALETTE[colour], 0.4), _goods_material("pages", (0.66, 0.63, 0.54), 0.8)
     tall, wide = rng.uniform(0.23, 0.28), rng.uniform(0.155, 0.19)
@@ -97,7 +97,7 @@ def book(colour: str = "red", *, seed: int = 0) -> Built:
 
 
 def teapot(colour: str = "blue") -> Built:
-    """Build a round teapot, 0.2 m, with its spout towards +x."""
+    """Build a round teapot, 0.2 m high, with its spout towards +x."""
     s = Solid(f"{colour} teapot")
     china = _goods_material(f"teapot {colour}", PALETTE[colour], 0.1)
     s.lathe([(0.06, 0.0), (0.095, 0.03), (0.105, 0.08), (0.085, 0.13), (0.05, 0.15)], china, steps=24)
