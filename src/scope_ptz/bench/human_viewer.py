@@ -1,4 +1,4 @@
-"""Pictures for a person at a terminal: as files, and in the terminal itself where it can show them."""
+"""Show pictures to a person: as files, and inline in terminals that support it."""
 
 from __future__ import annotations
 
@@ -20,14 +20,17 @@ _GRID = range(10, 100, 10)
 
 
 class Viewer:
-    """Writes pictures into a folder, numbered in order, and shows them inline in a terminal."""
+    """Writes numbered pictures into a folder, and shows them in a terminal that supports inline pictures."""
 
     def __init__(self, folder: Path, terminal: IO[str] | None, inline: Inline | None) -> None:
         self._folder, self._terminal, self._inline = folder, terminal, inline
         self._shown = 0
 
     def show(self, frame: Frame, *, grid: bool = False) -> Path:
-        """Write a frame and return its file. ``grid`` draws lines at every tenth of its sides. Raises ``OutputError``."""
+        """Write a frame and return its file.
+
+        With ``grid``, draw lines at every tenth of its width and height. Raises ``OutputError``.
+        """
         self._shown += 1
         path = self._folder / f"{self._shown:03d}.jpg"
         image = Image.fromarray(frame.image)
