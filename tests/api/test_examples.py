@@ -1,4 +1,4 @@
-"""The programs of ``examples/`` and the notebook run and print something worth reading."""
+"""The programs in ``examples/`` and the notebook run and print the expected output."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Camera specs: what they mean, what is refused, and what opens."""
+"""Camera specs: parsing, invalid specs, and opening cameras."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_a_bare_name_is_a_simulated_scene() -> None:
     assert parse_camera(f" {SCENE} ") == parse_camera(f"sim:{SCENE}") == CameraSpec("sim", SCENE)
 
 
-def test_schemes_are_read_without_regard_to_case_and_options_follow_a_question_mark() -> None:
+def test_schemes_are_case_insensitive_and_options_follow_a_question_mark() -> None:
     spec = parse_camera("SIM:yard?width=640&height=360")
     assert (spec.scheme, spec.address, spec.options) == ("sim", "yard", {"width": "640", "height": "360"})
     assert parse_camera(str(spec)) == spec
@@ -45,7 +45,7 @@ def test_schemes_are_read_without_regard_to_case_and_options_follow_a_question_m
         ("sim:yard?width=0", "whole number from 1"),
     ],
 )
-def test_wrong_specs_say_what_is_wrong(text: str, message: str) -> None:
+def test_errors_of_wrong_specs(text: str, message: str) -> None:
     with pytest.raises(InputError, match=message):
         parse_camera(text)
 
@@ -72,7 +72,7 @@ def test_a_mistyped_scheme_does_not_repeat_its_address() -> None:
     assert "hunter2" not in str(refused.value)
 
 
-def test_what_can_be_opened_is_listed() -> None:
+def test_available_cameras_are_listed() -> None:
     names = camera_names()
     assert SCENE in names
     assert "blender:highway-works" in names
@@ -109,7 +109,7 @@ async def test_it_starts_at_a_preset() -> None:
 
 
 @pytest.mark.anyio
-async def test_wrong_starts() -> None:
+async def test_invalid_start_presets() -> None:
     with pytest.raises(InputError, match="--viewpoint or --preset, not both"):
         await open_camera(SCENE, viewpoint="mast", preset="home")
     with pytest.raises(UnknownNameError, match="preset"):

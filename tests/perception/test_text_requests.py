@@ -1,4 +1,4 @@
-"""Which questions are answered by reading, and what of."""
+"""Which questions are answered by reading text, and from which objects."""
 
 from __future__ import annotations
 
@@ -87,6 +87,6 @@ def test_texts_match_despite_ocr_mistakes(wanted: str, line: str, fits: bool) ->
     assert text_fits(wanted, line) is fits
 
 
-def test_likeness_is_between_zero_and_one() -> None:
+def test_similarity_is_between_zero_and_one() -> None:
     assert similarity("EXIT 14", "exit-14") == 1.0
     assert similarity("", "") == 0.0

@@ -47,7 +47,7 @@ def test_only_the_price_of_a_price_card_is_read() -> None:
     assert priced((written("ROSES", (0.4, 0.4, 0.6, 0.44)), price)) == (price,)
 
 
-def test_a_plate_beside_an_object_is_not_a_text_on_it() -> None:
+def test_a_plate_next_to_an_object_is_not_a_text_on_it() -> None:
     box = (0.4, 0.45, 0.6, 0.9)
     assert on_it(box, AHEAD)
     assert not on_it(box, ROAD)

@@ -1,4 +1,4 @@
-"""Robust ground truth: certain statements only."""
+"""Robust ground truth contains only certain facts."""
 
 from __future__ import annotations
 
