@@ -21,7 +21,7 @@ from scope_ptz.cli.app import app
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.judges import UnnamedJudgeError, open_judge
 from scope_ptz.factory.scenes import open_scene
-from scope_ptz.factory.validation_perception import equip_with_truth
+from scope_ptz.factory.validation_perception import ground_truth_tools
 from scope_ptz.taskgen.authoring.task_places import preset_at
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import write_gold
@@ -39,7 +39,7 @@ def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with two tasks of the shipped scene and their gold runs, which turn the wrong way or do not turn."""
     folder = tmp_path_factory.mktemp("gold")
     scene = open_scene("highway-works")
-    stage = ProgramRunner(scene, equip_with_truth({scene.name: scene}), TASK_CAMERA)
+    stage = ProgramRunner(scene, ground_truth_tools({scene.name: scene}), TASK_CAMERA)
     setting = FaultSetting({preset.name: preset_at(preset) for preset in scene.file.presets}, TASK_CAMERA)
     tasks = [turn_task(1, 20), turn_task(2, 30)]
 

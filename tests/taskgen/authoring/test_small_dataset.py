@@ -16,7 +16,7 @@ import pytest
 from scope_ptz.bench.tasks.expected import Choice, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.factory.validation_perception import equip_with_truth
+from scope_ptz.factory.validation_perception import ground_truth_tools
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS as PUBLISHED
 from scope_ptz.taskgen.authoring.assembly import BuiltTasks
@@ -36,7 +36,7 @@ def core(built: BuiltTasks) -> list[Task]:
 
 def run_validation(tasks: list[Task], scene: Scene) -> ValidationReport:
     scenes = {scene.name: scene}
-    return anyio.run(lambda: validate(tasks, scenes, equip_with_truth(scenes)))
+    return anyio.run(lambda: validate(tasks, scenes, ground_truth_tools(scenes)))
 
 
 def test_published_quotas_add_up_to_the_536_tasks_of_the_paper() -> None:
@@ -54,11 +54,11 @@ import sys
 from pathlib import Path
 from scope_ptz.taskgen.authoring.assembly import build
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.factory.validation_perception import answered
+from scope_ptz.factory.validation_perception import is_answerable
 from scope_ptz.simulator.pack import Scene
 from tests.taskgen.authoring.conftest import QUOTAS
 folder, seed, out = sys.argv[1:]
-dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS, None, answered).tasks, Path(out))
+dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS, None, is_answerable).tasks, Path(out))
 """
 
 

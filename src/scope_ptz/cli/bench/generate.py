@@ -81,13 +81,13 @@ def generate(
 
 async def _draft(order: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
     from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
-    from scope_ptz.factory.proof import task_prover
+    from scope_ptz.factory.task_validation import task_validator
     from scope_ptz.taskgen.generating.drafting_loop import generate as generate_tasks
 
     options = JudgeModelOptions(temperature=temperature, seed=order.seed)
     port = JudgeServer(await _with_model(endpoint, model), options)
     try:
-        await generate_tasks(order, port, task_prover(order.scene), ledger, complain)
+        await generate_tasks(order, port, task_validator(order.scene), ledger, complain)
     finally:
         await port.close()
 

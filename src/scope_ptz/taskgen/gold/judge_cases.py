@@ -88,7 +88,7 @@ def gold_cases(
     passing: int,
     limit: int | None,
     worlds_of: Callable[[Iterable[Task]], Mapping[str, Scene]],
-    equip_with_truth: Callable[[Mapping[str, Scene]], MakeToolContext],
+    ground_truth_tools: Callable[[Mapping[str, Scene]], MakeToolContext],
 ) -> list[GoldCase]:
     """Return gold runs and, mixed in, runs of the same tasks that pass, made by their reference programs.
 
@@ -98,13 +98,13 @@ def gold_cases(
         passing: Number of runs without a fault.
         limit: Maximum number of gold runs.
         worlds_of: Opens the worlds of tasks.
-        equip_with_truth: Gives cameras in these worlds a perception that knows the ground truth.
+        ground_truth_tools: Gives cameras in these worlds a perception that knows the ground truth.
     """
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(split))
     runs = in_turn(runs)[:limit]
     worlds = worlds_of(run.task for run in runs)
     places = {name: PresetViewpoints.of(world.file) for name, world in worlds.items()}
-    equip = equip_with_truth(worlds)
+    equip = ground_truth_tools(worlds)
     cases = [gold_case(run, places[run.task.world]) for run in runs]
 
     async def add_passing() -> None:

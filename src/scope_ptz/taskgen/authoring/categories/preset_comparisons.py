@@ -28,8 +28,8 @@ _OF_THREE = (
     "Check the {p} preset, then {q}, then {r}. Which one has the largest number of {many}?",
 )
 
-_FEWEST = 4
-"""Fewest objects over all presets that are worth a comparison."""
+_MIN_TOTAL = 4
+"""Minimum number of objects over all compared presets."""
 
 
 def drafts(places: Sequence[TaskPlace], rng: random.Random) -> list[TaskDraft]:
@@ -48,7 +48,7 @@ def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
     for kind in known[0]:
         numbers = [counts.get(kind) for counts in known]
         found = [number for number in numbers if number is not None]
-        if len(found) < len(places) or sum(found) < _FEWEST or (len(places) == 3 and found.count(max(found)) > 1):
+        if len(found) < len(places) or sum(found) < _MIN_TOTAL or (len(places) == 3 and found.count(max(found)) > 1):
             continue
         many = many_of(kind)
         best = "same" if len(set(found)) == 1 else names[found.index(max(found))]
@@ -73,4 +73,5 @@ def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
 
 
 def _spoken(name: str) -> Wordings:
+    """Return the name of a preset without hyphens, if it has any, as a further wording."""
     return (name.replace("-", " "),) if "-" in name else ()
