@@ -13,7 +13,7 @@ from scope_ptz.bench.tasks.task import CANARY
 from scope_ptz.errors import InputError
 from scope_ptz.simulator.pack import load_scene
 from scope_ptz.taskgen.dataset.card import AUDIT, GOLD, PROOF, Dataset, card
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.gold.gold_runs import gold_runs, write_gold
 from scope_ptz.taskgen.gold.mutations import FaultSetting
 from scope_ptz.taskgen.picture_audit import DRAW, QuestionDraw, draw_questions, score_answers
@@ -53,7 +53,7 @@ def test_card_lists_every_answer_that_does_not_agree(dataset: Path, tmp_path: Pa
     audit.mkdir()
     questions = draw_questions(TASKS, 6, seed=2)
     (audit / DRAW).write_text(QuestionDraw(number=6, seed=2, tasks=digest_of(TASKS)).model_dump_json())
-    rows = [{"q": q, "answer": right_answers(task.expected)[0]} for q, task in questions]
+    rows = [{"q": q, "answer": correct_answers(task.expected)[0]} for q, task in questions]
     rows[0]["answer"], wrong = "I cannot tell.", questions[0][1]
     (audit / "answers.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows[:-1]))
     (audit / "findings.jsonl").write_text(json.dumps({"q": rows[0]["q"], "finding": "Too small to see."}))

@@ -21,7 +21,7 @@ from scope_ptz.bench.tasks.files import digest_of
 from scope_ptz.bench.tasks.stratified import stratified_sample
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
 QUESTIONS, ANSWERS, FINDINGS, DRAW = "questions.jsonl", "answers.jsonl", "findings.jsonl", "draw.json"
 Outcome = Literal["agrees", "disagrees", "not readable", "not answered"]
@@ -155,7 +155,7 @@ def _audited(q: str, task: Task, answer: ReaderAnswer, findings: Mapping[str, st
         category=task.category,
         scene=task.scene,
         instruction=task.instruction,
-        expected=right_answers(task.expected)[0],
+        expected=correct_answers(task.expected)[0],
         reader=answer.reader,
         answer=answer.answer,
         outcome=outcome if answer.answer.strip() else "not answered",

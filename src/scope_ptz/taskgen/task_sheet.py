@@ -19,7 +19,7 @@ from scope_ptz.errors import OutputError
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, Projection
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
 _MARGIN, _HEAD, _LINE = 28, 118, 24
@@ -46,7 +46,7 @@ def summary(task: Task, wordings: Sequence[Task]) -> Iterator[str]:
 
 def reference_run(task: Task, scene: Scene, equip: MakeToolContext) -> Iterator[str]:
     """Return the calls of the reference program with the results of the tools, and the verdict."""
-    text, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
+    text, outcome = correct_answers(task.expected)[0], task.behaviour.outcomes[0]
     stage = ProgramRunner(scene, equip, TASK_CAMERA)
     episode = anyio.run(stage.run, task, task.reference, text, outcome)
     for call in episode.calls:

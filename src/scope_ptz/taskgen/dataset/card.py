@@ -1,4 +1,4 @@
-"""The dataset card, a Markdown page that is generated from the files of the dataset."""
+"""Write the dataset card, a Markdown page that is generated from the files of the dataset."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ class Dataset:
     Attributes:
         splits: Tasks by split.
         manifest: The manifest.
-        proof: Results of the validation by part of the dataset.
+        proof: Validation results of the published and the unseen tasks, as stored in the file.
         gold: Path of the gold runs.
-        audit: The audit, if one was made.
+        audit: The picture audit; None if none was made.
     """
 
     splits: Mapping[str, tuple[Task, ...]]
@@ -88,9 +88,9 @@ def _what(data: Dataset) -> Iterator[str]:
     yield (
         "The tasks measure how well an agent, that is a planner together with a perception model, carries out instructions to one "
         "camera: whether it looks in the right direction, counts, reads, finds and compares correctly, and does what was asked and "
-        "nothing else. They serve to compare pairs of models under equal conditions, and to find out why runs fail.\n\n"
+        "nothing else. Use them to compare pairs of models under equal conditions, and to find out why runs fail.\n\n"
         "The tasks are not training data. The scores of a model that has seen them do not predict its scores on unseen tasks. The "
-        "tasks are also no evidence that an agent is fit to monitor people or to guard anything."
+        "scores also do not show that an agent is suitable for monitoring people or for security."
     )
     yield "## How the tasks were made"
     yield (
@@ -98,7 +98,7 @@ def _what(data: Dataset) -> Iterator[str]:
         "is entered by hand. A program reads the ground truth of views of the scenes and drafts tasks about them. It keeps only "
         "those whose answers also hold at poses that differ by 0.5 degrees and 3% of zoom, and with visibility thresholds that are "
         "30% lower or higher. [The benchmark](benchmark.md) explains the rules. The same scenes in the same order and the same "
-        "seed give the same bytes:"
+        "seed always produce identical files:"
     )
     made = data.manifest["made_with"]
     unseen = " ".join(map(str, made["unseen"]))
@@ -203,9 +203,9 @@ def _audit(data: Dataset) -> Iterator[str]:
     audit, by_id = data.audit, {task.id: task for task in data.splits["core"]}
     right, of = audit.share()
     yield (
-        "Readers saw only the instruction and the frames that the answer depends on. Tasks were drawn by category, scene and "
+        "Readers saw only the instruction and the frames that the answer depends on. Tasks were sampled by category, scene and "
         f"difficulty (`scope bench audit make --n {audit.draw.number} --seed {audit.draw.seed}`). {right} of {of} answers agree "
-        f"with the expected value ({right / of:.1%}). Drawn tasks without an answer: {len(audit.rows) - of}."
+        f"with the expected value ({right / of:.1%}). Sampled tasks without an answer: {len(audit.rows) - of}."
         if of
         else "No question was answered."
     )

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from scope_ptz.agent.trace import FILE_NAME, Trace, read_trace
 from scope_ptz.errors import InputError
 
-MOST_RUNS, MOST_CHARS = 12, 300  # runs in a prompt, and characters of each text in it
+MOST_RUNS, MAX_REPLY_CHARS = 12, 300  # runs in a prompt, and characters of each text in it
 
 
 class Feedback(BaseModel):
@@ -36,10 +36,10 @@ class OperatorRun:
         """Return the run in short, as data for a prompt."""
         ended = self.trace.ended
         return {
-            "asked": self.trace.started.instruction[:MOST_CHARS],
+            "asked": self.trace.started.instruction[:MAX_REPLY_CHARS],
             "calls": [{call.outcome.call.name: call.outcome.call.arguments} for call in self.trace.calls][:10],
-            "ended": f"{ended.outcome}: {ended.text[:MOST_CHARS]}" if ended else "cut off",
-            "operator said": f"{self.feedback.rating}: {self.feedback.note[:MOST_CHARS]}" if self.feedback else "nothing",
+            "ended": f"{ended.outcome}: {ended.text[:MAX_REPLY_CHARS]}" if ended else "cut off",
+            "operator said": f"{self.feedback.rating}: {self.feedback.note[:MAX_REPLY_CHARS]}" if self.feedback else "nothing",
         }
 
 

@@ -22,7 +22,7 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.splits import load_split, published_folder
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import read_gold
 from scope_ptz.taskgen.gold.judge_results import (
@@ -109,7 +109,7 @@ def gold_cases(
 
     async def add_passing() -> None:
         for task in list({run.task.id: run.task for run in runs}.values())[:passing]:
-            answer, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
+            answer, outcome = correct_answers(task.expected)[0], task.behaviour.outcomes[0]
             episode = await ProgramRunner(worlds[task.world], equip, TASK_CAMERA).run(task, task.reference, answer, outcome)
             if score_episode(task, episode).headline == "correct":
                 cases.append(passing_case(task, episode, places[task.world]))

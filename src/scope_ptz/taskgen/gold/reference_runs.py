@@ -10,7 +10,7 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.task_places import preset_at
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import OTHER, confusion_matrix, gold_runs
 from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun
@@ -32,7 +32,7 @@ async def make_gold_runs(tasks: Sequence[Task], worlds: Mapping[str, Scene], equ
     runs = []
     for task in tasks:
         if task.stratum == "core" and task.reference:
-            episode = await stages[task.world].run(task, task.reference, right_answers(task.expected)[0])
+            episode = await stages[task.world].run(task, task.reference, correct_answers(task.expected)[0])
             if score_episode(task, episode).headline == "correct":
                 runs.append((task, episode))
     return gold_runs(runs, settings, seed)

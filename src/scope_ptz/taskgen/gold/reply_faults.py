@@ -14,7 +14,7 @@ from scope_ptz.bench.scoring.episode import Episode, EpisodeCall
 from scope_ptz.bench.scoring.evidence import is_supported_by_tools, numbers_from_tools
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, wrong_answer
 from scope_ptz.taskgen.gold.agent_faults import FaultSetting, changed, count_of, replayed, with_result
 
 _TRIES = 24  # wrong answers that are tried until one has no support in the run
@@ -107,7 +107,7 @@ def conclude_wrongly(task: Task, episode: Episode, setting: FaultSetting, rng: r
     if isinstance(expected, Number):
         others = sorted(n for n in numbers_from_tools(episode) if abs(n - expected.value) > expected.tolerance)
         if others and rng.random() < 0.5:
-            return replace(episode, answer=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
+            return replace(episode, answer=correct_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
     answer = wrong_answer(expected, rng)
     if answer is not None and rng.random() < 0.5 and is_supported_by_tools(task, replace(episode, answer=answer)):
         return replace(episode, answer=answer)

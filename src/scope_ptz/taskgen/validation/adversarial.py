@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number
 from scope_ptz.bench.tasks.task import ProgramCall, Task
-from scope_ptz.taskgen.facts.answer_phrasing import offered, right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import offered, correct_answers, wrong_answer
 from scope_ptz.tools.registry import TOOLS
 
 PERCEPTION_TOOLS = frozenset({"count_objects", "query_answer"})
@@ -41,7 +41,7 @@ class Attempt:
 def correct_attempts(task: Task) -> Iterator[Attempt]:
     """Yield the reference program and two other correct programs, with different wordings of the right answer."""
     outcome = task.behaviour.outcomes[0]
-    texts = right_answers(task.expected) if outcome == "answered" else ("I am not sure what you mean: which one?",) * 5
+    texts = correct_answers(task.expected) if outcome == "answered" else ("I am not sure what you mean: which one?",) * 5
     yield Attempt("reference", task.reference, texts[0], outcome)
     if outcome != "answered":
         return
@@ -51,7 +51,7 @@ def correct_attempts(task: Task) -> Iterator[Attempt]:
 
 def other_right_wordings(task: Task) -> tuple[str, ...]:
     """Return the remaining wordings of the right answer, which follow the reference program."""
-    return right_answers(task.expected)[3:] if task.behaviour.outcomes[0] == "answered" else ()
+    return correct_answers(task.expected)[3:] if task.behaviour.outcomes[0] == "answered" else ()
 
 
 def detour(task: Task) -> tuple[ProgramCall, ...]:
@@ -95,7 +95,7 @@ def common_answers(tasks: Sequence[Task], *, presences: bool = False) -> dict[st
 
 def _bare_answer(expected: AnyExpected) -> str:
     """Return a right answer without words of its question, so that it also answers other questions."""
-    return f"{expected.value:g}" if isinstance(expected, Number) else right_answers(expected)[0]
+    return f"{expected.value:g}" if isinstance(expected, Number) else correct_answers(expected)[0]
 
 
 def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: random.Random) -> Iterator[Attempt]:
@@ -108,7 +108,7 @@ def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: rand
         rng: Source of the wrong answers.
     """
     blind = tuple(call for call in task.reference if call.tool not in PERCEPTION_TOOLS and call.tool != "zoom_to_object")
-    right = right_answers(task.expected)[0]
+    right = correct_answers(task.expected)[0]
     yield Attempt("nothing", (), "")
     for text in ("None.", "0", "Yes.", common):
         yield Attempt("guess", (), text)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 MOST_GUESSED_SHARE = 0.03
@@ -52,7 +52,7 @@ def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
         later = (*tasks[at + 1 :], *tasks[:at])
         others = [twin] if twin else [t for t in later if t.category == task.category and t.expected.kind == task.expected.kind]
         for other in others:
-            text = right_answers(other.expected)[0]
+            text = correct_answers(other.expected)[0]
             if agrees(task.expected, parse_answer(task.expected, text)) is not True:
                 found[task.id] = text
                 break

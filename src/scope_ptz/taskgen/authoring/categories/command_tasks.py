@@ -71,7 +71,7 @@ def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: rando
             return None
         at = there
         program.append(call)
-    origin = places.stay(start)
+    origin = places.at_preset(start)
     end = TaskPlace(scene, start, tuple(program), at)
     shots = shape.count("shot")
     if not shots and end.key == origin.key:

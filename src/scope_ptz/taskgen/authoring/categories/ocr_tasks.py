@@ -12,7 +12,7 @@ from scope_ptz.simulator.truth import BoxTuple, TextSighting
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, evidence_view
 from scope_ptz.taskgen.authoring.object_names import NamedThing, coloured_boards, extreme_things, nameable_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
-from scope_ptz.taskgen.authoring.zoom_targets import SMALLEST_PX, framed
+from scope_ptz.taskgen.authoring.zoom_targets import MIN_TARGET_PX, framed
 from scope_ptz.taskgen.facts.robust import with_parts
 
 MAX_TEXT_CHARS = 80
@@ -27,8 +27,8 @@ def drafts(place: TaskPlace) -> list[TaskDraft]:
     if place.swept:
         return []
     named = [
-        *nameable_things(place.truth, SMALLEST_PX, _NOTICEABLE_TEXT_PX),
-        *coloured_boards(place.truth, SMALLEST_PX),
+        *nameable_things(place.truth, MIN_TARGET_PX, _NOTICEABLE_TEXT_PX),
+        *coloured_boards(place.truth, MIN_TARGET_PX),
         *extreme_things(place.truth),
     ]
     return [*_in_view(place, named), *_zoomed(place, named)]
@@ -47,8 +47,8 @@ def _zoomed(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     if any("zoom_factor" in call.arguments for call in place.calls):
         return  # tasks do not zoom in twice
     for one in named:
-        family = with_parts(place.scene, one.thing.instance.id)
-        lettered = any(text.parent in family for text in place.scene.file.texts)
+        part_ids = with_parts(place.scene, one.thing.instance.id)
+        lettered = any(text.parent in part_ids for text in place.scene.file.texts)
         if one.positional or not lettered or place.truth.texts_on(one.thing.instance):
             continue
         close = framed(place, one.thing, one.thing.instance)

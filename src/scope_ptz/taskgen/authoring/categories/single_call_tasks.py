@@ -75,7 +75,7 @@ def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> It
 
 
 def _adjusted(places: ScenePlaces, name: str, call: ProgramCall, kind: str, rng: random.Random) -> TaskDraft | None:
-    start = places.stay(name)
+    start = places.at_preset(name)
     there = move(start.at, call)
     if there is None:
         return None
@@ -121,7 +121,7 @@ def _presets(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
         starts = [other for other in places.presets if other != name]
         if not starts:
             continue
-        start = places.stay(rng.choice(starts))
+        start = places.at_preset(rng.choice(starts))
         end = TaskPlace(start.scene, start.start, (go(name),), preset_at(preset))
         instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(call_phrases(go(name), rng)[0])))
         yield command(
@@ -135,7 +135,7 @@ def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     others = [name for name in places.presets if name != home]
     rng.shuffle(others)
     for n, name in enumerate(others[:3]):
-        start = places.stay(name)
+        start = places.at_preset(name)
         final = TaskPlace(scene, name, (), preset_at(places.presets[home])).final
         ways = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
         instructions = tuple(text for way in ways for text in polite(way))
@@ -246,7 +246,7 @@ def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
 
 
 def _sweeps(places: ScenePlaces) -> Iterator[TaskDraft]:
-    for place in places.around():
+    for place in places.sweeps():
         if place.calls:
             continue
         for kind, number in countable(place.truth)[:40]:
