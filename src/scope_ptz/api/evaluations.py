@@ -23,8 +23,8 @@ CATEGORIES: tuple[str, ...] = get_args(Category)
 class EvaluationResults:
     """The results of an evaluation: scores by category, and every trial. In a notebook, they are shown as a table.
 
-    ``evaluate`` and ``load_results`` return this class. A score is the share of correct trials among those that were scored. Trials that
-    failed because of infrastructure are excluded, and so are those that await a judge.
+    ``evaluate`` and ``load_results`` return this class. A score is the share of correct trials among those that were scored.
+    Trials that failed because of infrastructure are excluded, and so are those that await a judge.
 
     Example:
         >>> import scope_ptz, tempfile

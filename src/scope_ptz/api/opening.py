@@ -48,8 +48,8 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
 ) -> Scope:
     """Open a session with a camera.
 
-    By default, the planner is the built-in rule-based one and perception is the simulator's ground truth. They need no model, key or
-    network. A camera without ground truth has no perception unless you choose one: it can move and take frames, but questions
+    By default, the planner is the built-in rule-based one and perception is the simulator's ground truth. They need no model, key
+    or network. A camera without ground truth has no perception unless you choose one: it can move and take frames, but questions
     about what it sees raise ``PerceptionError``.
 
     Args:

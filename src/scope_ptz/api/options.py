@@ -95,7 +95,9 @@ class SessionOptions:
 def check_type(option: str, given: object, contract: type) -> None:
     """Raise ``InputError`` unless an option is a name, None, or an instance of the contract's class."""
     if not isinstance(given, str | contract | None):
-        expected = "an instance of the class, not the class itself" if isinstance(given, type) else f"a scope_ptz.{contract.__name__}"
+        expected = (
+            "an instance of the class, not the class itself" if isinstance(given, type) else f"a scope_ptz.{contract.__name__}"
+        )
         raise InputError(f"{option}= takes a name or {expected}, got {given!r}.")
 
 

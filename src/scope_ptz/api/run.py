@@ -116,7 +116,9 @@ class Run:
         """
         trace = read_trace(Path(folder))
         if trace.ended is None:
-            raise TraceError(f"The run in {folder} is incomplete, because the program was stopped. Inspect its steps with `scope replay`.")
+            raise TraceError(
+                f"The run in {folder} is incomplete, because the program was stopped. Inspect its steps with `scope replay`."
+            )
         return cls(trace, trace.ended)
 
     @property

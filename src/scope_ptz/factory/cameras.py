@@ -215,7 +215,9 @@ def _unknown_scheme(scheme: str, text: str) -> str:
 
 def _check_built_in(spec: CameraSpec) -> None:
     if not spec.address:
-        raise InputError("The camera spec names no scene. Name one, for example highway-works; `scope scene list` lists the scenes.")
+        raise InputError(
+            "The camera spec names no scene. Name one, for example highway-works; `scope scene list` lists the scenes."
+        )
     known = _OPTIONS[spec.scheme]
     for name, value in spec.options.items():
         if name not in known:

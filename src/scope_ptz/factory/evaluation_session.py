@@ -88,7 +88,10 @@ class EvaluationSession:
         if self.options.resume is not None:
             log = stored_log(self.options.resume)
             if (log.header.eval.metadata or {}).get("identity") != self.identity:
-                raise InputError(f"{log.path} belongs to another evaluation: its tasks, models or settings differ. Use the options of that evaluation.")
+                raise InputError(
+                    f"{log.path} belongs to another evaluation: its tasks, models or settings differ. "
+                    "Use the options of that evaluation."
+                )
             return [log]
         return [] if self.options.fresh else await find_logs(self.options.out, self.identity)
 
@@ -128,8 +131,8 @@ class EvaluationSession:
         if breaker.tripped:
             why = "".join(f" {line[0].upper()}{line[1:]}" for line in failure_summary([*finished, *breaker.trials], setup.card))
             raise ScopeError(
-                f"The evaluation stopped because {MAX_CONSECUTIVE_FAILURES} consecutive runs failed because of infrastructure.{why} "
-                "Check the servers; running the same command again resumes the evaluation."
+                f"The evaluation stopped because {MAX_CONSECUTIVE_FAILURES} consecutive runs failed because of infrastructure."
+                f"{why} Check the servers; running the same command again resumes the evaluation."
             )
         (result,) = outcome
         if isinstance(result, ScopeError):

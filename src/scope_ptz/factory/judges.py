@@ -91,5 +91,7 @@ async def _with_judge_name(endpoint: Endpoint, name: str) -> Endpoint:
             f"The server at {endpoint.url} serves several models, but not {DEFAULT_JUDGE}. Name one with --judge-model: {names}."
         )
     if not defaults:
-        _LOG.warning("note: the server at %s serves '%s', which is used as the judge instead of %s.", endpoint.url, served[0], DEFAULT_JUDGE)
+        _LOG.warning(
+            "note: the server at %s serves '%s', which is used as the judge instead of %s.", endpoint.url, served[0], DEFAULT_JUDGE
+        )
     return endpoint.model_copy(update={"model": (defaults or served)[0]})

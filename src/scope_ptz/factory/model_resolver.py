@@ -66,7 +66,9 @@ class ModelResolver:
         options = self.options
         if name == GRAMMAR:
             if options.planner_url or options.planner_model or options.planner_options or options.planner_key_file:
-                raise InputError("The grammar planner has no server and no options. Remove the --planner-... options, or name a model.")
+                raise InputError(
+                    "The grammar planner has no server and no options. Remove the --planner-... options, or name a model."
+                )
             return ResolvedPlanner(GRAMMAR)
         if self._is_plugin_planner(name):
             return self._plugin_planner(name)
@@ -164,7 +166,9 @@ class ModelResolver:
         if not parts:
             return perception
         if perception.spec is None:
-            raise InputError(f"--reader and --detector need a perception model, and '{perception.name}' is not one. Remove them, or name a model.")
+            raise InputError(
+                f"--reader and --detector need a perception model, and '{perception.name}' is none. Remove them, or name a model."
+            )
         label = "+".join((perception.name, *(part.name for part in parts.values())))
         options = {"answerer": perception.spec, **parts}
         return ResolvedPerception(label, BackendSpec(name=label, backend="router", options=options), perception.model)

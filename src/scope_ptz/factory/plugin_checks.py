@@ -71,13 +71,16 @@ async def _check_camera(plugin: Plugin) -> tuple[Verdict, str]:
         _expect(bool(info.name), "the camera has no name")
         limits = info.limits
         _expect(
-            limits.min_pan_deg < limits.max_pan_deg and limits.min_tilt_deg < limits.max_tilt_deg, "its pan or tilt limits are in the wrong order"
+            limits.min_pan_deg < limits.max_pan_deg and limits.min_tilt_deg < limits.max_tilt_deg,
+            "its pan or tilt limits are in the wrong order",
         )
         _expect(0 < limits.min_zoom <= limits.max_zoom, "its zoom limits are in the wrong order or not positive")
         pose = await camera.pose()
         _expect(not limits.clamp(pose)[1], f"its first pose {pose} is outside its own limits")
         frame = await camera.frame()
-        _expect((frame.width, frame.height) == (info.frame_width, info.frame_height), "the frame size differs from the size in its info")
+        _expect(
+            (frame.width, frame.height) == (info.frame_width, info.frame_height), "the frame size differs from the size in its info"
+        )
         _expect(isinstance(await camera.presets(), list), "presets() does not return a list")
         return "ok", f"{info.name}, {frame.width} x {frame.height}"
 

@@ -59,7 +59,8 @@ def plugins_of(kind: Kind) -> tuple[Plugin, ...]:
         return ()
     reserved, duplicates = _reserved_names(kind), duplicated_names(group)
     return tuple(
-        Plugin(kind, entry.name, entry.package, entry.target, _problem(entry, kind, reserved, duplicates), entry) for entry in entries
+        Plugin(kind, entry.name, entry.package, entry.target, _problem(entry, kind, reserved, duplicates), entry)
+        for entry in entries
     )
 
 

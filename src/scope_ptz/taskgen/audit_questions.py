@@ -20,7 +20,9 @@ POSE_TOLERANCE = 0.01
 """Maximum difference between a view and the preset in its caption, for pan and tilt (degrees) and for zoom (magnification)."""
 
 
-async def write_question(number: str, task: Task, runner: ProgramRunner, out: Path, notify: Callable[[str], None]) -> dict[str, Any]:
+async def write_question(
+    number: str, task: Task, runner: ProgramRunner, out: Path, notify: Callable[[str], None]
+) -> dict[str, Any]:
     """Write the pictures of an audit question to a folder, and return the question as JSON data.
 
     Args:

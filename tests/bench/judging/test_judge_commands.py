@@ -87,7 +87,7 @@ def test_a_judge_of_gold_runs_from_the_command_line(gold: Path, tmp_path: Path) 
     assert (content["runs"], content["judgements"]) == (6, 12)
     with m.Misbehaving(then=good_judge) as server:
         told = judge_gold(gold, out, server.url, "--repeats", "2").output
-    assert "6 gold runs, 12 judgements; rows: the fault put in" in told
+    assert "6 gold runs, 12 judgements; rows: inserted fault" in told
     assert all(f" {head}" in told for head in ("lack", "routing", "halluc.", "unparseable"))
     assert content["modes"]["raw"] == 1.0
     compared = CliRunner().invoke(app, ["bench", "agree", str(out)])

@@ -8,7 +8,7 @@ import anyio
 import pytest
 
 from scope_ptz.bench.tasks.task import Category
-from scope_ptz.factory.validation_perception import is_answerable, ground_truth_tools
+from scope_ptz.factory.validation_perception import ground_truth_tools, is_answerable
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import BuiltTasks, build
 from scope_ptz.taskgen.validation.validate import validate

@@ -12,7 +12,14 @@ from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NoneThere, Numbe
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft
-from scope_ptz.taskgen.authoring.selection import MAX_AT_ONE_POSITION, MAX_SAME_YES_NO, MAX_SAME_QUESTION, Selection, SharedLimits, offered_positions
+from scope_ptz.taskgen.authoring.selection import (
+    MAX_AT_ONE_POSITION,
+    MAX_SAME_QUESTION,
+    MAX_SAME_YES_NO,
+    Selection,
+    SharedLimits,
+    offered_positions,
+)
 from scope_ptz.taskgen.authoring.task_places import TaskPlace, go, preset_at
 
 

@@ -23,7 +23,7 @@ from scope_ptz.taskgen.authoring.assembly import BuiltTasks
 from scope_ptz.taskgen.authoring.reactions import reactions
 from scope_ptz.taskgen.facts.answer_phrasing import offered
 from scope_ptz.taskgen.validation.adversarial import common_answers
-from scope_ptz.taskgen.validation.dataset_checks import structure
+from scope_ptz.taskgen.validation.dataset_checks import structural_faults
 from scope_ptz.taskgen.validation.report_text import report_lines
 from scope_ptz.taskgen.validation.validate import validate
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
@@ -77,12 +77,12 @@ def test_same_seed_gives_the_same_bytes_and_another_seed_does_not(built: BuiltTa
 
 def test_the_twin_of_a_selected_task_may_be_in_the_rest_of_the_dataset(built: BuiltTasks) -> None:
     alone = [task for task in built.tasks if task.pair is not None][:1]
-    assert [fault.attempt for fault in structure(alone)] == ["pair"]
-    assert not structure(alone, dataset=built.tasks)
+    assert [fault.attempt for fault in structural_faults(alone)] == ["pair"]
+    assert not structural_faults(alone, dataset=built.tasks)
 
 
 def test_no_two_tasks_ask_the_same(built: BuiltTasks) -> None:
-    assert not structure(built.tasks)
+    assert not structural_faults(built.tasks)
     views = Counter((t.evidence[0].aim, t.evidence[0].scope, t.expected, t.tags) for t in core(built) if t.category == "counting")
     assert max(views.values()) == 1
     assert len({task.id for task in built.tasks}) == len(built.tasks)
@@ -187,7 +187,7 @@ def test_a_wrong_expected_count_is_reported(built: BuiltTasks, analytic_scene: S
 
 def test_a_missing_twin_is_reported(built: BuiltTasks) -> None:
     task = next(t for t in core(built) if t.pair)
-    assert [fault.attempt for fault in structure([task])] == ["pair"]
+    assert [fault.attempt for fault in structural_faults([task])] == ["pair"]
 
 
 def test_reactions_require_that_the_camera_does_not_move(analytic_scene: Scene) -> None:

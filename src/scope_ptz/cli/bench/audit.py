@@ -50,8 +50,8 @@ def audit_make(
     if not chosen:
         raise InputError("None of these tasks expects an answer: there is nothing to ask.")
     worlds = worlds_of([task for _, task in chosen])
-    equip = ground_truth_tools(worlds, CachedTruth())
-    stages = {name: ProgramRunner(world, equip, TASK_CAMERA) for name, world in worlds.items()}
+    make_context = ground_truth_tools(worlds, CachedTruth())
+    stages = {name: ProgramRunner(world, make_context, TASK_CAMERA) for name, world in worlds.items()}
     try:
         out.mkdir(parents=True)
     except FileExistsError as error:

@@ -70,8 +70,8 @@ def _build_all(
     from scope_ptz.taskgen.dataset.build import build_dataset
 
     good = build_dataset(
-        scenes_named(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable, report=put,
-        notify=complain,
+        scenes_named(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
+        report=put, notify=complain,
     )  # fmt: skip
     if card is not None:
         write_card(out, card)

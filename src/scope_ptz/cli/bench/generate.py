@@ -62,7 +62,7 @@ def generate(
         known=load_split(known) if known else (),
         runs=read_runs(runs, feedback),
         seed=seed,
-        most_requests=requests,
+        max_requests=requests,
     )
     ledger = DraftLedger(out)
     endpoint = _endpoint(url, key_file, timeout)

@@ -10,7 +10,7 @@ from functools import lru_cache
 from scope_ptz.bench.tasks.expected import Wordings
 from scope_ptz.simulator.truth import Sighting
 from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTED, about, everyday_name, noun_of, plain_colour, the
-from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, SceneThing, has_colour, similar_colours, own_colour
+from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, SceneThing, has_colour, own_colour, similar_colours
 from scope_ptz.taskgen.facts.robust import RobustTruth, with_parts
 
 RECOGNISABLE_TEXT_PX = 8.0
@@ -183,7 +183,9 @@ def _words(text: str) -> set[str]:
     return set(re.findall(r"[^\W_]+", text.lower()))
 
 
-_FUNCTION_WORDS = frozenset({"a", "an", "the", "of", "in", "on", "with", "by", "for", "at", "to", "who", "his", "her", "their", "its"})
+_FUNCTION_WORDS = frozenset(
+    {"a", "an", "the", "of", "in", "on", "with", "by", "for", "at", "to", "who", "his", "her", "their", "its"}
+)
 _COMMON_WORDS = frozenset({
     "standing", "walking", "waiting", "tall", "small", "large", "wide", "light", "dark", "saloon", "hatchback", "suv", "estate",
     "town", "site", "delivery", "roadside", "lit", "unlit", "round", "worker", "person", "man", "woman", "pedestrian", "customer",

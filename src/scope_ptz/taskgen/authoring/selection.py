@@ -106,7 +106,9 @@ class Selection:
         # The order is pseudo-random. It does not depend on the other drafts or on the order of the scenes.
         pool = sorted(drafts, key=lambda draft: draft.digest(self.seed))
         pairs = [draft for draft in pool if draft.twin is not None]
-        pair_count = min(self.shared.scaled(PAIR_QUOTAS.get(self.category, 0)), self.quota // 2) if self.category in PAIR_QUOTAS else 0
+        pair_count = (
+            min(self.shared.scaled(PAIR_QUOTAS.get(self.category, 0)), self.quota // 2) if self.category in PAIR_QUOTAS else 0
+        )
         for _ in range(pair_count):
             self._best(pairs, self._pair)
         for slack in (1.0, 1.2, 1.4, 1.6, 2.0, 3.0, _NO_LIMIT):
@@ -117,7 +119,7 @@ class Selection:
         return self.rows
 
     def _best(self, pool: list[TaskDraft], take: _Take) -> bool:
-        """Take the draft that improves the balance most, and remove it from the pool. Drafts that cannot be taken are removed too."""
+        """Take the draft that improves the balance most out of the pool. Drafts that cannot be taken are removed as well."""
         while pool:
             at = min(range(len(pool)), key=lambda n: self._cost(pool[n]))
             if take(pool.pop(at)):

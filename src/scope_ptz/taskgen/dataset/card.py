@@ -13,7 +13,7 @@ from scope_ptz.bench.tasks.splits import load_split, read_manifest
 from scope_ptz.bench.tasks.task import CANARY, Task
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.dataset import distributions as d
-from scope_ptz.taskgen.gold.gold_runs import OTHER, confusion_matrix, read_gold
+from scope_ptz.taskgen.gold.gold_runs import WITHOUT_MODE, confusion_matrix, read_gold
 from scope_ptz.taskgen.picture_audit import Audit, AuditedAnswer, read_audit, task_digest
 
 GOLD, PROOF, AUDIT = "gold.jsonl.gz", "proof.json", "audit.json"
@@ -183,7 +183,7 @@ def _proof(data: Dataset) -> Iterator[str]:
 def _gold(data: Dataset) -> Iterator[str]:
     _, runs = read_gold(data.gold, data.splits["core"])
     result = confusion_matrix(runs)
-    columns = [*(mode.value for mode in ErrorMode), *OTHER]
+    columns = [*(mode.value for mode in ErrorMode), *WITHOUT_MODE]
     yield "## Error modes"
     yield (
         f"{result.total} reference runs have one known fault each (`scope bench gold check`). The rules name the error mode of "

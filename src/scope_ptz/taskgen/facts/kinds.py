@@ -120,7 +120,9 @@ _SIMILAR_COLOURS = (
     {"cream", "grey"}, {"light", "grey", "white"}, {"khaki", "green"}, {"khaki", "brown"},
 )  # fmt: skip
 
-_WITH_VISIBLE_DRIVER = frozenset({"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"})
+_WITH_VISIBLE_DRIVER = frozenset(
+    {"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"}
+)
 """Categories of vehicles whose driver may be visible."""
 
 _OTHER_NAMES = {"car": frozenset({"taxi", "cab"}), "bus": frozenset({"coach", "minibus"})}

@@ -32,7 +32,7 @@ from scope_ptz.simulator.truth import (
     ViewTruth,
     view_truth,
 )
-from scope_ptz.taskgen.facts.kinds import INCOMPLETE_CATEGORIES, UNRECOGNISABLE, RECOGNISED_BY_TEXT, Kind, SceneThing
+from scope_ptz.taskgen.facts.kinds import INCOMPLETE_CATEGORIES, RECOGNISED_BY_TEXT, UNRECOGNISABLE, Kind, SceneThing
 
 TASK_CAMERA = FrameGeometry(1280, 720)
 """The camera for which tasks are created and validated."""

@@ -24,7 +24,7 @@ from scope_ptz.taskgen.authoring.noun_phrases import (
 from scope_ptz.taskgen.authoring.object_names import unique_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
 from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, scene_kinds_first
-from scope_ptz.taskgen.facts.kinds import Kind, colour_shows, similar_colours, own_colour
+from scope_ptz.taskgen.facts.kinds import Kind, colour_shows, own_colour, similar_colours
 
 
 def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
@@ -76,7 +76,9 @@ def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft
         colour = plain_colour(own_colour(one.thing.instance))
         if colour is None or colour in one.name or not colour_shows(one.thing.instance):
             continue
-        other_colours = [c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not similar_colours(c, colour)]
+        other_colours = [
+            c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not similar_colours(c, colour)
+        ]
         for asked in (colour, rng.choice(other_colours)):
             expected = YesNo(value=asked == colour, affirms=(asked,), denies=(colour,) if asked != colour else ())
             yield TaskDraft(
