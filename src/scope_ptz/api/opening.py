@@ -69,11 +69,11 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
         planner_url: address of the planner's model server.
         planner_model: the server's name for the planner.
         planner_key_file: file that contains the API key of the planner's server.
-        planner_options: further options of the planner, such as ``{"temperature": 0.2}``.
+        planner_options: additional options of the planner, such as ``{"temperature": 0.2}``.
         perception_url: address of the vision model's server.
         perception_model: the server's name for the vision model.
         perception_key_file: file that contains the API key of the vision model's server.
-        perception_options: further options of the perception backend.
+        perception_options: additional options of the perception backend.
         reader: name of an additional backend that reads text.
         detector: name of an additional backend that detects objects.
         timeout_s: seconds after which a request to a model server fails.

@@ -99,7 +99,7 @@ def make_plugin_planner(spec: PlannerSpec) -> Planner:
 
     entry = find(PLANNERS, spec.name)
     if entry is None:
-        raise ConfigError(f"No installed package offers the planner '{spec.name}'.")
+        raise ConfigError(f"No installed package provides the planner '{spec.name}'. Install the plug-in, or name another planner.")
     return call_factory(entry, Planner, spec)  # type: ignore[type-abstract]
 
 

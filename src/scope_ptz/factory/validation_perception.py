@@ -79,7 +79,10 @@ def is_answerable(draft: TaskDraft) -> bool:
 
 
 def is_plain_noun(view: View, asked: str) -> bool:
-    """Return whether a description consists only of colours and a known noun. Its count may then be zero."""
+    """Return whether a description consists only of colours and a known noun.
+
+    For other descriptions, an empty result of ground truth does not prove that the view shows no such object.
+    """
     for phrase in parse_description(asked).phrases:
         spans = nouns_in(phrase.words, view.nouns)
         plain = any(end == len(phrase.words) and set(phrase.words[:start]) <= COLOURS for start, end in spans)

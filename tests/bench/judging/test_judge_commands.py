@@ -154,7 +154,7 @@ def test_the_judge_is_named_after_the_model_of_its_server(listing: Callable[[], 
 @pytest.mark.parametrize("listing", [lambda: m.status(404), lambda: models()])
 def test_a_judge_needs_a_name_if_its_server_lists_no_model(listing: Callable[[], m.Behaviour]) -> None:
     with m.Misbehaving(then=listing()) as server:
-        with pytest.raises(UnnamedJudgeError, match=r"cannot be asked for its model's name.*--judge-model"):
+        with pytest.raises(UnnamedJudgeError, match=r"did not report the name of its model.*--judge-model"):
             anyio.run(name_of, server.url)
         assert anyio.run(name_of, server.url, "mine") == "mine"
 

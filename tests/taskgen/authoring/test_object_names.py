@@ -6,7 +6,7 @@ import pytest
 
 from scope_ptz.simulator.models import SceneInstance
 from scope_ptz.taskgen.authoring.noun_phrases import the
-from scope_ptz.taskgen.authoring.object_names import colours_confusable, name_could_mean, name_in_instruction
+from scope_ptz.taskgen.authoring.object_names import colours_confusable, name_could_refer_to, name_in_instruction
 
 
 def thing(category: str, name: str, **attributes: str) -> SceneInstance:
@@ -28,7 +28,7 @@ def thing(category: str, name: str, **attributes: str) -> SceneInstance:
     ],
 )
 def test_names_that_could_mean_another_object(named: tuple[str, str], other: tuple[str, str]) -> None:
-    assert name_could_mean(thing(*other), named[1], thing(*named))
+    assert name_could_refer_to(thing(*other), named[1], thing(*named))
 
 
 @pytest.mark.parametrize(
@@ -42,12 +42,14 @@ def test_names_that_could_mean_another_object(named: tuple[str, str], other: tup
     ],
 )
 def test_names_that_mean_one_object_only(named: tuple[str, str], other: tuple[str, str]) -> None:
-    assert not name_could_mean(thing(*other), named[1], thing(*named))
+    assert not name_could_refer_to(thing(*other), named[1], thing(*named))
 
 
 def test_attributes_count_as_part_of_a_name() -> None:
-    assert name_could_mean(thing("worker", "kneeling worker", vest="orange"), "worker in an orange vest", thing("worker", "x"))
-    assert not name_could_mean(thing("worker", "kneeling worker", vest="green"), "worker in an orange vest", thing("worker", "x"))
+    assert name_could_refer_to(thing("worker", "kneeling worker", vest="orange"), "worker in an orange vest", thing("worker", "x"))
+    assert not name_could_refer_to(
+        thing("worker", "kneeling worker", vest="green"), "worker in an orange vest", thing("worker", "x")
+    )
 
 
 def test_articles_before_names() -> None:

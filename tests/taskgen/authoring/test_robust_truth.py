@@ -49,7 +49,7 @@ def test_a_barely_visible_object_makes_its_kind_uncertain(analytic_scene: Scene)
 
 
 def test_a_passing_actor_is_neither_counted_nor_absent(yard: RobustTruth) -> None:
-    assert yard.passing
+    assert yard.passing_actors
     assert yard.all_of(Kind("roller")) is None
     assert not yard.lacks(Kind("roller"))
 

@@ -170,7 +170,7 @@ class SentenceFrames:
         for n, (direct, inside) in enumerate(draft.question.forms):
             words = {"d": direct, "D": capital(direct), "i": inside}
             name = f"{draft.question_type}/{n}"
-            if place.stays:
+            if place.is_start_view:
                 options += [(w.format(**words), f"{name}/stay{k}") for k, w in enumerate(_STAYING)]
                 continue
             if place.preset is not None and not place.swept:
@@ -194,14 +194,14 @@ def evidence_view(
         shows: The answer that the view supports.
         about: Words that a perception call about this evidence mentions.
         items: The objects from which the answer follows.
-        whole: Whether the whole view is evidence. A run must then see it at 60% or more of its resolution here.
+        whole: Whether the whole view is evidence. A run must then see it with at least 60% of its resolution here.
     """
     density = place.truth.projection.density * math.pi / 180
     return EvidenceView(
         aim=place.aim,
         scope="full" if place.swept else "current",
         hfov_deg=place.hfov_deg,
-        band_deg=band() if place.swept else None,
+        band_deg=sweep_tilt_range() if place.swept else None,
         items=tuple(items),
         whole=whole,
         min_density_px_deg=round(0.6 * density, 3) if whole else 0.0,
@@ -210,8 +210,8 @@ def evidence_view(
     )
 
 
-def band() -> tuple[float, float]:
-    """Return the lowest and the highest tilt that a sweep covers, in degrees."""
+def sweep_tilt_range() -> tuple[float, float]:
+    """Return the lowest and the highest tilt in a sweep, in degrees."""
     sweep = TASK_CAMERA.sweep()
     return round(sweep.bottom_tilt_deg + 0.01, 2), round(sweep.top_tilt_deg, 2)
 

@@ -121,7 +121,7 @@ def unit_of(kind: Kind) -> Wordings:
 
 
 def about(*kinds: Kind) -> Wordings:
-    """Return words of which a perception call about objects of these kinds mentions at least one."""
+    """Return words for objects of these kinds. A perception call about such objects mentions at least one of the words."""
     words = (word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_OTHER_WORDS.get(kind.category, ())))
     return tuple(dict.fromkeys(words))
 

@@ -40,7 +40,7 @@ class NamedThing:
 
     @property
     def words(self) -> Wordings:
-        """Words of which a perception call about the object mentions at least one."""
+        """Words for the object. A perception call about it mentions at least one of them."""
         return tuple(dict.fromkeys((*about(self.kind), self.name, self.name.split()[-1])))
 
 
@@ -103,7 +103,7 @@ def named_things(truth: RobustTruth, min_pixels: int = 350, min_text_px: float =
             or (set(words) & COLOUR_WORDS and not has_colour(thing))
             or ("phone" in words and thing.category in GROUPS["person"])
             or not is_recognisable(truth, sighting, name, min_text_px)
-            or any(name_could_mean(other, name, thing) for other in truth.others(sighting))
+            or any(name_could_refer_to(other, name, thing) for other in truth.others(sighting))
         ):
             continue
         found.append(NamedThing(sighting, name, Kind(thing.category)))
@@ -156,8 +156,8 @@ def name_in_instruction(name: str) -> str:
     return name.removeprefix("The ").replace("price of ", "price card for ").replace("belisha", "Belisha")
 
 
-def name_could_mean(other: SceneThing, name: str, thing: SceneThing) -> bool:
-    """Return whether a name could also mean another object.
+def name_could_refer_to(other: SceneThing, name: str, thing: SceneThing) -> bool:
+    """Return whether a name could also refer to another object.
 
     This is the case if the other object's name, category and attributes contain the words of the name. Common words ("tall",
     "saloon") need not match, and similar colours count as equal.
@@ -210,9 +210,9 @@ _HARD_TO_TELL_APART = frozenset({
 
 
 def nameable_things(truth: RobustTruth, min_pixels: int = 500, min_text_px: float = RECOGNISABLE_TEXT_PX) -> list[NamedThing]:
-    """Return all objects that have a name which matches no other object in view, each with one such name.
+    """Return all objects that can be identified by a name, each with one name.
 
-    The arguments are those of ``named_things``. A name from ``unique_things`` is preferred, because it is shorter.
+    The arguments are those of ``named_things``. Names from ``unique_things`` are preferred, because they are shorter.
     """
     named = (*named_things(truth, min_pixels, min_text_px), *unique_things(truth, coloured=True, min_pixels=min_pixels))
     return list({one.thing.instance.id: one for one in named}.values())

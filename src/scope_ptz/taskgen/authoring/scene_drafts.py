@@ -151,7 +151,7 @@ class SceneDrafts:
                 return location_tasks.drafts(place, self.nouns, rng)
             case "comparative":
                 return comparative_tasks.drafts(place, rng)
-        return reasoning_tasks.within(place, rng)
+        return reasoning_tasks.drafts_within_view(place, rng)
 
 
 def _limit_per_type(drafts: list[TaskDraft], seed: str) -> Iterator[TaskDraft]:

@@ -119,7 +119,7 @@ class Selection:
         return self.rows
 
     def _best(self, pool: list[TaskDraft], take: _Take) -> bool:
-        """Take the draft that improves the balance most out of the pool. Drafts that cannot be taken are removed as well."""
+        """Select the draft that improves the balance most, and remove it from the pool with any draft that ``take`` rejected."""
         while pool:
             at = min(range(len(pool)), key=lambda n: self._cost(pool[n]))
             if take(pool.pop(at)):
@@ -169,7 +169,7 @@ class Selection:
             return None
         if self.shared.can_answer is not None and not self.shared.can_answer(draft):
             return None
-        stays = draft.place.stays and not draft.calls_move
+        stays = draft.place.is_start_view and not draft.calls_move
         if stays and self.category != "single_call" and self.used["stays"][True] >= self.shared.scaled(MAX_FROM_START):
             return None
         rng = random.Random(draft.digest(self.seed))

@@ -64,8 +64,8 @@ class TaskPlace:
         return f"{self.scene.name}:{self.at.viewpoint}:{view}"
 
     @property
-    def stays(self) -> bool:
-        """Whether the task is about the start view."""
+    def is_start_view(self) -> bool:
+        """Whether the view is the start view, so that no call leads to it."""
         return not self.calls and not self.swept
 
     @property
@@ -169,7 +169,7 @@ def go(preset: str) -> ProgramCall:
     return ProgramCall(tool="go_to_preset", arguments={"name": preset})
 
 
-def elsewhere(one: TaskPlace, two: TaskPlace) -> TaskPlace:
+def comparison_start(one: TaskPlace, two: TaskPlace) -> TaskPlace:
     """Return the start of a task about two presets.
 
     It is the start of the first place, or a third preset if that start is the second preset.

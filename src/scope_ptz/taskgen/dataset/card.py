@@ -135,30 +135,31 @@ def _contents(data: Dataset) -> Iterator[str]:
     yield "## Contents"
     yield d.markdown_table(("split", "tasks", "description"), [(n, len(rows), _ABOUT[n]) for n, rows in data.splits.items()])
     yield "Core tasks by category and scene:"
-    yield d.markdown_table(*d.crossed(core, lambda t: t.category, lambda t: t.scene))
+    yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.scene))
     yield "By category and difficulty, which depends on the number of calls, the number of objects to tell apart, and a sweep:"
-    yield d.markdown_table(*d.crossed(core, lambda t: t.category, lambda t: t.difficulty))
+    yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.difficulty))
     yield "By category and scope:"
-    yield d.markdown_table(*d.crossed(core, lambda t: t.category, lambda t: t.scope))
+    yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.scope))
     yield "By the viewpoint that the answer depends on:"
-    yield d.chart(d.spread(core, lambda t: [d.viewpoint(t)]))
+    yield d.chart(d.value_counts(core, lambda t: [d.viewpoint(t)]))
     yield "By what an agent must do before it can answer (several may apply):"
-    yield d.chart(d.spread(core, lambda t: t.needs or ("nothing",)))
+    yield d.chart(d.value_counts(core, lambda t: t.needs or ("nothing",)))
 
 
 def _answers(data: Dataset) -> Iterator[str]:
     core = data.splits["core"]
     yield "## Answers"
     rows = [
-        (name, size, different, ", ".join(f"{value} ({n})" for value, n in most)) for name, size, different, most in d.answers(core)
+        (name, size, different, ", ".join(f"{value} ({n})" for value, n in most))
+        for name, size, different, most in d.answer_statistics(core)
     ]
     yield d.markdown_table(("category", "tasks", "different answers", "most frequent"), rows)
     yield "How often each number is the right answer (“there is none” counts as 0):"
-    yield d.chart(d.numbers(core))
-    stays = d.from_start(core)
+    yield d.chart(d.number_counts(core))
+    stays = d.start_view_count(core)
     yield (
-        f"{d.pairs(core)} tasks have the answer “there is none”. Each is paired with a task of the same wording whose object is "
-        f"present. {stays} of {len(core)} ({stays / len(core):.1%}) can be answered from the start view alone."
+        f"{d.pair_count(core)} tasks have the answer “there is none”. Each is paired with a task of the same wording whose object "
+        f"is present. {stays} of {len(core)} ({stays / len(core):.1%}) can be answered from the start view alone."
     )
 
 

@@ -16,7 +16,7 @@ Key = Callable[[Task], str]
 _ORDER = {"easy": 1, "medium": 2, "hard": 3}
 
 
-def crossed(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], list[list[str | int]]]:
+def cross_table(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], list[list[str | int]]]:
     """Return the header and the rows of a table that counts tasks by two keys. The last column and row contain totals."""
     counts = Counter((rows(task), columns(task)) for task in tasks)
     across = sorted({column for _, column in counts}, key=lambda name: (_ORDER.get(name, 0), name))
@@ -26,7 +26,7 @@ def crossed(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], 
     return ["", *across, "all"], body
 
 
-def spread(tasks: Iterable[Task], values_of: Callable[[Task], Iterable[str]]) -> list[tuple[str, int]]:
+def value_counts(tasks: Iterable[Task], values_of: Callable[[Task], Iterable[str]]) -> list[tuple[str, int]]:
     """Return the number of tasks with each value, the most frequent value first."""
     return Counter(value for task in tasks for value in values_of(task)).most_common()
 
@@ -41,7 +41,7 @@ def viewpoint(task: Task) -> str:
     return f"{task.scene} {names[0]}" if len(names) == 1 else f"{task.scene} several" if names else f"{task.scene} any"
 
 
-def answer(task: Task) -> str:
+def short_answer(task: Task) -> str:
     """Return the correct answer as a short text. All actions have the same text, and so do all absences."""
     match task.expected:
         case ActionOnly():
@@ -55,14 +55,14 @@ def answer(task: Task) -> str:
     return correct_answers(task.expected)[0].strip(".").lower()
 
 
-def answers(tasks: Sequence[Task]) -> Iterator[tuple[str, int, int, list[tuple[str, int]]]]:
+def answer_statistics(tasks: Sequence[Task]) -> Iterator[tuple[str, int, int, list[tuple[str, int]]]]:
     """Yield each category with its number of tasks, its number of different answers, and its most frequent answers."""
     for category in dict.fromkeys(task.category for task in tasks):
-        counts = Counter(answer(task) for task in tasks if task.category == category)
+        counts = Counter(short_answer(task) for task in tasks if task.category == category)
         yield category, counts.total(), len(counts), counts.most_common(MAX_ANSWERS)
 
 
-def numbers(tasks: Iterable[Task]) -> list[tuple[str, int]]:
+def number_counts(tasks: Iterable[Task]) -> list[tuple[str, int]]:
     """Return the number of tasks with each number as the correct answer. "There is none" counts as 0."""
     counts = Counter(
         round(task.expected.value) if isinstance(task.expected, Number) else 0
@@ -72,12 +72,12 @@ def numbers(tasks: Iterable[Task]) -> list[tuple[str, int]]:
     return [(str(number), counts[number]) for number in sorted(counts)]
 
 
-def pairs(tasks: Iterable[Task]) -> int:
+def pair_count(tasks: Iterable[Task]) -> int:
     """Return the number of tasks with the answer "there is none" that have a twin about a present object."""
     return sum(isinstance(task.expected, NoneThere) and task.pair is not None for task in tasks)
 
 
-def from_start(tasks: Iterable[Task]) -> int:
+def start_view_count(tasks: Iterable[Task]) -> int:
     """Return the number of tasks that can be answered from the start view."""
     return sum(not task.needs for task in tasks)
 

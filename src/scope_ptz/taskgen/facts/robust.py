@@ -105,7 +105,7 @@ class RobustTruth:
         )
 
     @cached_property
-    def passing(self) -> frozenset[int]:
+    def passing_actors(self) -> frozenset[int]:
         """Numbers of the actors that are in view at some time."""
         found = _all_appearances(self.scene, self.viewpoint)
         return frozenset(number for number, seen in found.items() if any(shows(a, self.projection) for a in seen))
@@ -124,7 +124,7 @@ class RobustTruth:
 
     def visibility(self, number: int) -> bool | None:
         """Return True if an object is certainly visible, False if it is certainly not, and None if that is uncertain."""
-        if number in self.passing:
+        if number in self.passing_actors:
             return None
         outcomes = self._visible.get(number, {False})
         return next(iter(outcomes)) if len(outcomes) == 1 else None
@@ -170,7 +170,7 @@ class RobustTruth:
                     found.append(sighting)
             elif kind.ambiguous_with(thing) and self.visibility(thing.number) is not False:
                 return None
-        if any(kind.fits(a) or kind.may_ride_on(a) for a in self.scene.file.actors if a.number in self.passing):
+        if any(kind.fits(a) or kind.may_ride_on(a) for a in self.scene.file.actors if a.number in self.passing_actors):
             return None
         shown = {s.instance.number for s in self.samples[0].sightings}
         others = (s for truth in self.samples[1:] for s in truth.sightings if s.instance.number not in shown)
@@ -185,7 +185,7 @@ class RobustTruth:
     def lacks(self, kind: Kind) -> bool:
         """Return whether the view certainly shows no object of a kind, nor a similar one, at any time."""
         if self.unreliable(kind.category) or any(
-            kind.fits(a) or kind.ambiguous_with(a) for a in self.scene.file.actors if a.number in self.passing
+            kind.fits(a) or kind.ambiguous_with(a) for a in self.scene.file.actors if a.number in self.passing_actors
         ):
             return False
         return not any(kind.fits(thing) or kind.ambiguous_with(thing) for thing in self.traces)
@@ -204,7 +204,7 @@ class RobustTruth:
     @cached_property
     def _ever_shown(self) -> tuple[SceneThing, ...]:
         """Objects with more than ``TRACE_PX`` visible pixels in any sample, and the actors that pass through the view."""
-        passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing)
+        passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing_actors)
         return tuple(thing for thing in self.traces if thing not in passing) + passing
 
     def others(self, sighting: Sighting) -> tuple[SceneThing, ...]:
@@ -254,7 +254,7 @@ class RobustTruth:
         """Texts that are certainly legible, sorted from top to bottom and left to right."""
         sure = [{t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples]
         ids = frozenset.intersection(*(frozenset(names) for names in sure))
-        for later_s in SOON_S if ids and self.passing else ():
+        for later_s in SOON_S if ids and self.passing_actors else ():
             soon = self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
             ids &= {text.text.id for text in soon.legible}
         return tuple(sorted((t for t in self.samples[0].texts if t.text.id in ids), key=lambda t: (round(t.box[1], 2), t.box[0])))

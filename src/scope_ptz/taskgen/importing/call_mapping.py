@@ -22,7 +22,7 @@ from scope_ptz.taskgen.importing.paper_names import (
     scope_of,
 )
 from scope_ptz.taskgen.importing.structured_cells import structure
-from scope_ptz.taskgen.importing.tool_steps import shown, steps_in, unused_arguments, without_names
+from scope_ptz.taskgen.importing.tool_steps import are_of_single_call, shown, steps_in, unused_arguments
 from scope_ptz.tools.registry import TOOLS as SCOPE_TOOLS
 from scope_ptz.tools.registry import parse_call
 
@@ -111,7 +111,7 @@ def _arguments_of(given: Any, name: str, at: int, earlier_calls: int, *, alone: 
     if isinstance(own, dict):
         return dict(own)
     flat = not any(isinstance(value, dict | list) for value in given.values())
-    return dict(given) if at == 0 and (flat or (alone and without_names(given, [name]))) else {}
+    return dict(given) if at == 0 and (flat or (alone and are_of_single_call(given, [name]))) else {}
 
 
 def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, expectation: Expectation) -> dict[str, Argument]:

@@ -65,12 +65,12 @@ def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
                 yield f"{shown(one)} (number {at + 1}): arguments of no expected call"
     elif not isinstance(given, dict):
         yield f"{shown(given)}: no arguments"
-    elif any(isinstance(value, dict | list) for value in given.values()) and not without_names(given, names):
+    elif any(isinstance(value, dict | list) for value in given.values()) and not are_of_single_call(given, names):
         for name, value in given.items():
             yield from _unused_arguments_of(name, value, names)
 
 
-def without_names(given: dict[str, Any], names: Sequence[str]) -> bool:
+def are_of_single_call(given: dict[str, Any], names: Sequence[str]) -> bool:
     """Return whether these are the arguments of a single call, and not the arguments of several calls by name or number."""
     return len(names) == 1 and not any(name in names or name == "0" or normalise(name) in TOOLS for name in given)
 

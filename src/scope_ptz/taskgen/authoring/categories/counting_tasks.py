@@ -13,7 +13,7 @@ from scope_ptz.taskgen.facts.kinds import Kind
 
 
 def question(kind: Kind) -> Question:
-    """Return wordings of the question how many objects of a kind there are."""
+    """Return wordings of the question "how many are there?" for a kind of object."""
     many = many_of(kind)
     return Question(
         (

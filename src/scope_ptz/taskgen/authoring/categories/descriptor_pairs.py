@@ -1,4 +1,4 @@
-"""Descriptor tasks in pairs, about an absent and a present object, and questions whether an object has a given colour."""
+"""Descriptor tasks in pairs, about an absent and a present object, and questions about whether an object has a given colour."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Itera
 
 
 def _presence(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions whether an absent object is there, each with a twin about a present one."""
+    """Yield questions about whether an absent object is there, each with a twin about a present one."""
     present = [kind for kind, _ in countable(place.truth)]
     rng.shuffle(present)
     missing = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
@@ -71,7 +71,7 @@ def _presence_draft(place: TaskPlace, kind: Kind, *, there: bool, twin: TaskDraf
 
 
 def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions whether an object has a given colour: its own, or one that is clearly different."""
+    """Yield questions about whether an object has a given colour: its own, or one that is clearly different."""
     for one in unique_things(place.truth, coloured=False, min_pixels=400):
         colour = plain_colour(own_colour(one.thing.instance))
         if colour is None or colour in one.name or not colour_shows(one.thing.instance):

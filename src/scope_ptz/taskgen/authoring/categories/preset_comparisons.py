@@ -9,7 +9,7 @@ from scope_ptz.bench.tasks.expected import Choice, Options, Wordings
 from scope_ptz.taskgen.authoring.categories.comparative_tasks import SAME, count_evidence
 from scope_ptz.taskgen.authoring.drafts import TaskDraft, count_call
 from scope_ptz.taskgen.authoring.noun_phrases import many_of
-from scope_ptz.taskgen.authoring.task_places import TaskPlace, elsewhere, go
+from scope_ptz.taskgen.authoring.task_places import TaskPlace, comparison_start, go
 from scope_ptz.taskgen.authoring.view_contents import countable
 
 _OF_TWO = (
@@ -41,7 +41,7 @@ def drafts(places: Sequence[TaskPlace], rng: random.Random) -> list[TaskDraft]:
 
 def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
     names = [str(place.preset) for place in places]
-    start = elsewhere(places[0], places[1])
+    start = comparison_start(places[0], places[1])
     if len(set(names)) < len(places) or (len(places) == 3 and start.start in names[1:]):
         return
     known = [dict(countable(place.truth)) for place in places]

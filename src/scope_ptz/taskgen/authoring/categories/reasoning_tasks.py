@@ -11,7 +11,7 @@ from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.task import Behaviour, EvidenceView
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view
 from scope_ptz.taskgen.authoring.noun_phrases import about, article, many_of, noun_of, unit_of
-from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, elsewhere, go, preset_at
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, comparison_start, go, preset_at
 from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, disjoint, plain_counts, scene_kinds_first
 from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
 
@@ -70,7 +70,7 @@ def _count_view(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
 def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraft]:
     """Yield sums and differences of a kind between two presets."""
     there = dict(countable(two.truth))
-    start = elsewhere(one, two)
+    start = comparison_start(one, two)
     for kind, n in countable(one.truth):
         m = there.get(kind)
         if m is None:
@@ -98,7 +98,7 @@ def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraf
             )
 
 
-def within(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
+def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
     """Return drafts about sums and differences within one view."""
     found = list[TaskDraft]()
     plain = list(plain_counts(place.truth))
@@ -182,7 +182,7 @@ def _branches(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -
 
 
 def _checks(one: TaskPlace, p: str, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions whether a kind is visible at a preset, with a preset to go to if it is and another if it is not."""
+    """Yield questions about whether a kind is visible at a preset, with a preset to go to if it is and another if it is not."""
     others = [name for name in places.presets if name != p and name != one.start]
     shown = [kind for kind, _ in plain_counts(one.truth)]
     absent = [kind for kind in absent_kinds(one.truth, nouns) if kind.colour is None]
@@ -234,7 +234,7 @@ def _check(
 
 
 def _either(one: TaskPlace, two: TaskPlace, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions whether an absent kind is visible at one of two presets, each with a twin about a present kind."""
+    """Yield questions about whether an absent kind is visible at one of two presets, each with a twin about a present kind."""
     missing_there = set(absent_kinds(two.truth, nouns))
     absent = [kind for kind in absent_kinds(one.truth, nouns) if kind in missing_there]
     shown = [
@@ -245,7 +245,7 @@ def _either(one: TaskPlace, two: TaskPlace, p: str, q: str, nouns: frozenset[str
     ]
     absent = scene_kinds_first(one, absent, rng)
     rng.shuffle(shown)
-    start = elsewhere(one, two)
+    start = comparison_start(one, two)
     if start.start == q:
         return  # the start view would answer the question without a move
     for kind, (present, place) in zip(absent, shown, strict=False):

@@ -178,7 +178,7 @@ def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
 
 def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
     for place in pool:
-        if not place.stays and place.preset is None:
+        if not place.is_start_view and place.preset is None:
             continue
         here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
         for one in nameable_things(place.truth, 400):
