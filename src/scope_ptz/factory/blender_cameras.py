@@ -81,7 +81,7 @@ async def open_live_blender(spec: CameraSpec, *, viewpoint: str | None, time_s: 
         if time_s is None:
             clock = SceneClock(file.start_s, realtime=realtime)
         camera = BlenderCamera(worker, file, viewpoint=viewpoint, clock=clock, **size)
-        return LiveBlender(camera, _pack_of(file), release)
+        return LiveBlender(camera, _stored_scene(file), release)
     except BaseException:
         await release()
         raise
@@ -104,7 +104,7 @@ def _absolute(path: str) -> str:
     return str(Path(path).absolute())
 
 
-def _pack_of(live: SceneFile) -> Scene | None:
+def _stored_scene(live: SceneFile) -> Scene | None:
     """Return the stored scene with the ground truth of a live scene; None if no stored scene has the same objects and actors."""
     try:
         scene = open_scene(live.name)
@@ -114,4 +114,5 @@ def _pack_of(live: SceneFile) -> Scene | None:
 
 
 def _numbered_ids(file: SceneFile) -> set[tuple[str, int]]:
+    """Return the ids and numbers of all objects and actors in a scene."""
     return {(i.id, i.number) for i in file.instances} | {(a.id, a.number) for a in file.actors}

@@ -24,7 +24,7 @@ SERVER_QUERY_TIMEOUT_S = 10.0
 
 
 async def run_card(
-    choice: ResolvedPair,
+    resolved: ResolvedPair,
     planner: Planner | None,
     entries: tuple[Entry, ...],
     *,
@@ -39,7 +39,7 @@ async def run_card(
     """Return the run card of an evaluation that is about to start.
 
     Args:
-        choice: The resolved planner and perception.
+        resolved: The resolved planner and perception.
         planner: The planner, whose prompt and sampling settings are recorded; None for an external agent.
         entries: The tasks.
         agent: Name of the agent.
@@ -51,7 +51,7 @@ async def run_card(
         **facts: Further fields of the card, such as split, seed and epochs.
     """
     details = planner.details if planner is not None else {}
-    spec = choice.perception.spec
+    spec = resolved.perception.spec
     sampling: dict[str, Any] = {"planner": details}
     if agent_source:
         sampling[AGENT_SOURCE] = agent_source
@@ -66,8 +66,8 @@ async def run_card(
         engine_version=engine_version(),
         dataset=datasets(entries),
         dataset_digest=digest(entries),
-        planner=await _planner_card(choice.planner) if planner is not None else ModelCard(name=agent),
-        perception=await _perception_card(choice.perception),
+        planner=await _planner_card(resolved.planner) if planner is not None else ModelCard(name=agent),
+        perception=await _perception_card(resolved.perception),
         agent=agent,
         variant=variant,
         sampling=sampling,
@@ -79,13 +79,15 @@ async def run_card(
     )
 
 
-async def _planner_card(choice: ResolvedPlanner) -> ModelCard:
-    return await _card(choice.name, choice.model.name if choice.model else None, choice.endpoint)
+async def _planner_card(resolved: ResolvedPlanner) -> ModelCard:
+    return await _card(resolved.name, resolved.model.name if resolved.model else None, resolved.endpoint)
 
 
-async def _perception_card(choice: ResolvedPerception) -> ModelCard:
-    card = await _card(choice.name, choice.model.name if choice.model else None, choice.spec.endpoint if choice.spec else None)
-    return card if choice.spec is None or card.provider else card.model_copy(update={"provider": choice.spec.backend})
+async def _perception_card(resolved: ResolvedPerception) -> ModelCard:
+    card = await _card(
+        resolved.name, resolved.model.name if resolved.model else None, resolved.spec.endpoint if resolved.spec else None
+    )
+    return card if resolved.spec is None or card.provider else card.model_copy(update={"provider": resolved.spec.backend})
 
 
 async def _card(name: str, registered: str | None, endpoint: Endpoint | None) -> ModelCard:

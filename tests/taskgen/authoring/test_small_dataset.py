@@ -148,7 +148,7 @@ def test_answers_that_a_question_offers() -> None:
 def test_most_common_answer_does_not_contain_words_of_its_question(built: BuiltTasks) -> None:
     counts = [task.expected for task in core(built) if task.category == "counting" and task.pair is None]
     common = Counter(f"{e.value:g}" for e in counts if isinstance(e, Number)).most_common(1)[0][0]
-    assert common_answers(built.tasks, presences=True)["counting"] == common
+    assert common_answers(built.tasks, exclude_pairs=True)["counting"] == common
 
 
 def wrong_count(task: Task) -> Task:

@@ -31,8 +31,8 @@ from scope_ptz.taskgen.gold.judge_results import (
     GoldCase,
     GoldResult,
     GoldVerdict,
+    alternating_modes,
     gold_case,
-    in_turn,
     passing_case,
 )
 from scope_ptz.taskgen.gold.judge_results import judge_gold as judge_cases
@@ -101,7 +101,7 @@ def gold_cases(
         ground_truth_tools: Returns a function that creates tool contexts with ground-truth perception.
     """
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(split))
-    runs = in_turn(runs)[:limit]
+    runs = alternating_modes(runs)[:limit]
     worlds = worlds_of(run.task for run in runs)
     places = {name: PresetViewpoints.of(world.file) for name, world in worlds.items()}
     make_context = ground_truth_tools(worlds)

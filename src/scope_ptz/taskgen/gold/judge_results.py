@@ -216,7 +216,7 @@ def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
     return [known, *judges.values()] if by_key else []
 
 
-def in_turn(runs: Sequence[GoldRun]) -> list[GoldRun]:
+def alternating_modes(runs: Sequence[GoldRun]) -> list[GoldRun]:
     """Return the runs ordered so that the error modes take turns. The first few runs then cover all modes."""
     by_mode = [[run for run in runs if run.mode is mode] for mode in ErrorMode]
     return [run for row in zip_longest(*by_mode) for run in row if run is not None]

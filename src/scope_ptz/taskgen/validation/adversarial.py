@@ -1,7 +1,7 @@
 """Attempts at a task: correct programs, which must pass, and adversarial programs and answers, which must fail.
 
-An attempt consists of tool calls, a final answer and an outcome. Most adversarial attempts that skip necessary calls give the
-correct answer, to check that it does not suffice. The names of the attempts are stored with the dataset.
+An attempt consists of tool calls, a final answer and an outcome. Some adversarial attempts give the correct answer without the
+necessary calls. The names of the attempts are stored with the dataset.
 """
 
 from __future__ import annotations
@@ -81,16 +81,16 @@ def twice(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
             yield call
 
 
-def common_answers(tasks: Sequence[Task], *, presences: bool = False) -> dict[str, str]:
+def common_answers(tasks: Sequence[Task], *, exclude_pairs: bool = False) -> dict[str, str]:
     """Return the most common answer of each category as text.
 
     Args:
         tasks: The tasks.
-        presences: Whether to exclude tasks with a twin and tasks with the answer "there is none".
+        exclude_pairs: Whether to exclude tasks with a twin and tasks with the answer "there is none".
     """
     answers: dict[str, Counter[str]] = {}
     for task in tasks:
-        excluded = presences and (task.pair is not None or isinstance(task.expected, NoneThere))
+        excluded = exclude_pairs and (task.pair is not None or isinstance(task.expected, NoneThere))
         if task.stratum == "core" and not isinstance(task.expected, ActionOnly) and not excluded:
             answers.setdefault(task.category, Counter())[_bare_answer(task.expected)] += 1
     return {category: counts.most_common(1)[0][0] for category, counts in answers.items()}

@@ -24,7 +24,7 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     for name, row in content["cheats"].items():
         yield f"  {name:<22}{row['passed']:>5} of {row['of']}  ({row['share_of_all']:.1%} of all tasks)"
     if content["looked_and_guessed"]:
-        yield "core tasks that a fixed answer passes, and the same with a pair counted only if both of its tasks pass"
+        yield "core tasks that fixed answers pass (right-hand numbers: paired tasks count only if both tasks of the pair pass)"
     for name, row in content["looked_and_guessed"].items():
         guess = name.removeprefix("looked-and-guessed: ")
         yield f"  {guess:<22}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"

@@ -57,7 +57,7 @@ async def validate(
     Returns:
         The report.
     """
-    report, common, common_presences = ValidationReport(), common_answers(tasks), common_answers(tasks, presences=True)
+    report, common, common_unpaired = ValidationReport(), common_answers(tasks), common_answers(tasks, exclude_pairs=True)
     siblings = sibling_answers(tasks)
     runners = {name: ProgramRunner(scene, make_context, TASK_CAMERA) for name, scene in scenes.items()}
     world = ""
@@ -74,7 +74,7 @@ async def validate(
         validation = _TaskValidation(report, task, runners[task.world])
         await validation.run(common.get(task.category, _FALLBACK_GUESS), siblings.get(task.id), seed)
         if task.stratum == "core":
-            await validation.guess(common_presences.get(task.category, _FALLBACK_GUESS))
+            await validation.guess(common_unpaired.get(task.category, _FALLBACK_GUESS))
         if progress is not None:
             progress(number, len(tasks))
     report.faults += structural_faults(tasks, dataset)
