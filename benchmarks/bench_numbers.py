@@ -31,7 +31,7 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.camera.simulated import SimulatedCamera
-from scope_ptz.factory.validation_perception import KnownViews
+from scope_ptz.factory.validation_perception import CachedTruth
 from scope_ptz.factory.worlds import worlds_of
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.ground_truth import GroundTruthPerception
@@ -126,7 +126,7 @@ async def _score(tasks: Sequence[Task], perception_name: str) -> Score:
 
 
 def _perception(name: str, worlds: Mapping[str, Scene]) -> Perception:
-    truth = GroundTruthPerception(lambda world: worlds[world], KnownViews().look)
+    truth = GroundTruthPerception(lambda world: worlds[world], CachedTruth().read)
     if name == "noisy":
         return NoisyPerception(truth, seed=NOISE_SEED)
     if name == "truth":

@@ -35,7 +35,7 @@ from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt
 from scope_ptz.simulator.pack import Scene, find_scenes
 from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth
 from scope_ptz.simulator.views import picture
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
 WIDTH, HEIGHT = 1280, 720
 MIN_SIMILARITY = 5 / 6
@@ -104,7 +104,7 @@ def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> Non
         if agrees(task.expected, parse_answer(task.expected, f'It reads "{read}".')):
             correct += 1
         else:
-            missed.append(f"{task.id} {right_answers(task.expected)[0]!r} read as {read!r}: {task.instruction}")
+            missed.append(f"{task.id} {correct_answers(task.expected)[0]!r} read as {read!r}: {task.instruction}")
     print(f"{correct} of {len(tasks)} OCR tasks answered correctly ({correct / max(1, len(tasks)):.1%})")
     if misses:
         print("\n".join(f"  {line}" for line in missed))

@@ -27,7 +27,7 @@ from scope_ptz.bench.tasks.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, wrong_answer
 
 DATA = Path(__file__).parent / "data"
 ADAPTER: TypeAdapter[AnyExpected] = TypeAdapter(Expected)
@@ -100,7 +100,7 @@ def test_held_out_answers() -> None:
 @pytest.mark.parametrize("name", ANSWERED)
 def test_right_and_wrong_answers_of_validation(name: str) -> None:
     expected = EXPECTATIONS[name]
-    wordings = right_answers(expected)
+    wordings = correct_answers(expected)
     assert len(set(wordings)) >= 5
     assert [w for w in wordings if verdict(expected, w) != "right"] == []
     wrong = [wrong_answer(expected, random.Random(seed)) for seed in range(20)]
@@ -113,7 +113,7 @@ def test_right_and_wrong_answers_of_validation(name: str) -> None:
 )
 def test_any_number_in_any_of_its_wordings(value: int, tolerance: int, unit: str, seed: int) -> None:
     expected = Number(value=value, tolerance=tolerance, unit=(unit,) if unit else ())
-    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    assert {verdict(expected, answer) for answer in correct_answers(expected)} == {"right"}
     wrong = wrong_answer(expected, random.Random(seed))
     assert wrong is not None
     assert verdict(expected, wrong) == "wrong"
@@ -123,7 +123,7 @@ def test_any_number_in_any_of_its_wordings(value: int, tolerance: int, unit: str
 @given(st.permutations(["cone", "van", "sign", "bus"]), st.integers())
 def test_any_order(order: list[str], seed: int) -> None:
     expected = Ordering(value=tuple(order), options=dict.fromkeys(sorted(order), ()))
-    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    assert {verdict(expected, answer) for answer in correct_answers(expected)} == {"right"}
     wrong = wrong_answer(expected, random.Random(seed))
     assert wrong is not None
     assert verdict(expected, wrong) == "wrong"
@@ -133,7 +133,7 @@ def test_any_order(order: list[str], seed: int) -> None:
 @given(st.sets(st.sampled_from(["car", "van", "bus", "lorry", "crane"])), st.integers())
 def test_any_set(names: set[str], seed: int) -> None:
     expected = NameSet(value=tuple(sorted(names)), options=dict.fromkeys(("car", "van", "bus", "lorry", "crane"), ()))
-    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    assert {verdict(expected, answer) for answer in correct_answers(expected)} == {"right"}
     wrong = wrong_answer(expected, random.Random(seed))
     assert wrong is not None
     assert verdict(expected, wrong) == "wrong"
@@ -143,7 +143,7 @@ def test_any_set(names: set[str], seed: int) -> None:
 @given(st.from_regex(r"[A-Z]{2}[0-9]{2} [A-Z]{3}", fullmatch=True), st.integers())
 def test_any_number_plate(plate: str, seed: int) -> None:
     expected = Text(accepted=(plate,), ocr=True)
-    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    assert {verdict(expected, answer) for answer in correct_answers(expected)} == {"right"}
     wrong = wrong_answer(expected, random.Random(seed))
     assert wrong is not None
     assert verdict(expected, wrong) == "wrong"

@@ -33,15 +33,15 @@ def test_schemes_are_case_insensitive_and_options_follow_a_question_mark() -> No
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "The camera is empty"),
-        ("sim:", "The camera is empty"),
+        ("", "The camera spec names no scene"),
+        ("sim:", "The camera spec names no scene"),
         ("axis://10.0.0.7", "There is no camera scheme 'axis'. Known: blender, sim"),
         ("yard.blend", "write blender:yard.blend"),
         ("C:\\yard.blend", r"write blender:C:\\yard.blend"),
-        ("blender:missing.blend", "There is no file missing.blend"),
+        ("blender:missing.blend", "The file missing.blend does not exist"),
         ("blender:no-such-scene", "There is no scene that Blender can build 'no-such-scene'"),
         ("sim:yard?samples=3", "There is no camera option 'samples'"),
-        ("sim:yard?width=wide", "The camera option width is a whole number from 1 to 10000, got 'wide'"),
+        ("sim:yard?width=wide", "The camera option width must be a whole number from 1 to 10000, got 'wide'"),
         ("sim:yard?width=0", "whole number from 1"),
     ],
 )

@@ -115,7 +115,7 @@ def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(installed: Pa
 def test_ground_truth_is_refused_for_a_camera_without_it(installed: Path, tmp_path: Path) -> None:
     done = scope(installed, tmp_path, "ask", "pan right 10", "--camera", "still:lamp")
     assert done.returncode == 2
-    assert "this camera has none. Name a model that looks at pictures with --perception" in done.stderr
+    assert "this camera has none. Name a vision model with --perception" in done.stderr
 
 
 def test_a_camera_that_does_not_open_ends_in_one_line(installed: Path, tmp_path: Path) -> None:

@@ -167,7 +167,7 @@ def test_a_dead_server_stops_the_evaluation(scope: Scope, tmp_path: Path) -> Non
         )  # fmt: skip
         assert len([r for r in server.requests if r.chat]) < 20
     assert done.code == 1
-    assert "12 consecutive runs were broken" in done.err
+    assert "12 consecutive runs failed" in done.err
     assert f"The model server at {server.url} refused the key. Set the key of this server" in done.err
     (log,) = (tmp_path / "logs").glob("*.eval")
     assert {trial.headline for trial in read_evaluation(log).trials} == {"infrastructure"}

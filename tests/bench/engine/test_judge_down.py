@@ -66,15 +66,15 @@ def test_a_run_whose_judge_is_unavailable_is_not_complete(scope: Scope, tasks_fi
         code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", server.url, "--judge-model", "j")
         assert code == 0, err
         assert len([r for r in server.requests if r.chat]) == 2
-    assert "this evaluation is complete" in err
+    assert "this evaluation is already complete" in err
     assert "judge      j: 4 with a verdict, 0 unparseable, 0 failed" in out
     # The agent was not run again, and a judge that has said everything is not asked, wherever it is.
     assert list(tmp_path.glob("*.eval")) == [log] and uuids_in(log) == runs
     for judge in (("--judge-url", AWAY, "--judge-model", "j"), ("--judge-url", AWAY)):
         code, out, err = run(scope, tasks_file, tmp_path, *judge)
         assert (code, "4 with a verdict" in out, "missing" in err) == (0, True, False)
-    assert f"The judge's server at {AWAY} cannot be asked for its model's name" in err
-    assert "Every run has been judged by j" in err
+    assert f"The judge's server at {AWAY} did not report the name of its model" in err
+    assert "j has already judged every run" in err
 
 
 def test_an_unavailable_judge_changes_no_log(scope: Scope, evaluated: Path, tasks_file: Path, tmp_path: Path) -> None:

@@ -95,7 +95,7 @@ def test_a_sweep_of_pairs_resumes_and_judges(scope: Scope, tmp_path: Path) -> No
     assert set(logs) == {"grammar + ground-truth", "grammar + noisy"}
     again = scope("bench", "sweep", "--pairs", "grammar+ground-truth,grammar+noisy", *options, "--json")
     assert again.code == 0
-    assert again.err.count("this evaluation is complete") == 2
+    assert again.err.count("this evaluation is already complete") == 2
     assert {name: row["micro"] for name, row in again.json.items()} == {"grammar+ground-truth": 1.0, "grammar+noisy": 1.0}
 
 

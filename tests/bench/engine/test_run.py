@@ -154,7 +154,7 @@ def test_a_pair_may_contain_built_in_models(scope: Scope, tasks_file: Path, tmp_
         (["--agent", "json:JSONDecoder"], "is not an agent"),
         (["--price", "cheap"], "--price needs two amounts"),
         (["--resume", "missing.eval"], "There is no log"),
-        (["--perception", "rapidocr", "--no-pictures"], "looks at pictures"),
+        (["--perception", "rapidocr", "--no-pictures"], "needs pictures"),
     ],
 )
 def test_wrong_options_end_in_a_message(scope: Scope, tasks_file: Path, tmp_path: Path, options: list[str], words: str) -> None:

@@ -23,8 +23,8 @@ from scope_ptz.taskgen.gold.judge_cases import result_lines
 from scope_ptz.taskgen.gold.judge_results import (
     GoldCase,
     GoldVerdict,
+    alternating_modes,
     gold_case,
-    in_turn,
     judge_gold,
     passing_case,
     raters_of_gold,
@@ -141,7 +141,7 @@ def gold_runs() -> list[GoldRun]:
 
 
 def all_cases() -> list[GoldCase]:
-    cases = [gold_case(gold, PLACES) for gold in in_turn(gold_runs())]
+    cases = [gold_case(gold, PLACES) for gold in alternating_modes(gold_runs())]
     return [*cases, *(passing_case(task, episode, PLACES) for task, episode in samples())]
 
 

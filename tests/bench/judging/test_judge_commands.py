@@ -21,7 +21,7 @@ from scope_ptz.cli.app import app
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.judges import UnnamedJudgeError, open_judge
 from scope_ptz.factory.scenes import open_scene
-from scope_ptz.factory.validation_perception import equip_with_truth
+from scope_ptz.factory.validation_perception import ground_truth_tools
 from scope_ptz.taskgen.authoring.task_places import preset_at
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import write_gold
@@ -39,7 +39,7 @@ def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with two tasks of the shipped scene and their gold runs, which turn the wrong way or do not turn."""
     folder = tmp_path_factory.mktemp("gold")
     scene = open_scene("highway-works")
-    stage = ProgramRunner(scene, equip_with_truth({scene.name: scene}), TASK_CAMERA)
+    stage = ProgramRunner(scene, ground_truth_tools({scene.name: scene}), TASK_CAMERA)
     setting = FaultSetting({preset.name: preset_at(preset) for preset in scene.file.presets}, TASK_CAMERA)
     tasks = [turn_task(1, 20), turn_task(2, 30)]
 
@@ -87,7 +87,7 @@ def test_a_judge_of_gold_runs_from_the_command_line(gold: Path, tmp_path: Path) 
     assert (content["runs"], content["judgements"]) == (6, 12)
     with m.Misbehaving(then=good_judge) as server:
         told = judge_gold(gold, out, server.url, "--repeats", "2").output
-    assert "6 gold runs, 12 judgements; rows: the fault put in" in told
+    assert "6 gold runs, 12 judgements; rows: inserted fault" in told
     assert all(f" {head}" in told for head in ("lack", "routing", "halluc.", "unparseable"))
     assert content["modes"]["raw"] == 1.0
     compared = CliRunner().invoke(app, ["bench", "agree", str(out)])
@@ -154,7 +154,7 @@ def test_the_judge_is_named_after_the_model_of_its_server(listing: Callable[[], 
 @pytest.mark.parametrize("listing", [lambda: m.status(404), lambda: models()])
 def test_a_judge_needs_a_name_if_its_server_lists_no_model(listing: Callable[[], m.Behaviour]) -> None:
     with m.Misbehaving(then=listing()) as server:
-        with pytest.raises(UnnamedJudgeError, match=r"cannot be asked for its model's name.*--judge-model"):
+        with pytest.raises(UnnamedJudgeError, match=r"did not report the name of its model.*--judge-model"):
             anyio.run(name_of, server.url)
         assert anyio.run(name_of, server.url, "mine") == "mine"
 

@@ -39,7 +39,7 @@ def audit_make(
     from scope_ptz.bench.program_runner import ProgramRunner
     from scope_ptz.bench.tasks.files import digest_of
     from scope_ptz.bench.tasks.splits import load_split
-    from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
+    from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.audit_questions import write_question
     from scope_ptz.taskgen.facts.robust import TASK_CAMERA
@@ -50,8 +50,8 @@ def audit_make(
     if not chosen:
         raise InputError("None of these tasks expects an answer, so there is nothing to ask. Select other tasks with --tasks.")
     worlds = worlds_of([task for _, task in chosen])
-    equip = equip_with_truth(worlds, KnownViews())
-    runners = {name: ProgramRunner(world, equip, TASK_CAMERA) for name, world in worlds.items()}
+    make_context = ground_truth_tools(worlds, CachedTruth())
+    runners = {name: ProgramRunner(world, make_context, TASK_CAMERA) for name, world in worlds.items()}
     try:
         out.mkdir(parents=True)
     except FileExistsError as error:

@@ -37,7 +37,7 @@ def browse(
         for row in rows:
             put(f"{row.id:<52} {row.instruction}")
         return
-    from scope_ptz.factory.validation_perception import equip_with_truth
+    from scope_ptz.factory.validation_perception import ground_truth_tools
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.task_sheet import reference_run, summary, write_frames
 
@@ -45,7 +45,7 @@ def browse(
     (world,) = worlds.values()
     for line in summary(chosen, [row for row in _tasks(tasks) if row.paraphrase_of == chosen.id]):
         put(line)
-    for line in reference_run(chosen, world, equip_with_truth(worlds)):
+    for line in reference_run(chosen, world, ground_truth_tools(worlds)):
         put(line)
     if out is not None:
         for path in write_frames(chosen, world, out):

@@ -39,7 +39,7 @@ def build(
 ) -> int:
     """Make tasks from the ground truth of scenes. Exit code 1 if the scenes do not yield enough tasks."""
     from scope_ptz.bench.tasks.files import dump_tasks
-    from scope_ptz.factory.validation_perception import answered
+    from scope_ptz.factory.validation_perception import is_answerable
     from scope_ptz.factory.worlds import scenes_named
     from scope_ptz.taskgen.authoring.assembly import build as build_tasks
     from scope_ptz.taskgen.dataset.build import shortfall
@@ -53,9 +53,9 @@ def build(
         return _build_all(scene, out, card, seed, numbers or UNSEEN_VARIATIONS, quotas)
     scenes = list(scenes_named(scene).values())
     if numbers:
-        built = build_unseen(scenes, numbers, quotas, complain, answered)
+        built = build_unseen(scenes, numbers, quotas, complain, is_answerable)
     else:
-        built = build_tasks(scenes, seed, quotas, complain, answered)
+        built = build_tasks(scenes, seed, quotas, complain, is_answerable)
     out.parent.mkdir(parents=True, exist_ok=True)
     dump_tasks(built.tasks, out)
     put(f"{len(built.tasks)} tasks in {out}")
@@ -68,14 +68,14 @@ def build(
 def _build_all(
     scene: list[str] | None, out: Path, card: Path | None, seed: int, numbers: Sequence[int], quotas: dict[Category, int] | None
 ) -> int:
-    from scope_ptz.factory.proof import prove
-    from scope_ptz.factory.validation_perception import answered
+    from scope_ptz.factory.task_validation import validate_tasks
+    from scope_ptz.factory.validation_perception import is_answerable
     from scope_ptz.factory.worlds import scenes_named
     from scope_ptz.taskgen.dataset.build import build_dataset
 
     good = build_dataset(
-        scenes_named(scene), out, seed, numbers, quotas, prove=prove, make_gold=_gold_runs, answered=answered, report=put,
-        notify=complain,
+        scenes_named(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
+        report=put, notify=complain,
     )  # fmt: skip
     if card is not None:
         write_card(out, card)
@@ -135,10 +135,10 @@ def validate(
 ) -> int:
     """Validate tasks: correct programs and answers must pass, and adversarial ones must fail. Exit code 1 on any failure."""
     from scope_ptz.bench.tasks.splits import load_split
-    from scope_ptz.factory.proof import prove
+    from scope_ptz.factory.task_validation import validate_tasks
     from scope_ptz.taskgen.validation.report_text import report_lines
 
-    report = prove(load_split(tasks), seed, beside=load_split("core") if tasks in ("lite", "paraphrase") else ())
+    report = validate_tasks(load_split(tasks), seed, dataset=load_split("core") if tasks in ("lite", "paraphrase") else ())
     if as_json:
         put_json(report.as_dict())
     else:
@@ -200,9 +200,9 @@ def gold_check(
 def _gold_runs(tasks: Sequence[Task], seed: int) -> list[GoldRun]:
     import anyio
 
-    from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
+    from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.gold.reference_runs import make_gold_runs
 
     worlds = worlds_of(tasks)
-    return anyio.run(make_gold_runs, tasks, worlds, equip_with_truth(worlds, KnownViews()), seed)
+    return anyio.run(make_gold_runs, tasks, worlds, ground_truth_tools(worlds, CachedTruth()), seed)

@@ -62,7 +62,7 @@ def generate(
         known=load_split(known) if known else (),
         runs=read_runs(runs, feedback),
         seed=seed,
-        most_requests=requests,
+        max_requests=requests,
     )
     ledger = DraftLedger(out)
     endpoint = _endpoint(url, key_file, timeout)
@@ -81,13 +81,13 @@ def generate(
 
 async def _draft(request: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
     from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
-    from scope_ptz.factory.proof import task_prover
+    from scope_ptz.factory.task_validation import task_validator
     from scope_ptz.taskgen.generating.drafting_loop import generate as generate_tasks
 
     options = JudgeModelOptions(temperature=temperature, seed=request.seed)
     server = JudgeServer(await _with_model(endpoint, model), options)
     try:
-        await generate_tasks(request, server, task_prover(request.scene), ledger, complain)
+        await generate_tasks(request, server, task_validator(request.scene), ledger, complain)
     finally:
         await server.close()
 

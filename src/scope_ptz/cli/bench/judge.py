@@ -164,13 +164,13 @@ def judge_gold(
     import anyio
 
     from scope_ptz.factory.rescore import open_requested_judge
-    from scope_ptz.factory.validation_perception import equip_with_truth
+    from scope_ptz.factory.validation_perception import ground_truth_tools
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.gold.judge_cases import gold_cases, judge_all, result_lines
     from scope_ptz.taskgen.gold.judge_results import read_verdicts, results
 
     before = read_verdicts(out)
-    cases = gold_cases(gold, tasks, passing, limit, worlds_of, equip_with_truth)
+    cases = gold_cases(gold, tasks, passing, limit, worlds_of, ground_truth_tools)
 
     async def work() -> JudgementTally:
         server = await open_requested_judge(judge_settings(judge))
