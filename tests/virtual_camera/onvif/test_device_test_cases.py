@@ -32,7 +32,8 @@ FAR_APART = 4  # minutes: longer than any move
 
 
 def plain(value: Any) -> Any:
-    return serialize_object(value, dict)
+    serialize: Any = serialize_object  # not annotated by zeep
+    return serialize(value, dict)
 
 
 def uris(spaces: Any, name: str) -> set[str]:
@@ -143,7 +144,7 @@ async def test_fault_for_an_invalid_configuration(ptz: Any) -> None:
 
 async def idle(ptz: Any) -> bool:
     status = await ptz.GetStatus({"ProfileToken": PROFILE})
-    return status.MoveStatus.PanTilt == status.MoveStatus.Zoom == "IDLE"
+    return bool(status.MoveStatus.PanTilt == status.MoveStatus.Zoom == "IDLE")
 
 
 @pytest.mark.parametrize("share", [0.0, 0.25, 1.0])

@@ -65,7 +65,7 @@ class OnvifApp:
         rtsp_port: Where its streams are, for the addresses in replies.
 
     Raises:
-        ConfigError: zeep or the WSDL files are not installed.
+        ConfigError: The WSDL files are not installed.
     """
 
     def __init__(self, device: VirtualDevice, *, rtsp_port: int = 554) -> None:
