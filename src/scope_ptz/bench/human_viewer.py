@@ -12,7 +12,7 @@ from PIL import Image
 from scope_ptz.agent.drawing import INK, Canvas
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import OutputError
-from scope_ptz.settings import Inline
+from scope_ptz.settings import InlineProtocol
 
 JPEG_QUALITY = 92
 _KITTY_CHUNK = 4096
@@ -22,7 +22,7 @@ _GRID = range(10, 100, 10)
 class Viewer:
     """Writes numbered pictures into a folder, and shows them in a terminal that supports inline pictures."""
 
-    def __init__(self, folder: Path, terminal: IO[str] | None, inline: Inline | None) -> None:
+    def __init__(self, folder: Path, terminal: IO[str] | None, inline: InlineProtocol | None) -> None:
         self._folder, self._terminal, self._inline = folder, terminal, inline
         self._shown = 0
 
@@ -59,7 +59,7 @@ def _gridded(image: Image.Image) -> Image.Image:
     return canvas.finish()
 
 
-def escape(frame: Frame, inline: Inline) -> str:
+def escape(frame: Frame, inline: InlineProtocol) -> str:
     """Return the escape sequence that makes a terminal show a frame at half its size."""
     small = cv2.resize(cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     suffix = ".png" if inline == "kitty" else ".jpg"

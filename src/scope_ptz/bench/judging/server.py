@@ -15,7 +15,7 @@ from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.planner.chat.dialect import Dialect
-from scope_ptz.planner.chat.reasoning_text import part
+from scope_ptz.planner.chat.reasoning_text import separate_reasoning
 
 Form = Literal["json_schema", "json_object", "free"]
 _FORMS: tuple[Form, ...] = ("json_schema", "json_object", "free")
@@ -80,7 +80,7 @@ class JudgeServer:
                     dialect.messages(messages), extra={**fields, **_response_format(_FORMS[form], schema)}
                 )
             except ServerFailure as failure:
-                if dialect.learn(failure, fields, with_tools=False):
+                if dialect.adapt(failure, fields, with_tools=False):
                     continue
                 if form + 1 < len(_FORMS) and (failure.kind is FailureKind.EMPTY or _refuses_form(failure)):
                     form, after_empty = form + 1, after_empty or failure.kind is FailureKind.EMPTY
@@ -113,7 +113,7 @@ def _response_format(form: Form, schema: dict[str, Any]) -> dict[str, Any]:
 
 def _read(reply: ChatReply) -> Completion:
     return Completion(
-        text=part(reply.text, reply.reasoning).text,
+        text=separate_reasoning(reply.text, reply.reasoning).text,
         input_tokens=reply.input_tokens,
         output_tokens=reply.output_tokens,
         cut_off=reply.finish_reason == "length",
