@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import secrets
 from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from scope_ptz.virtual_camera.accounts import Account
     from scope_ptz.virtual_camera.device import VirtualDevice
     from scope_ptz.virtual_camera.http.server import ServedCamera
+
+logger = logging.getLogger(__name__)
 
 MAX_TIME_SCALE = 1000.0
 
@@ -145,5 +148,8 @@ async def serve_virtual_cameras(
             camera.unit.rtsp_port = rtsp_port_of[camera.device]
         if options.discovery:
             found = [Discoverable(camera.device, camera.port) for camera in cameras]
-            await stack.enter_async_context(discoverable(found, host=options.host))
+            try:
+                await stack.enter_async_context(discoverable(found, host=options.host))
+            except ConfigError as error:  # the cameras can be used without being found
+                logger.warning("%s", error)
         yield cameras

@@ -46,6 +46,13 @@ async def test_services_and_what_the_device_is(client: Any, served: ServedCamera
     assert (await device.GetServiceCapabilities()).Security.UsernameToken
     capabilities = await device.GetCapabilities({"Category": "All"})
     assert capabilities.PTZ.XAddr == f"{served.url}/onvif/ptz_service"
+    protocols = {protocol.Name: protocol.Port for protocol in await device.GetNetworkProtocols()}
+    assert protocols == {"HTTP": [served.port], "RTSP": [RTSP_PORT]}
+    users = {user.Username: (user.UserLevel, user.Password) for user in await device.GetUsers()}
+    assert users["viewer"] == ("User", None)  # passwords are not told
+    assert (await device.GetDNS()).FromDHCP is False
+    assert (await device.GetNTP()).FromDHCP is False
+    await device.GetNetworkDefaultGateway()
     scopes = [scope.ScopeItem for scope in await device.GetScopes()]
     assert "onvif://www.onvif.org/hardware/M5075-G" in scopes
 

@@ -162,9 +162,10 @@ async def test_several_devices_answer_one_probe(device: VirtualDevice, searcher:
 
 
 async def test_an_interface_that_is_not_there_is_an_error(device: VirtualDevice) -> None:
-    with pytest.raises(ConfigError, match="without discovery"):
-        async with discoverable([Discoverable(device, HTTP_PORT)], host="203.0.113.7", port=0):
-            raise AssertionError
+    for host in ("203.0.113.7", "::1"):
+        with pytest.raises(ConfigError, match="without discovery"):
+            async with discoverable([Discoverable(device, HTTP_PORT)], host=host, port=0):
+                raise AssertionError
 
 
 def test_parsing_ignores_other_messages() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import socket
 from pathlib import Path
 
 import httpx2
@@ -10,8 +12,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.camera.capabilities import Velocity
+from scope_ptz.errors import ConfigError
 from scope_ptz.virtual_camera.device import VirtualDevice
-from scope_ptz.virtual_camera.http.server import ServedCamera
+from scope_ptz.virtual_camera.http.server import ServedCamera, listen
+from scope_ptz.virtual_camera.onvif import wsdl
 from scope_ptz.virtual_camera.onvif.app import Caller, OnvifApp
 from scope_ptz.virtual_camera.onvif.login import CLOCK_TOLERANCE_S
 from scope_ptz.virtual_camera.onvif.soap import MAX_REQUEST_BYTES, SoapFault
@@ -195,3 +199,15 @@ async def test_the_host_header_is_reflected_only_if_it_is_a_host(served: ServedC
         async with httpx2.AsyncClient(base_url=served.url) as client:
             reply = await client.post("/onvif/device_service", content=services, headers={"Host": host})
         assert expected in reply.text
+
+
+def test_missing_wsdl_files_are_an_error_that_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(wsdl, "find_spec", lambda _: None)
+    with pytest.raises(ConfigError, match="scope-ptz\\[serve\\]"):
+        wsdl.load_document.__wrapped__()
+
+
+async def test_replies_do_not_wait_for_an_acknowledgement() -> None:
+    """asyncio sets TCP_NODELAY only for sockets that name their protocol, which inherited ones do not."""
+    with contextlib.closing(listen("127.0.0.1", [0])[0]) as listener:
+        assert listener.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)

@@ -76,7 +76,7 @@ class OnvifApp:
         configuration = PtzConfiguration(device)
         ptz = PtzService(device, configuration)
         self._operations: dict[str, Operations] = {
-            DEVICE: DeviceService(device, self._capabilities).operations(),
+            DEVICE: DeviceService(device, self._capabilities, rtsp_port).operations(),
             MEDIA: MediaService(device, configuration, rtsp_port).operations(),
             MEDIA2: Media2Service(device, configuration, rtsp_port).operations(),
             PTZ: {
