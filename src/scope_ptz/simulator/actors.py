@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Perspective, Projection, pan_tilt_deg
+from scope_ptz.simulator.mapping.grid import Grid, step_px
+from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import ActorSheet, Extent, SceneActor, Sprite
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import Grid, step_px
 from scope_ptz.simulator.runs import measure
-from scope_ptz.simulator.tiles import Tiles
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 TOLERANCE_M = 0.15

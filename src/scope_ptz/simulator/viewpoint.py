@@ -17,11 +17,11 @@ from pydantic import BaseModel, ValidationError
 
 from scope_ptz.errors import PackError
 from scope_ptz.simulator import layers
-from scope_ptz.simulator.atlas import Atlas, Scale
 from scope_ptz.simulator.files import read_regular_file
+from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Sprite
 from scope_ptz.simulator.pictures import Pictures
-from scope_ptz.simulator.tiles import Tiles
+from scope_ptz.simulator.sheets.atlas import Atlas, Scale
 
 COLOUR_SCALES = (
     Scale(1.0, sharpening=0.6),
@@ -72,10 +72,16 @@ class Viewpoint:
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
         # The sheets refer to the files and not to this object. Without a reference cycle, memory is freed with the last reference.
         read, depth = self.pictures, manifest.depth
-        self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: read.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
-        self.id_atlas = id_atlas = Atlas([_size(n) for n in ids], lambda i: read.numbers(ids[i]), np.uint16, 1)
-        self.depth_atlas = Atlas([_size(depth)], lambda _: read.numbers(depth), np.uint16, 1)
-        self.owner_atlas = Atlas([_size(depth)], lambda _: _owners(id_atlas, depth), np.uint16, 1)
+        pans_deg = [tile.pan_deg for tile in tiles]
+        self.colour_atlas = Atlas(
+            [_size(c) for c in colours], lambda _, i: read.colour(colours[i]), np.uint8, 3, COLOUR_SCALES, pans_deg=pans_deg
+        )
+        decode = layers.decode_numbers
+        self.id_atlas = id_atlas = Atlas(
+            [_size(n) for n in ids], lambda _, i: read.coded_numbers(ids[i]), np.uint16, 1, decode=decode
+        )
+        self.depth_atlas = Atlas([_size(depth)], lambda *_: read.coded_numbers(depth), np.uint16, 1, decode=decode)
+        self.owner_atlas = Atlas([_size(depth)], lambda *_: _owners(id_atlas, depth), np.uint16, 1)
 
     @cached_property
     def position_m(self) -> NDArray[np.float64]:

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
 from scope_ptz.simulator.actors import Appearance, composited, draw, shows
+from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import colour_view, id_view, outlined_depth_view
+from scope_ptz.simulator.reproject import colour_view, id_view
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 

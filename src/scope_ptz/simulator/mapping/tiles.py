@@ -19,7 +19,8 @@ Place = tuple[slice, slice]
 _BEHIND = 1e-6
 _FAR_PX = 1e5
 _INSET_PX = 1.5
-_SHIFT = 8
+POLYGON_SHIFT = 8
+"""Bits after the binary point of polygon coordinates, as OpenCV expects them."""
 _SIDE_POINTS = 8
 
 
@@ -42,7 +43,9 @@ class TileInView(NamedTuple):
         rows, columns = self.place
         mask = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.uint8)
         return np.asarray(
-            cv2.fillConvexPoly(mask, self.polygon - (columns.start << _SHIFT, rows.start << _SHIFT), 255, shift=_SHIFT)
+            cv2.fillConvexPoly(
+                mask, self.polygon - (columns.start << POLYGON_SHIFT, rows.start << POLYGON_SHIFT), 255, shift=POLYGON_SHIFT
+            )
         )
 
 
@@ -104,7 +107,7 @@ def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
     away = (across / np.maximum(np.sqrt((sides**2).sum(axis=-1)), 1e-9)).min(axis=1)
     inset = middle + (corners - middle) * np.maximum(0.0, 1.0 - _INSET_PX / np.maximum(away, 1e-9))[:, None, None]
     clear = np.abs(corners).max(axis=(1, 2)) < _FAR_PX  # also false for NaN
-    fixed = np.rint((np.where(clear[:, None, None], inset, 0.0) - 0.5) * (1 << _SHIFT)).astype(np.int32)
+    fixed = np.rint((np.where(clear[:, None, None], inset, 0.0) - 0.5) * (1 << POLYGON_SHIFT)).astype(np.int32)
     return [polygon if fine else None for polygon, fine in zip(fixed, clear.tolist(), strict=True)]
 
 
