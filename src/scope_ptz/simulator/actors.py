@@ -40,6 +40,8 @@ class Appearance:
         view: The perspective that the sprite fills.
         offset_m: The actor's ground point relative to the optical centre, in the camera's own frame.
         scale: How many times larger the actor appears than in its sprite.
+        path_s: Time on the actor's path.
+        phase: Phase of a walker's stride, 0 to 1.
     """
 
     actor: SceneActor
@@ -48,6 +50,8 @@ class Appearance:
     view: Perspective
     offset_m: Floats
     scale: float
+    path_s: float
+    phase: float
 
     @property
     def distance_m(self) -> float:
@@ -95,20 +99,34 @@ def _seen(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> l
     return sorted(seen, key=lambda a: (-a.distance_m, a.actor.number))
 
 
-def _sprite(sheet: ActorSheet, here: PathPosition) -> Sprite:
+def _sprite(sheet: ActorSheet, path_s: float, phase: float) -> Sprite:
     """Return the sprite nearest on the path and, for walkers, nearest in the phase of the stride."""
-    phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
 
     def misfit(sprite: Sprite) -> tuple[float, float]:
         off = abs(sprite.phase - phase)
-        return abs(sprite.path_s - here.path_s), min(off, 1.0 - off)
+        return abs(sprite.path_s - path_s), min(off, 1.0 - off)
 
     return min(sheet.sprites, key=misfit)
 
 
 def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here: PathPosition) -> Appearance:
-    sprite = _sprite(sheet, here)
-    then, now = viewpoint.offset(np.array(sprite.position_m)), viewpoint.offset(here.position_m)
+    phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
+    return _placed(
+        viewpoint, actor, sheet, _sprite(sheet, here.path_s, phase), viewpoint.offset(here.position_m), here.path_s, phase
+    )
+
+
+def placed(viewpoint: Viewpoint, appearance: Appearance, sprite: Sprite) -> Appearance:
+    """Return the same actor at the same instant, shown by another of its sprites."""
+    if sprite is appearance.sprite:
+        return appearance
+    return _placed(viewpoint, appearance.actor, appearance.sheet, sprite, appearance.offset_m, appearance.path_s, appearance.phase)
+
+
+def _placed(
+    viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, sprite: Sprite, now: Floats, path_s: float, phase: float
+) -> Appearance:
+    then = viewpoint.offset(np.array(sprite.position_m))
     scale = float(np.linalg.norm(then) / np.linalg.norm(now))
     rendered = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
     hfov_deg = float(np.degrees(2 * np.arctan(sprite.width / 2 * scale / rendered.focal_px)))
@@ -120,12 +138,13 @@ def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here
         got_pan, got_tilt = pan_tilt_deg(Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height).directions(foot))
         pan += (wanted_pan - float(got_pan) + 180.0) % 360.0 - 180.0
         tilt += wanted_tilt - float(got_tilt)
-    return Appearance(actor, sheet, sprite, Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height), now, scale)
+    view = Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height)
+    return Appearance(actor, sheet, sprite, view, now, scale, path_s, phase)
 
 
 def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     """Return the actor's present silhouette, including hidden parts."""
-    own = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet)) > 0
+    own = viewpoint.sprites.distances(appearance.sheet, appearance.sprite) > 0
     measures = measure(own.astype(np.uint16), appearance.view)
     if not len(measures.numbers):
         return Extent(number=appearance.actor.number, solid_angle_sr=0.0, hull=[], distance_m=appearance.distance_m)
@@ -145,23 +164,21 @@ def shows(appearance: Appearance, projection: Projection) -> bool:
     return bool(Tiles([appearance.view]).in_view(projection))
 
 
-def draw(
+def draw_numbers(
     viewpoint: Viewpoint,
     projection: Projection,
     appearance: Appearance,
     depth_m: NDArray[np.float32],
-    picture: NDArray[np.uint8] | None,
-    numbers: NDArray[np.uint16] | None,
+    numbers: NDArray[np.uint16],
 ) -> None:
-    """Draw one actor into a picture and into its instance numbers, in place.
+    """Draw one actor into a view's instance numbers, in place.
 
     Args:
         viewpoint: The viewpoint that holds the actor's sprites.
-        projection: Projection of the picture.
+        projection: Projection of the view.
         appearance: The actor at this instant.
         depth_m: (H, W) distances of the still world.
-        picture: (H, W, 3) RGB to draw into, or None.
-        numbers: (H, W) instance numbers to draw into, or None.
+        numbers: (H, W) instance numbers to draw into.
     """
     sprite = Tiles([appearance.view])
     showing = next(iter(sprite.in_view(projection)), None)
@@ -173,44 +190,10 @@ def draw(
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
     still_m = depth_m[place] * (1 + TOLERANCE_SHARE) + TOLERANCE_M
-    own = distance_m > 0
-    if numbers is not None:
-        numbers[place][own & (distance_m <= still_m)] = appearance.actor.number
-    if picture is not None:
-        drop = grid.to_pixels(grid.directions()[..., 2])
-        height_m = float(appearance.offset_m[2])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ground_m = np.where(drop * height_m > 0, height_m / drop, np.inf)
-        _blend(picture[place], _sample(viewpoint, appearance, where, projection), np.where(own, distance_m, ground_m) <= still_m)
-
-
-def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.float32], projection: Projection) -> NDArray[np.uint8]:
-    """Return the sprite's (H, W, 4) premultiplied colour at the points of a map.
-
-    A sprite that is denser than the view is shrunk first, which prevents aliasing.
-    """
-    colour = viewpoint.sprite_colour(appearance.sheet, appearance.sprite)
-    shrink = projection.density / appearance.view.focal_px
-    if shrink < 0.75:
-        size = max(1, round(colour.shape[1] * shrink)), max(1, round(colour.shape[0] * shrink))
-        factor = np.array([size[0] / colour.shape[1], size[1] / colour.shape[0]], dtype=np.float32)
-        colour = cv2.resize(colour, size, interpolation=cv2.INTER_AREA)
-        where = (where + np.float32(0.5)) * factor - np.float32(0.5)
-    return np.asarray(cv2.remap(colour, where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0)))
-
-
-def _blend(picture: NDArray[np.uint8], premultiplied: NDArray[np.uint8], shows: NDArray[np.bool_]) -> None:
-    """Blend premultiplied colour over a picture, in place, where ``shows`` is true."""
-    over = cv2.bitwise_and(premultiplied, premultiplied, mask=shows.view(np.uint8))
-    through = cv2.cvtColor(255 - over[..., 3], cv2.COLOR_GRAY2RGB)
-    cv2.add(cv2.multiply(picture, through, scale=1 / 255), np.ascontiguousarray(over[..., :3]), dst=picture)
+    numbers[place][(distance_m > 0) & (distance_m <= still_m)] = appearance.actor.number
 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:
     """Return (h, w) present distances of the sprite's pixels in metres, 0 where the sprite does not show the actor."""
-    codes = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet))
+    codes = viewpoint.sprites.distances(appearance.sheet, appearance.sprite)
     return np.where(codes > 0, viewpoint.depth_metres[codes] / np.float32(appearance.scale), np.float32(0.0))
-
-
-def _crop(sprite: Sprite, sheet: NDArray) -> NDArray:  # type: ignore[type-arg]
-    return sheet[sprite.top : sprite.top + sprite.height, sprite.left : sprite.left + sprite.width]

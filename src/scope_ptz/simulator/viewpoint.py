@@ -5,12 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import cached_property
-from itertools import product
 from pathlib import Path
-from threading import RLock
 from typing import TypeVar
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ValidationError
@@ -19,9 +16,11 @@ from scope_ptz.errors import PackError
 from scope_ptz.simulator import layers
 from scope_ptz.simulator.files import read_regular_file
 from scope_ptz.simulator.mapping.tiles import Tiles
-from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Sprite
+from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.sheets.atlas import Atlas, Scale
+from scope_ptz.simulator.sprites.choice import SpriteChoice
+from scope_ptz.simulator.sprites.store import SpriteStore
 
 COLOUR_SCALES = (
     Scale(1.0, sharpening=0.6),
@@ -37,12 +36,6 @@ COLOUR_SCALES = (
 about as dense as the stored picture, or denser. Sharpening compensates for the blur of shrinking and bilinear look-up; the amounts
 bring the Laplacian variance of views closest to that of directly rendered ones."""
 
-EDGE_PX = 2
-"""Search radius for covered pixels around a half-covered pixel of a sprite."""
-
-MIN_COVERED = 3
-"""Number of covered pixels needed to recolour a half-covered one."""
-
 _File = TypeVar("_File", bound=BaseModel)
 
 
@@ -57,10 +50,8 @@ class Viewpoint:
         self.folder, self.pictures = folder, Pictures(folder)
         self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
         self.name = place.name
-        self._sprite_sheets: dict[int, NDArray[np.uint8]] = {}
-        self._sprites: dict[tuple[int, int, int], NDArray[np.uint8]] = {}
-        self._sprite_distances: dict[int, NDArray[np.uint16]] = {}
-        self._lock = RLock()
+        self.sprites = SpriteStore(self.pictures)
+        self._choices: dict[int, SpriteChoice] = {}
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
                 f"{folder} was baked for viewpoint '{manifest.viewpoint}' of scene '{manifest.scene}' version "
@@ -127,37 +118,11 @@ class Viewpoint:
         depth = self.manifest.depth
         return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
 
-    def sprite_distances(self, sheet: ActorSheet) -> NDArray[np.uint16]:
-        """Return an actor's sheet as (H, W) distance codes, 0 where it does not show the actor. Read once and shared."""
-        with self._lock:
-            if sheet.number not in self._sprite_distances:
-                self._sprite_distances[sheet.number] = self.pictures.numbers(sheet.depth)
-            return self._sprite_distances[sheet.number]
-
-    def sprite_colour(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint8]:
-        """Return one sprite as (h, w, 4) colour premultiplied by alpha. Computed once and shared; the ground truth never needs it.
-
-        Raises:
-            PackError: The actor's sheet has no transparency.
-        """
-        key = (sheet.number, sprite.left, sprite.top)
-        with self._lock:
-            if key not in self._sprites:
-                self._sprites[key] = self._premultiplied_sprite(sheet, sprite)
-            return self._sprites[key]
-
-    def _premultiplied_sprite(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint8]:
-        if sheet.number not in self._sprite_sheets:
-            colour = self.pictures.colour(sheet.colour)
-            if colour.shape[2] != 4:
-                raise PackError(f"{self.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
-            self._sprite_sheets[sheet.number] = colour
-        colour, distances = self._sprite_sheets[sheet.number], self.sprite_distances(sheet)
-        # Edge pixels take their colour from covered pixels around them, so the crop is larger than the sprite.
-        top, left = max(0, sprite.top - EDGE_PX), max(0, sprite.left - EDGE_PX)
-        crop = slice(top, sprite.top + sprite.height + EDGE_PX), slice(left, sprite.left + sprite.width + EDGE_PX)
-        y, x = sprite.top - top, sprite.left - left
-        return np.ascontiguousarray(_premultiplied(colour[crop], distances[crop] > 0)[y : y + sprite.height, x : x + sprite.width])
+    def sprite_choice(self, actor: SceneActor, sheet: ActorSheet) -> SpriteChoice:
+        """Return what chooses among an actor's sprites. Computed once and shared."""
+        if actor.number not in self._choices:
+            self._choices[actor.number] = SpriteChoice(actor, sheet.sprites, self.offset, self.world_to_camera)
+        return self._choices[actor.number]
 
 
 def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
@@ -166,30 +131,6 @@ def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
     rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
     columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
     return np.ascontiguousarray(ids.sheet[rows[:, None], columns])
-
-
-def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Return (H, W, 4) colour times alpha.
-
-    Lossy coding mixes the black of empty pixels into an actor's half-covered edge, so edge pixels take their colour from the
-    covered pixels around them. Edges are few, so only they are processed one by one.
-    """
-    alpha = colour[..., 3]
-    sheet = cv2.multiply(colour, cv2.merge([alpha, alpha, alpha, np.full_like(alpha, 255)]), scale=1 / 255)
-    covered = own & (alpha > 250)
-    rows, columns = np.nonzero(own & (alpha <= 250))
-    total, count = np.zeros((len(rows), 3)), np.zeros(len(rows))
-    for down, right in product(range(-EDGE_PX, EDGE_PX + 1), repeat=2):
-        beside = rows + down, columns + right
-        there = np.clip(beside[0], 0, alpha.shape[0] - 1), np.clip(beside[1], 0, alpha.shape[1] - 1)
-        counts = covered[there] & (there[0] == beside[0]) & (there[1] == beside[1])
-        total += colour[..., :3][there] * counts[:, None]
-        count += counts
-    enough = count >= MIN_COVERED
-    rows, columns = rows[enough], columns[enough]
-    inward = total[enough] / count[enough, None]
-    sheet[rows, columns, :3] = np.rint(inward * (alpha[rows, columns, None] / 255))
-    return np.asarray(sheet)
 
 
 def _size(layer: Layer) -> tuple[int, int]:

@@ -6,23 +6,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.actors import Appearance, composited, draw, shows
+from scope_ptz.simulator.actors import Appearance, composited, draw_numbers, shows
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
+from scope_ptz.simulator.sprites.drawing import actor_patch
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 
 def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint8]:
     """Return what a camera at a viewpoint sees at a time, as (H, W, 3) RGB."""
     here = scene.viewpoint(viewpoint)
-    actors = _in_view(scene, here, projection, time_s)
-    # Distances before colour: decoding instance numbers needs the most memory, and then the colour is not in memory yet.
-    depth_m = outlined_depth_view(here, projection, id_view(here, projection)) if actors else None
+    # Actors before the still world: decoding instance numbers needs the most memory, and then the colour is not in memory yet.
+    patches = [actor_patch(here, projection, actor) for actor in _in_view(scene, here, projection, time_s)]
     image = colour_view(here, projection)
-    if depth_m is not None:
-        for actor in actors:
-            draw(here, projection, actor, depth_m, image, None)
+    for patch in patches:
+        if patch is not None:
+            patch.draw(image)
     return image
 
 
@@ -33,7 +33,7 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     if actors := _in_view(scene, here, projection, time_s):
         depth_m = outlined_depth_view(here, projection, numbers)
         for actor in actors:
-            draw(here, projection, actor, depth_m, None, numbers)
+            draw_numbers(here, projection, actor, depth_m, numbers)
     return numbers
 
 

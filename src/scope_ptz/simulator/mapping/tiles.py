@@ -58,7 +58,7 @@ class Tiles:
         self._order = np.array(order, dtype=np.int64)
         self._axes = np.array([camera_axes(v.pan_deg, v.tilt_deg) for v in views]).reshape(-1, 3, 3)
         self._reach_deg = np.array([v.reach_deg for v in views])
-        self._outlines = np.array([v.directions(_OUTLINE) for v in views]).reshape(-1, len(_OUTLINE), 3)
+        self._outlines = np.array([v.directions(OUTLINE) for v in views]).reshape(-1, len(OUTLINE), 3)
 
     def in_view(self, projection: Projection) -> list[TileInView]:
         """Return every tile that may show in a picture."""
@@ -68,7 +68,7 @@ class Tiles:
         near = self._order[(apart <= self._reach_deg + projection.reach_deg)[self._order]]
         size = np.array([projection.width, projection.height])
         outlines = projection.points(self._outlines[near])
-        places = _bounds(projection, outlines)
+        places = bounds(projection, outlines)
         if isinstance(projection, Perspective):
             turns = list(self._axes[near] @ camera_axes(projection.pan_deg, projection.tilt_deg).T)
             polygons = _inset(outlines[:, ::_SIDE_POINTS] * size)
@@ -111,7 +111,7 @@ def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
     return [polygon if fine else None for polygon, fine in zip(fixed, clear.tolist(), strict=True)]
 
 
-def _bounds(projection: Projection, points: Floats) -> list[Place]:
+def bounds(projection: Projection, points: Floats) -> list[Place]:
     """Return the rows and columns that each outline (n, m, 2) spans; they are empty where it misses the picture."""
     size = np.array([projection.width, projection.height])
     unclear = np.isnan(points).any(axis=(1, 2))
@@ -133,4 +133,4 @@ def _outline() -> Floats:
     return np.concatenate([np.stack(p, axis=-1) for p in ((side, zero), (one, side), (1 - side, one), (zero, 1 - side))])
 
 
-_OUTLINE = _outline()
+OUTLINE = _outline()
