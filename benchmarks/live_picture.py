@@ -9,7 +9,6 @@ camera then turns slowly while the actors move at 25 frames a second. Views and 
 from __future__ import annotations
 
 import argparse
-import json
 import statistics
 import subprocess
 import sys
@@ -21,7 +20,7 @@ import cv2
 import numpy as np
 
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt_deg
-from scope_ptz.simulator.actors import composited
+from scope_ptz.simulator.actors import composited_actors
 from scope_ptz.simulator.pack import Scene, list_scenes, load_scene
 from scope_ptz.simulator.reproject import view_map
 from scope_ptz.simulator.sprites.drawing import actor_patch
@@ -104,7 +103,7 @@ def _busiest(scene: Scene, here: Viewpoint, zoom: float) -> tuple[Pose, float, i
     """Return the pose and moment at which the most actors show, and how many do."""
     best, found = (Pose(0.0, -10.0, zoom), 0.0, 0), 0
     for time_s in np.arange(0.0, 60.0, 1.5):
-        actors = composited(scene, here, float(time_s))
+        actors = composited_actors(scene, here, float(time_s))
         directions = [a.offset_m / np.linalg.norm(a.offset_m) for a in actors]
         for k in range(len(actors)):
             for other in range(k, len(actors)):

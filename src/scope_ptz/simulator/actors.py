@@ -40,8 +40,6 @@ class Appearance:
         view: The perspective that the sprite fills.
         offset_m: The actor's ground point relative to the optical centre, in the camera's own frame.
         scale: How many times larger the actor appears than in its sprite.
-        path_s: Time on the actor's path.
-        phase: Phase of a walker's stride, 0 to 1.
     """
 
     actor: SceneActor
@@ -50,12 +48,21 @@ class Appearance:
     view: Perspective
     offset_m: Floats
     scale: float
-    path_s: float
-    phase: float
 
     @property
     def distance_m(self) -> float:
         return float(np.linalg.norm(self.offset_m))
+
+
+@dataclass(frozen=True, slots=True)
+class ActorInView:
+    """An actor at one instant: its sprites, its ground point (3,) relative to the optical centre, path time, and stride phase."""
+
+    actor: SceneActor
+    sheet: ActorSheet
+    offset_m: Floats
+    path_s: float
+    phase: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,43 +96,35 @@ def composited(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appear
     return _seen(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
 
+def composited_actors(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[ActorInView]:
+    """Return the same actors as ``composited``, farthest first, without choosing sprites."""
+    moving = ((actor, time_s) for actor in scene.file.actors)
+    return _present(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
+
+
 def _seen(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[Appearance]:
-    sheets = {sheet.number: sheet for sheet in viewpoint.manifest.actors}
-    seen = [
-        _appearance(viewpoint, actor, sheets[actor.number], here)
-        for actor, time_s in actors
-        if actor.number in sheets and (here := path_position(actor, time_s)) is not None
-    ]
-    return sorted(seen, key=lambda a: (-a.distance_m, a.actor.number))
+    return [_appearance(viewpoint, present) for present in _present(viewpoint, actors)]
 
 
-def _sprite(sheet: ActorSheet, path_s: float, phase: float) -> Sprite:
-    """Return the sprite nearest on the path and, for walkers, nearest in the phase of the stride."""
+def _present(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[ActorInView]:
+    found = []
+    for actor, time_s in actors:
+        sheet, here = viewpoint.sheets.get(actor.number), path_position(actor, time_s)
+        if sheet is not None and here is not None:
+            phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
+            found.append(ActorInView(actor, sheet, viewpoint.offset(here.position_m), here.path_s, phase))
+    return sorted(found, key=lambda a: (-float(np.linalg.norm(a.offset_m)), a.actor.number))
+
+
+def _appearance(viewpoint: Viewpoint, present: ActorInView) -> Appearance:
+    actor, sheet, now = present.actor, present.sheet, present.offset_m
 
     def misfit(sprite: Sprite) -> tuple[float, float]:
-        off = abs(sprite.phase - phase)
-        return abs(sprite.path_s - path_s), min(off, 1.0 - off)
+        off = abs(sprite.phase - present.phase)
+        return abs(sprite.path_s - present.path_s), min(off, 1.0 - off)
 
-    return min(sheet.sprites, key=misfit)
-
-
-def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here: PathPosition) -> Appearance:
-    phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
-    return _placed(
-        viewpoint, actor, sheet, _sprite(sheet, here.path_s, phase), viewpoint.offset(here.position_m), here.path_s, phase
-    )
-
-
-def placed(viewpoint: Viewpoint, appearance: Appearance, sprite: Sprite) -> Appearance:
-    """Return the same actor at the same instant, shown by another of its sprites."""
-    if sprite is appearance.sprite:
-        return appearance
-    return _placed(viewpoint, appearance.actor, appearance.sheet, sprite, appearance.offset_m, appearance.path_s, appearance.phase)
-
-
-def _placed(
-    viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, sprite: Sprite, now: Floats, path_s: float, phase: float
-) -> Appearance:
+    # The sprite nearest on the path and, for walkers, nearest in the phase of the stride.
+    sprite = min(sheet.sprites, key=misfit)
     then = viewpoint.offset(np.array(sprite.position_m))
     scale = float(np.linalg.norm(then) / np.linalg.norm(now))
     rendered = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
@@ -138,8 +137,7 @@ def _placed(
         got_pan, got_tilt = pan_tilt_deg(Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height).directions(foot))
         pan += (wanted_pan - float(got_pan) + 180.0) % 360.0 - 180.0
         tilt += wanted_tilt - float(got_tilt)
-    view = Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height)
-    return Appearance(actor, sheet, sprite, view, now, scale, path_s, phase)
+    return Appearance(actor, sheet, sprite, Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height), now, scale)
 
 
 def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:

@@ -91,6 +91,11 @@ class Viewpoint:
         """Whole silhouettes of the instances that can be seen from here, by instance number."""
         return {extent.number: extent for extent in self.manifest.extents}
 
+    @cached_property
+    def sheets(self) -> dict[int, ActorSheet]:
+        """Sprite sheets by number of the actor."""
+        return {sheet.number: sheet for sheet in self.manifest.actors}
+
     def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return world points (..., 3) as vectors from the optical centre, in metres in the camera's own frame."""
         return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)

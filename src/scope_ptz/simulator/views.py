@@ -6,19 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.actors import Appearance, composited, draw_numbers, shows
+from scope_ptz.simulator.actors import composited, composited_actors, draw_numbers, shows
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
 from scope_ptz.simulator.sprites.drawing import actor_patch
-from scope_ptz.simulator.viewpoint import Viewpoint
 
 
 def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint8]:
     """Return what a camera at a viewpoint sees at a time, as (H, W, 3) RGB."""
     here = scene.viewpoint(viewpoint)
     # Actors before the still world: decoding instance numbers needs the most memory, and then the colour is not in memory yet.
-    patches = [actor_patch(here, projection, actor) for actor in _in_view(scene, here, projection, time_s)]
+    patches = [actor_patch(here, projection, actor) for actor in composited_actors(scene, here, time_s)]
     image = colour_view(here, projection)
     for patch in patches:
         if patch is not None:
@@ -30,12 +29,8 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     """Return the instance or actor that each pixel of that picture shows as (H, W) numbers, 0 for none."""
     here = scene.viewpoint(viewpoint)
     numbers = id_view(here, projection)
-    if actors := _in_view(scene, here, projection, time_s):
+    if actors := [a for a in composited(scene, here, time_s) if shows(a, projection)]:
         depth_m = outlined_depth_view(here, projection, numbers)
         for actor in actors:
             draw_numbers(here, projection, actor, depth_m, numbers)
     return numbers
-
-
-def _in_view(scene: Scene, viewpoint: Viewpoint, projection: Projection, time_s: float) -> list[Appearance]:
-    return [a for a in composited(scene, viewpoint, time_s) if shows(a, projection)]

@@ -58,12 +58,12 @@ def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, pa
         rest = cover.gap(part)
     if rest == part:
         slot = atlas.need(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
-        found = panorama_map(band, slot, Grid(projection, step), part)
+        found = panorama_map(band, slot, Grid(projection, step).inner(part), part)
     else:
         found = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
         if rest is not None:
             slot = atlas.need(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
-            _within(found, part, rest)[...] = panorama_map(band, slot, Grid(projection, step), rest)
+            _within(found, part, rest)[...] = panorama_map(band, slot, Grid(projection, step).inner(rest), rest)
     for visible, where, inside in reversed(patches):
         if inside is None:
             _within(found, part, visible)[...] = where
@@ -91,10 +91,12 @@ def _tile_map(tiles: Tiles, showing: TileInView, atlas: Atlas, grid: Grid, visib
     projection = grid.projection
     density = tiles.views[showing.tile].focal_px
     slot = atlas.need(1 + showing.tile, suitable_scale(atlas, density, projection.density))
-    nodes = tiles.points(showing, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
     low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
-    where = grid.to_pixels(nodes, visible)
-    if grid.covers_all and bool(np.all((nodes >= low) & (nodes <= high))):
+    may_cover_all = grid.covers_all
+    inner = grid if may_cover_all else grid.inner(visible)
+    nodes = tiles.points(showing, projection, inner.x, inner.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
+    where = inner.to_pixels(nodes, visible)
+    if may_cover_all and bool(np.all((nodes >= low) & (nodes <= high))):
         return where, None
     inside = showing.mask()
     return where, cv2.inRange(where, low, high) if inside is None else _within(inside, showing.place, visible)

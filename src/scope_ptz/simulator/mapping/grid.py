@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
+from copy import copy
+from functools import lru_cache
+from typing import cast
 
 import cv2
 import numpy as np
@@ -43,6 +47,18 @@ class Grid:
         points = np.stack(np.meshgrid(self.x / self.projection.width, self.y / self.projection.height), axis=-1)
         return self.projection.directions(points)
 
+    def inner(self, part: Place) -> Grid:
+        """Return the grid of those nodes that a part of the picture needs. Values interpolated from it are exactly the same."""
+        found = copy(self)
+        spans = []
+        for whole, wanted, nodes in zip(self.place, part, ("y", "x"), strict=True):
+            first = (wanted.start - whole.start) // self.step
+            last = -(-(wanted.stop - whole.start) // self.step) + 2
+            setattr(found, nodes, getattr(self, nodes)[first:last])
+            spans.append(slice(whole.start + first * self.step, wanted.stop))
+        found.place = spans[0], spans[1]
+        return found
+
     def to_pixels(self, nodes: Floats, part: Place | None = None) -> NDArray[np.float32]:
         """Interpolate node values to the centre of each pixel.
 
@@ -64,6 +80,11 @@ class Grid:
 
 def step_px(projection: Projection) -> int:
     """Return the largest power of two that keeps ``step ** 2 / 8 * curvature`` within ``MAX_MAP_ERROR_PX``."""
+    return _step_px(cast(Hashable, projection))
+
+
+@lru_cache(maxsize=64)
+def _step_px(projection: Projection) -> int:
     if isinstance(projection, Equirectangular):
         return 8
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.0], [0.5, 1.0]])

@@ -23,6 +23,8 @@ POLYGON_SHIFT = 8
 """Bits after the binary point of polygon coordinates, as OpenCV expects them."""
 _SIDE_POINTS = 8
 
+KEPT_ANSWERS = 4  # a view and its half-size version, for two cameras
+
 
 class TileInView(NamedTuple):
     """A tile in a picture and the part of the picture in which it shows.
@@ -58,10 +60,19 @@ class Tiles:
         self._order = np.array(order, dtype=np.int64)
         self._axes = np.array([camera_axes(v.pan_deg, v.tilt_deg) for v in views]).reshape(-1, 3, 3)
         self._reach_deg = np.array([v.reach_deg for v in views])
+        self._answers: list[tuple[Projection, list[TileInView]]] = []
         self._outlines = np.array([v.directions(OUTLINE) for v in views]).reshape(-1, len(OUTLINE), 3)
 
     def in_view(self, projection: Projection) -> list[TileInView]:
-        """Return every tile that may show in a picture."""
+        """Return every tile that may show in a picture. The last answers are kept, because several layers ask the same."""
+        for known, found in self._answers:
+            if known == projection:
+                return found
+        found = self._find(projection)
+        self._answers = [(projection, found), *self._answers[: KEPT_ANSWERS - 1]]
+        return found
+
+    def _find(self, projection: Projection) -> list[TileInView]:
         if not self.views:
             return []
         apart = angle_between_deg(self._axes[:, 2], projection.directions((0.5, 0.5)))

@@ -118,7 +118,7 @@ class SpriteChoice:
 def bend(actor: SceneActor, stored: Aspect, now: Aspect) -> Floats:
     """Return the (2, 2) matrix that bends a sprite about its ground point to the present aspect of its actor.
 
-    It is the best linear map, in pixels of the sprite, from the actor's length, width and height as they appear in the sprite to
+    It is the best linear map (right, up) from the actor's length, width and height as they appear in the sprite to
     how they appear now. It turns a bicycle seen from above into the direction in which it rides, and shortens what is seen from
     further above. Size is left alone: the sprite is scaled by distance.
     """
@@ -127,9 +127,7 @@ def bend(actor: SceneActor, stored: Aspect, now: Aspect) -> Floats:
     stiff = STIFFNESS * float((then**2).sum()) * np.eye(2)
     fitted = (present @ then.T + stiff) @ np.linalg.inv(then @ then.T + stiff)
     left, stretch, right = np.linalg.svd(fitted)
-    limited = left @ np.diag(np.clip(stretch, 1 / MAX_STRETCH, MAX_STRETCH)) @ right
-    upside_down = np.diag([1.0, -1.0])  # rows of pixels count downwards
-    return np.asarray(upside_down @ limited @ upside_down)
+    return np.asarray(left @ np.diag(np.clip(stretch, 1 / MAX_STRETCH, MAX_STRETCH)) @ right)
 
 
 def _projected(aspect: Aspect, length: float, width: float, height: float) -> Floats:

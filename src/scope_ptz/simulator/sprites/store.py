@@ -39,6 +39,7 @@ class SpriteStore:
     def __init__(self, pictures: Pictures) -> None:
         self._pictures = pictures
         self._packed: dict[Key, bytes] = {}
+        self._boxes: dict[tuple[int, int, int], tuple[int, int, int, int]] = {}
         self._expanded: OrderedDict[Key, NDArray[Any]] = OrderedDict()
         self._expanded_bytes = 0
         self._lock = RLock()
@@ -54,6 +55,14 @@ class SpriteStore:
             PackError: The actor's sheet has no transparency.
         """
         return self._get("colour", sheet, sprite)
+
+    def box(self, sheet: ActorSheet, sprite: Sprite) -> tuple[int, int, int, int]:
+        """Return the rectangle (left, top, width, height) of a sprite's pixels that are not empty."""
+        key = (sheet.number, sprite.left, sprite.top)
+        if key not in self._boxes:
+            x, y, width, height = cv2.boundingRect(cv2.extractChannel(self.colour(sheet, sprite), 3))
+            self._boxes[key] = x, y, width, height
+        return self._boxes[key]
 
     def load(self, sheets: Iterable[ActorSheet]) -> None:
         """Read the sheets of actors, so that no later request has to."""
