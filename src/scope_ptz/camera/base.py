@@ -27,6 +27,7 @@ class CameraInfo:
         frame_width: Width of a frame in pixels.
         frame_height: Height of a frame in pixels.
         simulated: Whether the pictures are computed.
+        rendering: Version of the simulator's rendering; None for other cameras.
     """
 
     name: str
@@ -35,6 +36,7 @@ class CameraInfo:
     frame_width: int
     frame_height: int
     simulated: bool
+    rendering: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ValidationError
 
 from scope_ptz.errors import PackError
+from scope_ptz.geometry import direction
 from scope_ptz.simulator import layers
 from scope_ptz.simulator.files import read_regular_file
 from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.sheets.atlas import Atlas, Scale
+from scope_ptz.simulator.sheets.blending import TileBlender
 from scope_ptz.simulator.sprites.choice import SpriteChoice
 from scope_ptz.simulator.sprites.store import SpriteStore
 
@@ -42,11 +44,17 @@ _File = TypeVar("_File", bound=BaseModel)
 class Viewpoint:
     """A viewpoint folder. Layers are read on demand, and every read is verified against the manifest.
 
+    Args:
+        folder: The folder.
+        scene: The scene that it belongs to.
+        place: The scene's entry for this viewpoint.
+        tile_bytes: Limit on the memory of tiles at all scales; see ``Atlas``.
+
     Raises:
         PackError: The manifest is missing, damaged or belongs to another scene.
     """
 
-    def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint) -> None:
+    def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint, tile_bytes: int | None = None) -> None:
         self.folder, self.pictures = folder, Pictures(folder)
         self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
         self.name = place.name
@@ -64,9 +72,13 @@ class Viewpoint:
         # The sheets refer to the files and not to this object. Without a reference cycle, memory is freed with the last reference.
         read, depth = self.pictures, manifest.depth
         pans_deg = [tile.pan_deg for tile in tiles]
-        self.colour_atlas = Atlas(
-            [_size(c) for c in colours], lambda _, i: read.colour(colours[i]), np.uint8, 3, COLOUR_SCALES, pans_deg=pans_deg
-        )
+        blender = TileBlender(lambda i: read.colour(tiles[i].colour), self.tiles, manifest.band, _small_things(scene, manifest))
+
+        def colour(atlas: Atlas, index: int) -> NDArray[np.uint8]:
+            return blender.blended(atlas, index - 1) if index else read.colour(manifest.base)
+
+        sizes = [_size(c) for c in colours]
+        self.colour_atlas = Atlas(sizes, colour, np.uint8, 3, COLOUR_SCALES, pans_deg=pans_deg, tile_bytes=tile_bytes)
         decode = layers.decode_numbers
         self.id_atlas = id_atlas = Atlas(
             [_size(n) for n in ids], lambda _, i: read.coded_numbers(ids[i]), np.uint16, 1, decode=decode
@@ -82,9 +94,7 @@ class Viewpoint:
     @cached_property
     def world_to_camera(self) -> NDArray[np.float64]:
         """(3, 3) rotation from world axes (x east, y north) to the camera's own frame (y forward at pan 0)."""
-        bearing = np.radians(self.manifest.pan0_bearing_deg)
-        c, s = np.cos(bearing), np.sin(bearing)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return _world_to_camera(self.manifest)
 
     @cached_property
     def extents(self) -> dict[int, Extent]:
@@ -128,6 +138,26 @@ class Viewpoint:
         if actor.number not in self._choices:
             self._choices[actor.number] = SpriteChoice(actor, sheet.sprites, self.offset, self.world_to_camera)
         return self._choices[actor.number]
+
+
+def _world_to_camera(manifest: Manifest) -> NDArray[np.float64]:
+    bearing = np.radians(manifest.pan0_bearing_deg)
+    c, s = np.cos(bearing), np.sin(bearing)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _small_things(scene: SceneFile, manifest: Manifest) -> list[NDArray[np.float64]]:
+    """Return outlines, each (n, 3) directions, of the texts that face the viewpoint and of all instances."""
+    turn = _world_to_camera(manifest)
+    outlines = [direction(*np.array(e.hull, dtype=np.float64).T) for e in manifest.extents if len(e.hull) > 2]
+    for text in scene.texts:
+        centre, right, up = (np.array(v, dtype=np.float64) for v in (text.centre_m, text.right, text.up))
+        offset = centre - manifest.position_m
+        if np.cross(right, up) @ offset < 0:
+            sides = right * text.width_m / 2, up * text.height_m / 2
+            corners = np.array([offset + a * sides[0] + b * sides[1] for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+            outlines.append(corners @ turn.T / np.linalg.norm(corners, axis=-1, keepdims=True))
+    return outlines
 
 
 def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:

@@ -12,6 +12,15 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
 from scope_ptz.simulator.sprites.drawing import actor_patch
 
+RENDERING_VERSION = 2
+"""Version of the rendering, which traces record. It is raised when the same pack, pose and time give other pixels.
+
+- 1: tiles end in hard edges; actors are shown by the sprite nearest on their path.
+- 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, bent and faded.
+
+The ground truth of a view is the same in both.
+"""
+
 
 def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint8]:
     """Return what a camera at a viewpoint sees at a time, as (H, W, 3) RGB."""

@@ -72,6 +72,11 @@ class Atlas:
         self._last_used: dict[int, int] = {}  # of each shelf of tiles that holds something
         self._readers: list[int] = []
 
+    @property
+    def unlimited(self) -> bool:
+        """Whether everything that was read stays in memory."""
+        return self._tile_bytes is None
+
     def need(self, index: int, scale: int = 0) -> Slot:
         """Fill one picture at one scale and return its slot.
 
