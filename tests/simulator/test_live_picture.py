@@ -118,9 +118,9 @@ def test_a_sprite_from_above_is_turned_the_way_its_actor_goes(analytic_scene: Sc
     south = np.array([0.0, -1.0, 0.0])
     above, ahead = Aspect(np.array([-1.0, 0.2, -5.2]), south), Aspect(np.array([-0.5, 4.0, -5.2]), south)
     drawn = bend(bicycle, above, ahead)
-    # Seen from above, south is to the left; from further away it is down.
+    # From above, south is to the left; from further away it is down, and the upright rider takes part in the fit.
     turned = drawn @ np.array([-1.0, 0.0])
-    assert turned[1] < -0.5
+    assert turned[1] < -0.3
     np.testing.assert_allclose(bend(bicycle, ahead, ahead), np.eye(2), atol=1e-9)
 
 

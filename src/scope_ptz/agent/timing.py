@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from time import perf_counter
 from typing import Any, Literal, TypeVar
 
@@ -30,8 +30,8 @@ class Timings(BaseModel):
         perception_s: perception calls.
         camera_s: moves, and frames of a real camera.
         render_s: frames of a simulated camera.
-        total_s: the whole run. The rest beyond the parts is the work of the loop and the tools.
-        first_token_s: the part of ``planner_s`` before the first tokens arrived, when the planner's server streams.
+        total_s: the whole run. What the parts do not account for is time of the loop and the tools.
+        first_token_s: the part of ``planner_s`` before the first tokens arrived, if the planner's server streams.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -139,6 +139,23 @@ class TimedCamera(Camera):
         with self._watch.measure("camera"):
             await self._camera.stop()
 
+    async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
+        with self._watch.measure("camera"):
+            await self._camera.drive(pan_dps, tilt_dps, zoom_rate, timeout_s=timeout_s)
+
+    async def save_preset(self, name: str, description: str = "") -> PresetInfo:
+        with self._watch.measure("camera"):
+            return await self._camera.save_preset(name, description)
+
+    async def remove_preset(self, name: str) -> None:
+        with self._watch.measure("camera"):
+            await self._camera.remove_preset(name)
+
+    @asynccontextmanager
+    async def control(self, holder: str) -> AsyncIterator[None]:
+        async with self._camera.control(holder):
+            yield
+
     @contextmanager
     def hold_time(self) -> Iterator[None]:
         with self._camera.hold_time():
@@ -236,12 +253,12 @@ class TimedPerception(Perception):
 
 
 def wasted(attempts: Iterable[object]) -> Usage:
-    """Return the tokens of failed requests."""
+    """Return the tokens that failed requests used."""
     spent = [a for a in attempts if isinstance(a, Attempt)]
     return Usage(input_tokens=sum(a.input_tokens for a in spent), output_tokens=sum(a.output_tokens for a in spent))
 
 
 def server_events(error: PerceptionError | PlannerError) -> dict[str, int]:
-    """Return the number of failed requests by failure kind that led to an error. Unusable replies count as failures."""
+    """Return the numbers of failed requests behind an error, by failure kind. Unusable replies count as failures."""
     events = count_failures(a for a in error.attempts if isinstance(a, Attempt))
     return events if error.kind is None or error.kind in events else {**events, str(error.kind): 1}
