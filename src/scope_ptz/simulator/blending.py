@@ -47,7 +47,7 @@ TONE_CELL_PX = 32
 MAX_TONE_SHIFT = 24.0
 """Largest change of tone, in steps of 0 to 255. Larger differences are not of tone, but of content."""
 
-KEPT_TILES = 8  # toned tiles kept in memory, because neighbours need them soon after
+KEPT_TILES = 4  # toned tiles kept in memory, because neighbours need them soon after
 
 Floats = NDArray[np.float32]
 
