@@ -34,6 +34,7 @@ class VirtualCameraOptions:
         latency_s: Time from exposure until a frame is sent.
         faults: Faults by name.
         truth: Whether clients on this machine get the ground truth of frames.
+        prefetch: Whether viewpoints are read in the background when the cameras start.
     """
 
     scenes: tuple[str, ...]
@@ -45,6 +46,7 @@ class VirtualCameraOptions:
     latency_s: float = 0.0
     faults: Mapping[str, object] | None = None
     truth: bool = False
+    prefetch: bool = True
 
 
 def make_accounts(users: Sequence[str], settings: ScopeSettings) -> list[Account]:
@@ -121,4 +123,9 @@ async def serve_virtual_cameras(
         raise ConfigError(f"{error.name} is missing. Install it with: pip install 'scope-ptz[serve]'") from error
     ports = [options.port + k if options.port else 0 for k in range(len(devices))]
     async with serve(devices, host=options.host, ports=ports, truth=options.truth, latency_s=options.latency_s) as cameras:
-        yield cameras
+        reading = [device.prefetch() for device in devices] if options.prefetch else []
+        try:
+            yield cameras
+        finally:
+            for each in reading:
+                each.cancel()
