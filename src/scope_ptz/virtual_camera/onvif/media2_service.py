@@ -49,7 +49,9 @@ class Media2Service:
                 "VideoSourceMode": False,
                 "OSD": False,
                 "Mask": False,
-                "ProfileCapabilities": {"MaximumNumberOfProfiles": count, "ConfigurationsSupported": "VideoSource VideoEncoder PTZ"},
+                "ProfileCapabilities": {
+                    "MaximumNumberOfProfiles": count, "ConfigurationsSupported": "VideoSource VideoEncoder PTZ",
+                },
                 "StreamingCapabilities": {
                     "RTSPStreaming": True, "RTPMulticast": False, "RTP_RTSP_TCP": True, "NonAggregateControl": False,
                 },
