@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-
 from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.identity import serial_number
 from scope_ptz.virtual_camera.vapix.control_queue import ControlQueue
-
-PRODUCT = "M5075-G"
-FIRMWARE = "11.11.0"
-"""The version of AXIS OS whose interface this follows."""
 
 RESOLUTIONS = ((1920, 1080), (1280, 720), (1024, 576), (800, 450), (640, 360), (480, 270), (320, 180), (160, 90))
 
@@ -24,14 +19,15 @@ class VapixUnit:
         speed: The move speed of pan and tilt, 1 to 100.
         queue: Who controls the camera.
         serial: The serial number, which is constant for a viewpoint of a scene.
+        rtsp_port: The port of its RTSP server, None if there is none.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
         self.device = device
         self.speed = 100
         self.queue = ControlQueue()
-        place = f"{device.scene.name}/{device.viewpoint}"
-        self.serial = "ACCC8E" + hashlib.sha256(place.encode()).hexdigest()[:6].upper()
+        self.rtsp_port: int | None = None
+        self.serial = serial_number(device)
 
     @property
     def realm(self) -> str:
