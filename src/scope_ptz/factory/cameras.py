@@ -35,8 +35,9 @@ def parse_camera(text: str) -> CameraSpec:
 
     Args:
         text: A scene (``highway-works`` or ``sim:highway-works``), a scene or file rendered by Blender
-            (``blender:highway-works``, ``blender:yard.blend``), a camera on the network (``axis://operator@10.0.0.7``), or ``SCHEME:ADDRESS`` for the camera of a plug-in. Options follow
-            a question mark: ``blender:yard.blend?samples=4&width=640&height=360``.
+            (``blender:highway-works``, ``blender:yard.blend``), a camera on the network (``axis://operator@10.0.0.7``), or
+            ``SCHEME:ADDRESS`` for the camera of a plug-in. Options follow a question mark:
+            ``blender:yard.blend?samples=4&width=640&height=360``.
 
     Raises:
         InputError: The spec is empty, its scheme or an option is unknown, a file does not exist, or it contains a password.

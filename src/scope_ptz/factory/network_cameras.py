@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from scope_ptz.camera.base import Camera
-from scope_ptz.camera.control import ControlLock
-from scope_ptz.camera.network.address import DeviceAddress, parse_address
-from scope_ptz.camera.network.credentials import Credentials
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.errors import InputError, UnknownNameError
-from scope_ptz.factory.passwords import find_credentials
 from scope_ptz.settings import load_settings
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.network.address import DeviceAddress
+    from scope_ptz.camera.network.credentials import Credentials
 
 NETWORK_SCHEMES: tuple[str, ...] = ("axis",)
 """The schemes of drivers for network cameras."""
@@ -46,6 +47,8 @@ def check_network_spec(spec: CameraSpec) -> None:
     Raises:
         InputError: The address or an option is wrong.
     """
+    from scope_ptz.camera.network.address import parse_address
+
     parse_address(spec.address, tls=spec.options.get("tls") == "on")
     known = OPTIONS[spec.scheme]
     for name, value in spec.options.items():
@@ -70,6 +73,10 @@ async def open_network_camera(spec: CameraSpec) -> OpenNetworkCamera:
         ControlHeldError: Another program has control. The message says which.
         CameraError: The camera cannot be reached, or does not accept the account.
     """
+    from scope_ptz.camera.control import ControlLock
+    from scope_ptz.camera.network.address import parse_address
+    from scope_ptz.factory.passwords import find_credentials
+
     check_network_spec(spec)
     _, address = parse_address(spec.address, tls=spec.options.get("tls") == "on")
     credentials = find_credentials(spec)
