@@ -8,6 +8,8 @@ from scope_ptz.camera.capabilities import Velocity
 from scope_ptz.camera.motion import Head
 from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
 
+_MAX_OCTAVES = 30.0  # far beyond any lens; a zoom that is driven for minutes would leave the range of numbers otherwise
+
 
 @dataclass(frozen=True, slots=True)
 class _Move:
@@ -71,7 +73,7 @@ class HeadMotion:
         if isinstance(command, _Move):
             return command.head.at(command.start, command.end, time_s)
         pan, tilt, octaves = (distance for distance, _ in self._driven(command, time_s))
-        zoom = command.start.zoom * 2.0**octaves
+        zoom = command.start.zoom * 2.0 ** min(max(octaves, -_MAX_OCTAVES), _MAX_OCTAVES)
         reached, _ = self._limits.clamp(Pose(command.start.pan_deg + pan, command.start.tilt_deg + tilt, zoom))
         return Pose(wrap_pan_deg(reached.pan_deg), reached.tilt_deg, reached.zoom) if self._limits.pan_endless else reached
 

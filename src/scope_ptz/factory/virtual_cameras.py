@@ -98,9 +98,8 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
     devices = []
     for scene_name, viewpoint in zip(options.scenes, options.viewpoints or (None,) * len(options.scenes), strict=True):
         scene = open_scene(scene_name)
-        clock = SceneClock(scene.file.start_s, realtime=True)
-        if options.hold_time:
-            clock.hold().__enter__()  # held for as long as the camera exists
+        # Nothing lets time pass on a clock that does not follow the wall clock: the motors have a time of their own.
+        clock = SceneClock(scene.file.start_s, realtime=not options.hold_time)
         device = VirtualDevice(scene, viewpoint=viewpoint, accounts=accounts, clock=clock, time_scale=options.time_scale)
         device.faults = faults
         devices.append(device)

@@ -74,9 +74,10 @@ class MotionJpeg(Response):
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
                 # Half a frame early is in time: otherwise a rate that does not divide the camera's would become a lower one.
-                if options.fps and exposure.taken_s < due_s - 0.5 / self._source.rate_hz:
-                    continue
-                due_s = max(due_s + 1 / options.fps, exposure.taken_s) if options.fps else 0.0
+                if options.fps:
+                    if exposure.taken_s < due_s - 0.5 / self._source.rate_hz:
+                        continue
+                    due_s = (due_s if exposure.taken_s < due_s + 1 / options.fps else exposure.taken_s) + 1 / options.fps
                 part = await self._part(exposure)
                 with anyio.move_on_after(STUCK_S) as patience:
                     await send({"type": "http.response.body", "body": part, "more_body": True})
