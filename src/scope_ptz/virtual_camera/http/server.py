@@ -165,6 +165,8 @@ def _listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
     try:
         for port in ports:
             sockets.append(socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET))
+            # asyncio sets it only for sockets that name their protocol. Without it, replies wait up to 40 ms for an ACK.
+            sockets[-1].setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     except (OSError, OverflowError) as error:
         for opened in sockets:
             opened.close()
