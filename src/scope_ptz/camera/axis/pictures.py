@@ -13,7 +13,7 @@ from anyio import to_thread
 from scope_ptz.camera.axis import requests
 from scope_ptz.camera.base import CameraInfo, Frame
 from scope_ptz.camera.network.errors import PictureError
-from scope_ptz.camera.network.pictures import FrozenCheck, check_not_black, decode_jpeg
+from scope_ptz.camera.network.pictures import FrozenCheck, check_not_black, decode_jpeg, is_black
 from scope_ptz.camera.network.pose_track import PoseTrack
 from scope_ptz.camera.network.rtsp import RtspStream
 from scope_ptz.camera.network.streams import LiveStream, MjpegStream
@@ -81,16 +81,19 @@ class AxisPictures:
         Raises:
             PictureError: The picture is damaged, black, frozen, or of another size.
         """
-        track = PoseTrack()
-        track.add(monotonic(), await read_pose())
-        asked_s, asked_at = monotonic(), clock.now_s()
-        data, image = await self._take(self.width, self.height)
-        exposed_s = max(asked_s, monotonic() - self._latency_s)
-        track.add(monotonic(), await read_pose())
-        pose = track.at(exposed_s)
-        check_not_black(image)
-        self._frozen.check(data, pose)
-        return _frame(image, pose, info, asked_at + exposed_s - asked_s)
+        give_up_s = monotonic() + FROZEN_PATIENCE_S
+        while True:
+            track = PoseTrack()
+            track.add(monotonic(), await read_pose())
+            asked_s, asked_at = monotonic(), clock.now_s()
+            data, image = await self._take(self.width, self.height)
+            exposed_s = max(asked_s, monotonic() - self._latency_s)
+            track.add(monotonic(), await read_pose())
+            pose = track.at(exposed_s)
+            check_not_black(image)
+            if not self._frozen.lags(data, pose, give_up_s):
+                return _frame(image, pose, info, asked_at + exposed_s - asked_s)
+            await anyio.sleep(0.1)
 
     async def small(self, pose: Pose) -> NDArray[np.uint8]:
         """Take a small picture at a standing pose. A picture that lags behind the motors is waited for.
@@ -101,10 +104,9 @@ class AxisPictures:
         give_up_s = monotonic() + FROZEN_PATIENCE_S
         while True:
             data, image = await self._take(*self._small)
-            if not self._frozen_small.is_frozen(data, pose) or not image.any():
+            # Black pictures are all the same. Whoever wants to see something is told; the move itself has succeeded.
+            if is_black(image) or not self._frozen_small.lags(data, pose, give_up_s):
                 return image
-            if monotonic() > give_up_s:
-                self._frozen_small.check(data, pose)
             await anyio.sleep(0.1)
 
     async def live(
@@ -118,7 +120,7 @@ class AxisPictures:
         track, offset_s = PoseTrack(), clock.now_s() - monotonic()
         continuous_s = 0.0  # since when the readings are dense enough to interpolate between them
         stream, due_s = self._open(rate_hz), float("-inf")
-        frozen = FrozenCheck()
+        frozen, give_up_s = FrozenCheck(), monotonic() + FROZEN_PATIENCE_S
         try:
             while True:
                 await anyio.sleep(max(0.0, due_s - monotonic()))
@@ -134,7 +136,9 @@ class AxisPictures:
                     track.add(monotonic(), await read_pose())
                 pose = track.at(exposed_s)
                 check_not_black(picture.image)
-                frozen.check(picture.data, pose)
+                if frozen.lags(picture.data, pose, give_up_s):
+                    continue
+                give_up_s = monotonic() + FROZEN_PATIENCE_S
                 yield _frame(picture.image, pose, info, exposed_s + offset_s)
         finally:
             with anyio.CancelScope(shield=True):

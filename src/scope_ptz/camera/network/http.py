@@ -70,7 +70,9 @@ class DeviceHttp:
         timeouts: DeviceTimeouts | None = None,
         verify: ssl.SSLContext | bool = True,
     ) -> None:
-        self.address, self._credentials, self._verify = address, credentials, verify
+        self.address, self._credentials = address, credentials
+        # Without TLS there is nothing to verify, and reading the certificate store takes 50 ms.
+        self._verify = verify if address.tls else False
         self._timeouts = timeouts or DeviceTimeouts()
         self._client = httpx2.AsyncClient(
             base_url=address.base_url,
@@ -80,7 +82,7 @@ class DeviceHttp:
             limits=httpx2.Limits(max_connections=8, max_keepalive_connections=4, keepalive_expiry=2.0),
             follow_redirects=False,
             trust_env=False,
-            verify=verify,
+            verify=self._verify,
         )
 
     def __repr__(self) -> str:

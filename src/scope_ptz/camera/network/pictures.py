@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from io import BytesIO
+from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -96,7 +97,19 @@ class FrozenCheck:
         turn = max(abs((pose.pan_deg - first.pan_deg + 180) % 360 - 180), abs(pose.tilt_deg - first.tilt_deg))
         return turn > FROZEN_TURN_DEG or abs(pose.zoom / first.zoom - 1) > 0.1
 
-    def check(self, data: bytes, pose: Pose) -> None:
-        """Raise PictureError if a picture is frozen."""
-        if self.is_frozen(data, pose):
+    def lags(self, data: bytes, pose: Pose, give_up_s: float) -> bool:
+        """Return whether a picture is still the one of another pose, as with an encoder that freezes it during a move.
+
+        Args:
+            data: The picture's bytes.
+            pose: The pose at which it was taken.
+            give_up_s: The time on ``time.monotonic`` from which such a picture is an error.
+
+        Raises:
+            PictureError: The picture is still frozen at that time.
+        """
+        if not self.is_frozen(data, pose):
+            return False
+        if monotonic() > give_up_s:
             raise PictureError("The picture is frozen: it stays the same while the camera turns. Restart the camera.", "frozen")
+        return True
