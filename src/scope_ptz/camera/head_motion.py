@@ -62,6 +62,19 @@ class HeadMotion:
         """Decelerate to a standstill."""
         self.drive(Velocity(), now_s, 0.0)
 
+    def stop_axes(self, now_s: float, *, pan_tilt: bool, zoom: bool) -> None:
+        """Stop pan and tilt, the zoom, or neither. The other axes keep their velocity and timeout, or their destination."""
+        command, since_s = self._current
+        if isinstance(command, _Driving):
+            target, left_s = command.target, since_s + command.hold_s - now_s
+            if left_s > 0:
+                pan_dps, tilt_dps = (0.0, 0.0) if pan_tilt else (target.pan_dps, target.tilt_dps)
+                self.drive(Velocity(pan_dps, tilt_dps, 0.0 if zoom else target.zoom_rate), now_s, left_s)
+        elif self.moving(now_s):
+            here, end = self.pose(now_s), command.end
+            aim = here if pan_tilt else end
+            self._replace(_Move(command.head, here, Pose(aim.pan_deg, aim.tilt_deg, here.zoom if zoom else end.zoom)), now_s)
+
     def halt(self, pose: Pose, now_s: float) -> None:
         """Be at a pose at once."""
         self._replace(_Move(self._head, pose, pose), now_s)

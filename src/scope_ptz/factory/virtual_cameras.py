@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import AsyncIterator, Mapping, Sequence
-from contextlib import asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -34,6 +34,7 @@ class VirtualCameraOptions:
         latency_s: Time from exposure until a frame is sent.
         faults: Faults by name.
         truth: Whether clients on this machine get the ground truth of frames.
+        discovery: Whether the cameras answer WS-Discovery on the interface of ``host``.
     """
 
     scenes: tuple[str, ...]
@@ -45,6 +46,7 @@ class VirtualCameraOptions:
     latency_s: float = 0.0
     faults: Mapping[str, object] | None = None
     truth: bool = False
+    discovery: bool = True
 
 
 def make_accounts(users: Sequence[str], settings: ScopeSettings) -> list[Account]:
@@ -117,8 +119,16 @@ async def serve_virtual_cameras(
     """
     try:
         from scope_ptz.virtual_camera.http.server import serve
+        from scope_ptz.virtual_camera.onvif.app import OnvifApp
+        from scope_ptz.virtual_camera.onvif.discovery import Discoverable, discoverable
     except ModuleNotFoundError as error:
         raise ConfigError(f"{error.name} is missing. Install it with: pip install 'scope-ptz[serve]'") from error
     ports = [options.port + k if options.port else 0 for k in range(len(devices))]
-    async with serve(devices, host=options.host, ports=ports, truth=options.truth, latency_s=options.latency_s) as cameras:
+    async with AsyncExitStack() as stack:
+        cameras = await stack.enter_async_context(
+            serve(devices, host=options.host, ports=ports, truth=options.truth, latency_s=options.latency_s, onvif=OnvifApp)
+        )
+        if options.discovery:
+            found = [Discoverable(camera.device, camera.port) for camera in cameras]
+            await stack.enter_async_context(discoverable(found, host=options.host))
         yield cameras

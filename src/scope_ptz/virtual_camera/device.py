@@ -180,11 +180,20 @@ class VirtualDevice:
         """The commanded velocity of a driven head, zero if it is not driven."""
         return self._motion.driven_at(self.now_s())
 
-    def stop(self, *, sent_s: float | None = None) -> None:
-        """Brake. ``sent_s`` is when the client sent the command, in Unix seconds, if it says so."""
+    def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
+        """Brake pan and tilt, the zoom, or all. The rest goes on.
+
+        Args:
+            pan_tilt: Whether pan and tilt stop.
+            zoom: Whether the zoom stops.
+            sent_s: When the client sent the command, in Unix seconds, if it says so.
+        """
         if sent_s is not None:
             self._stopped_by_s = max(self._stopped_by_s, sent_s)
         now_s = self.now_s()
+        if not (pan_tilt and zoom):
+            self._motion.stop_axes(now_s, pan_tilt=pan_tilt, zoom=zoom)
+            return
         if self._motion.velocity(now_s) == Velocity():
             self._motion.halt(self._motion.pose(now_s), now_s)
         else:

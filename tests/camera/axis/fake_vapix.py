@@ -148,7 +148,8 @@ class FakeVapix:
         first = _md5(f"{USER}:{REALM}:{self.password}")
         second = _md5(f"{exchange.request.method}:{values['uri']}")
         expected = _md5(f"{first}:{NONCE}:{values['nc']}:{values['cnonce']}:auth:{second}")
-        return values["username"] == USER and values["uri"] == exchange.request.path and values["response"] == expected
+        found = (values["username"], values["uri"], values["response"])
+        return found == (USER, exchange.request.path, expected)
 
     def _reply(self, path: str, query: dict[str, str]) -> tuple[int, str, bytes]:
         if path.endswith("image.cgi"):

@@ -114,7 +114,7 @@ async def test_credentials_do_not_follow_a_redirect(fake: FakeVapix) -> None:
     async def listen(exchange: object) -> None:
         raise AssertionError("nobody may come here")
 
-    with Loopback([], listen) as elsewhere:  # type: ignore[arg-type]
+    with Loopback([], listen) as elsewhere:
         async with opened(fake.loopback.port) as camera:
             fake.redirect = f"{elsewhere.root}/axis-cgi/com/ptz.cgi"
             with pytest.raises(ForeignAddressError, match="no credentials were sent"):
@@ -202,7 +202,7 @@ async def test_black_picture_does_not_undo_a_move(fake: FakeVapix) -> None:
 
 
 async def test_frozen_picture(fake: FakeVapix, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scope_ptz.camera.axis.pictures.FROZEN_PATIENCE_S", 0.2)
+    monkeypatch.setattr("scope_ptz.camera.network.device_pictures.FROZEN_PATIENCE_S", 0.2)
     async with opened(fake.loopback.port) as camera:
         fake.picture = "frozen"
         await camera.move(Pose(0.0, 0.0, 1.0))
@@ -317,7 +317,7 @@ async def test_actors_do_not_prevent_settling(fake: FakeVapix) -> None:
 
 async def test_preset_deleted_meanwhile(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
-        fake.on_move = lambda device: device.presets.pop("gate", None)
+        fake.on_move = lambda device: device.presets.clear()
         with pytest.raises(UnknownNameError, match="gate"):
             await camera.go_to_preset("gate")
 
@@ -394,7 +394,7 @@ async def test_drive_whose_reply_is_lost_ends(fake: FakeVapix) -> None:
             fake._command({"continuouspantiltmove": "20,0"} if "continuous" in path else {})
             exchange.hang_up()  # type: ignore[attr-defined]
 
-        fake.loopback.then = lose  # type: ignore[assignment]
+        fake.loopback.then = lose
         with pytest.raises(CameraUnreachableError):
             await camera.drive(20.0, timeout_s=10.0)
         await _until(lambda: not fake.driving)

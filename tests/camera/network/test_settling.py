@@ -25,7 +25,7 @@ def _scene(shift_px: float = 0.0, *, zoom: float = 1.0, noise: float = 0.0, seed
     matrix = np.array([[zoom, 0, -160 + shift_px], [0, zoom, -120]], np.float32)
     view = cv2.warpAffine(large, matrix, (1280, 720), flags=cv2.INTER_LINEAR) + brighter
     view += np.random.default_rng(seed).normal(0, noise, view.shape) if noise else 0
-    return np.clip(view, 0, 255).astype(np.uint8)
+    return np.asarray(np.clip(view, 0, 255), np.uint8)
 
 
 def _with_actor(image: NDArray[np.uint8], left: int) -> NDArray[np.uint8]:

@@ -1,46 +1,33 @@
-"""Pictures of an AXIS camera: snapshots, small pictures for settling, and live frames with the pose at exposure."""
+"""Pictures of an AXIS camera by VAPIX and RTSP."""
 
 from __future__ import annotations
 
-from collections.abc import AsyncGenerator, Awaitable, Callable
 from functools import partial
-from time import monotonic
 from typing import TYPE_CHECKING, Literal
 
-import anyio
 from anyio import to_thread
 
 from scope_ptz.camera.axis import requests
-from scope_ptz.camera.base import CameraInfo, Frame
-from scope_ptz.camera.network.errors import PictureError
-from scope_ptz.camera.network.pictures import FrozenCheck, check_not_black, decode_jpeg, is_black
-from scope_ptz.camera.network.pose_track import PosePoller, PoseTrack
+from scope_ptz.camera.network.device_pictures import DevicePictures
+from scope_ptz.camera.network.pictures import decode_jpeg
 from scope_ptz.camera.network.rtsp import RtspStream
 from scope_ptz.camera.network.streams import LiveStream, MjpegStream
-from scope_ptz.geometry import Perspective, Pose
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from scope_ptz.camera.axis.client import VapixClient
-    from scope_ptz.camera.clocks import Clock
     from scope_ptz.camera.network.credentials import Credentials
 
 StreamKind = Literal["mjpeg", "rtsp"]
 """How live frames are transported."""
 
-RETRIES = 3
-"""How often a damaged snapshot is taken again."""
-
-FROZEN_PATIENCE_S = 2.0
-"""How long a picture may lag behind the motors, as with an encoder that freezes it during a move."""
-
 SMALL_WIDTH = 320
 """The least width in pixels of the pictures that are compared for settling."""
 
 
-class AxisPictures:
+class AxisPictures(DevicePictures):
     """The pictures of one channel.
 
     Args:
@@ -66,77 +53,11 @@ class AxisPictures:
         rtsp_port: int = 554,
         latency_s: float = 0.1,
     ) -> None:
+        super().__init__(width, height, small=_small_size(width, height, sizes), latency_s=latency_s)
         self._client, self._credentials = client, credentials
-        self.width, self.height = width, height
-        self._small = _small_size(width, height, sizes)
-        self._stream_kind, self._rtsp_port, self._latency_s = stream, rtsp_port, latency_s
-        self._frozen, self._frozen_small = FrozenCheck(), FrozenCheck()
+        self._stream_kind, self._rtsp_port = stream, rtsp_port
 
-    async def frame(self, read_pose: Callable[[], Awaitable[Pose]], info: CameraInfo, clock: Clock) -> Frame:
-        """Take a snapshot, with the pose in the middle of the exposure.
-
-        Raises:
-            PictureError: The picture is damaged, black, frozen, or of another size.
-        """
-        give_up_s = monotonic() + FROZEN_PATIENCE_S
-        while True:
-            track = PoseTrack()
-            track.add(monotonic(), await read_pose())
-            asked_s, asked_at = monotonic(), clock.now_s()
-            data, image = await self._take(self.width, self.height)
-            exposed_s = max(asked_s, monotonic() - self._latency_s)
-            track.add(monotonic(), await read_pose())
-            pose = track.at(exposed_s)
-            check_not_black(image)
-            if not self._frozen.lags(data, pose, give_up_s):
-                return _frame(image, pose, info, asked_at + exposed_s - asked_s)
-            await anyio.sleep(0.1)
-
-    async def small(self, pose: Pose) -> NDArray[np.uint8]:
-        """Take a small picture at a standing pose. A picture that lags behind the motors is waited for.
-
-        Raises:
-            PictureError: The picture is damaged or frozen.
-        """
-        give_up_s = monotonic() + FROZEN_PATIENCE_S
-        while True:
-            data, image = await self._take(*self._small)
-            # Black pictures are all the same. Whoever wants to see something is told; the move itself has succeeded.
-            if is_black(image) or not self._frozen_small.lags(data, pose, give_up_s):
-                return image
-            await anyio.sleep(0.1)
-
-    async def live(
-        self, rate_hz: float, read_pose: Callable[[], Awaitable[Pose]], info: CameraInfo, clock: Clock
-    ) -> AsyncGenerator[Frame]:
-        """Yield live frames with the pose at exposure.
-
-        Raises:
-            CameraError: The stream is lost, or its pictures are damaged, black or frozen.
-        """
-        offset_s = clock.now_s() - monotonic()
-        stream, poses, frozen = self._open(rate_hz), PosePoller(read_pose), FrozenCheck()
-        due_s, give_up_s = float("-inf"), monotonic() + FROZEN_PATIENCE_S
-        try:
-            while True:
-                await anyio.sleep(max(0.0, due_s - monotonic()))
-                picture = await stream.next()
-                exposed_s = picture.arrived_s - self._latency_s
-                pose = await poses.at(exposed_s)
-                if pose is None:
-                    continue  # exposed before the stream was opened
-                check_not_black(picture.image)
-                if frozen.lags(picture.data, pose, give_up_s):
-                    continue
-                due_s = max(due_s + 1.0 / rate_hz, monotonic())
-                yield _frame(picture.image, pose, info, exposed_s + offset_s)
-                give_up_s = monotonic() + FROZEN_PATIENCE_S  # counted from the consumer's return
-        finally:
-            with anyio.CancelScope(shield=True):
-                await poses.close()
-                await stream.close()
-
-    def _open(self, rate_hz: float) -> LiveStream:
+    def open_stream(self, rate_hz: float) -> LiveStream:
         channel = self._client.channel
         if self._stream_kind == "rtsp":
             path = requests.rtsp_path(channel, self.width, self.height, rate_hz)
@@ -145,25 +66,9 @@ class AxisPictures:
         request = requests.mjpeg(channel, self.width, self.height, rate_hz)
         return MjpegStream(self._client.http, request.path, request.query, width=self.width, height=self.height)
 
-    async def _take(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
-        """Return a snapshot as file and pixels. A damaged one is taken again."""
-        request = requests.snapshot(self._client.channel, width, height)
-        for left in range(RETRIES, -1, -1):
-            reply = await self._client.send(request)
-            try:
-                return reply.body, await to_thread.run_sync(partial(decode_jpeg, reply.body, width=width, height=height))
-            except PictureError as error:
-                if error.fault == "size" or not left:
-                    raise
-                await anyio.sleep(0.1)
-        raise AssertionError("the last attempt returns or raises")
-
-
-def _frame(image: NDArray[np.uint8], pose: Pose, info: CameraInfo, time_s: float) -> Frame:
-    hfov_deg = info.optics.hfov_deg(pose.zoom)
-    height, width = image.shape[:2]
-    view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, width, height)
-    return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view)
+    async def take_once(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
+        reply = await self._client.send(requests.snapshot(self._client.channel, width, height))
+        return reply.body, await to_thread.run_sync(partial(decode_jpeg, reply.body, width=width, height=height))
 
 
 def _small_size(width: int, height: int, sizes: tuple[tuple[int, int], ...]) -> tuple[int, int]:

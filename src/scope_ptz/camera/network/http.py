@@ -108,6 +108,12 @@ class DeviceHttp:
         """Post a JSON message that only reads."""
         return await self._send("POST", path, None, json=message, repeat=True, accept=accept)
 
+    async def post(
+        self, path: str, content: bytes, headers: Mapping[str, str], *, repeat: bool, accept: tuple[int, ...] = ()
+    ) -> DeviceReply:
+        """Post a message. The arguments are those of ``get``; ``headers`` say what the content is."""
+        return await self._send("POST", path, None, content=content, headers=headers, repeat=repeat, accept=accept)
+
     async def _send(
         self,
         method: str,
@@ -117,11 +123,15 @@ class DeviceHttp:
         repeat: bool,
         accept: tuple[int, ...],
         json: Mapping[str, object] | None = None,
+        content: bytes | None = None,
+        headers: Mapping[str, str] | None = None,
     ) -> DeviceReply:
         for pause_s in (*(_BACKOFF_S if repeat else ()), None):
             try:
                 with connection_errors(self.address), anyio.fail_after(self._timeouts.connect_s + self._timeouts.reply_s):
-                    async with self._client.stream(method, path, params=parameters, json=json) as response:
+                    async with self._client.stream(
+                        method, path, params=parameters, json=json, content=content, headers=headers
+                    ) as response:
                         check_status(self.address, response, accept)
                         body = await _read(self.address, response)
                         return DeviceReply(response.status_code, _media_type(response), body)
@@ -147,17 +157,25 @@ class DeviceHttp:
         Raises:
             CameraError: A request failed; those before it arrived.
         """
-        # A fresh sign-in: the one of the event loop counts its requests and is not safe in two threads.
-        sign_in = PinnedSignIn(self.address, self._credentials)
-        with (
-            connection_errors(self.address),
-            httpx2.Client(
-                base_url=self.address.base_url, auth=sign_in, timeout=timeout_s, cookies=self._client.cookies,
-                follow_redirects=False, trust_env=False, verify=self._verify,
-            ) as client,
-        ):  # fmt: skip
+        with connection_errors(self.address), self._blocking_client(timeout_s) as client:
             for query in queries:
                 check_status(self.address, client.get(path, params=query), ())
+
+    def post_blocking(self, path: str, content: bytes, headers: Mapping[str, str], *, timeout_s: float = 2.0) -> None:
+        """Post a message from a thread, on a connection of its own.
+
+        Raises:
+            CameraError: The request failed.
+        """
+        with connection_errors(self.address), self._blocking_client(timeout_s) as client:
+            check_status(self.address, client.post(path, content=content, headers=dict(headers)), ())
+
+    def _blocking_client(self, timeout_s: float) -> httpx2.Client:
+        # A fresh sign-in: the one of the event loop counts its requests and is not safe in two threads.
+        return httpx2.Client(
+            base_url=self.address.base_url, auth=PinnedSignIn(self.address, self._credentials), timeout=timeout_s,
+            cookies=self._client.cookies, follow_redirects=False, trust_env=False, verify=self._verify,
+        )  # fmt: skip
 
     async def close(self) -> None:
         """Close all connections."""

@@ -42,6 +42,7 @@ def serve(
         typer.Option("--fault", metavar="NAME=VALUE", help="Fault to show, for example stall_s=2 (repeatable)."),
     ] = None,
     truth: Annotated[bool, typer.Option("--truth", help="Give programs on this machine the ground truth of frames.")] = False,
+    no_discovery: Annotated[bool, typer.Option("--no-discovery", help="Do not answer WS-Discovery (ONVIF).")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Serve virtual cameras on the network until Ctrl-C."""
@@ -63,6 +64,7 @@ def serve(
         latency_s=latency,
         faults=parse_faults(fault or []),
         truth=truth,
+        discovery=not no_discovery,
     )
     devices = make_devices(options, accounts)
     shown = [] if settings.virtual_camera_password else accounts
@@ -119,7 +121,7 @@ def _print(
         put_json({"cameras": rows, "users": [account.name for account in accounts], "passwords": passwords})
     else:
         for each in cameras:
-            put(f"{each.device.name}: {each.url}")
+            put(f"{each.device.name}: {each.url} (ONVIF: {each.url}/onvif/device_service)")
         for account in accounts:
             secret = f"password {account.password}" if account in shown else "password from SCOPE_VIRTUAL_CAMERA_PASSWORD"
             put(f"Account {account.name} ({account.role.name.lower()}), {secret}")

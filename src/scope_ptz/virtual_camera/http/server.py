@@ -165,8 +165,7 @@ def _listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
     try:
         for port in ports:
             sockets.append(socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET))
-            # Accepted connections inherit it. asyncio sets it only for sockets made with the protocol's number, and without it
-            # every reply with a body waits 40 ms for the client's delayed acknowledgement.
+            # asyncio sets it only for sockets that name their protocol. Without it, replies wait up to 40 ms for an ACK.
             sockets[-1].setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     except (OSError, OverflowError) as error:
         for opened in sockets:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from scope_ptz.errors import CameraError, InputError
+from scope_ptz.virtual_camera.identity import PRODUCT
 from scope_ptz.virtual_camera.vapix import moves, replies
 from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN, Arguments
 from scope_ptz.virtual_camera.vapix.control_queue import QueueStatus
 from scope_ptz.virtual_camera.vapix.queries import QUERIES, query
 from scope_ptz.virtual_camera.vapix.replies import DONE, Client, Reply
-from scope_ptz.virtual_camera.vapix.unit import PRODUCT, VapixUnit
+from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 UNSUPPORTED = (
     "focus", "rfocus", "continuousfocusmove", "iris", "riris", "continuousirismove", "brightness", "rbrightness",

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-
 from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.identity import serial_number
 from scope_ptz.virtual_camera.vapix.control_queue import ControlQueue
-
-PRODUCT = "M5075-G"
-FIRMWARE = "11.11.0"
-"""The version of AXIS OS whose interface this follows."""
 
 RESOLUTIONS = ((1920, 1080), (1280, 720), (1024, 576), (800, 450), (640, 360), (480, 270), (320, 180), (160, 90))
 
@@ -30,8 +25,7 @@ class VapixUnit:
         self.device = device
         self.speed = 100
         self.queue = ControlQueue()
-        place = f"{device.scene.name}/{device.viewpoint}"
-        self.serial = "ACCC8E" + hashlib.sha256(place.encode()).hexdigest()[:6].upper()
+        self.serial = serial_number(device)
 
     @property
     def realm(self) -> str:
