@@ -32,6 +32,7 @@ class ScopeSettings(BaseSettings):
     planner_key: SecretStr | None = Field(default=None, description="Key for the planner's server.")
     perception_key: SecretStr | None = Field(default=None, description="Key for the perception server.")
     models: Path | None = Field(default=None, description="YAML file with more models.")
+    camera_password: SecretStr | None = Field(default=None, description="Password for the account of a network camera.")
     planner_url: str = Field(default="", description="Address of the planner's server.")
     perception_url: str = Field(default="", description="Address of the perception server.")
     judge_url: str = Field(default="", description="Address of the judge's server.")
