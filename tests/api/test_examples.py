@@ -14,8 +14,8 @@ EXPECTED = {
     "ask.py": "I can see 7 cones now, after two pans of 15 degrees to the right.",
     "batch_over_views.py": "Most workers are in view at 'overview'.",
     "evaluate.py": "Why runs of the grammar failed:",
-    "own_camera.py": "Broken promises of the contract: none",
-    "own_perception.py": "Broken promises of the contract: none",
+    "own_camera.py": "Contract violations: none",
+    "own_perception.py": "Contract violations: none",
     "own_planner.py": "Most cars are at bridge-south: 8.",
 }
 

@@ -54,7 +54,7 @@ def test_world_numbers_may_be_consecutive() -> None:
 
 def test_incompatible_options_are_reported(scope: Scope, tmp_path: Path) -> None:
     out = str(tmp_path / "tasks.jsonl")
-    assert "follow --seeds" in scope("bench", "build", "--out", out, "7").err
+    assert "after --seeds" in scope("bench", "build", "--out", out, "7").err
     assert "--all" in scope("bench", "build", "--out", out, "--card", out).err
     assert "no complete dataset" in scope("bench", "card", "--data", str(tmp_path)).err
     assert scope("bench", "build", "--out", out, "--seeds", "0").code == 2

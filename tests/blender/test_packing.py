@@ -1,4 +1,4 @@
-"""From rendered parts to files: the workshop, layer encodings, sprite sheets, and the size limit of a pack."""
+"""From rendered parts to files: the part cache, layer encodings, sprite sheets, and the size limit of a pack."""
 
 import sys
 from pathlib import Path
@@ -11,10 +11,10 @@ from scope_ptz.blender import sources
 from scope_ptz.blender.band import Panorama
 from scope_ptz.blender.keyframes import Keyframe
 from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
+from scope_ptz.blender.part_cache import PartCache
 from scope_ptz.blender.quality import FAR_M, NEAR_M, QUALITIES
 from scope_ptz.blender.sheets import make_sheet
 from scope_ptz.blender.sources import scene_key
-from scope_ptz.blender.workshop import Workshop
 from scope_ptz.errors import BlenderError, PackError
 from scope_ptz.geometry import Perspective
 from scope_ptz.simulator.layers import decode_depth, encode_depth, read_colour, read_ids, write_colour, write_ids
@@ -104,7 +104,7 @@ def test_a_finished_part_is_not_rendered_again(tmp_path: Path) -> None:
         path.write_text("x")
 
     for parameters in ({"n": 1}, {"n": 1}, {"n": 2}):
-        assert Workshop(tmp_path, "yard-1", silent).part("mast/base", ".txt", parameters, produce).read_text() == "x"
+        assert PartCache(tmp_path, "yard-1", silent).part("mast/base", ".txt", parameters, produce).read_text() == "x"
     assert len(made) == 2
 
 
@@ -113,14 +113,14 @@ def test_an_incomplete_part_does_not_count(tmp_path: Path) -> None:
         path.write_text("half")
         raise KeyboardInterrupt
 
-    shop = Workshop(tmp_path, "yard-1", silent)
+    cache = PartCache(tmp_path, "yard-1", silent)
     with pytest.raises(KeyboardInterrupt):
-        shop.part("base", ".txt", {}, cut_off)
+        cache.part("base", ".txt", {}, cut_off)
 
     def finish(path: Path) -> None:
         path.write_text("whole")
 
-    assert shop.part("base", ".txt", {}, finish).read_text() == "whole"
+    assert cache.part("base", ".txt", {}, finish).read_text() == "whole"
 
 
 def test_the_key_depends_on_the_code_of_the_scene(tmp_path: Path) -> None:
@@ -222,6 +222,6 @@ def test_tiles_are_encoded_at_lower_quality_only_until_the_pack_fits(tmp_path: P
         write_pack(folder, SCENE, HERE, parts, QUALITIES["standard"], limit, lambda: None)
         weights.append(weight_bytes(folder))
     assert weights[1] < weights[0]
-    with pytest.raises(BlenderError, match="weighs"):
+    with pytest.raises(BlenderError, match="lowest quality"):
         write_pack(tmp_path / "pack-3", SCENE, HERE, parts, QUALITIES["standard"], 20_000, lambda: None)
     assert not (tmp_path / "pack-3").exists()

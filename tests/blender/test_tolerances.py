@@ -21,10 +21,10 @@ def test_packs_within_all_tolerances_have_no_shortcomings() -> None:
 @pytest.mark.parametrize(
     ("report", "words"),
     [
-        (replace(WIDE, ssim=0.87), "SSIM 0.870, 0.88 is wanted"),
+        (replace(WIDE, ssim=0.87), "SSIM 0.870, 0.88 is required"),
         (replace(WIDE, ssim=0.90), "mean SSIM at 1x is 0.900"),
         (replace(WIDE, box_iou=0.96), "mean box IoU at 1x is 0.960"),
-        (replace(TELE, ssim=0.89), "SSIM 0.890, 0.9 is wanted in tiles"),
+        (replace(TELE, ssim=0.89), "SSIM 0.890, 0.9 is required in tiles"),
         (replace(TELE, sharpness_ratio=0.5), "0.50 of the live sharpness"),
         (replace(TELE, box_iou=0.9), "mean box IoU at 2x to 5x is 0.900"),
     ],

@@ -152,7 +152,7 @@ def test_a_profile_reports_speed_validity_and_the_verdict(scope: Scope, tmp_path
     assert planner["serving"]["/v1/models id"] == MODEL
     assert set(perception["perception"]["by_skill"]) == {"query", "caption", "detect", "point"}
     assert report["real_time"] == "met"
-    assert "Real-time bar" in text
+    assert "Real-time criterion" in text
     assert "tools changed by prompt edits" in text
 
 

@@ -152,7 +152,7 @@ def test_a_pair_may_contain_built_in_models(scope: Scope, tasks_file: Path, tmp_
         (["--agent", "nonsense"], "module:Class"),
         (["--agent", "json:nothing"], "cannot be imported"),
         (["--agent", "json:JSONDecoder"], "is not an agent"),
-        (["--price", "cheap"], "--price wants two amounts"),
+        (["--price", "cheap"], "--price needs two amounts"),
         (["--resume", "missing.eval"], "There is no log"),
         (["--perception", "rapidocr", "--no-pictures"], "needs pictures"),
     ],

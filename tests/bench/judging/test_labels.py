@@ -18,7 +18,7 @@ from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Behaviour, FinalPose, Forbidden, ProgramCall, Task
 from scope_ptz.cli.app import app
-from scope_ptz.cli.bench.label import folder_name, kept_pictures
+from scope_ptz.cli.bench.label import folder_name, write_pictures
 from scope_ptz.errors import InputError, OutputError
 from tests.bench.judging.test_agreement import evaluation, trial
 
@@ -129,7 +129,7 @@ def test_a_log_cannot_write_outside_its_folder(tmp_path: Path) -> None:
         def picture(self, name: str) -> bytes:
             raise AssertionError(name)
 
-    assert kept_pictures(Files(), tmp_path / "deep") == []  # type: ignore[arg-type]
+    assert write_pictures(Files(), tmp_path / "deep") == []  # type: ignore[arg-type]
     name = folder_name(tmp_path / "a.eval", "../../etc/pass wd#1")
     assert name.startswith("etc-pass-wd-1-")
     assert "/" not in name

@@ -1,4 +1,4 @@
-"""``scope bench browse``: list tasks, or show one with everything that it rests on."""
+"""``scope bench browse``: list tasks, or show one with its reference run and evidence."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def browse(
     scene: Annotated[str, typer.Option("--scene", help="Show only tasks of this scene.")] = "",
     at_random: Annotated[bool, typer.Option("--random", help="Show one of the matching tasks at random.")] = False,
     seed: Annotated[int | None, typer.Option(help="Seed for --random.")] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start and of the evidence.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start view and of the evidence.")] = None,
 ) -> None:
     """List tasks, or show one: instruction, expected answer, reference run, and the frames with its evidence."""
     rows = _matching(_tasks(tasks), category_named(category), scene)
@@ -72,5 +72,5 @@ def _with_id(tasks: list[Task], name: str) -> Task:
         raise InputError(f"There is no task '{name}'. List them with 'scope bench browse --category counting'.")
     if len(found) > 1:
         names = ", ".join(row.id for row in found[:MAX_AMBIGUOUS_LISTED])
-        raise InputError(f"There is more than one task '{name}': {names}. Give a whole id.")
+        raise InputError(f"Several tasks end with '{name}': {names}. Give a full id.")
     return found[0]
