@@ -176,7 +176,7 @@ async def test_the_audit_log_says_who_moved_what(tmp_path: Path) -> None:
     for actor in ("anna", "bob"):
         camera = GuardedCamera(SphereCamera(), CameraRules(keep_out=(WINDOWS,)), AuditLog(path, "yard", actor))
         await camera.move(Pose(25.0, -5.0, 2.0))
-        await camera.drive(5.0)
+        await camera.drive(-5.0)
         await camera.stop()
         await camera.save_preset("spot")
         await camera.close()

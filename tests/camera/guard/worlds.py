@@ -20,6 +20,8 @@ WIDTH, HEIGHT = 160, 90
 class SphereCamera(Camera):
     """A device in a world of smooth colours. ``to_world`` turns directions of the device into directions of the world."""
 
+    clock: SceneClock
+
     def __init__(self, to_world: NDArray[np.float64] | None = None) -> None:
         self.clock = SceneClock()
         self.to_world = np.eye(3) if to_world is None else to_world

@@ -24,6 +24,9 @@ STOPPING_S = 0.4
 
 _STEP_S = 0.02
 
+_SHARES = (1.0, 0.5, 0.25, 0.1, 0.04)
+"""Shares of the requested velocity that are tried near a limit or a keep-out region."""
+
 
 class KeepOutError(CameraError):
     """A command would aim the camera at a keep-out region, and there is no way around."""
@@ -85,23 +88,26 @@ class GuardedCamera(CameraWrapper):
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         """Move at constant velocities for as long as the rules permit, at most ``timeout_s``.
 
-        An axis that a soft limit stops is not driven. The time is cut short so that the camera stands still before it reaches a
-        soft limit or a keep-out region.
+        An axis that a soft limit stops is not driven. Near a limit or a keep-out region the camera is driven more slowly and for
+        a shorter time, so that it stands still before it gets there.
 
         Raises:
             KeepOutError: The camera would run into a keep-out region at once.
         """
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
         here = await self.inner.pose()
-        velocity = self._free_axes(here, Velocity(pan_dps, tilt_dps, zoom_rate))
-        free_s = self._free_time_s(here, velocity, timeout_s)
-        self._record("drive", velocity=velocity, timeout_s=round(free_s, 3))
-        if velocity == Velocity() or free_s <= 0.0:
-            await self.inner.stop()
-            if velocity != Velocity() and (region := self._rules.region_at(_advanced(here, velocity, STOPPING_S + _STEP_S))):
-                raise KeepOutError(f"The camera cannot be driven into the keep-out region '{region.name}'. It has stopped.")
-            return
-        await self.inner.drive(velocity.pan_dps, velocity.tilt_dps, velocity.zoom_rate, timeout_s=free_s)
+        requested = _capped(Velocity(pan_dps, tilt_dps, zoom_rate), self.inner.info.capabilities.top_speed)
+        for share in _SHARES:
+            velocity = self._free_axes(here, _scaled(requested, share))
+            free_s = self._free_time_s(here, velocity, timeout_s)
+            if velocity != Velocity() and free_s > 0.0:
+                self._record("drive", velocity=velocity, timeout_s=round(free_s, 3))
+                await self.inner.drive(velocity.pan_dps, velocity.tilt_dps, velocity.zoom_rate, timeout_s=free_s)
+                return
+        self._record("drive", velocity=Velocity(), timeout_s=0.0)
+        await self.inner.stop()
+        if region := self._rules.region_at(_advanced(here, _scaled(requested, _SHARES[-1]), STOPPING_S + _STEP_S)):
+            raise KeepOutError(f"The camera cannot be driven into the keep-out region '{region.name}'. It has stopped.")
 
     async def stop(self) -> None:
         self._record("stop")
@@ -173,14 +179,16 @@ class GuardedCamera(CameraWrapper):
 
     def _free_axes(self, here: Pose, velocity: Velocity) -> Velocity:
         """Return the velocity without axes that would leave the limits before they can stop."""
-        soon = _advanced(here, velocity, STOPPING_S)
-        _, stopped = self._limits.clamp(soon)
+        stopped = self._beyond(_advanced(here, velocity, STOPPING_S + _STEP_S))
         return Velocity(
             0.0 if "pan" in stopped else velocity.pan_dps,
             0.0 if "tilt" in stopped else velocity.tilt_dps,
-            # The stops of the zoom are those of the device unless a rule narrows them.
-            0.0 if "zoom" in stopped and self._rules.soft_limits.max_zoom is not None else velocity.zoom_rate,
+            0.0 if "zoom" in stopped else velocity.zoom_rate,
         )
+
+    def _beyond(self, pose: Pose) -> set[Axis]:
+        """Return the axes on which a pose is beyond a rule. The device itself stops at its own limits."""
+        return set(self._limits.clamp(pose)[1]) - set(self.inner.info.limits.clamp(pose)[1])
 
     def _free_time_s(self, here: Pose, velocity: Velocity, timeout_s: float) -> float:
         """Return how long the camera can be driven so that it stands still before a limit or a keep-out region."""
@@ -189,7 +197,7 @@ class GuardedCamera(CameraWrapper):
         time_s = 0.0
         while time_s < timeout_s:
             ahead = _advanced(here, velocity, time_s + STOPPING_S + _STEP_S)
-            if self._rules.region_at(ahead) or {"pan", "tilt"} & set(self._limits.clamp(ahead)[1]):
+            if self._rules.region_at(ahead) or self._beyond(ahead):
                 return time_s
             time_s += _STEP_S
         return timeout_s
@@ -212,6 +220,19 @@ class GuardedCamera(CameraWrapper):
 def _as_dict(velocity: Velocity) -> dict[str, float]:
     """Return a velocity as a dictionary."""
     return {"pan_dps": velocity.pan_dps, "tilt_dps": velocity.tilt_dps, "zoom_rate": velocity.zoom_rate}
+
+
+def _capped(velocity: Velocity, top: Velocity) -> Velocity:
+    def cap(speed: float, limit: float) -> float:
+        return math.copysign(min(abs(speed), limit), speed)
+
+    return Velocity(
+        cap(velocity.pan_dps, top.pan_dps), cap(velocity.tilt_dps, top.tilt_dps), cap(velocity.zoom_rate, top.zoom_rate)
+    )
+
+
+def _scaled(velocity: Velocity, share: float) -> Velocity:
+    return Velocity(velocity.pan_dps * share, velocity.tilt_dps * share, velocity.zoom_rate * share)
 
 
 def _advanced(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
