@@ -29,11 +29,13 @@ class ScopeSettings(BaseSettings):
     planner_key: SecretStr | None = Field(default=None, description="Key for the planner's server.")
     perception_key: SecretStr | None = Field(default=None, description="Key for the perception server.")
     models: Path | None = Field(default=None, description="YAML file with more models.")
+    camera_password: SecretStr | None = Field(default=None, description="Password for the account of a network camera.")
     planner_url: str = Field(default="", description="Address of the planner's server.")
     perception_url: str = Field(default="", description="Address of the perception server.")
     judge_url: str = Field(default="", description="Address of the judge's server.")
     judge_model: str = Field(default="", description="Name of the judge on its server.")
     judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
+    virtual_camera_password: SecretStr | None = Field(default=None, description="Password of the accounts of virtual cameras.")
 
     def models_file(self) -> Path | None:
         """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""

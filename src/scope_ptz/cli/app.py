@@ -11,6 +11,8 @@ import typer
 from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.bench import HELP as BENCH_HELP
 from scope_ptz.cli.bench import BenchGroup
+from scope_ptz.cli.camera import HELP as CAMERA_HELP
+from scope_ptz.cli.camera import CameraGroup
 from scope_ptz.cli.exit import EXIT_CODES
 from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
 
@@ -28,6 +30,9 @@ scene_app = typer.Typer(help="Scenes: list, show, view, build, bake and verify t
 models_app = typer.Typer(help="Models: list them, show one, print how to serve it, list pairs.", invoke_without_command=True)
 app.add_typer(scene_app, name="scene", rich_help_panel="Set up")
 app.add_typer(models_app, name="models", rich_help_panel="Set up")
+app.add_typer(
+    typer.Typer(cls=CameraGroup, help=CAMERA_HELP, no_args_is_help=True), name="camera", rich_help_panel="Talk to a camera"
+)
 app.add_typer(typer.Typer(cls=BenchGroup, help=BENCH_HELP, no_args_is_help=True), name="bench", rich_help_panel="Measure")
 
 Instruction = Annotated[str, typer.Argument(help="What the camera should do, in plain words.")]

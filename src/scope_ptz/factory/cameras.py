@@ -14,6 +14,7 @@ from scope_ptz.camera.clocks import Clock
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.entry_points import CAMERAS, call_factory, expect_product, find, installed, one_line
 from scope_ptz.errors import CameraError, InputError, ScopeError, UnknownNameError
+from scope_ptz.factory.network_cameras import NETWORK_SCHEMES, check_network_spec
 from scope_ptz.factory.scenes import scene_search
 from scope_ptz.settings import load_settings
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BUILT_IN_SCHEMES", "CameraSpec", "OpenCamera", "camera_names", "open_camera", "parse_camera"]
 
-BUILT_IN_SCHEMES = ("sim", "blender")
+BUILT_IN_SCHEMES = ("sim", "blender", *NETWORK_SCHEMES)
 
 _FRAME_OPTIONS = ("width", "height")
 _OPTIONS = {"sim": _FRAME_OPTIONS, "blender": (*_FRAME_OPTIONS, "samples")}
@@ -34,8 +35,9 @@ def parse_camera(text: str) -> CameraSpec:
 
     Args:
         text: A scene (``highway-works`` or ``sim:highway-works``), a scene or file rendered by Blender
-            (``blender:highway-works``, ``blender:yard.blend``), or ``SCHEME:ADDRESS`` for the camera of a plug-in. Options follow
-            a question mark: ``blender:yard.blend?samples=4&width=640&height=360``.
+            (``blender:highway-works``, ``blender:yard.blend``), a camera on the network (``axis://operator@10.0.0.7``), or
+            ``SCHEME:ADDRESS`` for the camera of a plug-in. Options follow a question mark:
+            ``blender:yard.blend?samples=4&width=640&height=360``.
 
     Raises:
         InputError: The spec is empty, its scheme or an option is unknown, a file does not exist, or it contains a password.
@@ -66,7 +68,8 @@ def camera_names() -> tuple[str, ...]:
     scenes = list_scenes(scene_search(load_settings()))
     live = [f"blender:{name}" for name in scene_names()]
     plugins = [f"{entry.name}:ADDRESS" for entry in installed(CAMERAS) if entry.name not in BUILT_IN_SCHEMES]
-    return (*scenes, *live, "blender:FILE.blend", *plugins)
+    network = [f"{scheme}://USER@HOST" for scheme in NETWORK_SCHEMES]
+    return (*scenes, *live, "blender:FILE.blend", *network, *plugins)
 
 
 class OpenCamera:
@@ -152,6 +155,8 @@ async def open_camera(
 
         live = await open_live_blender(spec, viewpoint=viewpoint, time_s=time_s, realtime=realtime)
         opened = OpenCamera(spec, live.camera, live.scene, live.release)
+    elif spec.scheme in NETWORK_SCHEMES:
+        opened = await _open_network(spec, viewpoint, time_s)
     else:
         opened = await _open_plugin(spec, viewpoint, time_s)
     if preset:
@@ -174,14 +179,26 @@ def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | Non
     return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, width=width, height=height), scene)
 
 
+async def _open_network(spec: CameraSpec, viewpoint: str | None, time_s: float | None) -> OpenCamera:
+    from scope_ptz.factory.network_cameras import open_network_camera
+
+    _refuse_scene_options(spec, viewpoint, time_s, "a camera on the network")
+    connected = await open_network_camera(spec)
+    return OpenCamera(spec, connected.camera, None, connected.release)
+
+
+def _refuse_scene_options(spec: CameraSpec, viewpoint: str | None, time_s: float | None, kind: str) -> None:
+    if viewpoint is not None or time_s is not None:
+        option = "--viewpoint" if viewpoint is not None else "--at"
+        raise InputError(f"{option} needs a camera in a scene, but '{spec}' is {kind}. Remove the option.")
+
+
 async def _open_plugin(spec: CameraSpec, viewpoint: str | None, time_s: float | None) -> OpenCamera:
     """Open a camera of an installed plug-in. The plug-in's factory may be a plain or an async function."""
     entry = find(CAMERAS, spec.scheme)
     if entry is None:
         raise InputError(_unknown_scheme(spec.scheme, str(spec)))
-    if viewpoint is not None or time_s is not None:
-        option = "--viewpoint" if viewpoint is not None else "--at"
-        raise InputError(f"{option} needs a camera in a scene, but '{spec}' is a camera of {entry.package}. Remove the option.")
+    _refuse_scene_options(spec, viewpoint, time_s, f"the camera of {entry.package}")
     product = call_factory(entry, object, spec)
     if inspect.isawaitable(product):
         try:
@@ -200,7 +217,7 @@ def frame_size(spec: CameraSpec) -> tuple[int, int]:
 
 def _has_credentials(scheme: str, address: str) -> bool:
     """Return whether an address looks like ``user:password@host``. Names of Blender files may contain both characters."""
-    if scheme in BUILT_IN_SCHEMES and not address.startswith("//"):
+    if scheme in BUILT_IN_SCHEMES and scheme not in NETWORK_SCHEMES and not address.startswith("//"):
         return False
     before, at, _ = address.rpartition("@")
     return bool(at) and ":" in before
@@ -214,6 +231,9 @@ def _unknown_scheme(scheme: str, text: str) -> str:
 
 
 def _check_built_in(spec: CameraSpec) -> None:
+    if spec.scheme in NETWORK_SCHEMES:
+        check_network_spec(spec)
+        return
     if not spec.address:
         raise InputError(
             "The camera spec names no scene. Name one, for example highway-works; `scope scene list` lists the scenes."

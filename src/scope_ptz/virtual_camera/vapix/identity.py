@@ -1,0 +1,25 @@
+"""What the camera says about itself."""
+
+from __future__ import annotations
+
+from scope_ptz.virtual_camera.vapix.unit import FIRMWARE, PRODUCT, VapixUnit
+
+
+def identity(unit: VapixUnit) -> dict[str, str]:
+    """Return brand, product, versions and serial number under the names of VAPIX."""
+    return {
+        "Architecture": "aarch64",
+        "Brand": "AXIS",
+        "BuildDate": "Jan 01 2026 00:00",
+        "HardwareID": "virtual",
+        "ProdFullName": f"AXIS {PRODUCT} PTZ Camera",
+        "ProdNbr": PRODUCT,
+        "ProdShortName": f"AXIS {PRODUCT}",
+        "ProdType": "PTZ Camera",
+        "ProdVariant": "SCOPE virtual camera",
+        "SerialNumber": unit.serial,
+        "Soc": "virtual",
+        "SocSerialNumber": "",
+        "Version": FIRMWARE,
+        "WebURL": "http://www.axis.com",
+    }
