@@ -56,6 +56,10 @@ class GuardedCamera(CameraWrapper):
     def info(self) -> CameraInfo:
         return replace(self.inner.info, limits=self._limits)
 
+    def record_instruction(self, instruction: str) -> None:
+        """Record what a person asked for."""
+        self._record("instruction", text=instruction)
+
     async def move(self, pose: Pose) -> Arrival:
         target, clamped, limited_by = self._permitted(pose)
         here = await self.inner.pose()
