@@ -16,7 +16,8 @@ CAMERA = f"sim:{SCENE}?width=160&height=90"
 def test_a_snapshot_is_a_picture_with_its_pose(scope: Scope, tmp_path: Path) -> None:
     done = scope("camera", "snapshot", CAMERA, "-o", str(tmp_path / "new" / "a.png"), "--json")
     assert done.code == 0, done.err
-    assert Image.open(done.json["file"]).size == (160, 90)
+    with Image.open(done.json["file"]) as picture:
+        assert picture.size == (160, 90)
     assert (done.json["width"], done.json["height"], done.json["hfov_deg"]) == (160, 90, 71.0)
     wide = scope("camera", "snapshot", CAMERA, "--full", "-o", str(tmp_path / "b.jpg"), "--json").json
     assert wide["width"] > 600
