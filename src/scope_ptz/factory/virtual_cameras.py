@@ -154,6 +154,9 @@ async def serve_virtual_cameras(
                 await stack.enter_async_context(discoverable(found, host=options.host))
             except ConfigError as error:  # the cameras can be used without being found
                 logger.warning("%s", error)
-        for device in devices if options.prefetch else ():
-            stack.callback(device.prefetch().cancel)
-        yield cameras
+        reading = [device.prefetch() for device in devices] if options.prefetch else []
+        try:
+            yield cameras
+        finally:
+            for each in reading:
+                each.cancel()
