@@ -21,6 +21,9 @@ class ScopeSettings(BaseSettings):
 
     runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
     scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
+    tile_cache_mb: int | None = Field(
+        default=None, ge=1, description="Limit in MB on the memory of a viewpoint's tiles. Without it, all that was read is kept."
+    )
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
     )
@@ -29,12 +32,18 @@ class ScopeSettings(BaseSettings):
     planner_key: SecretStr | None = Field(default=None, description="Key for the planner's server.")
     perception_key: SecretStr | None = Field(default=None, description="Key for the perception server.")
     models: Path | None = Field(default=None, description="YAML file with more models.")
+    camera_password: SecretStr | None = Field(default=None, description="Password for the account of a network camera.")
     planner_url: str = Field(default="", description="Address of the planner's server.")
     perception_url: str = Field(default="", description="Address of the perception server.")
     judge_url: str = Field(default="", description="Address of the judge's server.")
     judge_model: str = Field(default="", description="Name of the judge on its server.")
     judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
     virtual_camera_password: SecretStr | None = Field(default=None, description="Password of the accounts of virtual cameras.")
+    config: Path | None = Field(default=None, description="File with the cameras of a site (default: scope.yaml).")
+
+    def tile_bytes(self) -> int | None:
+        """Return the limit on the memory of a viewpoint's tiles in bytes."""
+        return None if self.tile_cache_mb is None else self.tile_cache_mb * 1_000_000
 
     def models_file(self) -> Path | None:
         """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""
@@ -56,6 +65,18 @@ def load_settings() -> ScopeSettings:
         first = error.errors()[0]
         name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()
         raise ConfigError(f"The environment variable {name} has an invalid value: {first['msg']}.") from error
+
+
+def find_camera_file(settings: ScopeSettings) -> Path | None:
+    """Return the camera file: the configured one, else ``scope.yaml`` in the working folder, else in the configuration folder."""
+    if settings.config is not None:
+        return settings.config
+    return next((path for path in (Path("scope.yaml"), user_config_path("scope-ptz") / "scope.yaml") if path.is_file()), None)
+
+
+def read_secret(name: str) -> str | None:
+    """Return the value of an environment variable that a camera file names; None if it is unset or empty."""
+    return os.environ.get(name) or None
 
 
 def has_desktop() -> bool:

@@ -33,6 +33,7 @@ class CameraInfo:
         frame_height: Height of a frame in pixels.
         simulated: Whether the pictures are computed.
         capabilities: What else the camera can do.
+        rendering: Version of the simulator's rendering; None for other cameras.
     """
 
     name: str
@@ -42,6 +43,7 @@ class CameraInfo:
     frame_height: int
     simulated: bool
     capabilities: Capabilities = NO_CAPABILITIES
+    rendering: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,10 +112,17 @@ class PresetInfo:
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """Where a move ended, and the axes that a limit stopped."""
+    """Where a move ended.
+
+    Attributes:
+        pose: The pose reached.
+        clamped: The axes that a limit stopped.
+        limited_by: What held the camera back, as a noun phrase, if it was not a limit of the device.
+    """
 
     pose: Pose
     clamped: tuple[Axis, ...] = field(default=())
+    limited_by: str = ""
 
 
 class Camera(ABC):

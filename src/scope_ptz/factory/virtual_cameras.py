@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import secrets
 from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from scope_ptz.virtual_camera.accounts import Account
     from scope_ptz.virtual_camera.device import VirtualDevice
     from scope_ptz.virtual_camera.http.server import ServedCamera
+
+logger = logging.getLogger(__name__)
 
 MAX_TIME_SCALE = 1000.0
 
@@ -36,6 +39,7 @@ class VirtualCameraOptions:
         faults: Faults by name.
         truth: Whether clients on this machine get the ground truth of frames.
         discovery: Whether the cameras answer WS-Discovery on the interface of ``host``.
+        prefetch: Whether viewpoints are read in the background when the cameras start.
     """
 
     scenes: tuple[str, ...]
@@ -49,6 +53,7 @@ class VirtualCameraOptions:
     faults: Mapping[str, object] | None = None
     truth: bool = False
     discovery: bool = True
+    prefetch: bool = True
 
 
 def make_accounts(users: Sequence[str], settings: ScopeSettings) -> list[Account]:
@@ -145,5 +150,13 @@ async def serve_virtual_cameras(
             camera.unit.rtsp_port = rtsp_port_of[camera.device]
         if options.discovery:
             found = [Discoverable(camera.device, camera.port) for camera in cameras]
-            await stack.enter_async_context(discoverable(found, host=options.host))
-        yield cameras
+            try:
+                await stack.enter_async_context(discoverable(found, host=options.host))
+            except ConfigError as error:  # the cameras can be used without being found
+                logger.warning("%s", error)
+        reading = [device.prefetch() for device in devices] if options.prefetch else []
+        try:
+            yield cameras
+        finally:
+            for each in reading:
+                each.cancel()

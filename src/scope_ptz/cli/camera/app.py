@@ -1,4 +1,4 @@
-"""The commands of ``scope camera``, in the groups in which the help lists them."""
+"""The commands of ``scope camera``, grouped as in its help."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable
 import typer
 
 from scope_ptz.cli.camera import HELP
+from scope_ptz.cli.camera.by_hand import move, password, presets, snapshot, watch
 from scope_ptz.cli.camera.serve import serve
 from scope_ptz.cli.options import command
 
@@ -17,10 +18,17 @@ camera_app = typer.Typer(help=HELP, no_args_is_help=True)
 
 @camera_app.callback(help=HELP)
 def _camera() -> None:
-    """Hold the commands together."""
+    """Group the camera commands."""
 
 
-COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = ((TEST, "serve", serve),)
+COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = (
+    (CONTROL, "snapshot", snapshot),
+    (CONTROL, "move", move),
+    (CONTROL, "presets", presets),
+    (CONTROL, "watch", watch),
+    (CONTROL, "password", password),
+    (TEST, "serve", serve),
+)
 """Panel of the help, name, and function of each command."""
 
 for panel, name, function in COMMANDS:
