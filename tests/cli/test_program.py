@@ -50,6 +50,12 @@ def test_tools_loads_the_shipped_schemas_and_no_models(tmp_path: Path) -> None:
     assert "scope_ptz.tools.registry" not in modules
 
 
+def test_plan_loads_no_models_no_images_and_no_grammar_compiler(tmp_path: Path) -> None:
+    modules = modules_of("plan", "pan right 5, then count the cars", folder=tmp_path)
+    assert packages_of(modules) <= LIGHT
+    assert not modules & {"scope_ptz.planner.base", "scope_ptz.agent.records", "scope_ptz.tools.registry", "scope_ptz.cli.display"}
+
+
 def test_the_entry_point_is_installed() -> None:
     from importlib.metadata import entry_points
 

@@ -19,9 +19,9 @@ class LeanGroup(TyperGroup):
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         command = super().get_command(ctx, cmd_name)
-        if command is not None and not isinstance(command, LeanGroup):
-            params_of = type(command).get_params
-            command.get_params = lambda context: _lean(params_of(command, context))
+        if command is not None and not isinstance(command, LeanGroup) and "get_params" not in vars(command):
+            params_of = command.get_params
+            vars(command)["get_params"] = lambda context: _lean(params_of(context))
         return command
 
 

@@ -10,11 +10,11 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
-from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.planner.grammar.binding.understand import understand
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock
 from scope_ptz.planner.grammar.execution.outline import outline as make_outline
 from scope_ptz.planner.grammar.execution.program import Program
+from scope_ptz.planner.grammar.execution.run_state import ImaginedOutcome
 
 _MOST_CALLS = 200
 _ZOOM_ON_OBJECT = 2.0
@@ -82,8 +82,7 @@ def plan(
         name, arguments = next(run)
         while len(calls) < _MOST_CALLS:
             calls.append(PlannedCall(name, arguments))
-            call = ToolCall(id=f"call-{len(calls)}", name=name, arguments=arguments)
-            name, arguments = run.send(ToolOutcome(call=call, result=imagined.result(name, arguments)))
+            name, arguments = run.send(ImaginedOutcome(imagined.result(name, arguments)))
     except StopIteration:
         pass
     imagined = _Imagined(pose, limits, preset_poses or {})

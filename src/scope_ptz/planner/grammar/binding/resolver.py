@@ -6,15 +6,14 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
+from typing import TYPE_CHECKING
 
-from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.embedded_questions import embedded
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.lexing.lexer import distance_one, preset_key
-from scope_ptz.planner.grammar.lexing.vocabulary import phrase_table
-from scope_ptz.tools.arguments import View
+from scope_ptz.planner.grammar.lexing.phrases import phrase_table
 
 _CLOSE_ENOUGH = 0.8
 _LONGEST_NAME = 4
@@ -48,6 +47,10 @@ _BESIDE = re.compile(
     r"((?:to the )?(?:left|right) of|above|below|under|underneath|beneath|over|beyond|past|behind|beside|next to|in front of) \w",
     re.IGNORECASE,
 )
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn
+    from scope_ptz.tools.arguments import View
 
 
 class UnresolvedError(Exception):
@@ -101,7 +104,7 @@ def plausible_name(text: str) -> bool:
     }  # fmt: skip
     if not 0 < len(words) <= _LONGEST_NAME or any(word in _NO_PLACE for (word,) in words):
         return False
-    return not any(phrase_table().get(word, frozenset()) & telling for word in words)
+    return not any(phrase_table().get(word) & telling for word in words)
 
 
 @dataclass(slots=True)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from scope_ptz.geometry import Pose
-from scope_ptz.planner.base import PastTurn, ToolOutcome
-from scope_ptz.tools.registry import TOOLS
 
-_MOVES = TOOLS.moving
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn, ToolOutcome
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +36,17 @@ class Whereabouts:
 
 def whereabouts(conversation: Sequence[PastTurn]) -> Whereabouts:
     """Return where the camera has been, from the results of earlier turns."""
+    if not conversation:
+        return Whereabouts()
+    from scope_ptz.tools.registry import TOOLS
+
     here: VisitedPlace | None = None
     before: VisitedPlace | None = None
     for turn in conversation:
         at_start = here
         for outcome in (o for exchange in turn.exchanges for o in exchange.outcomes):
             pose = _pose(outcome.result)
-            if outcome.error is not None or pose is None or outcome.call.name not in _MOVES:
+            if outcome.error is not None or pose is None or outcome.call.name not in TOOLS.moving:
                 continue
             at_start = at_start or _before(outcome, pose)
             before = at_start or before

@@ -4,15 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from scope_ptz.geometry import Limits, Pose
-from scope_ptz.planner.base import ToolOutcome
 from scope_ptz.planner.grammar.execution import answer_sentences as say
 from scope_ptz.planner.grammar.execution.camera_history import VisitedPlace, Whereabouts
 
 Wanted = tuple[str, dict[str, Any]]
-Run = Generator[Wanted, ToolOutcome, Any]
+
+
+class Outcome(Protocol):
+    """The outcome of a tool call: its result as JSON data, or ``error`` when it failed."""
+
+    @property
+    def result(self) -> dict[str, Any] | None: ...
+
+    @property
+    def error(self) -> str | None: ...
+
+
+Run = Generator[Wanted, Outcome, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class ImaginedOutcome:
+    """The outcome of a call that was not made."""
+
+    result: dict[str, Any]
+    error: None = None
 
 
 class HaltedError(Exception):
@@ -63,14 +82,14 @@ class RunState:
 
     def _moved(self, tool: str, **arguments: Any) -> Run:
         """Make a call that moves the camera. A failure ends the run, because the following steps would be meaningless."""
-        outcome: ToolOutcome = yield from self._call(tool, **arguments)
+        outcome: Outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
             raise HaltedError(f"I stopped because the camera did not do {tool}: {outcome.error or 'no result'}")
         return outcome.result
 
     def _looked(self, tool: str, **arguments: Any) -> Run:
         """Make a perception call and repeat it once after a failure. Return None, with a note, when both fail."""
-        outcome: ToolOutcome = yield from self._call(tool, **arguments)
+        outcome: Outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None:
             outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:

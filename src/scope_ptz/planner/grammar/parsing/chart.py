@@ -4,8 +4,8 @@ Lark's own parsers do not fit. Operator English is ambiguous ("left" is a direct
 description), so a deterministic LALR parser cannot read it. Lark's Earley parser takes 100 to 900 ms for an instruction, because it
 predicts every alternative of every optional word at every position.
 
-So Lark only reads, checks and expands the grammar. Here all right-hand sides share one prefix tree, and only constituents that the
-given lexemes can begin are tried, bottom-up, which takes a few milliseconds. The reading with the highest sum of rule priorities
+So Lark only reads, checks and expands the grammar. Here right-hand sides share a prefix tree, and only constituents that the given
+lexemes can begin are tried, bottom-up, which takes a few milliseconds. The reading with the highest sum of rule priorities
 wins; among equals, the one with the fewest rules.
 """
 
@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from scope_ptz.planner.grammar.parsing.rules import Rule
+from scope_ptz.planner.grammar.parsing.rules import Rule, RuleBook
 
 _RULE_COST = 1e-3
 _ORDER_COST = 1e-8
@@ -51,19 +51,24 @@ _Best = tuple[float, _Link | None, Rule | None]
 class ChartParser:
     """Parses sequences of lexemes. Each lexeme is given as the set of terminals that it may be."""
 
-    def __init__(self, rules: Sequence[Rule]) -> None:
-        self._ids: dict[str, int] = {}
-        self._root = _Node()
-        for order, rule in enumerate(rules):
-            node = self._root
-            for symbol in rule.symbols:
-                node = node.children.setdefault(self._id(symbol), _Node())
-            gain = rule.priority - _RULE_COST - _ORDER_COST * order
-            node.complete.append((self._id(rule.name), gain, rule))
-        self._names = {number: name for name, number in self._ids.items()}
+    def __init__(self, rules: RuleBook) -> None:
+        self._rules = rules
+        self._names = rules.symbols
+        self._ids = {name: number for number, name in enumerate(rules.symbols)}
+        self._first: dict[int, _Node] = {}
 
-    def _id(self, name: str) -> int:
-        return self._ids.setdefault(name, len(self._ids))
+    def _after_first(self, symbol: int) -> _Node:
+        """Return the prefix that consists of one symbol, with all that follow it."""
+        if symbol not in self._first:
+            first = _Node()
+            for order, rule in self._rules.starting_with(self._names[symbol]):
+                node = first
+                for following in rule.symbols[1:]:
+                    node = node.children.setdefault(self._ids[following], _Node())
+                gain = rule.priority - _RULE_COST - _ORDER_COST * order
+                node.complete.append((self._ids[rule.name], gain, rule))
+            self._first[symbol] = first
+        return self._first[symbol]
 
     def parse(self, lexemes: Sequence[Collection[str]], start: str) -> Branch | None:
         """Return the best reading of all lexemes as ``start``; None if there is none."""
@@ -86,9 +91,7 @@ class ChartParser:
             agenda.append((terminal, i + 1))
         while agenda:
             symbol, end = agenda.pop()
-            node = self._root.children.get(symbol)
-            if node is None:
-                continue
+            node = self._after_first(symbol)
             edges: list[tuple[_Node, int, float, _Link]] = [(node, end, here[symbol][end][0], (None, symbol, i, end))]
             while edges:
                 node, end, score, link = edges.pop()

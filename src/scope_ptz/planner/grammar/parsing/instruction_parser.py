@@ -22,7 +22,6 @@ _SOFT = frozenset(
         "SEVERAL", "SURROUND", "THATREL", "THERE", "TO", "UP", "VISIBLE", "WHO", "X", "YOUSEE",
     }
 )  # fmt: skip
-_GUESSES = frozenset({"far_ref"})
 LONGEST_TEXT = 2000
 MOST_LEXEMES = 120
 
@@ -43,7 +42,7 @@ def parser(presets_known: bool) -> ChartParser:
         presets_known: Whether the camera's presets are known. Without them, free words after "at" or "in" are not taken for a
             preset.
     """
-    return ChartParser([rule for rule in load_rules() if presets_known or rule.name not in _GUESSES])
+    return ChartParser(load_rules(guesses=presets_known))
 
 
 @lru_cache(maxsize=512)
