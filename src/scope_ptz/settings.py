@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Literal
 
 from platformdirs import user_cache_path, user_config_path
-from pydantic import Field, SecretStr, ValidationError
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import BaseModel, Field, SecretStr, ValidationError
 
 from scope_ptz.errors import ConfigError
 
 
-class ScopeSettings(BaseSettings):
-    """Defaults for every command. Command-line options take precedence."""
+_PREFIX = "scope_"
 
-    model_config = SettingsConfigDict(env_prefix="SCOPE_", extra="ignore")
+
+class ScopeSettings(BaseModel):
+    """Defaults for every command. Command-line options take precedence."""
 
     runs_dir: Path = Field(default=Path("runs"), description="Folder for run folders.")
     scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
@@ -44,13 +44,14 @@ class ScopeSettings(BaseSettings):
 
 
 def load_settings() -> ScopeSettings:
-    """Read the settings.
+    """Read the settings. The case of the variables' names does not matter.
 
     Raises:
         ConfigError: A variable has a wrong value. The message names it.
     """
+    given = {name.lower().removeprefix(_PREFIX): text for name, text in os.environ.items() if name.lower().startswith(_PREFIX)}
     try:
-        return ScopeSettings()
+        return ScopeSettings.model_validate({name: given[name] for name in ScopeSettings.model_fields if name in given})
     except ValidationError as error:
         first = error.errors()[0]
         name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import signal
 import sys
@@ -112,8 +113,16 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
     with interrupts_handled_by(signal.SIG_IGN):
         code = _report(folder, as_json=as_json)
     if next_steps and not as_json and code == 0:
-        put(_NEXT_STEPS.format(program="scope" if shutil.which("scope") else sys.argv[0]))
+        put(_NEXT_STEPS.format(program=_program()))
     return code
+
+
+def _program() -> str:
+    """Return how this program can be started again from a shell."""
+    if shutil.which("scope"):
+        return "scope"
+    started = Path(sys.argv[0])
+    return shlex.quote(sys.argv[0]) if started.name != "__main__.py" else f"{shlex.quote(sys.executable)} -m scope_ptz.cli"
 
 
 def make_filmstrip(trace: Trace) -> Path | None:

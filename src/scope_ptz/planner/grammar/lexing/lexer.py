@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import takewhile
 
 from scope_ptz.planner.grammar.lexing.number_phrases import SpokenNumber, read_number
-from scope_ptz.planner.grammar.lexing.phrases import PhraseTable, phrase_table
+from scope_ptz.planner.grammar.lexing.phrases import phrase_table
 from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, spelling, word_list
 
 _TOKEN = re.compile(
@@ -170,7 +170,7 @@ class Lexer:
 
     def _phrase_length(self, run: list[str], before: list[Lexeme]) -> int:
         """Return how many words of a run are one known phrase; some phrases are no phrase in their context."""
-        phrase = self._longest(run, self._table)
+        phrase = self._longest(run, self._table.starting_with(run[0]) if run else {})
         if phrase < 2:
             return phrase
         kinds = self._table[tuple(run[:phrase])]
@@ -229,7 +229,7 @@ class Lexer:
         return Lexeme(self._table[(guess,)] if guess else frozenset({"TEXT"}), word.start, word.end)
 
     @staticmethod
-    def _longest(run: list[str], table: PhraseTable | dict[tuple[str, ...], str]) -> int:
+    def _longest(run: list[str], table: Mapping[tuple[str, ...], object]) -> int:
         return next((n for n in range(len(run), 0, -1) if tuple(run[:n]) in table), 0)
 
 

@@ -36,20 +36,21 @@ class PhraseTable:
         self._read: dict[str, dict[Words, Kinds]] = {}
 
     def __contains__(self, words: Words) -> bool:
-        return words in self._starting_with(words[0])
+        return words in self.starting_with(words[0])
 
     def __getitem__(self, words: Words) -> Kinds:
-        return self._starting_with(words[0])[words]
+        return self.starting_with(words[0])[words]
 
     def get(self, words: Words) -> Kinds:
         """Return the terminals of a phrase, none if it is unknown."""
-        return self._starting_with(words[0]).get(words, frozenset())
+        return self.starting_with(words[0]).get(words, frozenset())
 
     def phrases(self) -> dict[Words, Kinds]:
         """Return all phrases with their terminals."""
-        return {words: kinds for first in self._unread for words, kinds in self._starting_with(first).items()}
+        return {words: kinds for first in self._unread for words, kinds in self.starting_with(first).items()}
 
-    def _starting_with(self, first: str) -> dict[Words, Kinds]:
+    def starting_with(self, first: str) -> dict[Words, Kinds]:
+        """Return the phrases that begin with a word."""
         if first not in self._unread:
             return _NONE
         if first not in self._read:

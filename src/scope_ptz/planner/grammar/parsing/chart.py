@@ -57,18 +57,17 @@ class ChartParser:
         self._ids = {name: number for number, name in enumerate(rules.symbols)}
         self._first: dict[int, _Node] = {}
 
-    def _after_first(self, symbol: int) -> _Node:
-        """Return the prefix that consists of one symbol, with all that follow it."""
-        if symbol not in self._first:
-            first = _Node()
-            for order, rule in self._rules.starting_with(self._names[symbol]):
-                node = first
-                for following in rule.symbols[1:]:
-                    node = node.children.setdefault(self._ids[following], _Node())
-                gain = rule.priority - _RULE_COST - _ORDER_COST * order
-                node.complete.append((self._ids[rule.name], gain, rule))
-            self._first[symbol] = first
-        return self._first[symbol]
+    def _read_first(self, symbol: int) -> _Node:
+        """Read the rules that begin with a symbol, and return their first node."""
+        first = _Node()
+        for order, rule in self._rules.starting_with(self._names[symbol]):
+            node = first
+            for following in rule.symbols[1:]:
+                node = node.children.setdefault(self._ids[following], _Node())
+            gain = rule.priority - _RULE_COST - _ORDER_COST * order
+            node.complete.append((self._ids[rule.name], gain, rule))
+        self._first[symbol] = first
+        return first
 
     def parse(self, lexemes: Sequence[Collection[str]], start: str) -> Branch | None:
         """Return the best reading of all lexemes as ``start``; None if there is none."""
@@ -91,7 +90,7 @@ class ChartParser:
             agenda.append((terminal, i + 1))
         while agenda:
             symbol, end = agenda.pop()
-            node = self._after_first(symbol)
+            node = self._first.get(symbol) or self._read_first(symbol)
             edges: list[tuple[_Node, int, float, _Link]] = [(node, end, here[symbol][end][0], (None, symbol, i, end))]
             while edges:
                 node, end, score, link = edges.pop()
