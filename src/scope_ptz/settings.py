@@ -12,7 +12,6 @@ from pydantic import BaseModel, Field, SecretStr, ValidationError
 
 from scope_ptz.errors import ConfigError
 
-
 _PREFIX = "scope_"
 
 

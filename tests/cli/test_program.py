@@ -32,7 +32,8 @@ def modules_of(*words: str, folder: Path) -> set[str]:
 
 
 def packages_of(modules: set[str]) -> set[str]:
-    return {name.partition(".")[0] for name in modules} - sys.stdlib_module_names
+    names = {name.partition(".")[0] for name in modules} - sys.stdlib_module_names
+    return {name for name in names if not name.startswith("_sysconfigdata")}
 
 
 def test_help_loads_only_what_draws_help(tmp_path: Path) -> None:
@@ -54,6 +55,19 @@ def test_plan_loads_no_models_no_images_and_no_grammar_compiler(tmp_path: Path) 
     modules = modules_of("plan", "pan right 5, then count the cars", folder=tmp_path)
     assert packages_of(modules) <= LIGHT
     assert not modules & {"scope_ptz.planner.base", "scope_ptz.agent.records", "scope_ptz.tools.registry", "scope_ptz.cli.display"}
+
+
+def test_a_run_that_asks_nothing_loads_no_language_of_perception(
+    scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SCOPE_SCENES_DIR", str(scenes))
+    modules = modules_of("ask", "pan right 5", "--scene", SCENE, folder=tmp_path)
+    assert packages_of(modules) <= LIGHT | {
+        "PIL", "annotated_types", "anyio", "cv2", "idna", "numpy", "platformdirs", "pydantic", "pydantic_core", "sniffio",
+        "typing_inspection",
+    }  # fmt: skip
+    assert not {name for name in modules if name.startswith("scope_ptz.perception.ground_truth.language")}
+    assert "PIL.PdfImagePlugin" not in modules
 
 
 def test_the_entry_point_is_installed() -> None:

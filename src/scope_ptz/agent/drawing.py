@@ -102,7 +102,7 @@ class Canvas:
         size = (round(width * SCALE), round(height * SCALE))
         mask = Image.new("L", size, 0)
         ImageDraw.Draw(mask).rounded_rectangle((0, 0, size[0] - 1, size[1] - 1), round(radius * SCALE), fill=255)
-        self._image.paste(image.resize(size, Image.Resampling.LANCZOS), (round(x * SCALE), round(y * SCALE)), mask)
+        self._image.paste(image.resize(size, Image.Resampling.BICUBIC), (round(x * SCALE), round(y * SCALE)), mask)
 
     def frame(self, x: float, y: float, width: float, height: float, colour: str) -> None:
         """Draw a thin box that shows on light and dark backgrounds."""
@@ -141,4 +141,4 @@ class Canvas:
 
     def finish(self) -> Image.Image:
         """Return the finished picture, scaled down to its own size."""
-        return self._image.resize((round(self.width), round(self.height)), Image.Resampling.LANCZOS)
+        return self._image.resize((round(self.width), round(self.height)), Image.Resampling.BOX)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 
@@ -9,6 +10,8 @@ def main() -> None:
     """Run ``scope``; the entry point of the installed program."""
     from scope_ptz.cli.exit import guarded_streams, readable_arguments
 
+    # The command line uses no plug-ins of pydantic, and looking for them reads the metadata of every installed package.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     with guarded_streams():
         from scope_ptz.cli.app import app
 
