@@ -56,7 +56,7 @@ def test_what_does_not_go_together_is_told(scope: Scope, tmp_path: Path) -> None
     out = str(tmp_path / "tasks.jsonl")
     assert "follow --seeds" in scope("bench", "build", "--out", out, "7").err
     assert "--all" in scope("bench", "build", "--out", out, "--card", out).err
-    assert "no whole dataset" in scope("bench", "card", "--data", str(tmp_path)).err
+    assert "no complete dataset" in scope("bench", "card", "--data", str(tmp_path)).err
     assert scope("bench", "build", "--out", out, "--seeds", "0").code == 2
 
 

@@ -71,7 +71,7 @@ def test_a_person_is_judged_by_the_checks_and_can_go_on_later(
 
     type_in(monkeypatch, "preset board", "count drums", "three", "3", "answer There are 3 drums.", "answer There are 3 drums.")
     second = scope("bench", "human", "--split", str(tasks), "--out", str(out), "--by", "ann")
-    assert "2 of 3 tasks to do" in second.out and "A whole number, in digits." in second.out
+    assert "2 of 3 tasks to do" in second.out and "Enter a whole number below 1000 in digits." in second.out
     result = read_result(out / "evaluation.json")
     assert [(t.task.id[-3:], t.headline) for t in result.trials] == [("001", "correct"), ("002", "correct"), ("003", "incorrect")]
     assert result.trials[1].tool_calls == {"go_to_preset": 1, "count_objects": 1}
@@ -117,7 +117,7 @@ def test_a_person_frames_what_they_are_asked_for(
     type_in(monkeypatch, "zoomto the board", "9 9", place, "30 30 70 70", "", "answer Done.")
     done = scope("bench", "human", "--split", str(tasks), "--out", str(tmp_path / "human"), "--limit", "1")
     assert done.code == 0, done.err
-    assert "Four numbers from 0 to 100" in done.out
+    assert "Enter four numbers from 0 to 100" in done.out
     (call,) = read_trace(tmp_path / "human" / "scope1-analytic-yard-counting-001").calls
     assert call.outcome.result is not None and call.outcome.result["found"] is True
 
@@ -156,7 +156,7 @@ def test_the_end_can_be_typed() -> None:
     assert parse("help") is None
     with pytest.raises(TaskLeftError) as left:
         parse("quit")
-    assert left.value.for_good
+    assert left.value.ends_session
 
 
 @pytest.mark.parametrize(

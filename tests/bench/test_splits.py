@@ -67,7 +67,7 @@ def test_every_split_is_read_back(dataset: Path) -> None:
 def test_a_dataset_that_was_changed_is_told(dataset: Path) -> None:
     assert read_manifest(dataset)["made_with"] == {"seed": 1}
     (dataset / "lite.txt").write_text("scope1-nowhere-001\n")
-    with pytest.raises(InputError, match=r"lite\.txt is not as it was built"):
+    with pytest.raises(InputError, match=r"lite\.txt has changed since it was built"):
         read_manifest(dataset)
     with pytest.raises(InputError, match="scope1-nowhere-001"):
         load_split("lite", dataset)

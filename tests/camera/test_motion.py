@@ -6,29 +6,29 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Drive
+from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Motor
 from scope_ptz.geometry import Pose
 
-drives = st.builds(Drive, st.floats(1, 200), st.floats(1, 1000))
+motors = st.builds(Motor, st.floats(1, 200), st.floats(1, 1000))
 poses = st.builds(Pose, st.floats(-179, 179), st.floats(-60, 30), st.floats(1, 5))
 
 
-@given(drives, st.floats(-360, 360), st.floats(0, 1), st.floats(0, 1))
-def test_a_motor_goes_steadily_from_rest_to_rest(drive: Drive, distance: float, a: float, b: float) -> None:
-    total = drive.duration_s(distance)
+@given(motors, st.floats(-360, 360), st.floats(0, 1), st.floats(0, 1))
+def test_a_motor_goes_steadily_from_rest_to_rest(motor: Motor, distance: float, a: float, b: float) -> None:
+    total = motor.duration_s(distance)
     early, late = sorted((a * total, b * total))
-    gone = abs(drive.travelled(distance, late)) - abs(drive.travelled(distance, early))
-    assert -1e-9 <= gone <= drive.speed * (late - early) + 1e-6
-    assert drive.travelled(distance, 0.0) == pytest.approx(0.0)
-    assert drive.travelled(distance, total) == distance
-    assert abs(drive.travelled(distance, total / 2)) == pytest.approx(abs(distance) / 2, abs=1e-6)
+    gone = abs(motor.travelled(distance, late)) - abs(motor.travelled(distance, early))
+    assert -1e-9 <= gone <= motor.speed * (late - early) + 1e-6
+    assert motor.travelled(distance, 0.0) == pytest.approx(0.0)
+    assert motor.travelled(distance, total) == distance
+    assert abs(motor.travelled(distance, total / 2)) == pytest.approx(abs(distance) / 2, abs=1e-6)
 
 
 @given(st.floats(1, 300))
 def test_a_long_way_takes_its_length_at_top_speed_and_one_ramp(distance: float) -> None:
-    drive = Drive(100.0, 400.0)
+    motor = Motor(100.0, 400.0)
     assume(distance > 25)
-    assert drive.duration_s(distance) == pytest.approx(distance / 100 + 0.25)
+    assert motor.duration_s(distance) == pytest.approx(distance / 100 + 0.25)
 
 
 @given(poses, poses, st.floats(0, 1))

@@ -71,7 +71,7 @@ def test_eyes_that_fail_are_an_error_to_the_planner_and_counted(scope: Scope, tm
     told = shown(done, tmp_path)
     assert "I could not see." in told
     assert last["role"] == "tool"
-    assert "failed inside" in last["content"]
+    assert "had an internal error" in last["content"]
     assert KEY not in json.dumps(last)
     ended = json.loads(next(tmp_path.rglob("trace.jsonl")).read_text().splitlines()[-1])
     assert ended["perception_failures"] == 1

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.planner.chat.planning_checks import PICTURE, TURN
+from scope_ptz.planner.chat.planning_checks import PICTURE_INSTRUCTION, TURN_INSTRUCTION
 from tests.cli.conftest import SCENE, Scope
 from tests.support.misbehaving import (
     MODEL,
@@ -39,9 +39,9 @@ def able(request: Request) -> Say:
     if messages[-1]["role"] == "tool":
         return Say(text="The picture is saved.")
     asked = str(messages[-1]["content"])
-    if PICTURE in asked:
+    if PICTURE_INSTRUCTION in asked:
         return Say(text="", tool_calls=(("take_image", {}),))
-    if TURN in asked or "pan right 20" in asked:
+    if TURN_INSTRUCTION in asked or "pan right 20" in asked:
         return Say(text="", tool_calls=(("adjust_ptz", {"pan_deg": 20}),))
     return Say(text="", tool_calls=(("adjust_ptz", {"pan_deg": "far"}),))
 

@@ -58,7 +58,7 @@ def test_the_list_of_models_has_a_short_timeout(monkeypatch: pytest.MonkeyPatch)
     from scope_ptz.endpoints import catalogue
     from scope_ptz.endpoints.endpoint import Timeouts
 
-    monkeypatch.setattr(catalogue, "PATIENCE", Timeouts(connect_s=0.2, first_byte_s=0.2, total_s=0.3))
+    monkeypatch.setattr(catalogue, "QUICK_TIMEOUTS", Timeouts(connect_s=0.2, first_byte_s=0.2, total_s=0.3))
     with Misbehaving(then=slow_first_byte()) as server, pytest.raises(ServerFailure) as failure:
         anyio.run(served_models, Endpoint(url=server.url))
     assert failure.value.kind in (FailureKind.FIRST_BYTE_TIMEOUT, FailureKind.TOTAL_TIMEOUT)

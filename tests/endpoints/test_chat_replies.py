@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.endpoints.bodies import load_object, safe_text
-from scope_ptz.endpoints.chat_replies import ChatReply, Gathering
+from scope_ptz.endpoints.chat_replies import ChatReply, ReplyAssembler
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from tests.support.misbehaving import Say, completion, pieces
@@ -19,7 +19,7 @@ AT = Endpoint(url="http://127.0.0.1:1/v1")
 
 
 def gather(*parts: dict[str, Any]) -> ChatReply:
-    gathering = Gathering(AT)
+    gathering = ReplyAssembler(AT)
     for part in parts:
         gathering.add(part)
     return gathering.reply()

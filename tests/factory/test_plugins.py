@@ -127,7 +127,7 @@ def test_a_camera_that_does_not_open_ends_in_one_line(installed: Path, tmp_path:
 BROKEN = {
     "import error": ("import no_such_package", "cannot be loaded: ModuleNotFoundError"),
     "syntax error": ("def make(:", "cannot be loaded: SyntaxError"),
-    "no factory": ("make = 3", "which is of type int and not a factory function"),
+    "no factory": ("make = 3", "but that is not callable: it is of type int"),
     "wrong product": (
         "def make(spec):\n    return 'camera'",
         "returned an object of type str; a Camera of scope_ptz.camera.base is needed",

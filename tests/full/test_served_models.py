@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.planner.chat.planning_checks import PICTURE, TURN
+from scope_ptz.planner.chat.planning_checks import PICTURE_INSTRUCTION, TURN_INSTRUCTION
 from tests.cli.conftest import SCENE, Scope
 from tests.full.serving import transformers_serve
 from tests.support.misbehaving import Misbehaving, Request, Say, good
@@ -26,14 +26,14 @@ GREETING = "Say hello."
 COUNT = "how many balls are visible?"
 SQUARE = "Is there a square?"
 TOOL_CALLS: dict[str, tuple[str, dict[str, Any]]] = {
-    PICTURE: ("take_image", {}),
-    TURN: ("adjust_ptz", {"pan_deg": 20}),
+    PICTURE_INSTRUCTION: ("take_image", {}),
+    TURN_INSTRUCTION: ("adjust_ptz", {"pan_deg": 20}),
     COUNT: ("count_objects", {"description": "balls", "view": "current"}),
     SQUARE: ("query_answer", {"question": SQUARE, "view": "current"}),
 }
 ANSWERS = {
-    PICTURE: "The picture is saved.",
-    TURN: "The camera has turned.",
+    PICTURE_INSTRUCTION: "The picture is saved.",
+    TURN_INSTRUCTION: "The camera has turned.",
     COUNT: "I counted the balls.",
     SQUARE: "I looked for it.",
 }
@@ -126,7 +126,7 @@ def test_a_wrong_name_is_told_by_the_real_server(scope: Scope, planner_server: S
 
 def test_the_profile_of_a_served_checkpoint(scope: Scope, planner_server: Served, tmp_path: Path) -> None:
     file = tmp_path / "one.jsonl"
-    file.write_text(json.dumps({"instruction": TURN, "calls": [{"name": "adjust_ptz", "arguments": {"pan_deg": 20}}]}))
+    file.write_text(json.dumps({"instruction": TURN_INSTRUCTION, "calls": [{"name": "adjust_ptz", "arguments": {"pan_deg": 20}}]}))
     done = scope(
         "profile", "--json", "--planner-url", planner_server.url, "--planner-model", planner_server.model,
         "--instructions", str(file),

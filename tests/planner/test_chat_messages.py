@@ -11,7 +11,7 @@ from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, Exchange, PastTurn, Picture, State, ToolCall, ToolOutcome
 from scope_ptz.planner.chat.chat_messages import build_messages
-from scope_ptz.planner.chat.observations import MOST_BOXES, observation
+from scope_ptz.planner.chat.observations import MAX_BOXES, observation
 from scope_ptz.planner.chat.prompts import Prompt, load_prompt, prompt_names
 from scope_ptz.planner.chat.window import estimated_tokens, fits, shortenings
 from scope_ptz.tools.registry import schemas
@@ -142,7 +142,7 @@ def test_observations_are_concise() -> None:
     boxes = [{"x_min": i / 500, "y_min": 0.123456, "x_max": i / 500, "y_max": 0.2, "label": "x", "score": None} for i in range(500)]
     result = {"count": 500, "boxes": boxes, "source": "eyes", "view": "current", "pose": POSE, "message": "500"}
     told = json.loads(observation(outcome("count_objects", result=result)))
-    assert (told["count"], len(told["boxes_xyxy"]), told["boxes_not_listed"]) == (500, MOST_BOXES, 500 - MOST_BOXES)
+    assert (told["count"], len(told["boxes_xyxy"]), told["boxes_not_listed"]) == (500, MAX_BOXES, 500 - MAX_BOXES)
     brief = json.loads(observation(outcome("count_objects", result=result), brief=True))
     assert brief == {"count": 500, "view": "current", "pose": POSE}
     assert json.loads(observation(outcome("count_objects", result={**result, "complete": False}), brief=True))["complete"] is False
@@ -154,10 +154,10 @@ def test_only_old_observations_are_shortened() -> None:
     answered = {"answer": "word " * 200, "message": "word " * 200, "known": True, "source": "eyes", "pose": POSE}
     steps = [Exchange(outcomes=(outcome("query_answer", n, result=answered),)) for n in range(10)]
     full = state(*steps)
-    sizes = [estimated_tokens(build_messages(full, PROMPT, brief_before=n), full.tools) for n in (0, *shortenings(full))]
+    sizes = [estimated_tokens(build_messages(full, PROMPT, shorten_oldest=n), full.tools) for n in (0, *shortenings(full))]
     assert sizes == sorted(sizes, reverse=True)
     assert len(set(sizes)) == 3
-    shortened = build_messages(full, PROMPT, brief_before=8)
+    shortened = build_messages(full, PROMPT, shorten_oldest=8)
     results = [m["content"] for m in shortened if m["role"] == "tool"]
     assert all(len(r) < 400 for r in results[:8])
     assert all(len(r) > 900 for r in results[8:])

@@ -10,7 +10,7 @@ import pytest
 from scope_ptz.planner.grammar.compiled import compiled_lines, heading
 from scope_ptz.planner.grammar.lexing import phrases
 from scope_ptz.planner.grammar.parsing import rules
-from scope_ptz.planner.grammar.parsing.rules import GUESSES, Rule, RuleBook, load_rules, symbols_of
+from scope_ptz.planner.grammar.parsing.rules import RULES_FOR_KNOWN_PRESETS, Rule, RuleBook, load_rules, symbols_of
 
 
 @pytest.fixture(scope="module")
@@ -37,13 +37,13 @@ def test_the_compiled_phrases_are_up_to_date() -> None:
 
 def test_rules_survive_being_written(lines: list[str]) -> None:
     for line in lines:
-        assert str(Rule.read(line)) == line
+        assert str(Rule.from_line(line)) == line
 
 
-@pytest.mark.parametrize("guesses", [True, False])
-def test_rules_are_found_by_their_first_symbol(guesses: bool, lines: list[str]) -> None:
-    wanted = [rule for rule in map(Rule.read, lines) if guesses or rule.name not in GUESSES]
-    book = load_rules(guesses)
+@pytest.mark.parametrize("presets_known", [True, False])
+def test_rules_are_found_by_their_first_symbol(presets_known: bool, lines: list[str]) -> None:
+    wanted = [rule for rule in map(Rule.from_line, lines) if presets_known or rule.name not in RULES_FOR_KNOWN_PRESETS]
+    book = load_rules(presets_known=presets_known)
     assert list(book.symbols) == symbols_of(wanted)
     assert [
         rule for _, rule in sorted((pair for s in book.symbols for pair in book.starting_with(s)), key=lambda pair: pair[0])

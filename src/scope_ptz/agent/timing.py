@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from time import perf_counter
 from typing import Any, Literal, TypeVar
 
@@ -138,6 +138,23 @@ class TimedCamera(Camera):
     async def stop(self) -> None:
         with self._watch.measure("camera"):
             await self._camera.stop()
+
+    async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
+        with self._watch.measure("camera"):
+            await self._camera.drive(pan_dps, tilt_dps, zoom_rate, timeout_s=timeout_s)
+
+    async def save_preset(self, name: str, description: str = "") -> PresetInfo:
+        with self._watch.measure("camera"):
+            return await self._camera.save_preset(name, description)
+
+    async def remove_preset(self, name: str) -> None:
+        with self._watch.measure("camera"):
+            await self._camera.remove_preset(name)
+
+    @asynccontextmanager
+    async def control(self, holder: str) -> AsyncIterator[None]:
+        async with self._camera.control(holder):
+            yield
 
     @contextmanager
     def hold_time(self) -> Iterator[None]:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncGenerator, AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
-from time import monotonic
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
+
+from scope_ptz.camera.capabilities import NO_CAPABILITIES, Capabilities, check_drive, check_preset_name
+from scope_ptz.camera.clocks import Clock
+from scope_ptz.errors import CameraError, InputError, UnknownNameError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from scope_ptz.camera.control import ControlLock
     from scope_ptz.geometry import Axis, Limits, Optics, Pose, Projection
 
 
@@ -27,6 +32,7 @@ class CameraInfo:
         frame_width: Width of a frame in pixels.
         frame_height: Height of a frame in pixels.
         simulated: Whether the pictures are computed.
+        capabilities: What else the camera can do.
     """
 
     name: str
@@ -35,6 +41,7 @@ class CameraInfo:
     frame_width: int
     frame_height: int
     simulated: bool
+    capabilities: Capabilities = NO_CAPABILITIES
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +63,9 @@ class Frame:
 
     Attributes:
         image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
-        pose: The camera's pose; for a stitched panorama the pose at the start of the sweep.
+        pose: The camera's pose at exposure; for a stitched panorama the pose at the start of the sweep.
         hfov_deg: Horizontal field of view in degrees.
-        time_s: Scene time in seconds.
+        time_s: Time of exposure on the camera's clock, in seconds.
         projection: The mapping between pixels and directions.
         origin: Where a simulated frame comes from, None for real cameras.
     """
@@ -109,33 +116,6 @@ class Arrival:
     clamped: tuple[Axis, ...] = field(default=())
 
 
-class Clock(Protocol):
-    """The time of the camera's world, in seconds."""
-
-    def now_s(self) -> float: ...
-
-    async def sleep(self, seconds: float) -> None:
-        """Wait for this much time of the camera's world."""
-        ...
-
-
-class WallClock:
-    """A clock for cameras in the real world. It starts at zero and follows the wall clock."""
-
-    def __init__(self) -> None:
-        self._started_s = monotonic()
-
-    def now_s(self) -> float:
-        """Return the seconds since the clock was made."""
-        return monotonic() - self._started_s
-
-    async def sleep(self, seconds: float) -> None:
-        """Wait."""
-        import anyio
-
-        await anyio.sleep(max(0.0, seconds))
-
-
 class Camera(ABC):
     """A pan-tilt-zoom camera. All methods raise ``CameraError`` when the camera fails.
 
@@ -184,6 +164,79 @@ class Camera(ABC):
     @abstractmethod
     async def stop(self) -> None:
         """Stop any motion at once."""
+
+    async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
+        """Move at constant velocities until the next command. The call returns at once.
+
+        The camera stops by itself after ``timeout_s`` without another command, so a lost controller cannot leave it moving.
+        Velocities above the top speed are reduced to it, and an axis stands still at its limit.
+
+        Args:
+            pan_dps: Degrees per second to the right.
+            tilt_dps: Degrees per second upwards.
+            zoom_rate: Octaves (doublings of magnification) per second, positive to zoom in.
+            timeout_s: Seconds after which the camera stops; at most 10.
+
+        Raises:
+            InputError: A number is not finite, or the timeout is not between 0 and 10 s.
+            CameraError: The camera cannot be driven.
+        """
+        check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
+        raise CameraError(f"{self.info.name} cannot be driven at a velocity; move it to a pose.")
+
+    async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
+        """Yield frames as they are taken, at most ``rate_hz`` per second. A slow consumer gets the newest frame, never a queue.
+
+        Use it with ``contextlib.aclosing``, so that a stream is released when its consumer leaves.
+        """
+        if not (math.isfinite(rate_hz) and rate_hz > 0):
+            raise InputError(f"The frame rate is a number of frames per second above 0, got {rate_hz}.")
+        while True:
+            due_s = self.clock.now_s() + 1.0 / rate_hz
+            yield await self.frame()
+            await self.clock.sleep(due_s - self.clock.now_s())
+
+    async def save_preset(self, name: str, description: str = "") -> PresetInfo:  # noqa: ARG002 - part of the contract
+        """Save the current pose as a preset. A preset of the same name is replaced.
+
+        Raises:
+            InputError: The name is empty, too long, or has characters that cannot be printed.
+            CameraError: The camera cannot save presets.
+        """
+        check_preset_name(name)
+        raise CameraError(f"{self.info.name} cannot save presets.")
+
+    async def remove_preset(self, name: str) -> None:
+        """Remove a preset.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+            CameraError: The camera cannot remove this preset, or no presets at all.
+        """
+        if name not in (known := [preset.name for preset in await self.presets()]):
+            raise UnknownNameError("preset", name, known)
+        raise CameraError(f"{self.info.name} cannot remove presets.")
+
+    control_lock: ControlLock | None = None
+    """The lock of ``control``. Whoever opens a camera that others can reach sets one that holds between processes."""
+
+    @asynccontextmanager
+    async def control(self, holder: str) -> AsyncIterator[None]:
+        """Return a context in which ``holder`` has control of the camera and nobody else can take it.
+
+        Raises:
+            ControlHeldError: Somebody else has control. The message says who.
+        """
+        from scope_ptz.camera.control import ControlLock
+
+        if self.control_lock is None:
+            self.control_lock = ControlLock(self.info.name)
+        lock = self.control_lock
+        lock.acquire(holder)
+        try:
+            yield
+        finally:
+            lock.release()
 
     async def close(self) -> None:
         """Release what the camera holds. The default holds nothing."""

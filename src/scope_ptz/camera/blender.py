@@ -12,8 +12,11 @@ from numpy.typing import NDArray
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.requests import perspective_request
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, FrameOrigin, PresetInfo
-from scope_ptz.camera.scene_presets import preset_pose, starting_preset
-from scope_ptz.errors import BlenderError, CameraError, UnknownNameError
+from scope_ptz.camera.capabilities import Capabilities, Velocity, check_drive
+from scope_ptz.camera.head_motion import HeadMotion
+from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, top_speed
+from scope_ptz.camera.scene_presets import ScenePresets, preset_pose
+from scope_ptz.errors import BlenderError, CameraError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics, Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.layers import read_colour
@@ -21,7 +24,7 @@ from scope_ptz.simulator.models import SceneFile
 
 
 class BlenderCamera(Camera):
-    """A pan-tilt-zoom camera in a scene that a worker has loaded. Moves take no time.
+    """A pan-tilt-zoom camera in a scene that a worker has loaded. Moves to a pose take no time.
 
     Moving actors stand where they are at the clock's time. The caller closes the worker.
 
@@ -56,9 +59,8 @@ class BlenderCamera(Camera):
     ) -> None:
         self.clock = clock or SceneClock()
         self._worker, self._scene, self._samples, self._has_truth = worker, scene, samples, has_truth
-        self._presets = {p.name: p for p in scene.presets}
-        self._home = self._current = starting_preset(scene, viewpoint)
-        self._pose = preset_pose(self._home)
+        self._presets = ScenePresets(scene, viewpoint)
+        self._viewpoint = self._presets.home.viewpoint
         self._last: tuple[tuple[str, Perspective, float], NDArray[np.uint8]] | None = None
         kind = "AXIS M5075-G" if optics is AXIS_M5075_G else "camera"
         self._info = CameraInfo(
@@ -68,7 +70,9 @@ class BlenderCamera(Camera):
             frame_width=width,
             frame_height=height,
             simulated=True,
+            capabilities=Capabilities(top_speed(AXIS_M5075_G_HEAD), edits_presets=True),
         )
+        self._motion = HeadMotion(AXIS_M5075_G_HEAD, self._info.limits, preset_pose(self._presets.home))
 
     @property
     def info(self) -> CameraInfo:
@@ -77,30 +81,40 @@ class BlenderCamera(Camera):
     @property
     def viewpoint(self) -> str:
         """Name of the current optical centre."""
-        return self._current.viewpoint
+        return self._viewpoint
 
     async def pose(self) -> Pose:
-        return self._pose
+        return self._motion.pose(self.clock.elapsed_s())
 
     async def move(self, pose: Pose) -> Arrival:
-        self._pose, clamped = self._info.limits.clamp(pose)
-        return Arrival(self._pose, clamped)
+        end, clamped = self._info.limits.clamp(pose)
+        self._motion.halt(end, self.clock.elapsed_s())
+        return Arrival(end, clamped)
+
+    async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
+        check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
+        self._motion.drive(Velocity(pan_dps, tilt_dps, zoom_rate), self.clock.elapsed_s(), timeout_s)
 
     async def presets(self) -> list[PresetInfo]:
-        return [PresetInfo(p.name, p.description) for p in self._scene.presets]
+        return self._presets.infos()
+
+    async def save_preset(self, name: str, description: str = "") -> PresetInfo:
+        return self._presets.save(name, description, self.viewpoint, await self.pose())
+
+    async def remove_preset(self, name: str) -> None:
+        self._presets.remove(name)
 
     async def go_to_preset(self, name: str) -> Arrival:
-        if name not in self._presets:
-            raise UnknownNameError("preset", name, self._presets)
-        self._current = self._presets[name]
-        return await self.move(preset_pose(self._current))
+        preset = self._presets.find(name)
+        self._viewpoint = preset.viewpoint
+        return await self.move(preset_pose(preset))
 
     async def go_home(self) -> Arrival:
-        self._current = self._home
-        return await self.move(preset_pose(self._home))
+        self._viewpoint = self._presets.home.viewpoint
+        return await self.move(preset_pose(self._presets.home))
 
     async def frame(self) -> Frame:
-        pose, time_s, viewpoint = self._pose, self.clock.now_s(), self.viewpoint
+        pose, time_s, viewpoint = await self.pose(), self.clock.now_s(), self.viewpoint
         hfov_deg = self._info.optics.hfov_deg(pose.zoom)
         view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, self._info.frame_width, self._info.frame_height)
         image = await self._image(viewpoint, view, time_s)
@@ -108,7 +122,7 @@ class BlenderCamera(Camera):
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
     async def stop(self) -> None:
-        """Do nothing: moves take no time."""
+        self._motion.halt(await self.pose(), self.clock.elapsed_s())
 
     async def _image(self, viewpoint: str, view: Perspective, time_s: float) -> NDArray[np.uint8]:
         """Render a view, or return the last picture if nothing has changed since."""

@@ -15,14 +15,16 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from contextlib import AbstractAsyncContextManager
+from collections.abc import Awaitable
+from contextlib import AbstractAsyncContextManager, aclosing
 
 import anyio
 import anyio.lowlevel
 import numpy as np
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo
-from scope_ptz.errors import UnknownNameError
+from scope_ptz.camera.control import ControlHeldError
+from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.geometry import Perspective, Pose, wrap_pan_deg
 
 
@@ -35,6 +37,10 @@ class CameraConformance(ABC):
     """Allowed difference between a frame's field of view and the zoom table, as a share."""
     same_picture_mean_difference: float = 2.0
     """Allowed mean difference (of 255) between two pictures of one pose, for noise and moving things."""
+    driving_s: float = 0.5
+    """How long the camera is driven, in seconds of its clock."""
+    stopping_s: float = 0.5
+    """Allowed time from the end of a drive to a standstill."""
 
     @abstractmethod
     def camera(self) -> AbstractAsyncContextManager[Camera]:
@@ -70,10 +76,10 @@ class CameraConformance(ABC):
 
     async def test_move_arrives_and_stays(self) -> None:
         async with self.camera() as camera:
-            for wanted in _poses(camera.info):
-                arrival = await camera.move(wanted)
-                self._expect_at(arrival.pose, wanted, camera.info)
-                _expect(arrival.clamped == (), f"{wanted} is within the limits, yet {arrival.clamped} was called clamped")
+            for target in _poses(camera.info):
+                arrival = await camera.move(target)
+                self._expect_at(arrival.pose, target, camera.info)
+                _expect(arrival.clamped == (), f"{target} is within the limits, yet {arrival.clamped} was called clamped")
                 self._expect_at(await camera.pose(), arrival.pose, camera.info)
 
     async def test_positive_is_right_and_up(self) -> None:
@@ -89,32 +95,32 @@ class CameraConformance(ABC):
             limits = camera.info.limits
             middle = _middle(camera.info)
             await camera.move(middle)
-            for wanted, axis in (
+            for target, axis in (
                 (Pose(middle.pan_deg, limits.max_tilt_deg + 20, middle.zoom), "tilt"),
                 (Pose(middle.pan_deg, limits.min_tilt_deg - 500, middle.zoom), "tilt"),
                 (Pose(middle.pan_deg, middle.tilt_deg, limits.max_zoom * 3), "zoom"),
                 (Pose(middle.pan_deg, middle.tilt_deg, limits.min_zoom / 3), "zoom"),
             ):
-                arrival = await camera.move(wanted)
-                _expect(arrival.clamped == (axis,), f"{wanted}: clamped should be {(axis,)}, is {arrival.clamped}")
-                self._expect_at(arrival.pose, limits.clamp(wanted)[0], camera.info)
+                arrival = await camera.move(target)
+                _expect(arrival.clamped == (axis,), f"{target}: clamped should be {(axis,)}, is {arrival.clamped}")
+                self._expect_at(arrival.pose, limits.clamp(target)[0], camera.info)
 
     async def test_pan_stops_or_wraps(self) -> None:
         async with self.camera() as camera:
             limits = camera.info.limits
             middle = _middle(camera.info)
             for beyond in (limits.max_pan_deg + 15, limits.min_pan_deg - 15):
-                wanted = Pose(beyond, middle.tilt_deg, middle.zoom)
-                arrival = await camera.move(wanted)
-                expected, clamped = limits.clamp(wanted)
+                target = Pose(beyond, middle.tilt_deg, middle.zoom)
+                arrival = await camera.move(target)
+                expected, clamped = limits.clamp(target)
                 self._expect_at(arrival.pose, expected, camera.info)
                 _expect(arrival.clamped == clamped, f"pan {beyond}: clamped should be {clamped}, is {arrival.clamped}")
 
     async def test_frame_carries_its_geometry(self) -> None:
         async with self.camera() as camera:
             info = camera.info
-            for wanted in _poses(info):
-                arrival = await camera.move(wanted)
+            for target in _poses(info):
+                arrival = await camera.move(target)
                 frame = await camera.frame()
                 _expect(
                     (frame.width, frame.height) == (info.frame_width, info.frame_height), "the frame's size is not as announced"
@@ -172,8 +178,8 @@ class CameraConformance(ABC):
     async def test_home_does_not_depend_on_history(self) -> None:
         async with self.camera() as camera:
             home = await camera.go_home()
-            for wanted in _poses(camera.info):
-                await camera.move(wanted)
+            for target in _poses(camera.info):
+                await camera.move(target)
                 back = await camera.go_home()
                 self._expect_at(back.pose, home.pose, camera.info)
 
@@ -203,6 +209,123 @@ class CameraConformance(ABC):
             _expect(low - 1 <= stopped.pan_deg <= high + 1, f"stopped at {stopped}, not between {start} and {target}")
             self._expect_at(await camera.pose(), stopped, camera.info)
 
+    async def test_drive_moves_until_stopped(self) -> None:
+        async with self.camera() as camera:
+            start = (await camera.move(_middle(camera.info))).pose
+            top = camera.info.capabilities.top_speed
+            if not camera.info.capabilities.drives:
+                await _expect_error(CameraError, camera.drive(5.0))
+                self._expect_at(await camera.pose(), start, camera.info)
+                return
+            await camera.drive(-top.pan_dps / 4, top.tilt_dps / 8, timeout_s=5.0)
+            await camera.clock.sleep(self.driving_s)
+            await camera.stop()
+            stopped = await camera.pose()
+            if top.pan_dps:
+                _expect(_turn(stopped, start) < -1.0, f"driven left from {start}, it is at {stopped}")
+            if top.tilt_dps:
+                _expect(stopped.tilt_deg > start.tilt_deg + 0.5, f"driven up from {start}, it is at {stopped}")
+            await camera.clock.sleep(self.driving_s)
+            self._expect_at(await camera.pose(), stopped, camera.info)
+
+    async def test_drive_ends_by_itself(self) -> None:
+        async with self.camera() as camera:
+            top = camera.info.capabilities.top_speed
+            if not top.pan_dps:
+                return
+            start = (await camera.move(_middle(camera.info))).pose
+            await camera.drive(top.pan_dps / 4, timeout_s=self.driving_s / 2)
+            await camera.clock.sleep(self.driving_s / 2 + self.stopping_s)
+            ended = await camera.pose()
+            _expect(_turn(ended, start) > 0.5, f"driven right from {start}, it is at {ended}")
+            await camera.clock.sleep(self.driving_s)
+            self._expect_at(await camera.pose(), ended, camera.info)
+
+    async def test_drive_zooms_and_stays_within_limits(self) -> None:
+        async with self.camera() as camera:
+            top, limits = camera.info.capabilities.top_speed, camera.info.limits
+            if not top.zoom_rate:
+                return
+            start = (await camera.move(_middle(camera.info))).pose
+            await camera.drive(zoom_rate=top.zoom_rate * 100, timeout_s=10.0)
+            await camera.clock.sleep(math.log2(limits.max_zoom / start.zoom) / top.zoom_rate + self.stopping_s)
+            at_stop = await camera.pose()
+            await camera.stop()
+            self._expect_at(at_stop, Pose(start.pan_deg, start.tilt_deg, limits.max_zoom), camera.info)
+
+    async def test_drive_refuses_wrong_numbers(self) -> None:
+        async with self.camera() as camera:
+            before = await camera.pose()
+            await _expect_error(InputError, camera.drive(math.nan))
+            await _expect_error(InputError, camera.drive(0.0, math.inf))
+            for timeout_s in (0.0, -1.0, math.nan, 1e9):
+                await _expect_error(InputError, camera.drive(5.0, timeout_s=timeout_s))
+            self._expect_at(await camera.pose(), before, camera.info)
+
+    async def test_frames_follow_the_camera(self) -> None:
+        async with self.camera() as camera:
+            first = (await camera.move(_poses(camera.info)[0])).pose
+            second, seen = _poses(camera.info)[1], []
+            async with aclosing(camera.frames()) as stream:
+                async for frame in stream:
+                    seen.append(frame)
+                    if len(seen) == 3:
+                        await camera.move(second)
+                    if len(seen) > 3 and self._is_at(frame.pose, second, camera.info):
+                        break
+                    _expect(len(seen) < 500, f"the stream does not show {second} after a move there")
+            self._expect_at(seen[0].pose, first, camera.info)
+            times = [frame.time_s for frame in seen]
+            _expect(times == sorted(times), "the frames of a stream go back in time")
+            info = camera.info
+            _expect(all((f.width, f.height) == (info.frame_width, info.frame_height) for f in seen), "a frame has another size")
+            _expect(bool(np.any(seen[0].image != seen[-1].image)), "the stream shows one picture for two poses")
+
+    async def test_frames_refuse_a_wrong_rate(self) -> None:
+        async with self.camera() as camera:
+            for rate_hz in (0.0, -5.0, math.nan):
+                await _expect_error(InputError, anext(camera.frames(rate_hz=rate_hz)))
+
+    async def test_presets_can_be_saved_and_removed(self) -> None:
+        async with self.camera() as camera:
+            before = await camera.presets()
+            if not camera.info.capabilities.edits_presets:
+                await _expect_error(CameraError, camera.save_preset("check-of-presets"))
+                return
+            spot = (await camera.move(_poses(camera.info)[1])).pose
+            await camera.save_preset("check-of-presets")
+            try:
+                listed = [preset.name for preset in await camera.presets()]
+                _expect(sorted(listed) == sorted([*(p.name for p in before), "check-of-presets"]), f"after saving: {listed}")
+                await camera.move(_middle(camera.info))
+                self._expect_at((await camera.go_to_preset("check-of-presets")).pose, spot, camera.info)
+                other = (await camera.move(_middle(camera.info))).pose
+                await camera.save_preset("check-of-presets")
+                await camera.move(spot)
+                self._expect_at((await camera.go_to_preset("check-of-presets")).pose, other, camera.info)
+            finally:
+                await camera.remove_preset("check-of-presets")
+            _expect(await camera.presets() == before, "saving and removing a preset changes the others")
+            await _expect_error(UnknownNameError, camera.remove_preset("check-of-presets"))
+
+    async def test_wrong_preset_names_are_refused(self) -> None:
+        async with self.camera() as camera:
+            before = await camera.presets()
+            for name in ("", "  ", " spaced ", "x" * 300, "two\nlines", "bell\a"):
+                await _expect_error(InputError, camera.save_preset(name))
+            _expect(await camera.presets() == before, "a refused preset changes the list")
+
+    async def test_one_controller_at_a_time(self) -> None:
+        async with self.camera() as camera:
+            async with camera.control("first operator"):
+                try:
+                    async with camera.control("second operator"):
+                        raise AssertionError("two controllers at the same time")
+                except ControlHeldError as error:
+                    _expect("first operator" in str(error), f"the error does not say who has control: {error}")
+            async with camera.control("second operator"):
+                pass
+
     async def test_clock_goes_forward(self) -> None:
         async with self.camera() as camera:
             before = camera.clock.now_s()
@@ -211,13 +334,15 @@ class CameraConformance(ABC):
             first, second = await camera.frame(), await camera.frame()
             _expect(second.time_s >= first.time_s, "frames go back in time")
 
-    def _expect_at(self, pose: Pose, wanted: Pose, info: CameraInfo) -> None:
-        pan_off = abs(_turn(pose, wanted)) if info.limits.pan_endless else abs(pose.pan_deg - wanted.pan_deg)
-        _expect(
+    def _expect_at(self, pose: Pose, expected: Pose, info: CameraInfo) -> None:
+        _expect(self._is_at(pose, expected, info), f"the camera is at {pose}, it should be at {expected}")
+
+    def _is_at(self, pose: Pose, expected: Pose, info: CameraInfo) -> bool:
+        pan_off = abs(_turn(pose, expected)) if info.limits.pan_endless else abs(pose.pan_deg - expected.pan_deg)
+        return (
             pan_off <= self.angle_tolerance_deg
-            and abs(pose.tilt_deg - wanted.tilt_deg) <= self.angle_tolerance_deg
-            and abs(pose.zoom - wanted.zoom) <= self.zoom_tolerance * wanted.zoom,
-            f"the camera is at {pose}, it should be at {wanted}",
+            and abs(pose.tilt_deg - expected.tilt_deg) <= self.angle_tolerance_deg
+            and abs(pose.zoom - expected.zoom) <= self.zoom_tolerance * expected.zoom
         )
 
 
@@ -243,6 +368,14 @@ def _middle(info: CameraInfo) -> Pose:
 
 def _turn(pose: Pose, since: Pose) -> float:
     return wrap_pan_deg(pose.pan_deg - since.pan_deg)
+
+
+async def _expect_error(kind: type[Exception], doing: Awaitable[object]) -> None:
+    try:
+        await doing
+    except kind:
+        return
+    raise AssertionError(f"no {kind.__name__}")
 
 
 def _expect(condition: bool, otherwise: str) -> None:

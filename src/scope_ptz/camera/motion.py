@@ -1,15 +1,16 @@
-"""The motion of a pan-tilt-zoom head: each axis accelerates, runs at its top speed, and brakes."""
+"""The motors of a pan-tilt-zoom head: each axis accelerates, runs at its top speed, and brakes."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from scope_ptz.camera.capabilities import Velocity
 from scope_ptz.geometry import Pose
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class Motor:
     """A motor: its top speed in units/s and its acceleration in units/s²."""
 
     speed: float
@@ -23,7 +24,7 @@ class Drive:
         return d / self.speed + self.speed / self.acceleration
 
     def travelled(self, distance: float, time_s: float) -> float:
-        """Return the signed way along ``distance`` after ``time_s``."""
+        """Return the signed part of ``distance`` that is covered after ``time_s``."""
         d, total = abs(distance), self.duration_s(distance)
         t = min(max(time_s, 0.0), total)
         if t >= total:
@@ -37,15 +38,48 @@ class Drive:
             gone = self.acceleration * ramp**2 / 2 + self.speed * (t - ramp)
         return math.copysign(gone, distance)
 
+    def driven(self, speed: float, target_speed: float, hold_s: float, time_s: float) -> tuple[float, float]:
+        """Return distance and speed ``time_s`` after a velocity command.
+
+        Args:
+            speed: The speed when the command arrived.
+            target_speed: The commanded speed; the motor's top speed caps it.
+            hold_s: How long the command lasts. Then the motor brakes.
+            time_s: Time since the command.
+        """
+        target = min(max(target_speed, -self.speed), self.speed)
+        distance, speed = self._ramp(speed, target, min(time_s, hold_s))
+        if time_s > hold_s:
+            braking, speed = self._ramp(speed, 0.0, time_s - hold_s)
+            distance += braking
+        return distance, speed
+
+    def braking_s(self, speed: float) -> float:
+        """Return the time to stand still."""
+        return abs(speed) / self.acceleration
+
+    def _ramp(self, speed: float, target: float, time_s: float) -> tuple[float, float]:
+        """Return distance and speed after accelerating towards a target speed and then holding it."""
+        ramp_s = abs(target - speed) / self.acceleration
+        if time_s < ramp_s:
+            reached = speed + math.copysign(self.acceleration * time_s, target - speed)
+            return (speed + reached) / 2 * time_s, reached
+        return (speed + target) / 2 * ramp_s + target * (time_s - ramp_s), target
+
 
 @dataclass(frozen=True, slots=True)
 class Head:
     """The motors of a camera. Zoom is in octaves (doublings of magnification), which matches how operators perceive it."""
 
-    pan: Drive
-    tilt: Drive
-    zoom: Drive
+    pan: Motor
+    tilt: Motor
+    zoom: Motor
     settle_s: float
+
+    def at_speed(self, share: float) -> Head:
+        """Return the head with top speeds reduced to a share (0 to 1] of its own."""
+        pan, tilt, zoom = (replace(motor, speed=motor.speed * share) for motor in (self.pan, self.tilt, self.zoom))
+        return Head(pan, tilt, zoom, self.settle_s)
 
     def duration_s(self, start: Pose, end: Pose) -> float:
         """Return the time until all axes stand still and the picture has settled; 0 if nothing moves."""
@@ -65,9 +99,14 @@ class Head:
         )
 
 
+def top_speed(head: Head) -> Velocity:
+    """Return the highest velocity of a head."""
+    return Velocity(head.pan.speed, head.tilt.speed, head.zoom.speed)
+
+
 def _distances(start: Pose, end: Pose) -> tuple[float, float, float]:
     return end.pan_deg - start.pan_deg, end.tilt_deg - start.tilt_deg, math.log2(end.zoom / start.zoom)
 
 
-AXIS_M5075_G_HEAD = Head(pan=Drive(100.0, 400.0), tilt=Drive(100.0, 400.0), zoom=Drive(1.5, 6.0), settle_s=0.1)
+AXIS_M5075_G_HEAD = Head(pan=Motor(100.0, 400.0), tilt=Motor(100.0, 400.0), zoom=Motor(1.5, 6.0), settle_s=0.1)
 """The pan speed is from the data sheet. Tilt, zoom, acceleration and settling time are estimates."""

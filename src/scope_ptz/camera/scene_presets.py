@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from scope_ptz.errors import UnknownNameError
+from scope_ptz.camera.base import PresetInfo
+from scope_ptz.camera.capabilities import check_preset_name
+from scope_ptz.errors import CameraError, UnknownNameError
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.models import SceneFile, ScenePreset
 
@@ -33,3 +35,60 @@ def starting_preset(scene: SceneFile, viewpoint: str | None = None) -> ScenePres
         raise UnknownNameError("viewpoint", viewpoint, known)
     local = (preset for preset in scene.presets if preset.viewpoint == viewpoint)
     return next(local, ScenePreset(name="home", viewpoint=viewpoint, pan_deg=0.0, tilt_deg=0.0, zoom=1.0))
+
+
+class ScenePresets:
+    """The presets of one simulated camera: those of its scene, and those that were saved since it was opened.
+
+    Args:
+        scene: The scene.
+        viewpoint: Where the camera stands, None for the viewpoint of the scene's home preset.
+
+    Attributes:
+        home: The preset that is home.
+    """
+
+    def __init__(self, scene: SceneFile, viewpoint: str | None = None) -> None:
+        self.home = starting_preset(scene, viewpoint)
+        self._presets = {preset.name: preset for preset in scene.presets}
+
+    def infos(self) -> list[PresetInfo]:
+        """Return the presets in a stable order."""
+        return [PresetInfo(preset.name, preset.description) for preset in self._presets.values()]
+
+    def find(self, name: str) -> ScenePreset:
+        """Return a preset.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+        """
+        if name not in self._presets:
+            raise UnknownNameError("preset", name, self._presets)
+        return self._presets[name]
+
+    def save(self, name: str, description: str, viewpoint: str, pose: Pose) -> PresetInfo:
+        """Save a pose. A preset of the same name is replaced.
+
+        Raises:
+            InputError: The name is empty, too long, or has characters that cannot be printed.
+            CameraError: The preset of this name is home.
+        """
+        check_preset_name(name)
+        if name == self.home.name:
+            raise CameraError(f"The preset '{name}' is home and cannot be replaced. Choose another name.")
+        # The names in scene files are kebab-case. Operators may choose any, so the name is not validated again.
+        self._presets[name] = ScenePreset.model_construct(
+            name=name, viewpoint=viewpoint, description=description, pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom
+        )
+        return PresetInfo(name, description)
+
+    def remove(self, name: str) -> None:
+        """Remove a preset.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+            CameraError: The preset is home.
+        """
+        if self.find(name).name == self.home.name:
+            raise CameraError(f"The preset '{name}' is home and cannot be removed.")
+        del self._presets[name]

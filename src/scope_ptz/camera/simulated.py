@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 from anyio import to_thread
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, FrameOrigin, PresetInfo
-from scope_ptz.camera.motion import AXIS_M5075_G_HEAD
-from scope_ptz.camera.scene_presets import preset_pose, starting_preset
-from scope_ptz.errors import UnknownNameError
+from scope_ptz.camera.capabilities import Capabilities, Velocity, check_drive
+from scope_ptz.camera.head_motion import HeadMotion
+from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Head, top_speed
+from scope_ptz.camera.scene_presets import ScenePresets, preset_pose
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.models import ScenePreset
@@ -23,13 +23,6 @@ TICK_S = 0.05
 
 CUT_S = 0.5
 """Time of a switch to another optical centre, like a switch between two cameras of an installation."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Motion:
-    start: Pose
-    end: Pose
-    since_s: float
 
 
 class SimulatedCamera(Camera):
@@ -44,18 +37,25 @@ class SimulatedCamera(Camera):
         clock: The scene's clock.
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
+        head: The motors; the default is those of the AXIS M5075-G.
     """
 
     clock: SceneClock
 
     def __init__(
-        self, scene: Scene, *, viewpoint: str | None = None, clock: SceneClock | None = None, width: int = 1280, height: int = 720
+        self,
+        scene: Scene,
+        *,
+        viewpoint: str | None = None,
+        clock: SceneClock | None = None,
+        width: int = 1280,
+        height: int = 720,
+        head: Head = AXIS_M5075_G_HEAD,
     ) -> None:
         self.clock = clock or SceneClock()
         self._scene = scene
-        self._presets = {p.name: p for p in scene.file.presets}
-        self._home = starting_preset(scene.file, viewpoint)
-        self._viewpoint = scene.viewpoint(self._home.viewpoint)
+        self._presets = ScenePresets(scene.file, viewpoint)
+        self._viewpoint = scene.viewpoint(self._presets.home.viewpoint)
         self._info = CameraInfo(
             name=f"simulated AXIS M5075-G in {scene.file.title}",
             limits=Limits(),
@@ -63,9 +63,9 @@ class SimulatedCamera(Camera):
             frame_width=width,
             frame_height=height,
             simulated=True,
+            capabilities=Capabilities(top_speed(head), edits_presets=True),
         )
-        at_home = preset_pose(self._home)
-        self._motion = _Motion(at_home, at_home, 0.0)
+        self._motion = HeadMotion(head, self._info.limits, preset_pose(self._presets.home))
 
     @property
     def info(self) -> CameraInfo:
@@ -81,19 +81,27 @@ class SimulatedCamera(Camera):
 
     async def move(self, pose: Pose) -> Arrival:
         end, clamped = self._info.limits.clamp(pose)
-        await self._run(_Motion(self._pose_now(), end, self.clock.elapsed_s()))
+        await self._run(end)
         return Arrival(self._pose_now(), clamped)
 
+    async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
+        check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
+        self._motion.drive(Velocity(pan_dps, tilt_dps, zoom_rate), self.clock.elapsed_s(), timeout_s)
+
     async def presets(self) -> list[PresetInfo]:
-        return [PresetInfo(p.name, p.description) for p in self._presets.values()]
+        return self._presets.infos()
+
+    async def save_preset(self, name: str, description: str = "") -> PresetInfo:
+        return self._presets.save(name, description, self.viewpoint, self._pose_now())
+
+    async def remove_preset(self, name: str) -> None:
+        self._presets.remove(name)
 
     async def go_to_preset(self, name: str) -> Arrival:
-        if name not in self._presets:
-            raise UnknownNameError("preset", name, self._presets)
-        return await self._go_to(self._presets[name])
+        return await self._go_to(self._presets.find(name))
 
     async def go_home(self) -> Arrival:
-        return await self._go_to(self._home)
+        return await self._go_to(self._presets.home)
 
     async def frame(self) -> Frame:
         pose, time_s, viewpoint = self._pose_now(), self.clock.now_s(), self._viewpoint.name
@@ -104,8 +112,8 @@ class SimulatedCamera(Camera):
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
     async def stop(self) -> None:
-        here = self._pose_now()
-        self._motion = _Motion(here, here, self.clock.elapsed_s())
+        """Stop any motion at once: a simulated head needs no way to brake."""
+        self._motion.halt(self._pose_now(), self.clock.elapsed_s())
 
     @contextmanager
     def hold_time(self) -> Iterator[None]:
@@ -113,31 +121,32 @@ class SimulatedCamera(Camera):
             yield
 
     def _pose_now(self) -> Pose:
-        motion = self._motion
-        return AXIS_M5075_G_HEAD.at(motion.start, motion.end, self.clock.elapsed_s() - motion.since_s)
+        return self._motion.pose(self.clock.elapsed_s())
 
     async def _go_to(self, preset: ScenePreset) -> Arrival:
         if preset.viewpoint == self._viewpoint.name:
             return await self.move(preset_pose(preset))
         end, clamped = self._info.limits.clamp(preset_pose(preset))
         self._viewpoint = self._scene.viewpoint(preset.viewpoint)
-        self._motion = _Motion(end, end, self.clock.elapsed_s())
+        self._motion.halt(end, self.clock.elapsed_s())
         await self.clock.sleep(CUT_S)
         return Arrival(end, clamped)
 
-    async def _run(self, motion: _Motion) -> None:
+    async def _run(self, end: Pose) -> None:
         """Move until the picture has settled or another command arrives. A cancelled move stops where it is.
 
         While time is held, moves take no time: a watched sweep takes only as long as its pictures.
         """
+        motion = self._motion
         if self.clock.held:
-            motion = _Motion(motion.end, motion.end, motion.since_s)
-        self._motion = motion
-        ends_s = motion.since_s + AXIS_M5075_G_HEAD.duration_s(motion.start, motion.end)
+            motion.halt(end, self.clock.elapsed_s())
+            return
+        motion.move(end, self.clock.elapsed_s())
+        command = motion.commands
         try:
-            while self._motion is motion and (left_s := ends_s - self.clock.elapsed_s()) > 1e-9:
+            while motion.commands == command and (left_s := motion.ends_s() - self.clock.elapsed_s()) > 1e-9:
                 await self.clock.sleep(min(left_s, TICK_S))
         except BaseException:
-            if self._motion is motion:
+            if motion.commands == command:
                 await self.stop()
             raise

@@ -181,13 +181,13 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
 async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerception) -> AsyncIterator[tuple[str, ServerCheck]]:
     """Yield the checks of both servers, each with the name of its server."""
     if planner.endpoint is not None:
-        from scope_ptz.endpoints.chat_server_checks import LAST, check_chat
+        from scope_ptz.endpoints.chat_server_checks import UNKNOWN_MODEL_CHECK, check_chat
         from scope_ptz.planner.chat.planning_checks import check_planning
         from scope_ptz.tools.registry import schemas
 
         server, alive = f"planner {planner.name}".strip(), False
         async for check in check_chat(planner.endpoint):
-            alive = check.what == LAST
+            alive = check.what == UNKNOWN_MODEL_CHECK
             yield server, check
         if alive:
             async for check in check_planning(planner.endpoint, schemas(), planner.options):

@@ -58,7 +58,7 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
     ):
         table.add_column(column, no_wrap=True)
     for m in chosen:
-        roles, (_, least) = "+".join(sorted(m.roles, reverse=True)), m.smallest()
+        roles, (_, least) = "+".join(sorted(m.roles, reverse=True)), m.least_memory()
         more = (_THINKING[m.thinking], m.licence) if wide else ()
         table.add_row(
             m.name, roles, f"{m.size_b:g}B", f"{m.active_b:g}B", m.precision, f"{m.memory_for():.1f}", f"{least:.1f}",
@@ -67,9 +67,9 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
         )  # fmt: skip
     console.print(table)
     if memory_gb is not None:
-        smaller = [m for m in suitable if m not in chosen and m.smallest()[1] <= memory_gb]
+        smaller = [m for m in suitable if m not in chosen and m.least_memory()[1] <= memory_gb]
         if smaller:
-            names = ", ".join(f"{m.name} ({m.smallest()[1]:.1f} GB)" for m in smaller)
+            names = ", ".join(f"{m.name} ({m.least_memory()[1]:.1f} GB)" for m in smaller)
             console.print(Text(f"With smaller weights, {memory_gb:g} GB are enough for: {names}."), soft_wrap=True)
     console.print(Text(MEMORY_NOTE, style="dim"), soft_wrap=True)
     _name_plugins(console, only)
@@ -195,7 +195,7 @@ def describe(known: Registry, model: Model) -> dict[str, Any]:
         }
         for server, serving in model.serve.items()
     }
-    return {**data, "memory_gb": model.memory_for(), "least_memory_gb": model.smallest()[1], "serve": servings}
+    return {**data, "memory_gb": model.memory_for(), "least_memory_gb": model.least_memory()[1], "serve": servings}
 
 
 def _console() -> Console:

@@ -9,7 +9,8 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 from urllib.parse import parse_qsl
 
-from scope_ptz.camera.base import Camera, Clock
+from scope_ptz.camera.base import Camera
+from scope_ptz.camera.clocks import Clock
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.entry_points import CAMERAS, call_factory, expect_product, find, installed, one_line
 from scope_ptz.errors import CameraError, InputError, ScopeError, UnknownNameError
@@ -166,7 +167,8 @@ def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | Non
 
     scene = open_scene(spec.address)
     clock = SceneClock(scene.file.start_s if time_s is None else time_s, realtime=realtime)
-    return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, **frame_size(spec)), scene)
+    width, height = frame_size(spec)
+    return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, width=width, height=height), scene)
 
 
 async def _open_plugin(spec: CameraSpec, viewpoint: str | None, time_s: float | None) -> OpenCamera:
@@ -188,9 +190,9 @@ async def _open_plugin(spec: CameraSpec, viewpoint: str | None, time_s: float | 
     return OpenCamera(spec, expect_product(entry, Camera, product))  # type: ignore[type-abstract]
 
 
-def frame_size(spec: CameraSpec) -> dict[str, int]:
-    """Return the width and height among the options of a spec."""
-    return {name: int(spec.options[name]) for name in _FRAME_OPTIONS if name in spec.options}
+def frame_size(spec: CameraSpec) -> tuple[int, int]:
+    """Return the width and height that the options of a spec ask for, 1280 and 720 by default."""
+    return int(spec.options.get("width", 1280)), int(spec.options.get("height", 720))
 
 
 def _has_credentials(scheme: str, address: str) -> bool:

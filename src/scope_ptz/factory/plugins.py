@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from scope_ptz.entry_points import CAMERAS, PERCEPTION, PLANNERS, InstalledEntry, installed, normalised, repeated
+from scope_ptz.entry_points import CAMERAS, PERCEPTION, PLANNERS, InstalledEntry, duplicated_names, installed, normalised
 
 Kind = Literal["camera", "planner", "perception"]
 GROUPS: dict[Kind, str] = {"camera": CAMERAS, "planner": PLANNERS, "perception": PERCEPTION}
@@ -57,7 +57,7 @@ def plugins_of(kind: Kind) -> tuple[Plugin, ...]:
     entries = installed(group)
     if not entries:
         return ()
-    own, twice = _own_names(kind), repeated(group)
+    own, twice = _own_names(kind), duplicated_names(group)
     return tuple(
         Plugin(kind, entry.name, entry.package, entry.target, _problem(entry, kind, own, twice), entry) for entry in entries
     )

@@ -51,7 +51,7 @@ def test_a_log_of_another_evaluation(evaluated: Path, tmp_path: Path) -> None:
 
 def test_a_run_that_is_not_there(evaluated: Path) -> None:
     for name in ("nothing#1", "nothing", "", "#", "../../x#1"):
-        with pytest.raises(TraceError, match="holds no run"):
+        with pytest.raises(TraceError, match="contains no run"):
             open_sample(evaluated, name)
 
 

@@ -126,7 +126,7 @@ def test_the_report_as_text_and_as_json() -> None:
     assert content["pairs"][0]["verdicts"]["kappa"] == pytest.approx(0.0)
     assert figures(cohen(["correct"], ["correct"], ["t"], 1)).startswith("1 run, agree on 100.0%")
     assert figures(cohen([], [], [], 1)) == "no run was rated by both"
-    assert "hold no ratings" in next(iter(agreement_lines(measure_agreement([]))))
+    assert "contain no ratings" in next(iter(agreement_lines(measure_agreement([]))))
 
 
 # Gold runs

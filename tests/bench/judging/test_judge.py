@@ -11,7 +11,7 @@ import pytest
 from pydantic import SecretStr
 
 from scope_ptz.bench.judging.judge import Completion, Judge, NoReplyError
-from scope_ptz.bench.judging.rendering import LEAST_CHARS
+from scope_ptz.bench.judging.rendering import MIN_CHARS
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
 from scope_ptz.bench.scoring.error_modes import ErrorMode
@@ -181,7 +181,7 @@ def test_what_a_server_refused_it_is_not_sent_again() -> None:
 
 def test_a_window_too_small_gets_a_shorter_story() -> None:
     def small_window(x: m.Exchange) -> Any:
-        long = len(x.request.data["messages"][1]["content"]) > LEAST_CHARS * 2
+        long = len(x.request.data["messages"][1]["content"]) > MIN_CHARS * 2
         return m.status(400, "maximum context length is 4096 tokens")(x) if long else says(CORRECT)(x)
 
     facts, _ = facts_and_case()

@@ -12,7 +12,7 @@ from scope_ptz.agent.trace import Trace, read_trace
 from scope_ptz.bench.judging.case import CaseCall, case_of
 from scope_ptz.bench.judging.judge import judge_messages
 from scope_ptz.bench.judging.quoting import BAR
-from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
+from scope_ptz.bench.judging.rendering import MIN_CHARS, render
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
 from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.error_modes import ErrorMode
@@ -97,12 +97,12 @@ def test_judges_do_not_learn_who_looked() -> None:
     assert "boxes" not in text
 
 
-@pytest.mark.parametrize("budget", [LEAST_CHARS, 20_000, 60_000])
+@pytest.mark.parametrize("budget", [MIN_CHARS, 20_000, 60_000])
 @pytest.mark.parametrize(("calls", "said"), [(400, 10), (40, 5000), (3, 90_000), (2000, 3000)])
 def test_a_long_run_is_cut_in_its_middle_and_says_so(calls: int, said: int, budget: int) -> None:
     facts, _ = facts_and_case()
     text = render(facts, long_case(calls, said), budget)
-    assert len(text) <= budget + LEAST_CHARS
+    assert len(text) <= budget + MIN_CHARS
     assert f"Tool calls, in order ({calls}):" in text
     assert "| There are 5 cones." in text
     assert "number 0?" in text
@@ -112,7 +112,7 @@ def test_a_long_run_is_cut_in_its_middle_and_says_so(calls: int, said: int, budg
 
 def test_what_was_left_out_is_counted() -> None:
     facts, _ = facts_and_case()
-    text = render(facts, long_case(400, 10), LEAST_CHARS)
+    text = render(facts, long_case(400, 10), MIN_CHARS)
     told = [line for line in text.splitlines() if line.startswith("Call ")]
     (note,) = (line for line in text.splitlines() if line.startswith("[Calls"))
     assert f'"query_answer" {400 - len(told)} times; 0 of them failed' in note

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.judging.judge_replies import MOST_REASON_CHARS, REPLY_SCHEMA, JudgeReply, parse_judge_reply
+from scope_ptz.bench.judging.judge_replies import MAX_REASON_CHARS, REPLY_SCHEMA, JudgeReply, parse_judge_reply
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from tests.bench.judging.runs import CORRECT, MISCOUNTED, written
 
@@ -65,7 +65,7 @@ def test_what_is_no_verdict(text: str, problem: str) -> None:
 def test_a_long_reason_is_cut() -> None:
     read = parse_judge_reply(written({**CORRECT, "reason": "very " * 1000}))
     assert isinstance(read, JudgeReply)
-    assert len(read.reason) == MOST_REASON_CHARS
+    assert len(read.reason) == MAX_REASON_CHARS
 
 
 @given(st.text())

@@ -64,7 +64,7 @@ class _Session:
             left = self._do(task)
             if left is None:
                 put("recorded")
-            elif left.for_good:
+            elif left.ends_session:
                 break
         self._finish()
 

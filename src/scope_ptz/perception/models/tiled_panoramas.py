@@ -11,7 +11,7 @@ import anyio
 import numpy as np
 
 from scope_ptz.camera.base import Frame
-from scope_ptz.errors import PerceptionError, Tried
+from scope_ptz.errors import PerceptionError, RequestRecord
 from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.perception.models.tile_geometry import PanoramaTile, merged, merged_points, tiles, without_seam_twins
@@ -113,7 +113,7 @@ async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> 
         for index, (_, ask) in enumerate(calls):
             group.start_soon(run, index, ask)
     if errors:
-        tried: list[Tried] = [attempt for found in results.values() for attempt in found.attempts]
+        tried: list[RequestRecord] = [attempt for found in results.values() for attempt in found.attempts]
         tried += [attempt for error in errors for attempt in error.attempts]
         raise PerceptionError(str(errors[0]), kind=errors[0].kind, attempts=tried) from errors[0]
     return [(tile, results[index]) for index, (tile, _) in enumerate(calls)]

@@ -1,7 +1,7 @@
 """The built-in planner: a grammar of camera operation and an interpreter, without a model.
 
-``lexing`` turns text into lexemes, ``parsing`` turns lexemes into the steps of ``instruction_tree``, ``binding`` resolves the names
-in them, and ``execution`` runs the steps against the history.
+``lexing`` splits text into lexemes, ``parsing`` builds the steps of ``instruction_tree`` from them, ``binding`` resolves the names
+in the steps, and ``execution`` runs the steps against the history.
 
 The names of this package are loaded on first use: a plan without a camera needs no planner.
 """

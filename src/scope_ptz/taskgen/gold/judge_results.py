@@ -12,7 +12,7 @@ from typing import Any
 import anyio
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from scope_ptz.bench.judging.agreement import RatedRun, Rater, add_rating, numbered
+from scope_ptz.bench.judging.agreement import RatedRun, Rater, add_rating, judgements_with_raters
 from scope_ptz.bench.judging.case import JudgeCase, case_of_episode
 from scope_ptz.bench.judging.json_lines import whole_lines
 from scope_ptz.bench.judging.judge import Judge
@@ -200,7 +200,7 @@ def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
     for key, rows in by_key.items():
         item = RatedRun("gold", key, rows[0].task)
         add_rating(known, item, "incorrect" if rows[0].fault else "correct", rows[0].fault)
-        for name, group, judgement in numbered([row.judgement for row in rows]):
+        for name, group, judgement in judgements_with_raters([row.judgement for row in rows]):
             rater = judges.setdefault(name, Rater(name, "judge", f"judge:{group}"))
             add_rating(rater, item, judgement.verdict, judgement.error_mode)
     return [known, *judges.values()] if by_key else []

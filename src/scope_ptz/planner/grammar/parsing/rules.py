@@ -1,8 +1,8 @@
-"""The rules of ``language.lark`` in the plain form that the chart parser takes, compiled by Lark ahead of time.
+"""The rules of ``language.lark`` in the plain form that the chart parser needs, compiled by Lark ahead of time.
 
-Lark needs about half a second to read and expand the grammar, which would delay every ``scope ask``. So the expanded rules are
-stored beside the grammar in ``language.rules``, their symbols in ``language.symbols``, and only those that an instruction can begin
-are read. An edited grammar is compiled again. ``renew()`` rewrites the files.
+Lark needs about half a second to read and expand the grammar, which would delay every ``scope ask``. The expanded rules are
+therefore stored in ``language.rules`` and their symbols in ``language.symbols``. Only rules that an instruction can begin are
+parsed. After an edit of the grammar, the rules are compiled at each start until ``renew()`` rewrites the files.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from pathlib import Path
 
 from scope_ptz.planner.grammar.compiled import compiled_lines, heading
 
-GUESSES = frozenset({"far_ref"})
-"""Names of rules that take free words after "at" or "in" for a preset."""
+RULES_FOR_KNOWN_PRESETS = frozenset({"far_ref"})
+"""Rules that are left out of the grammar if the presets are unknown."""
 
 _SOURCE = Path(__file__).with_name("language.lark")
 _RULES = Path(__file__).with_name("language.rules")
@@ -28,8 +28,8 @@ class Rule:
     Attributes:
         name: The symbol on the left-hand side.
         symbols: The symbols on the right-hand side.
-        label: The name of the rule's node in the tree.
-        inline: When the node's children go to its parent instead: always ("_"), or when there is only one ("?").
+        label: The name of the rule's nodes in the parse tree.
+        inline: Whether children replace the node in the tree: always ("_"), if there is only one ("?"), or never ("").
     """
 
     name: str
@@ -42,14 +42,14 @@ class Rule:
         return f"{self.inline or '.'} {self.name} {self.priority} {self.label} {' '.join(self.symbols)}"
 
     @staticmethod
-    def read(line: str) -> Rule:
+    def from_line(line: str) -> Rule:
         """Parse a line of ``language.rules``."""
         inline, name, priority, label, *symbols = line.split(" ")
         return Rule(name, tuple(symbols), int(priority), label, inline.strip("."))
 
 
 class RuleBook:
-    """Rules by the first symbol of their right-hand sides, parsed when they are asked for.
+    """Rules by the first symbol on their right-hand side, parsed on request.
 
     Attributes:
         symbols: All symbols, numbered by their position.
@@ -57,7 +57,7 @@ class RuleBook:
     Args:
         lines: The rules as lines of ``language.rules``.
         symbols: All symbols in the order of ``symbols_of``.
-        left_out: Names of rules that do not count.
+        left_out: Names of rules to leave out.
     """
 
     def __init__(self, lines: Sequence[str], symbols: Sequence[str], left_out: frozenset[str] = frozenset()) -> None:
@@ -72,19 +72,15 @@ class RuleBook:
 
     def starting_with(self, symbol: str) -> list[tuple[int, Rule]]:
         """Return the rules whose right-hand side begins with a symbol, each with its position among all rules."""
-        return [(order, Rule.read(line)) for order, line in self._groups.get(symbol, ())]
+        return [(order, Rule.from_line(line)) for order, line in self._groups.get(symbol, ())]
 
 
-def load_rules(guesses: bool = True) -> RuleBook:
-    """Return the rules of the current grammar.
-
-    Args:
-        guesses: Whether the rules in ``GUESSES`` count.
-    """
+def load_rules(*, presets_known: bool = True) -> RuleBook:
+    """Return the rules of the grammar, compiled if the stored ones are out of date."""
     rules, symbols = compiled_lines(_SOURCE, _RULES), compiled_lines(_SOURCE, _SYMBOLS)
     if rules is None or symbols is None:
         rules, symbols = (text.splitlines()[1:] for text in compiled_texts().values())
-    return RuleBook(rules, symbols[0 if guesses else 1].split(" "), frozenset() if guesses else GUESSES)
+    return RuleBook(rules, symbols[0 if presets_known else 1].split(" "), frozenset() if presets_known else RULES_FOR_KNOWN_PRESETS)
 
 
 def symbols_of(rules: Sequence[Rule]) -> list[str]:
@@ -113,10 +109,13 @@ def compile_rules(source: str) -> list[Rule]:
 
 
 def compiled_texts() -> dict[Path, str]:
-    """Return the expected content of ``language.rules``, and of ``language.symbols``: all symbols, then those without guesses."""
+    """Return the content of both files for the grammar.
+
+    The lines of ``language.symbols`` are all symbols, and the symbols if the presets are unknown.
+    """
     rules = compile_rules(_SOURCE.read_text(encoding="utf-8"))
-    sure = [rule for rule in rules if rule.name not in GUESSES]
-    symbols = (" ".join(symbols_of(some)) for some in (rules, sure))
+    other = [rule for rule in rules if rule.name not in RULES_FOR_KNOWN_PRESETS]
+    symbols = (" ".join(symbols_of(some)) for some in (rules, other))
     return {path: "\n".join([heading(_SOURCE), *lines, ""]) for path, lines in ((_RULES, map(str, rules)), (_SYMBOLS, symbols))}
 
 

@@ -1,0 +1,74 @@
+"""What a camera can do beyond moving to a pose and taking a picture, and checks of the arguments for it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from scope_ptz.errors import InputError
+
+MAX_PRESET_NAME = 31
+"""The longest preset name in characters, which is the limit of AXIS cameras."""
+
+MAX_DRIVE_TIMEOUT_S = 10.0
+"""The longest time that a camera moves without another command."""
+
+
+@dataclass(frozen=True, slots=True)
+class Velocity:
+    """A velocity: pan and tilt in degrees per second, zoom in octaves (doublings of magnification) per second."""
+
+    pan_dps: float = 0.0
+    tilt_dps: float = 0.0
+    zoom_rate: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Capabilities:
+    """What a camera can do beyond moving to a pose and taking a picture.
+
+    Attributes:
+        top_speed: The highest velocity of ``drive``; an axis with 0 cannot be driven.
+        edits_presets: Whether presets can be saved and removed.
+        focus: Whether focus can be set.
+        iris: Whether the iris can be set.
+    """
+
+    top_speed: Velocity = field(default_factory=Velocity)
+    edits_presets: bool = False
+    focus: bool = False
+    iris: bool = False
+
+    @property
+    def drives(self) -> bool:
+        """Whether at least one axis can be driven."""
+        return self.top_speed != Velocity()
+
+
+NO_CAPABILITIES = Capabilities()
+"""A camera that moves to poses and takes pictures, and nothing else."""
+
+
+def check_drive(pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
+    """Check the arguments of ``Camera.drive``.
+
+    Raises:
+        InputError: A number is not finite, or the timeout is not between 0 and 10 s.
+    """
+    for name, value in (("pan_dps", pan_dps), ("tilt_dps", tilt_dps), ("zoom_rate", zoom_rate)):
+        if not math.isfinite(value):
+            raise InputError(f"{name} is a finite number, got {value}.")
+    if not 0 < timeout_s <= MAX_DRIVE_TIMEOUT_S:
+        raise InputError(f"timeout_s is above 0 and at most {MAX_DRIVE_TIMEOUT_S:g} seconds, got {timeout_s}.")
+
+
+def check_preset_name(name: str) -> None:
+    """Check the name of a new preset.
+
+    Raises:
+        InputError: The name is empty, too long, or has characters that cannot be printed.
+    """
+    if not name.strip() or name != name.strip() or not name.isprintable() or len(name) > MAX_PRESET_NAME:
+        raise InputError(
+            f"A preset name has 1 to {MAX_PRESET_NAME} printable characters and no spaces at its ends, got {name[:60]!r}."
+        )

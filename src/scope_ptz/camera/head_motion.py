@@ -1,0 +1,117 @@
+"""Where a motorised head is at any time: at rest, on its way to a pose, or driven at a velocity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from scope_ptz.camera.capabilities import Velocity
+from scope_ptz.camera.motion import Head
+from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
+
+
+@dataclass(frozen=True, slots=True)
+class _Move:
+    head: Head
+    start: Pose
+    end: Pose
+
+
+@dataclass(frozen=True, slots=True)
+class _Driving:
+    start: Pose
+    speed: Velocity
+    target: Velocity
+    hold_s: float
+
+
+class HeadMotion:
+    """The current command of a head, and the pose that follows from it.
+
+    Times are seconds on one clock, which the caller reads. Every command replaces the one before it.
+
+    Args:
+        head: The motors.
+        limits: The limits of motion. A driven axis stands still at its limit.
+        pose: Where the head is at first.
+    """
+
+    def __init__(self, head: Head, limits: Limits, pose: Pose) -> None:
+        self._head, self._limits = head, limits
+        # One attribute, so that another thread that reads a pose never sees half of a command.
+        self._current: tuple[_Move | _Driving, float] = _Move(head, pose, pose), 0.0
+        self.commands = 0
+        """Number of commands so far. It tells whether another command has replaced one."""
+
+    def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0) -> None:
+        """Start towards a pose within the limits, from where the head is, at a share of its top speeds."""
+        head = self._head if speed_share == 1.0 else self._head.at_speed(speed_share)
+        self._replace(_Move(head, self.pose(now_s), pose), now_s)
+
+    def drive(self, velocity: Velocity, now_s: float, timeout_s: float) -> None:
+        """Accelerate to a velocity and brake after the timeout."""
+        self._replace(_Driving(self.pose(now_s), self.velocity(now_s), velocity, timeout_s), now_s)
+
+    def brake(self, now_s: float) -> None:
+        """Decelerate to a standstill."""
+        self.drive(Velocity(), now_s, 0.0)
+
+    def halt(self, pose: Pose, now_s: float) -> None:
+        """Be at a pose at once."""
+        self._replace(_Move(self._head, pose, pose), now_s)
+
+    def pose(self, now_s: float) -> Pose:
+        """Return the pose at a time, which lies at or after the last command."""
+        command, since_s = self._current
+        time_s = now_s - since_s
+        if isinstance(command, _Move):
+            return command.head.at(command.start, command.end, time_s)
+        pan, tilt, octaves = (distance for distance, _ in self._driven(command, time_s))
+        zoom = command.start.zoom * 2.0**octaves
+        reached, _ = self._limits.clamp(Pose(command.start.pan_deg + pan, command.start.tilt_deg + tilt, zoom))
+        return Pose(wrap_pan_deg(reached.pan_deg), reached.tilt_deg, reached.zoom) if self._limits.pan_endless else reached
+
+    def velocity(self, now_s: float) -> Velocity:
+        """Return the velocity of a driven head. A move to a pose reports none: the next command starts from rest."""
+        command, since_s = self._current
+        if isinstance(command, _Move):
+            return Velocity()
+        pose = self.pose(now_s)
+        pan, tilt, zoom = (speed for _, speed in self._driven(command, now_s - since_s))
+        limits = self._limits
+        return Velocity(
+            0.0 if not limits.pan_endless and _pushes(pan, pose.pan_deg, limits.min_pan_deg, limits.max_pan_deg) else pan,
+            0.0 if _pushes(tilt, pose.tilt_deg, limits.min_tilt_deg, limits.max_tilt_deg) else tilt,
+            0.0 if _pushes(zoom, pose.zoom, limits.min_zoom, limits.max_zoom) else zoom,
+        )
+
+    def ends_s(self) -> float:
+        """Return the time at which the current command ends, with the settling of a move to a pose."""
+        command, since_s = self._current
+        if isinstance(command, _Move):
+            return since_s + command.head.duration_s(command.start, command.end)
+        head, at_end = self._head, self._driven(command, command.hold_s)
+        motors = (head.pan, head.tilt, head.zoom)
+        braking_s = max(motor.braking_s(speed) for motor, (_, speed) in zip(motors, at_end, strict=True))
+        return since_s + command.hold_s + braking_s
+
+    def moving(self, now_s: float) -> bool:
+        """Return whether a command is still being carried out."""
+        return now_s < self.ends_s()
+
+    def _driven(self, command: _Driving, time_s: float) -> tuple[tuple[float, float], ...]:
+        """Return distance and speed of pan, tilt and zoom (in octaves)."""
+        head, speed, target = self._head, command.speed, command.target
+        return (
+            head.pan.driven(speed.pan_dps, target.pan_dps, command.hold_s, time_s),
+            head.tilt.driven(speed.tilt_dps, target.tilt_dps, command.hold_s, time_s),
+            head.zoom.driven(speed.zoom_rate, target.zoom_rate, command.hold_s, time_s),
+        )
+
+    def _replace(self, command: _Move | _Driving, now_s: float) -> None:
+        self._current = command, now_s
+        self.commands += 1
+
+
+def _pushes(speed: float, value: float, low: float, high: float) -> bool:
+    """Return whether a motor pushes against a limit."""
+    return (speed > 0 and value >= high) or (speed < 0 and value <= low)

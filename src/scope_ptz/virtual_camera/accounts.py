@@ -1,0 +1,47 @@
+"""The accounts of a virtual camera."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+
+class Role(IntEnum):
+    """What an account may do. Each role includes those below it."""
+
+    VIEWER = 1
+    """Pictures and streams."""
+    OPERATOR = 2
+    """Moves and going to presets as well."""
+    ADMINISTRATOR = 3
+    """Presets, home and parameters as well."""
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """A user name with its password and role. The password does not appear in ``repr``."""
+
+    name: str
+    password: str = field(repr=False)
+    role: Role = Role.ADMINISTRATOR
+
+
+class Accounts:
+    """The accounts of one camera.
+
+    Args:
+        accounts: The accounts. Without any, the camera asks nobody for a password.
+    """
+
+    def __init__(self, accounts: Iterable[Account] = ()) -> None:
+        self._accounts = {account.name: account for account in accounts}
+
+    @property
+    def open_to_all(self) -> bool:
+        """Whether the camera asks nobody for a password."""
+        return not self._accounts
+
+    def find(self, name: str) -> Account | None:
+        """Return an account by name."""
+        return self._accounts.get(name)

@@ -1,0 +1,256 @@
+"""The virtual device that all protocols share: motors, presets, accounts, faults, and the picture at the current pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from time import monotonic
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.camera.capabilities import Velocity, check_preset_name
+from scope_ptz.camera.head_motion import HeadMotion
+from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Head
+from scope_ptz.camera.scene_presets import preset_pose, starting_preset
+from scope_ptz.errors import CameraError, UnknownNameError
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.views import picture
+from scope_ptz.virtual_camera.accounts import Account, Accounts
+from scope_ptz.virtual_camera.faults import Faults
+
+MAX_PRESETS = 256
+"""Number of presets that the device can store, as the AXIS M5075-G."""
+
+_STUCK_FIELDS = {"pan": "pan_deg", "tilt": "tilt_deg", "zoom": "zoom"}
+
+
+@dataclass(frozen=True, slots=True)
+class DevicePreset:
+    """A stored pose. Protocols address it by number (VAPIX) or token (ONVIF: the number as text), or by name."""
+
+    number: int
+    name: str
+    pose: Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Exposure:
+    """A picture as the sensor took it.
+
+    Attributes:
+        image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
+        pose: What the encoders reported at exposure.
+        time_s: Scene time of the exposure.
+        taken_s: Time of the exposure on ``time.monotonic``.
+    """
+
+    image: NDArray[np.uint8]
+    pose: Pose
+    time_s: float
+    taken_s: float
+
+
+class VirtualDevice:
+    """A pan-tilt-zoom camera at one viewpoint of a scene.
+
+    Commands come from one thread. ``expose`` may run in another one at the same time.
+
+    Args:
+        scene: The scene.
+        viewpoint: Where the camera stands; the default is the viewpoint of the scene's home preset.
+        name: The device's name, which discovery and clients show.
+        accounts: Who may use it. Without any, it asks nobody for a password.
+        clock: The scene's clock. It moves the actors, and can be held while the motors go on.
+        head: The motors; the default is those of the AXIS M5075-G.
+        width: Width of a full-size picture in pixels.
+        height: Height of a full-size picture in pixels.
+        time_scale: How many times faster than real the motors are.
+
+    Attributes:
+        faults: The faults that it currently shows; assign another ``Faults`` to change them.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        viewpoint: str | None = None,
+        name: str = "",
+        accounts: Iterable[Account] = (),
+        clock: SceneClock | None = None,
+        head: Head = AXIS_M5075_G_HEAD,
+        width: int = 1280,
+        height: int = 720,
+        time_scale: float = 1.0,
+    ) -> None:
+        start = starting_preset(scene.file, viewpoint)
+        self.scene, self.viewpoint = scene, start.viewpoint
+        self.name = name or f"{scene.name} {start.viewpoint}"
+        self.accounts = Accounts(accounts)
+        self.clock = clock or SceneClock(scene.file.start_s, realtime=True)
+        self.limits, self.optics, self.head = Limits(), AXIS_M5075_G, head
+        self.width, self.height, self.time_scale = width, height, time_scale
+        self.home = preset_pose(start)
+        local = [preset for preset in scene.file.presets if preset.viewpoint == self.viewpoint]
+        self._presets = {k: DevicePreset(k, preset.name, preset_pose(preset)) for k, preset in enumerate(local, start=1)}
+        self._motion = HeadMotion(head, self.limits, self.home)
+        self._started_s = monotonic()
+        self._stopped_by_s = -np.inf
+        self._faults, self._faults_since_s = Faults(), 0.0
+        self._frozen: Exposure | None = None
+
+    @property
+    def faults(self) -> Faults:
+        return self._faults
+
+    @faults.setter
+    def faults(self, faults: Faults) -> None:
+        self._faults, self._faults_since_s, self._frozen = faults, self.now_s(), None
+
+    def now_s(self) -> float:
+        """Return the motors' time in seconds, which runs ``time_scale`` times as fast as the wall clock."""
+        return (monotonic() - self._started_s) * self.time_scale
+
+    def pose(self) -> Pose:
+        """Return what the encoders report."""
+        return self._motion.pose(self.now_s())
+
+    def moving(self) -> bool:
+        """Return whether a motor turns or the picture has not settled."""
+        return self._motion.moving(self.now_s())
+
+    def reported_moving(self) -> bool | None:
+        """Return the move status as clients see it; None if the device reports none."""
+        status = self._faults.move_status
+        return None if status == "missing" else (self.moving() and status != "lying")
+
+    def move(self, pose: Pose, *, speed_share: float = 1.0) -> None:
+        """Start towards a pose. Values beyond a limit are clamped, and a stuck axis stays where it is."""
+        reachable, _ = self.limits.clamp(pose)
+        here = self.pose()
+        stuck = {_STUCK_FIELDS[axis]: getattr(here, _STUCK_FIELDS[axis]) for axis in self._faults.stuck}
+        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_share)
+
+    def drive(self, velocity: Velocity, *, timeout_s: float | None = None, sent_s: float | None = None) -> bool:
+        """Move continuously. The command is dropped if it was sent before the last ``stop`` and arrived after it.
+
+        Args:
+            velocity: Velocities; those above the top speed are reduced to it.
+            timeout_s: Seconds of motor time after which the device stops by itself; None for never.
+            sent_s: When the client sent the command, in Unix seconds, if it says so.
+
+        Returns:
+            Whether the command is carried out.
+        """
+        if sent_s is not None and sent_s < self._stopped_by_s:
+            return False
+        stuck = self._faults.stuck
+        free = Velocity(
+            0.0 if "pan" in stuck else velocity.pan_dps,
+            0.0 if "tilt" in stuck else velocity.tilt_dps,
+            0.0 if "zoom" in stuck else velocity.zoom_rate,
+        )
+        # Without a timeout the motors run until the next command or their stops: a year of motor time stands for "never".
+        self._motion.drive(free, self.now_s(), 3.2e7 if timeout_s is None else timeout_s)
+        return True
+
+    @property
+    def velocity(self) -> Velocity:
+        """The current velocity of a driven head."""
+        return self._motion.velocity(self.now_s())
+
+    def stop(self, *, sent_s: float | None = None) -> None:
+        """Brake. ``sent_s`` is when the client sent the command, in Unix seconds, if it says so."""
+        if sent_s is not None:
+            self._stopped_by_s = max(self._stopped_by_s, sent_s)
+        now_s = self.now_s()
+        if self._motion.velocity(now_s) == Velocity():
+            self._motion.halt(self._motion.pose(now_s), now_s)
+        else:
+            self._motion.brake(now_s)
+
+    def reboot(self) -> None:
+        """Go back to home at once and forget the stop times, as after a reboot. Presets stay."""
+        self._motion.halt(self.home, self.now_s())
+        self._stopped_by_s = -np.inf
+
+    def presets(self) -> list[DevicePreset]:
+        """Return the presets by number."""
+        return [self._presets[number] for number in sorted(self._presets)]
+
+    def find_preset(self, name: str) -> DevicePreset:
+        """Return a preset by name.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+        """
+        found = next((preset for preset in self._presets.values() if preset.name == name), None)
+        if found is None:
+            raise UnknownNameError("preset", name, [preset.name for preset in self._presets.values()])
+        return found
+
+    def preset(self, number: int) -> DevicePreset:
+        """Return a preset by number.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+        """
+        if number not in self._presets:
+            raise UnknownNameError("preset number", str(number), map(str, self._presets))
+        return self._presets[number]
+
+    def save_preset(self, name: str, *, number: int | None = None) -> DevicePreset:
+        """Store the current pose. A preset of the same name or number is replaced.
+
+        Raises:
+            InputError: The name is empty, too long, or has characters that cannot be printed.
+            CameraError: All places are taken.
+        """
+        check_preset_name(name)
+        if number is None:
+            same = (preset.number for preset in self._presets.values() if preset.name == name)
+            free = (k for k in range(1, MAX_PRESETS + 1) if k not in self._presets)
+            number = next(same, None) or next(free, None)
+        if number is None or not 1 <= number <= MAX_PRESETS:
+            raise CameraError(f"All {MAX_PRESETS} presets are taken.")
+        self._presets[number] = DevicePreset(number, name, self.pose())
+        return self._presets[number]
+
+    def remove_preset(self, number: int) -> None:
+        """Remove a preset.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+        """
+        del self._presets[self.preset(number).number]
+
+    def set_home(self) -> None:
+        """Make the current pose home."""
+        self.home = self.pose()
+
+    def expose(self, width: int | None = None, height: int | None = None) -> Exposure:
+        """Take a picture. It blocks for the time of one re-projection.
+
+        The horizontal field of view is that of the zoom, whatever the size.
+        """
+        faults = self._faults
+        if faults.picture == "frozen" and self._frozen is not None:
+            return self._frozen
+        width, height = width or self.width, height or self.height
+        if faults.picture == "size":
+            width, height = width // 2, height // 2
+        pose, time_s, taken_s = self.pose(), self.clock.now_s(), monotonic()
+        if faults.picture == "black":
+            image = np.zeros((height, width, 3), np.uint8)
+        else:
+            drift_deg = faults.drift_dps * (self.now_s() - self._faults_since_s)
+            view = Perspective(pose.pan_deg + drift_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), width, height)
+            image = picture(self.scene, self.viewpoint, view, time_s)
+        image.flags.writeable = False
+        exposure = Exposure(image, pose, time_s, taken_s)
+        if faults.picture == "frozen":
+            self._frozen = exposure
+        return exposure

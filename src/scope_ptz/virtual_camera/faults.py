@@ -1,0 +1,39 @@
+"""Faults that a virtual camera shows on demand."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from scope_ptz.geometry import Axis
+
+
+class Faults(BaseModel):
+    """The faults of a virtual camera. The default is none.
+
+    Attributes:
+        drop: Share of requests whose connection is closed without a reply.
+        stall_s: Seconds by which every reply is late.
+        unauthorized: Whether every account is refused.
+        garbage: Whether replies have a body that is not what their protocol says.
+        picture: What is wrong with pictures: ``truncated`` JPEGs, one ``frozen`` picture, a ``black`` one, or another ``size``.
+        stuck: Axes whose motor does not turn.
+        drift_dps: Degrees per second by which the picture turns away from what the encoders report.
+        move_status: The move status is ``lying`` (always idle) or ``missing``.
+        down: Whether the camera is off the network, as while it reboots.
+        clock_skew_s: Seconds by which the camera's clock is ahead.
+    """
+
+    model_config = ConfigDict(extra="forbid", validate_assignment=True)
+
+    drop: float = Field(default=0.0, ge=0.0, le=1.0)
+    stall_s: float = Field(default=0.0, ge=0.0, le=600.0)
+    unauthorized: bool = False
+    garbage: bool = False
+    picture: Literal["", "truncated", "frozen", "black", "size"] = ""
+    stuck: frozenset[Axis] = frozenset()
+    drift_dps: float = Field(default=0.0, ge=-10.0, le=10.0)
+    move_status: Literal["", "lying", "missing"] = ""
+    down: bool = False
+    clock_skew_s: float = Field(default=0.0, ge=-1e6, le=1e6)

@@ -1,0 +1,98 @@
+"""One live picture for all streams of a device: it is exposed once per tick, while at least one client watches."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from time import monotonic
+
+import anyio
+from anyio import to_thread
+from anyio.abc import TaskGroup
+
+from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
+
+
+class LiveSource:
+    """Exposes frames at a constant rate and hands the newest one to every subscriber.
+
+    A slow subscriber misses frames and never delays the others. The source runs inside ``run``, in the caller's event loop.
+
+    Args:
+        device: The camera.
+        rate_hz: Frames per second.
+        latency_s: Time from exposure until a frame is handed out, as in the encoder of a real camera.
+    """
+
+    def __init__(self, device: VirtualDevice, *, rate_hz: float = 25.0, latency_s: float = 0.0) -> None:
+        self.device, self.rate_hz, self.latency_s = device, rate_hz, latency_s
+        self.late_frames = 0
+        """Number of ticks that were skipped because an exposure took too long."""
+        self._newest: Exposure | None = None
+        self._number = 0
+        self._changed = anyio.Event()
+        self._wanted = anyio.Event()
+        self._subscribers = 0
+
+    @property
+    def subscribers(self) -> int:
+        """Number of clients that watch."""
+        return self._subscribers
+
+    async def run(self) -> None:
+        """Expose frames while somebody watches. Run it in a task group; cancel it to end."""
+        while True:
+            await self._wanted.wait()
+            async with anyio.create_task_group() as group:
+                await self._expose_while_watched(group)
+
+    @asynccontextmanager
+    async def subscribe(self) -> AsyncIterator[AsyncIterator[Exposure]]:
+        """Return a context with an endless iterator over exposures. Each step waits for a frame that was not seen yet."""
+        self._subscribers += 1
+        self._wanted.set()
+        try:
+            yield self._exposures()
+        finally:
+            self._subscribers -= 1
+            if not self._subscribers:
+                self._wanted = anyio.Event()
+                self._newest = None
+
+    async def _exposures(self) -> AsyncIterator[Exposure]:
+        seen = self._number if self._newest is None else self._number - 1
+        while True:
+            while self._number == seen or self._newest is None:
+                await self._changed.wait()
+            seen = self._number
+            yield self._newest
+
+    async def _expose_while_watched(self, group: TaskGroup) -> None:
+        period_s, due_s = 1.0 / self.rate_hz, monotonic()
+        delayed: deque[Exposure] = deque()
+        while self._subscribers:
+            exposure = await to_thread.run_sync(self.device.expose)
+            if self.latency_s:
+                delayed.append(exposure)
+                group.start_soon(self._hand_out_later, delayed)
+            else:
+                self._hand_out(exposure)
+            due_s += period_s
+            if (behind_s := monotonic() - due_s) > 0:
+                skipped = int(behind_s / period_s)
+                self.late_frames += skipped
+                due_s += skipped * period_s
+            await anyio.sleep(max(0.0, due_s - monotonic()))
+        group.cancel_scope.cancel()
+
+    async def _hand_out_later(self, delayed: deque[Exposure]) -> None:
+        exposure = delayed.popleft()
+        await anyio.sleep(max(0.0, exposure.taken_s + self.latency_s - monotonic()))
+        self._hand_out(exposure)
+
+    def _hand_out(self, exposure: Exposure) -> None:
+        self._newest = exposure
+        self._number += 1
+        changed, self._changed = self._changed, anyio.Event()
+        changed.set()

@@ -1,0 +1,102 @@
+"""A driven head: no jumps, no more than top speed, never beyond a limit, and it stops by itself."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scope_ptz.camera.capabilities import Velocity
+from scope_ptz.camera.head_motion import HeadMotion
+from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Head, Motor
+from scope_ptz.geometry import Limits, Pose
+
+velocities = st.builds(Velocity, st.floats(-300, 300), st.floats(-300, 300), st.floats(-9, 9))
+poses = st.builds(Pose, st.floats(-179, 179), st.floats(-60, 30), st.floats(1, 5))
+times = st.floats(0, 4)
+SLACK = 1e-6
+
+
+def _motion(pose: Pose, limits: Limits | None = None) -> HeadMotion:
+    return HeadMotion(AXIS_M5075_G_HEAD, limits or Limits(), pose)
+
+
+@given(poses, velocities, velocities, times, times, st.floats(0, 0.2))
+def test_a_driven_head_never_jumps_and_never_leaves_its_limits(
+    pose: Pose, first: Velocity, second: Velocity, changed_s: float, at_s: float, step_s: float
+) -> None:
+    motion = _motion(pose)
+    motion.drive(first, 0.0, 3.0)
+    before = motion.pose(changed_s)
+    motion.drive(second, changed_s, 3.0)
+    assert motion.pose(changed_s) == before
+    now, soon = motion.pose(changed_s + at_s), motion.pose(changed_s + at_s + step_s)
+    assert Limits().clamp(soon)[1] == ()
+    head = AXIS_M5075_G_HEAD
+    assert abs(soon.pan_deg - now.pan_deg) <= head.pan.speed * step_s + SLACK
+    assert abs(soon.tilt_deg - now.tilt_deg) <= head.tilt.speed * step_s + SLACK
+    assert abs(math.log2(soon.zoom / now.zoom)) <= head.zoom.speed * step_s + SLACK
+
+
+@given(poses, velocities, st.floats(0.01, 10), times)
+def test_a_driven_head_stands_still_after_its_timeout(pose: Pose, velocity: Velocity, timeout_s: float, later_s: float) -> None:
+    motion = _motion(pose)
+    motion.drive(velocity, 5.0, timeout_s)
+    ends_s = motion.ends_s()
+    assert 5.0 + timeout_s <= ends_s <= 5.0 + timeout_s + 0.25 + SLACK
+    end = motion.pose(ends_s)
+    later = motion.pose(ends_s + later_s)
+    assert (later.pan_deg, later.tilt_deg, later.zoom) == pytest.approx((end.pan_deg, end.tilt_deg, end.zoom))
+    assert not motion.moving(ends_s)
+
+
+def test_a_constant_velocity_covers_its_distance_after_the_ramp() -> None:
+    motion = _motion(Pose())
+    motion.drive(Velocity(pan_dps=40.0, tilt_dps=-10.0, zoom_rate=0.5), 0.0, 10.0)
+    early, late = motion.pose(1.0), motion.pose(2.0)
+    assert late.pan_deg - early.pan_deg == pytest.approx(40.0)
+    assert late.tilt_deg - early.tilt_deg == pytest.approx(-10.0)
+    assert late.zoom / early.zoom == pytest.approx(math.sqrt(2))
+    assert motion.velocity(1.5) == Velocity(40.0, -10.0, 0.5)
+
+
+def test_the_distance_is_the_integral_of_the_speed() -> None:
+    motor = Motor(100.0, 400.0)
+    steps = [motor.driven(-70.0, 90.0, 0.6, k / 10_000) for k in range(12_000)]
+    summed = sum((a + b) / 2 / 10_000 for (_, a), (_, b) in pairwise(steps))
+    assert steps[-1][0] == pytest.approx(summed, abs=1e-3)
+    assert steps[-1][1] == 0.0
+
+
+def test_a_head_at_its_stop_turns_back_at_once() -> None:
+    motion = _motion(Pose(170.0, 0.0, 1.0))
+    motion.drive(Velocity(pan_dps=100.0), 0.0, 10.0)
+    assert motion.pose(2.0).pan_deg == 179.0
+    assert motion.velocity(2.0) == Velocity()
+    motion.drive(Velocity(pan_dps=-100.0), 2.0, 10.0)
+    assert motion.pose(2.5).pan_deg < 179.0 - 20.0
+
+
+def test_an_endless_pan_wraps() -> None:
+    motion = _motion(Pose(170.0, 0.0, 1.0), Limits(pan_endless=True))
+    motion.drive(Velocity(pan_dps=100.0), 0.0, 10.0)
+    assert motion.pose(0.5).pan_deg == pytest.approx(170.0 + 12.5 + 25.0 - 360.0)
+
+
+def test_braking_takes_the_way_that_the_motor_needs() -> None:
+    motion = _motion(Pose())
+    motion.drive(Velocity(pan_dps=100.0), 0.0, 10.0)
+    before = motion.pose(1.0).pan_deg
+    motion.brake(1.0)
+    assert motion.pose(3.0).pan_deg - before == pytest.approx(100.0**2 / (2 * 400.0))
+
+
+def test_a_reduced_speed_takes_longer() -> None:
+    quick, slow = _motion(Pose()), _motion(Pose())
+    quick.move(Pose(90, 0, 1), 0.0)
+    slow.move(Pose(90, 0, 1), 0.0, speed_share=0.1)
+    assert slow.ends_s() == pytest.approx(Head.at_speed(AXIS_M5075_G_HEAD, 0.1).duration_s(Pose(), Pose(90, 0, 1)))
+    assert slow.ends_s() > 7 * quick.ends_s()
