@@ -35,7 +35,7 @@ def test_variables_are_read_in_any_case_and_unknown_ones_are_ignored(monkeypatch
 def test_a_wrong_value_names_its_variable(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("scope_ptz.settings.ScopeSettings", Numbered)
     monkeypatch.setenv("SCOPE_ATTEMPTS", "many")
-    with pytest.raises(ConfigError, match=r"The environment variable SCOPE_ATTEMPTS is wrong: .*integer"):
+    with pytest.raises(ConfigError, match=r"The environment variable SCOPE_ATTEMPTS has an invalid value: .*integer"):
         load_settings()
 
 
