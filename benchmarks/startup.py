@@ -2,9 +2,9 @@
 
     python benchmarks/startup.py [--rounds N]
 
-The reference and the commands take turns, so that a busy machine slows all of them alike. Printed are the medians of processor time
-and of wall time as multiples of the reference's, the largest memory, and the targets, which apply to processor time. The first run of
-each command is not measured: it compiles bytecode and fills caches.
+The reference and the commands take turns, so that a busy machine slows all of them alike. The benchmark prints the medians of
+processor time and wall time as multiples of the reference's, the largest memory, and the targets, which apply to processor time and
+memory. The first run of each command is not measured, because it compiles bytecode and fills caches.
 """
 
 from __future__ import annotations
