@@ -20,6 +20,9 @@ class ScopeSettings(BaseModel):
 
     runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
     scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
+    tile_cache_mb: int | None = Field(
+        default=None, ge=1, description="Limit in MB on the memory of a viewpoint's tiles. Without it, all that was read is kept."
+    )
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
     )
@@ -33,6 +36,10 @@ class ScopeSettings(BaseModel):
     judge_url: str = Field(default="", description="Address of the judge's server.")
     judge_model: str = Field(default="", description="Name of the judge on its server.")
     judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
+
+    def tile_bytes(self) -> int | None:
+        """Return the limit on the memory of a viewpoint's tiles in bytes."""
+        return None if self.tile_cache_mb is None else self.tile_cache_mb * 1_000_000
 
     def models_file(self) -> Path | None:
         """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""
