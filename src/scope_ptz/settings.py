@@ -26,6 +26,9 @@ class ScopeSettings(BaseModel):
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
     )
+    pictures_dir: Path | None = Field(
+        default=None, description="Folder for decoded pictures of scenes (default: in the cache folder)."
+    )
     blender_python: Path | None = Field(default=None, description="A Python interpreter that can import bpy.")
     blender: Path | None = Field(default=None, description="A blender program to use in place of the bpy wheel.")
     planner_key: SecretStr | None = Field(default=None, description="Key for the planner's server.")
@@ -40,6 +43,10 @@ class ScopeSettings(BaseModel):
     def tile_bytes(self) -> int | None:
         """Return the limit on the memory of a viewpoint's tiles in bytes."""
         return None if self.tile_cache_mb is None else self.tile_cache_mb * 1_000_000
+
+    def pictures_folder(self) -> Path:
+        """Return the folder for decoded pictures of scenes."""
+        return self.pictures_dir or self.cache_dir / "pictures"
 
     def models_file(self) -> Path | None:
         """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""

@@ -14,6 +14,7 @@ from scope_ptz.cli.bench import BenchGroup
 from scope_ptz.cli.exit import EXIT_CODES
 from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
 from scope_ptz.cli.parameters import LeanGroup
+from scope_ptz.cli.starting import collector_paused
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 
@@ -66,7 +67,8 @@ def ask(
     as_json: JsonOption = False,
 ) -> int:
     """Carry out one instruction and keep the run: trace, frames and a filmstrip."""
-    from scope_ptz.cli.ask import ask as run
+    with collector_paused():
+        from scope_ptz.cli.ask import ask as run
 
     return run(instruction, session, models.options(), as_json=as_json, next_steps=hints)
 
@@ -91,7 +93,8 @@ def plan(
     as_json: JsonOption = False,
 ) -> int:
     """Show the tool calls that the planner would make, without moving the camera."""
-    from scope_ptz.cli.plan import plan as run
+    with collector_paused():
+        from scope_ptz.cli.plan import plan as run
 
     return run(instruction, presets, source, as_json=as_json)
 

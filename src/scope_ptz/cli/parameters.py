@@ -44,11 +44,15 @@ class _Conversion:
         parameter = self._parameter
         if not self._is_final(value):
             return self._convert(ctx, value)
+        if value is None and not self._single:
+            value = ()
         return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
 
     def _is_final(self, value: Any) -> bool:
-        if not self._single or (value is None and self._parameter.required):
+        if value is None:
+            return not self._parameter.required
+        if not self._single:
             return False
-        if value is None or (type(value) is str and self._is_text):
+        if type(value) is str and self._is_text:
             return True
         return type(value) in (int, float) and value == self._parameter.default
