@@ -23,10 +23,10 @@ import numpy as np
 
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt_deg
 from scope_ptz.simulator.actors import composited_actors
+from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.pack import Scene, list_scenes, load_scene
 from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.simulator.reproject import view_map
-from scope_ptz.simulator.sprites.drawing import actor_patch
 from scope_ptz.simulator.viewpoint import Viewpoint
 from scope_ptz.simulator.views import picture
 

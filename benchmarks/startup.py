@@ -1,4 +1,4 @@
-"""Time and memory of short commands, as multiples of ``python -c "import numpy, cv2, pydantic"`` in the same run.
+"""Measure the time and memory of short commands, relative to ``python -c "import numpy, cv2, pydantic"``.
 
     python benchmarks/startup.py [--rounds N]
 
@@ -39,7 +39,7 @@ COMMANDS = (
 
 
 class Cost(NamedTuple):
-    """The cost of one process."""
+    """Time and peak memory of one process."""
 
     cpu_s: float
     wall_s: float
@@ -47,7 +47,7 @@ class Cost(NamedTuple):
 
 
 def cost(command: list[str], folder: str) -> Cost:
-    """Run a command and return its cost."""
+    """Run a command in ``folder`` and return its cost. Exits with a message if the command fails."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     start = time.perf_counter()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, cwd=folder, env=environment)
@@ -62,9 +62,10 @@ def cost(command: list[str], folder: str) -> Cost:
 
 
 def main() -> None:
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--rounds", type=int, default=7, help="runs of each command")
-    rounds = arguments.parse_args().rounds
+    """Run the reference and all commands, and print their costs."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rounds", type=int, default=7, help="number of runs of each command (default: 7)")
+    rounds = parser.parse_args().rounds
     reference = [sys.executable, "-c", REFERENCE]
     programs = [[sys.executable, "-m", "scope_ptz.cli", *command.words] for command in COMMANDS]
     base: list[Cost] = []

@@ -5,9 +5,9 @@ from collections.abc import Generator
 
 import pytest
 
-from tests.support.fixtures import analytic_folder, analytic_scene, anyio_backend
+from tests.support.fixtures import analytic_folder, analytic_scene, anyio_backend, pictures_dir
 
-__all__ = ["analytic_folder", "analytic_scene", "anyio_backend"]
+__all__ = ["analytic_folder", "analytic_scene", "anyio_backend", "pictures_dir"]
 
 
 @pytest.hookimpl(wrapper=True)

@@ -90,7 +90,7 @@ def test_ctrl_c_ends_a_run_cleanly(scenes: Path, tmp_path: Path) -> None:
     command = [*SCOPE, "ask", "count the zebras in the whole scene", "--scene", SCENE, "--realtime", "--json"]
 
     def hear() -> None:
-        """A test run in the background ignores Ctrl-C, and children inherit that."""
+        """Enable Ctrl-C in the child process: background processes ignore it, and their children inherit that."""
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
     with subprocess.Popen(
@@ -120,7 +120,7 @@ def test_ctrl_c_ends_a_run_cleanly(scenes: Path, tmp_path: Path) -> None:
         (["bench", "submission", "validate", "missing.jsonl", "--json"], 2),
     ],
 )
-def test_a_reader_that_goes_away_changes_no_exit_code(command: list[str], code: int, tmp_path: Path) -> None:
+def test_a_closed_output_pipe_changes_no_exit_code(command: list[str], code: int, tmp_path: Path) -> None:
     (tmp_path / "spoiled.jsonl").write_text("no JSON\n" * 2000)
     reader, writer = os.pipe()
     os.close(reader)

@@ -146,7 +146,7 @@ def test_pieces_that_repeat_their_name_are_one_call(marks: dict[str, Any]) -> No
 
 
 @pytest.mark.parametrize("marks", [{"id": "a"}, {"id": "a", "index": 0}, {}])
-def test_streamed_calls_that_share_their_marks_are_told_apart_by_being_complete(marks: dict[str, Any]) -> None:
+def test_complete_streamed_calls_with_the_same_index_are_separate(marks: dict[str, Any]) -> None:
     reply = gather(*(delta(tool_calls=[call(given, **marks)]) for given in ('{"a":', "1}", "{}")))
     assert [call.arguments_text for call in reply.tool_calls] == ['{"a":1}', "{}"]
 

@@ -1,4 +1,4 @@
-"""What servers report about themselves, each at its own path."""
+"""Facts that servers report about themselves, each at its own path."""
 
 from __future__ import annotations
 

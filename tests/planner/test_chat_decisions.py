@@ -1,4 +1,4 @@
-"""From replies to decisions: several calls, broken calls, endings, cut replies; families and what servers refuse."""
+"""From replies to decisions: several calls, invalid calls, final answers, truncated replies, model families, and refused fields."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def finish(text: str, steps: int = 0, **fields: Any) -> tuple[str, str]:
     return decision.kind, decision.text
 
 
-def test_several_native_calls_with_words_beside_them() -> None:
+def test_several_native_calls_with_text() -> None:
     given = reply(
         "I turn.", ("a", "adjust_ptz", '{"pan_deg": 20}'), ("b", "go_home", ""), input_tokens=9, cached_tokens=4, reasoning="hm"
     )

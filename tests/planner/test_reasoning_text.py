@@ -1,4 +1,4 @@
-"""Reasoning is parted from answers in every form in which servers leave it."""
+"""Reasoning is separated from answers in all formats of servers."""
 
 from __future__ import annotations
 
@@ -37,6 +37,6 @@ def test_reasoning_is_separated_from_text(text: str, answer: str, reasoning: str
     assert (parted.text, parted.reasoning) == (answer, reasoning)
 
 
-def test_the_servers_own_field_comes_first() -> None:
+def test_the_reasoning_field_of_the_server_takes_precedence() -> None:
     parted = separate_reasoning("<think>b</think>Yes.", "a")
     assert (parted.text, parted.reasoning) == ("Yes.", "a\n\nb")

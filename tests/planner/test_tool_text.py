@@ -1,4 +1,4 @@
-"""Calls that servers return as text, in the notations of model families, and texts that only look like calls."""
+"""Tool calls in text, in the notations of model families, and texts that only look like calls."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from scope_ptz.agent.timing import Timings
 from scope_ptz.cli.texts import arguments_text, plain, seconds, shortened
 from scope_ptz.planner.base import CallTools, ToolCall
 
-MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
+MAX_MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
 _OUTCOME_WORDS = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
@@ -76,7 +76,7 @@ class LiveView:
         if outcome.error is not None:
             table.add_row("", "", Text(plain(shortened(outcome.error)), style="red"), "")
         elif outcome.result is not None:
-            table.add_row("", "", Text(plain(shortened(str(outcome.result["message"]), MESSAGE_CHARS)), style="green"), "")
+            table.add_row("", "", Text(plain(shortened(str(outcome.result["message"]), MAX_MESSAGE_CHARS)), style="green"), "")
         self.console.print(table)
 
 
@@ -86,9 +86,9 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
     Args:
         console: Where to print.
         ended: The run's last record.
-        note: A note on the perception, if it is not a model.
+        note: A note about the perception backend, if it is not a model.
         folder: The run folder. If None, only the answer is printed.
-        filmstrip: The run's picture, if one was made.
+        filmstrip: The run's filmstrip, if there is one.
     """
     title, style = _OUTCOME_WORDS[ended.outcome]
     console.print()

@@ -5,17 +5,17 @@ from __future__ import annotations
 import json
 from typing import Any
 
-SHOWN_CHARS = 200  # longer instructions and arguments are truncated when printed
+MAX_SHOWN_CHARS = 200  # longer instructions and arguments are truncated when printed
 
 
 def plain(text: str) -> str:
-    """Return text without control characters, so that a sign in a scene or a model cannot control the terminal."""
+    """Return text without control characters, so that text from models and scenes cannot control the terminal."""
     return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
 
 
-def shortened(text: str, most: int = SHOWN_CHARS) -> str:
-    """Truncate a text. A truncated text ends with the full length."""
-    return text if len(text) <= most else f"{text[:most].rstrip()}… ({len(text)} characters)"
+def shortened(text: str, limit: int = MAX_SHOWN_CHARS) -> str:
+    """Truncate a text to a number of characters, and append its full length."""
+    return text if len(text) <= limit else f"{text[:limit].rstrip()}… ({len(text)} characters)"
 
 
 def arguments_text(arguments: dict[str, Any]) -> str:
@@ -25,5 +25,5 @@ def arguments_text(arguments: dict[str, Any]) -> str:
 
 
 def seconds(value: float) -> str:
-    """Format a duration with its unit."""
+    """Format a duration in seconds or milliseconds."""
     return f"{value:.1f} s" if value >= 1 else f"{value * 1000:.0f} ms"

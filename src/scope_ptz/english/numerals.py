@@ -61,7 +61,7 @@ def ordinal(word: str) -> int | None:
 
 def ordinal_suffix(number: int) -> str:
     """Return the suffix of an ordinal in digits: "st", "nd", "rd" or "th"."""
-    return "th" if number in {11, 12, 13} else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    return "th" if number % 100 in {11, 12, 13} else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
 
 
 def number_word(number: int) -> str:

@@ -16,12 +16,12 @@ from pydantic import BaseModel, ValidationError
 from scope_ptz.errors import PackError
 from scope_ptz.geometry import direction
 from scope_ptz.simulator import layers
+from scope_ptz.simulator.blending import TileBlender
 from scope_ptz.simulator.files import read_regular_file
 from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.sheets.atlas import Atlas, Keep, Scale
-from scope_ptz.simulator.sheets.blending import TileBlender
 from scope_ptz.simulator.sheets.kept import KeptPictures
 from scope_ptz.simulator.sprites.choice import SpriteChoice
 from scope_ptz.simulator.sprites.store import SpriteStore

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
 from scope_ptz.simulator.actors import composited, composited_actors, draw_numbers, shows
+from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
-from scope_ptz.simulator.sprites.drawing import actor_patch
 
 RENDERING_VERSION = 2
 """Version of the rendering, which traces record. It is raised when the same pack, pose and time give other pixels.

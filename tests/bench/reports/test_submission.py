@@ -1,4 +1,4 @@
-"""The file for a leaderboard: what is made is valid, and whatever is wrong is found and named with its line."""
+"""Leaderboard submissions: generated files are valid, and every error is reported with its line."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ LONG = {"planner_s": 9, "perception_s": 0, "camera_s": 0, "render_s": 0, "total_
 
 
 def made(epochs: int = 2) -> Evaluation:
-    """Runs that the checks really passed, one of them spoiled."""
+    """Runs that pass the checks, except for one."""
     trials: list[Trial] = []
     for task, episode in samples():
         known = TaskFacts(
@@ -74,7 +74,7 @@ def faults_of(rows: Rows, tmp_path: Path, tasks: tuple[Task, ...] = TASKS) -> st
     return "\n".join(check_submission(path, tasks).faults)
 
 
-def test_what_is_made_is_valid(rows: Rows, tmp_path: Path) -> None:
+def test_a_generated_submission_is_valid(rows: Rows, tmp_path: Path) -> None:
     assert faults_of(rows, tmp_path) == ""
     assert len(rows) == 1 + 2 * len(TASKS)
     for row in rows:
@@ -140,7 +140,7 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
         (lambda rows: rows.insert(2, rows[0]), "this one has 2 headers"),
     ],
 )  # fmt: skip
-def test_whatever_is_wrong_is_told(spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path) -> None:
+def test_every_error_is_reported(spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path) -> None:
     spoil(rows)
     assert told in faults_of(rows, tmp_path)
 
@@ -150,7 +150,7 @@ def broken(**values: Any) -> Callable[[Rows], None]:
 
 
 def counted(**values: Any) -> Callable[[Rows], None]:
-    """Changes the first run of a task that wants a move, a call and a count."""
+    """Change the first run of a task that requires a move, a call and a count."""
     return lambda rows: next(row for row in rows[1:] if row["task"].endswith("counting-001")).update(values)
 
 
@@ -199,15 +199,15 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
         (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but"),
     ],
 )  # fmt: skip
-def test_what_the_file_and_the_tasks_show_to_be_untrue_is_refused(
+def test_values_that_contradict_the_file_or_the_tasks_are_refused(
     spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path
 ) -> None:
     spoil(rows)
     assert told in faults_of(rows, tmp_path)
 
 
-def test_what_really_happens_is_not_refused(rows: Rows, tmp_path: Path) -> None:
-    """Runs that never began or were broken, that were blind, and planners that see for themselves."""
+def test_unusual_but_real_runs_are_accepted(rows: Rows, tmp_path: Path) -> None:
+    """Runs that did not start or failed, runs without observations, and planners with vision."""
     never = change(1, headline="infrastructure", error_mode=None, outcome=None, checks={}, steps=0, tool_calls={}, answer="")
     failed = dict.fromkeys(rows[1]["checks"], False)
     cut = broken(outcome="planner_error", answer="", checks=failed)
@@ -225,7 +225,7 @@ def test_what_really_happens_is_not_refused(rows: Rows, tmp_path: Path) -> None:
         assert faults_of(changed, tmp_path) == ""
 
 
-def test_totals_are_counted_again(rows: Rows, tmp_path: Path) -> None:
+def test_totals_are_recomputed(rows: Rows, tmp_path: Path) -> None:
     rows[0]["totals"]["headlines"] = {"correct": 2 * len(TASKS)}
     rows[0]["totals"]["error_modes"] = {"reasoning": 4}
     found = faults_of(rows, tmp_path)
@@ -233,7 +233,7 @@ def test_totals_are_counted_again(rows: Rows, tmp_path: Path) -> None:
     assert "state 4 for error mode reasoning, but the trials have 0" in found and "state 0 for error mode scope" in found
 
 
-def test_lines_that_are_no_json_are_told_and_files_that_are_none_refused(tmp_path: Path) -> None:
+def test_invalid_json_lines_are_reported_and_unreadable_files_refused(tmp_path: Path) -> None:
     path = tmp_path / "x.jsonl"
     path.write_text('{"kind": "trial"\n[1]\n{"a": NaN}\n' + "[" * 100_000 + "\n", "utf-8")
     found = "\n".join(check_submission(path, TASKS).faults)
@@ -273,13 +273,13 @@ def test_settings_lose_their_addresses_and_keys_and_nothing_else() -> None:
     }  # fmt: skip
 
 
-def test_an_unfinished_run_is_no_submission() -> None:
+def test_an_unfinished_run_cannot_be_submitted() -> None:
     whole = made()
     with pytest.raises(InputError, match=r"unfinished: 3 of \d+ trials"):
         submission_lines(whole.model_copy(update={"trials": whole.trials[:3]}))
 
 
-def test_runs_without_models_are_said_to_be_unranked(tmp_path: Path) -> None:
+def test_runs_without_models_are_labelled_as_unranked(tmp_path: Path) -> None:
     whole = made(1)
     path = tmp_path / "reference.jsonl"
     unranked = whole.model_copy(update={"card": card("grammar", "ground-truth", split="x.jsonl")})
@@ -318,7 +318,7 @@ def test_the_commands(rows: Rows, tmp_path: Path) -> None:
     assert run(app, ["bench", "submission", "validate", str(tmp_path / "no.jsonl")]).exit_code == 2
 
 
-def test_only_a_whole_split_is_made_into_a_submission(tmp_path: Path) -> None:
+def test_a_submission_requires_a_complete_split(tmp_path: Path) -> None:
     whole, tasks, out = made(2), tmp_path / "tasks.jsonl", tmp_path / "out.jsonl"
     dump_tasks(TASKS, tasks)
 
@@ -355,7 +355,7 @@ def test_only_a_whole_split_is_made_into_a_submission(tmp_path: Path) -> None:
     assert other.exit_code == 2 and "the digest of the tasks differs" in other.stderr
 
 
-def test_validating_needs_nothing_that_the_extra_brings() -> None:
+def test_validating_does_not_need_the_extra() -> None:
     code = "import sys, scope_ptz.bench.reports.submission_checks; print(*sorted({n.split('.')[0] for n in sys.modules}))"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "scope_ptz" in loaded and not {"inspect_ai", "jinja2", "matplotlib", "pandas", "scipy", "statsmodels"} & set(loaded)

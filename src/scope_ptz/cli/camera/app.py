@@ -1,4 +1,4 @@
-"""The commands of ``scope camera``, in the groups in which the help lists them."""
+"""The commands of ``scope camera``, grouped as in its help."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ camera_app = typer.Typer(help=HELP, no_args_is_help=True)
 
 @camera_app.callback(help=HELP)
 def _camera() -> None:
-    """Hold the commands together."""
+    """Group the camera commands."""
 
 
 COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = ()

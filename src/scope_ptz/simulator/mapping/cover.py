@@ -44,7 +44,7 @@ class Cover:
         rows, columns = part
         top, left = rows.start // CELL_PX, columns.start // CELL_PX
         cells = self._cells[1 + top : 1 - (-rows.stop // CELL_PX), 1 + left : 1 - (-columns.stop // CELL_PX)]
-        x, y, width, height = cv2.boundingRect(cv2.compare(cells, 0, cv2.CMP_EQ))
+        x, y, width, height = cv2.boundingRect(cv2.bitwise_not(cells))
         if not width:
             return None
         return (

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import mmap
 import os
+import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -32,6 +33,7 @@ SPARE_BYTES = 1_000_000_000
 """Disk space that stays free. Nothing is kept on a disk with less."""
 
 _SHEET, _LIST, _BLOB = ".sheet", ".list", ".blob"
+_LINE = re.compile(r"(\d{1,9}) (\d{1,9})")
 _BLOCK_BYTES = 512  # unit of ``st_blocks``
 
 
@@ -113,47 +115,49 @@ class KeptSheet:
     """
 
     def __init__(self, path: Path, size: int, shape: tuple[int, ...], dtype: type[np.generic]) -> None:
-        self._list: IO[str] = path.with_suffix(_LIST).open("a+", encoding="ascii")
-        with path.open("a+b") as file, self._locked():
+        self._list = path.with_suffix(_LIST)
+        with path.open("a+b") as file, self._locked() as listed:
             if os.fstat(file.fileno()).st_size != size:
-                self._list.truncate(0)
+                listed.truncate(0)
                 file.truncate(size)
             os.utime(path)
             self._memory = mmap.mmap(file.fileno(), size)
         self._row_bytes = size // shape[0]
-        self._depth = 0
+        self._filling: IO[str] | None = None
         self.array: NDArray[Any] = np.frombuffer(self._memory, dtype).reshape(shape)
 
     def complete(self) -> set[tuple[int, int]]:
         """Return the pictures that are complete: (index of the picture, index of the scale)."""
-        self._list.seek(0)
-        pairs = (line.split() for line in self._list.read().splitlines())
-        return {(int(pair[0]), int(pair[1])) for pair in pairs if len(pair) == 2}
+        try:
+            *lines, _ = self._list.read_text(encoding="ascii").split("\n")  # the last one may be incomplete
+        except (OSError, ValueError):
+            return set()
+        return {(int(match[1]), int(match[2])) for line in lines if (match := _LINE.fullmatch(line))}
 
     @contextmanager
     def filling(self) -> Iterator[None]:
-        """Let no other program fill the sheet inside this context. May be nested in one thread."""
-        self._depth += 1
-        try:
-            if self._depth == 1:
-                with self._locked():
-                    yield
-            else:
+        """Let no other program fill the sheet inside this context. May be nested, but not in several threads."""
+        if self._filling is not None:
+            yield
+            return
+        with self._locked() as listed:
+            self._filling = listed
+            try:
                 yield
-        finally:
-            self._depth -= 1
+            finally:
+                self._filling = None
 
     def completed(self, picture: int, scale: int, rows: tuple[int, int]) -> None:
-        """Record that a picture is complete, after its rows are safely on disk."""
+        """Record that a picture is complete, after its rows are safely on disk. Call it inside ``filling``."""
         start = rows[0] * self._row_bytes // mmap.ALLOCATIONGRANULARITY * mmap.ALLOCATIONGRANULARITY
         self._memory.flush(start, min(rows[1] * self._row_bytes, len(self._memory)) - start)
-        self._list.write(f"{picture} {scale}\n")
-        self._list.flush()
+        if self._filling is not None:
+            self._filling.write(f"{picture} {scale}\n")
+            self._filling.flush()
 
     @contextmanager
-    def _locked(self) -> Iterator[None]:
-        fcntl.flock(self._list, fcntl.LOCK_EX)
-        try:
-            yield
-        finally:
-            fcntl.flock(self._list, fcntl.LOCK_UN)
+    def _locked(self) -> Iterator[IO[str]]:
+        """Open the list for this program alone. Closing it releases the lock."""
+        with self._list.open("a", encoding="ascii") as listed:
+            fcntl.flock(listed, fcntl.LOCK_EX)
+            yield listed

@@ -1,1 +1,1 @@
-"""Stored pictures of moving actors: reading them, choosing between them, and drawing them into a view."""
+"""Stored pictures of moving actors: reading them and choosing among them."""

@@ -18,7 +18,7 @@ from scope_ptz.simulator.models import ActorSheet, Sprite
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.sheets.kept import KeptPictures
 
-EXPANDED_BYTES = 48_000_000
+EXPANDED_BYTES = 32_000_000
 """Limit on the memory of expanded sprites. Expanding one takes about a millisecond."""
 
 EDGE_PX = 2

@@ -8,7 +8,7 @@ import anyio
 import cv2
 from anyio import to_thread
 
-from scope_ptz.agent.planner_views import LONGEST_SIDE, picture
+from scope_ptz.agent.planner_views import MAX_SIDE_PX, picture
 from scope_ptz.agent.store import Numbering
 from scope_ptz.camera.base import Frame
 
@@ -21,7 +21,7 @@ _HEAD = "data:image/jpeg;base64,"
 
 async def data_url(frame: Frame) -> str:
     """Return a frame as a JPEG data URL, encoded in a worker thread. Panoramas are reduced."""
-    if max(frame.width, frame.height) <= LONGEST_SIDE:
+    if max(frame.width, frame.height) <= MAX_SIDE_PX:
         return (await picture(frame, "")).data_url
     return await to_thread.run_sync(_reduced_data_url, frame)
 

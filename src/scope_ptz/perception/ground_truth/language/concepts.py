@@ -1,4 +1,4 @@
-"""The meaning of nouns: concepts, their other names, and the kinds that they belong to."""
+"""The meaning of nouns: concepts, their synonyms, and the hierarchy of kinds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz import english
 
 @dataclass(frozen=True, slots=True)
 class Lexicon:
-    """All concepts with their names and parents."""
+    """All concepts, with their names and the kinds that they belong to."""
 
     parents: dict[str, tuple[str, ...]]
     names: dict[str, str]
@@ -34,7 +34,7 @@ class Lexicon:
         return frozenset(found)
 
     def all_names(self, concept: str) -> frozenset[str]:
-        """Return every noun, in the singular, for the concept or a kind of it."""
+        """Return every noun, in the singular, for the concept or for a more specific one."""
         return frozenset(name for name, meant in self.names.items() if concept in self.kinds(meant))
 
 
@@ -46,7 +46,7 @@ def singular_phrase(phrase: str) -> str:
 
 @cache
 def lexicon() -> Lexicon:
-    """Return the lexicon of ``lexicon.txt``."""
+    """Load the lexicon from ``lexicon.txt``."""
     parents: dict[str, tuple[str, ...]] = {}
     names: dict[str, str] = {}
     others: list[tuple[str, str]] = []
@@ -65,7 +65,7 @@ def lexicon() -> Lexicon:
 
 
 def nouns_in(words: Sequence[str], known: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
-    """Return spans ``[start, end)`` of words that could be the noun, best first: at the end of the phrase, longest first.
+    """Return spans ``[start, end)`` of words that could be the noun of a phrase: those with the last end, longest first.
 
     Args:
         words: The words of the phrase.

@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.geometry import Perspective
+from scope_ptz.geometry import Perspective, angle_between_deg
 from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.mapping.panorama import panorama_map
 from scope_ptz.simulator.mapping.tiles import POLYGON_SHIFT, Tiles
@@ -48,9 +48,32 @@ TONE_CELL_PX = 32
 MAX_TONE_SHIFT = 24.0
 """Largest change of tone, in steps of 0 to 255. Larger differences are not of tone, but of content."""
 
-KEPT_TILES = 8  # toned tiles kept in memory, because neighbours need them soon after
+KEPT_TILES = 4  # toned tiles kept in memory, because neighbours need them soon after
 
 Floats = NDArray[np.float32]
+
+
+class Outlines:
+    """Outlines, each (n, 3) directions, of things that stay sharp where they are small."""
+
+    def __init__(self, outlines: Sequence[NDArray[np.float64]]) -> None:
+        self._outlines = list(outlines)
+        middles = np.array([outline.mean(axis=0) for outline in outlines]).reshape(-1, 3)
+        self._middles = middles
+        reach = (angle_between_deg(outline, middle).max() for outline, middle in zip(outlines, middles, strict=True))
+        self._reach_deg = np.array(list(reach))
+
+    def small_in(self, view: Perspective) -> NDArray[np.uint8]:
+        """Return an (H, W) mask of the small things in a view."""
+        mask = np.zeros((view.height, view.width), np.uint8)
+        size = np.array([view.width, view.height])
+        apart_deg = angle_between_deg(self._middles, view.directions((0.5, 0.5)))
+        small_deg = math.degrees(SMALL_PX / view.focal_px)
+        for k in np.flatnonzero((apart_deg <= view.reach_deg + self._reach_deg) & (self._reach_deg < small_deg)):
+            points = view.points(self._outlines[k]) * size
+            if not np.isnan(points).any() and np.ptp(points, axis=0).max() <= SMALL_PX:
+                cv2.fillConvexPoly(mask, cv2.convexHull(np.rint(points).astype(np.int32)), 255)
+        return mask
 
 
 class TileBlender:
@@ -71,7 +94,7 @@ class TileBlender:
         band: Band,
         keep_sharp: Callable[[], Sequence[NDArray[np.float64]]],
     ) -> None:
-        self._read, self._tiles, self._band, self._keep_sharp = read, tiles, band, cache(keep_sharp)
+        self._read, self._tiles, self._band, self._outlines = read, tiles, band, cache(lambda: Outlines(keep_sharp()))
         self._toned: OrderedDict[int, NDArray[np.uint8]] = OrderedDict()
 
     def blended(self, atlas: Atlas, index: int) -> NDArray[np.uint8]:
@@ -91,8 +114,8 @@ class TileBlender:
                 continue
             layer = cv2.remap(self._toned_tile(atlas, showing.tile), where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0))
             part = below[showing.place]
-            part[...] = _mixed(layer[..., :3], part, layer[..., 3] / np.float32(255))
-        return _mixed(toned[..., :3], below, toned[..., 3] / np.float32(255))
+            part[...] = _mixed(layer, part)
+        return _mixed(toned, below)
 
     def _panorama(self, atlas: Atlas, view: Perspective) -> NDArray[np.uint8]:
         where = panorama_map(self._band, atlas.need(0, 0), Grid(view, step_px(view)))
@@ -103,8 +126,8 @@ class TileBlender:
         if index not in self._toned:
             view = self._tiles.views[index]
             around = self._panorama(atlas, view) if panorama is None else panorama
-            share = np.rint(_share(self._tiles, index, self._keep_sharp()) * 255).astype(np.uint8)
-            self._toned[index] = np.dstack([_in_tone(self._read(index), around), share])
+            share = np.rint(_share(self._tiles, index, self._outlines()) * 255).astype(np.uint8)
+            self._toned[index] = cv2.merge([*cv2.split(_in_tone(self._read(index), around)), share])
             while len(self._toned) > KEPT_TILES:
                 self._toned.popitem(last=False)
         self._toned.move_to_end(index)
@@ -115,8 +138,10 @@ def _reaches(where: Floats, other: Perspective) -> bool:
     return bool(np.any((where[..., 0] > 0) & (where[..., 0] < other.width) & (where[..., 1] > 0) & (where[..., 1] < other.height)))
 
 
-def _mixed(over: NDArray[np.uint8], under: NDArray[np.uint8], share: NDArray[np.floating]) -> NDArray[np.uint8]:
-    return np.asarray(cv2.blendLinear(np.ascontiguousarray(over), np.ascontiguousarray(under), share, 1 - share))
+def _mixed(over: NDArray[np.uint8], under: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return (H, W, 4) colour with its share as fourth channel over (H, W, 3) colour."""
+    share = cv2.extractChannel(over, 3) / np.float32(255)
+    return np.asarray(cv2.blendLinear(cv2.cvtColor(over, cv2.COLOR_RGBA2RGB), np.ascontiguousarray(under), share, 1 - share))
 
 
 def _in_tone(tile: NDArray[np.uint8], panorama: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -125,11 +150,11 @@ def _in_tone(tile: NDArray[np.uint8], panorama: NDArray[np.uint8]) -> NDArray[np
     cells = max(2, round(width / TONE_CELL_PX)), max(2, round(height / TONE_CELL_PX))
     means = (cv2.resize(picture, cells, interpolation=cv2.INTER_AREA).astype(np.float32) for picture in (panorama, tile))
     shift = np.clip(next(means) - next(means), -MAX_TONE_SHIFT, MAX_TONE_SHIFT)
-    smooth = cv2.resize(cv2.GaussianBlur(shift, (3, 3), 0), (width, height), interpolation=cv2.INTER_CUBIC)
-    return np.asarray(np.clip(np.rint(tile + smooth), 0, 255).astype(np.uint8))
+    smooth = cv2.resize(cv2.GaussianBlur(shift, (3, 3), 0), (width, height), interpolation=cv2.INTER_LINEAR)
+    return np.asarray(cv2.add(tile, smooth, dtype=cv2.CV_8U))
 
 
-def _share(tiles: Tiles, index: int, keep_sharp: Sequence[NDArray[np.float64]]) -> Floats:
+def _share(tiles: Tiles, index: int, outlines: Outlines) -> Floats:
     """Return the (H, W) share of a tile in the picture.
 
     It falls to 0 at the tile's border: slowly where the sharp area ends, and over a few pixels where another tile continues it.
@@ -139,7 +164,7 @@ def _share(tiles: Tiles, index: int, keep_sharp: Sequence[NDArray[np.float64]]) 
     inside = np.minimum(rows[:, None], columns[None, :]).astype(np.float32) - np.float32(HIDDEN_PX)
     fade_px = min(FADE_PX, MOST_FADE_SHARE * min(view.width, view.height))
     share = np.minimum(_smooth(inside / JOINT_PX), _smooth((_to_soft_px(tiles, index, fade_px) - HIDDEN_PX) / fade_px))
-    kept = _kept(view, keep_sharp)
+    kept = outlines.small_in(view)
     if kept.any():
         away = np.asarray(cv2.distanceTransform(255 - kept, cv2.DIST_L2, 5))
         share = np.maximum(share, np.minimum(_smooth(1 - away / KEPT_FADE_PX), _smooth(inside / JOINT_PX)))
@@ -163,20 +188,7 @@ def _to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
     return np.asarray(fine[pad : pad + view.height, pad : pad + view.width])
 
 
-def _kept(view: Perspective, outlines: Sequence[NDArray[np.float64]]) -> NDArray[np.uint8]:
-    """Return an (H, W) mask of the small things in a tile."""
-    mask = np.zeros((view.height, view.width), np.uint8)
-    size = np.array([view.width, view.height])
-    for outline in outlines:
-        points = view.points(outline) * size
-        if np.isnan(points).any() or np.ptp(points, axis=0).max() > SMALL_PX:
-            continue
-        if np.all(points.max(axis=0) > 0) and np.all(points.min(axis=0) < size):
-            cv2.fillConvexPoly(mask, cv2.convexHull(np.rint(points).astype(np.int32)), 255)
-    return mask
-
-
-def _smooth(share: Floats) -> Floats:
+def _smooth(share: NDArray[np.floating]) -> Floats:
     """Return 0 to 1 for 0 to 1, without a kink at either end."""
     t = np.clip(share, 0, 1)
     return np.asarray(t * t * (3 - 2 * t), dtype=np.float32)

@@ -112,7 +112,7 @@ def _ground_shows(drop: NDArray[np.float32], height_m: float, still_m: NDArray[n
     """
     # The ground is height / drop away. Both are negative below the horizon, which turns the comparison round.
     reached = cv2.multiply(still_m, drop)
-    return np.asarray(cv2.compare(reached, height_m, cv2.CMP_LE if height_m < 0 else cv2.CMP_GE))
+    return np.asarray(reached <= height_m if height_m < 0 else reached >= height_m).view(np.uint8)
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,9 +188,8 @@ class _Layer:
         metres = viewpoint.depth_metres[codes]
         metres[codes == 0] = 0.0
         own_m = cv2.remap(metres, where, None, cv2.INTER_NEAREST, borderValue=0.0)
-        own = cv2.compare(own_m, 0, cv2.CMP_GT)
-        before = cv2.compare(own_m, still_m * np.float32(self.scale), cv2.CMP_LE)
-        return np.asarray(cv2.copyTo(before, own, on_ground.copy()))
+        before = own_m <= still_m * np.float32(self.scale)
+        return np.where(own_m > 0, before.view(np.uint8), on_ground)
 
 
 def _place(layers: Sequence[_Layer], projection: Projection) -> Place | None:
