@@ -30,8 +30,9 @@ def anyio_backend() -> str:
 
 @pytest.fixture(scope="session", autouse=True)
 def pictures_dir(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The folder in which all tests, and the programs that they start, keep decoded pictures."""
-    folder = tmp_path_factory.mktemp("pictures")
+    """The folder in which the tests of all workers, and the programs that they start, keep decoded pictures."""
+    root = tmp_path_factory.getbasetemp()
+    folder = (root.parent if "PYTEST_XDIST_WORKER" in os.environ else root) / "pictures"
     before = os.environ.get("SCOPE_PICTURES_DIR")
     os.environ["SCOPE_PICTURES_DIR"] = str(folder)
     yield folder
