@@ -100,3 +100,27 @@ def test_a_reduced_speed_takes_longer() -> None:
     slow.move(Pose(90, 0, 1), 0.0, speed_share=0.1)
     assert slow.ends_s() == pytest.approx(Head.at_speed(AXIS_M5075_G_HEAD, 0.1).duration_s(Pose(), Pose(90, 0, 1)))
     assert slow.ends_s() > 7 * quick.ends_s()
+
+
+@pytest.mark.parametrize("zoom_rate", [-1.5, 1.5])
+def test_a_zoom_that_is_driven_for_a_year_stands_at_its_limit(zoom_rate: float) -> None:
+    motion = _motion(Pose(0.0, 0.0, 2.0))
+    motion.drive(Velocity(zoom_rate=zoom_rate), 0.0, 3.2e7)
+    assert motion.pose(3.1e7).zoom == (5.0 if zoom_rate > 0 else 1.0)
+
+
+def test_the_end_of_a_move_and_the_commanded_velocity() -> None:
+    motion = _motion(Pose())
+    assert motion.end == Pose()
+    motion.move(Pose(30.0, -10.0, 2.0), 0.0)
+    assert (motion.end, motion.driven_at(0.1)) == (Pose(30.0, -10.0, 2.0), Velocity())
+    motion.drive(Velocity(10.0), 0.2, 1.0)
+    assert (motion.driven_at(0.3), motion.driven_at(2.0)) == (Velocity(10.0), Velocity())
+    assert motion.end is None
+
+
+def test_zoom_can_have_a_speed_of_its_own() -> None:
+    motion = _motion(Pose())
+    motion.move(Pose(90.0, 0.0, 5.0), 0.0, speed_share=0.01, zoom_share=1.0)
+    assert motion.pose(5.0).zoom == pytest.approx(5.0)
+    assert motion.pose(5.0).pan_deg < 10.0

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scope_ptz.camera.capabilities import Velocity
 from scope_ptz.camera.motion import Head
 from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
+
+_MAX_OCTAVES = 30.0  # far beyond any lens; a zoom that is driven for minutes would leave the range of numbers otherwise
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +44,14 @@ class HeadMotion:
         self.commands = 0
         """Number of commands so far. It tells whether another command has replaced one."""
 
-    def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0) -> None:
-        """Start towards a pose within the limits, from where the head is, at a share of its top speeds."""
+    def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0, zoom_share: float | None = None) -> None:
+        """Start towards a pose within the limits, from where the head is, at a share of its top speeds.
+
+        ``zoom_share`` is the share for zoom where it differs from that for pan and tilt.
+        """
         head = self._head if speed_share == 1.0 else self._head.at_speed(speed_share)
+        if zoom_share is not None:
+            head = replace(head, zoom=self._head.at_speed(zoom_share).zoom)
         self._replace(_Move(head, self.pose(now_s), pose), now_s)
 
     def drive(self, velocity: Velocity, now_s: float, timeout_s: float) -> None:
@@ -54,6 +61,19 @@ class HeadMotion:
     def brake(self, now_s: float) -> None:
         """Decelerate to a standstill."""
         self.drive(Velocity(), now_s, 0.0)
+
+    def stop_axes(self, now_s: float, *, pan_tilt: bool, zoom: bool) -> None:
+        """Stop pan and tilt, the zoom, or neither. The other axes keep their velocity and timeout, or their destination."""
+        command, since_s = self._current
+        if isinstance(command, _Driving):
+            target, left_s = command.target, since_s + command.hold_s - now_s
+            if left_s > 0:
+                pan_dps, tilt_dps = (0.0, 0.0) if pan_tilt else (target.pan_dps, target.tilt_dps)
+                self.drive(Velocity(pan_dps, tilt_dps, 0.0 if zoom else target.zoom_rate), now_s, left_s)
+        elif self.moving(now_s):
+            here, end = self.pose(now_s), command.end
+            aim = here if pan_tilt else end
+            self._replace(_Move(command.head, here, Pose(aim.pan_deg, aim.tilt_deg, here.zoom if zoom else end.zoom)), now_s)
 
     def halt(self, pose: Pose, now_s: float) -> None:
         """Be at a pose at once."""
@@ -66,7 +86,7 @@ class HeadMotion:
         if isinstance(command, _Move):
             return command.head.at(command.start, command.end, time_s)
         pan, tilt, octaves = (distance for distance, _ in self._driven(command, time_s))
-        zoom = command.start.zoom * 2.0**octaves
+        zoom = command.start.zoom * 2.0 ** min(max(octaves, -_MAX_OCTAVES), _MAX_OCTAVES)
         reached, _ = self._limits.clamp(Pose(command.start.pan_deg + pan, command.start.tilt_deg + tilt, zoom))
         return Pose(wrap_pan_deg(reached.pan_deg), reached.tilt_deg, reached.zoom) if self._limits.pan_endless else reached
 
@@ -83,6 +103,17 @@ class HeadMotion:
             0.0 if _pushes(tilt, pose.tilt_deg, limits.min_tilt_deg, limits.max_tilt_deg) else tilt,
             0.0 if _pushes(zoom, pose.zoom, limits.min_zoom, limits.max_zoom) else zoom,
         )
+
+    @property
+    def end(self) -> Pose | None:
+        """The pose that the current move leads to; None for a driven head."""
+        command, _ = self._current
+        return command.end if isinstance(command, _Move) else None
+
+    def driven_at(self, now_s: float) -> Velocity:
+        """Return the commanded velocity of a driven head; zero after its timeout, and for a move to a pose."""
+        command, since_s = self._current
+        return command.target if isinstance(command, _Driving) and now_s - since_s < command.hold_s else Velocity()
 
     def ends_s(self) -> float:
         """Return the time at which the current command ends, with the settling of a move to a pose."""

@@ -11,6 +11,8 @@ import typer
 from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.bench import HELP as BENCH_HELP
 from scope_ptz.cli.bench import BenchGroup
+from scope_ptz.cli.camera import HELP as CAMERA_HELP
+from scope_ptz.cli.camera import CameraGroup
 from scope_ptz.cli.exit import EXIT_CODES
 from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
 from scope_ptz.cli.parameters import LeanGroup
@@ -33,6 +35,9 @@ models_app = typer.Typer(
 )
 app.add_typer(scene_app, name="scene", rich_help_panel="Set up")
 app.add_typer(models_app, name="models", rich_help_panel="Set up")
+app.add_typer(
+    typer.Typer(cls=CameraGroup, help=CAMERA_HELP, no_args_is_help=True), name="camera", rich_help_panel="Talk to a camera"
+)
 app.add_typer(typer.Typer(cls=BenchGroup, help=BENCH_HELP, no_args_is_help=True), name="bench", rich_help_panel="Measure")
 
 Instruction = Annotated[str, typer.Argument(help="What the camera should do, in plain words.")]

@@ -2,19 +2,149 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.spec import CameraSpec
-from scope_ptz.errors import InputError
+from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.settings import load_settings
 
-NETWORK_SCHEMES: tuple[str, ...] = ()
+if TYPE_CHECKING:
+    from ssl import SSLContext
+
+    from scope_ptz.camera.network.address import DeviceAddress
+    from scope_ptz.camera.network.credentials import Credentials
+
+NETWORK_SCHEMES: tuple[str, ...] = ("axis",)
 """The schemes of drivers for network cameras."""
 
+STREAMS = ("mjpeg", "rtsp")
 
-async def open_network_camera(spec: CameraSpec) -> Camera:
-    """Connect to a network camera.
+_NUMBERS = {"width": 10_000, "height": 10_000, "channel": 64, "rtsp_port": 65_535, "latency_ms": 10_000}
+_DEGREES = ("hfov_wide", "hfov_tele")
+_CHOICES = {"stream": STREAMS, "tls": ("on", "off")}
+
+OPTIONS = {"axis": (*_NUMBERS, *_CHOICES, *_DEGREES)}
+"""The options of each scheme."""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenNetworkCamera:
+    """A connected camera.
+
+    Attributes:
+        camera: The camera.
+        release: Gives up the control lock. Call it after the camera is closed.
+    """
+
+    camera: Camera
+    release: Callable[[], Awaitable[None]]
+
+
+def check_network_spec(spec: CameraSpec) -> None:
+    """Check the address and the options of a spec without connecting.
+
+    Raises:
+        InputError: The address or an option is wrong.
+    """
+    from scope_ptz.camera.network.address import parse_address
+
+    parse_address(spec.address, tls=spec.options.get("tls") == "on")
+    known = OPTIONS[spec.scheme]
+    for name, value in spec.options.items():
+        if name not in known:
+            raise UnknownNameError("camera option", name[:40], known)
+        if name in _NUMBERS and not (value.isdecimal() and 0 < int(value) <= _NUMBERS[name]):
+            raise InputError(f"The camera option {name} is a whole number from 1 to {_NUMBERS[name]}, got '{value[:40]}'.")
+        if name in _CHOICES and value not in _CHOICES[name]:
+            raise InputError(f"The camera option {name} is {' or '.join(_CHOICES[name])}, got '{value[:40]}'.")
+        if name in _DEGREES:
+            _degrees(name, value)
+    fields = _fields(spec)
+    if ("hfov_wide" in spec.options) != ("hfov_tele" in spec.options) or (fields is not None and fields[0] <= fields[1]):
+        raise InputError("Give both hfov_wide and hfov_tele in degrees, and the wide one larger.")
+
+
+async def open_network_camera(spec: CameraSpec, *, actor: str = "scope") -> OpenNetworkCamera:
+    """Connect to a network camera and hold its control lock, so that one program at a time moves it.
+
+    Args:
+        spec: The camera.
+        actor: Who controls it, for others who want control.
 
     Raises:
         InputError: The spec or an option is wrong, or there is no password for the account.
+        ControlHeldError: Another program has control. The message says which.
         CameraError: The camera cannot be reached, or does not accept the account.
     """
-    raise InputError(f"There is no driver for '{spec.scheme}' cameras.")
+    from scope_ptz.camera.control import ControlLock
+    from scope_ptz.camera.network.address import parse_address
+    from scope_ptz.factory.passwords import find_credentials
+
+    check_network_spec(spec)
+    _, address = parse_address(spec.address, tls=spec.options.get("tls") == "on")
+    credentials = find_credentials(spec)
+    key = f"{address.host.lower()}:{address.port}/{spec.options.get('channel', '1')}"
+    lock = ControlLock(f"The camera at {address}", key, load_settings().cache_dir / "control")
+    lock.acquire(actor)
+
+    async def release() -> None:
+        lock.release()
+
+    try:
+        verify = await _trust(spec, address)
+        return OpenNetworkCamera(await _open_axis(spec, address, credentials, verify), release)
+    except BaseException:
+        lock.release()
+        raise
+
+
+async def _trust(spec: CameraSpec, address: DeviceAddress) -> SSLContext | bool:
+    """Return how the device's certificate is checked: by its fingerprint in ``scope.yaml``, else by the system's authorities."""
+    if not spec.name or not address.tls:
+        return True
+    from anyio import to_thread
+
+    from scope_ptz.camera.network.trust import trust_fingerprint
+    from scope_ptz.factory.named_cameras import named_cameras
+
+    named = named_cameras().get(spec.name)
+    if named is None or named.fingerprint is None:
+        return True
+    return await to_thread.run_sync(trust_fingerprint, address, named.fingerprint)
+
+
+async def _open_axis(spec: CameraSpec, address: DeviceAddress, credentials: Credentials, verify: SSLContext | bool) -> Camera:
+    from scope_ptz.camera.axis.camera import AxisCamera
+    from scope_ptz.camera.network.http import DeviceHttp
+
+    options = spec.options
+    return await AxisCamera.open(
+        DeviceHttp(address, credentials, verify=verify),
+        credentials,
+        channel=int(options.get("channel", 1)),
+        width=int(options.get("width", 1280)),
+        height=int(options.get("height", 720)),
+        stream="rtsp" if options.get("stream") == "rtsp" else "mjpeg",
+        rtsp_port=int(options["rtsp_port"]) if "rtsp_port" in options else None,
+        latency_s=int(options.get("latency_ms", 100)) / 1000,
+        fields_deg=_fields(spec),
+    )
+
+
+def _fields(spec: CameraSpec) -> tuple[float, float] | None:
+    if "hfov_wide" not in spec.options or "hfov_tele" not in spec.options:
+        return None
+    return _degrees("hfov_wide", spec.options["hfov_wide"]), _degrees("hfov_tele", spec.options["hfov_tele"])
+
+
+def _degrees(name: str, value: str) -> float:
+    try:
+        degrees = float(value)
+    except ValueError:
+        degrees = 0.0
+    if not 0.1 <= degrees < 180.0:
+        raise InputError(f"The camera option {name} is an angle from 0.1 to 180 degrees, got '{value[:40]}'.")
+    return degrees

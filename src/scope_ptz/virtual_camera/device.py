@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from time import monotonic
 
@@ -13,10 +13,11 @@ from scope_ptz.camera.capabilities import Velocity, check_preset_name
 from scope_ptz.camera.head_motion import HeadMotion
 from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Head
 from scope_ptz.camera.scene_presets import preset_pose, starting_preset
-from scope_ptz.errors import CameraError, UnknownNameError
+from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.simulator.views import picture
 from scope_ptz.virtual_camera.accounts import Account, Accounts
 from scope_ptz.virtual_camera.faults import Faults
@@ -71,6 +72,7 @@ class VirtualDevice:
 
     Attributes:
         faults: The faults that it currently shows; assign another ``Faults`` to change them.
+        observers: Functions that get every new exposure, in the thread that takes it.
     """
 
     def __init__(
@@ -101,6 +103,7 @@ class VirtualDevice:
         self._stopped_by_s = -np.inf
         self._faults, self._faults_since_s = Faults(), 0.0
         self._frozen: Exposure | None = None
+        self.observers: list[Callable[[Exposure], None]] = []
 
     @property
     def faults(self) -> Faults:
@@ -127,12 +130,23 @@ class VirtualDevice:
         status = self._faults.move_status
         return None if status == "missing" else (self.moving() and status != "lying")
 
-    def move(self, pose: Pose, *, speed_share: float = 1.0) -> None:
-        """Start towards a pose. Values beyond a limit are clamped, and a stuck axis stays where it is."""
+    @property
+    def destination(self) -> Pose:
+        """Where the current move leads to; the current pose if it is driven at a velocity."""
+        return self._motion.end or self.pose()
+
+    def move(self, pose: Pose, *, speed_share: float = 1.0, zoom_share: float | None = None) -> None:
+        """Start towards a pose. Values beyond a limit are clamped, and a stuck axis stays where it is.
+
+        Args:
+            pose: Where to go.
+            speed_share: Share of the top speeds.
+            zoom_share: Share of the top speed of zoom, if it differs.
+        """
         reachable, _ = self.limits.clamp(pose)
         here = self.pose()
         stuck = {_STUCK_FIELDS[axis]: getattr(here, _STUCK_FIELDS[axis]) for axis in self._faults.stuck}
-        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_share)
+        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_share, zoom_share=zoom_share)
 
     def drive(self, velocity: Velocity, *, timeout_s: float | None = None, sent_s: float | None = None) -> bool:
         """Move continuously. The command is dropped if it was sent before the last ``stop`` and arrived after it.
@@ -162,11 +176,25 @@ class VirtualDevice:
         """The current velocity of a driven head."""
         return self._motion.velocity(self.now_s())
 
-    def stop(self, *, sent_s: float | None = None) -> None:
-        """Brake. ``sent_s`` is when the client sent the command, in Unix seconds, if it says so."""
+    @property
+    def driven(self) -> Velocity:
+        """The commanded velocity of a driven head, zero if it is not driven."""
+        return self._motion.driven_at(self.now_s())
+
+    def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
+        """Brake pan and tilt, the zoom, or all. The rest goes on.
+
+        Args:
+            pan_tilt: Whether pan and tilt stop.
+            zoom: Whether the zoom stops.
+            sent_s: When the client sent the command, in Unix seconds, if it says so.
+        """
         if sent_s is not None:
             self._stopped_by_s = max(self._stopped_by_s, sent_s)
         now_s = self.now_s()
+        if not (pan_tilt and zoom):
+            self._motion.stop_axes(now_s, pan_tilt=pan_tilt, zoom=zoom)
+            return
         if self._motion.velocity(now_s) == Velocity():
             self._motion.halt(self._motion.pose(now_s), now_s)
         else:
@@ -219,6 +247,18 @@ class VirtualDevice:
         self._presets[number] = DevicePreset(number, name, self.pose())
         return self._presets[number]
 
+    def rename_preset(self, number: int, name: str) -> None:
+        """Give a preset another name.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+            InputError: The name is empty, too long, taken, or has characters that cannot be printed.
+        """
+        check_preset_name(name)
+        if any(preset.name == name and preset.number != number for preset in self._presets.values()):
+            raise InputError(f"There is a preset '{name}' already.")
+        self._presets[number] = replace(self.preset(number), name=name)
+
     def remove_preset(self, number: int) -> None:
         """Remove a preset.
 
@@ -230,6 +270,10 @@ class VirtualDevice:
     def set_home(self) -> None:
         """Make the current pose home."""
         self.home = self.pose()
+
+    def prefetch(self) -> Prefetch:
+        """Read the viewpoint in the background, so that no later picture has to wait for a file."""
+        return Prefetch(self.scene.viewpoint(self.viewpoint), self.width, self.optics, self.limits)
 
     def expose(self, width: int | None = None, height: int | None = None) -> Exposure:
         """Take a picture. It blocks for the time of one re-projection.
@@ -251,6 +295,8 @@ class VirtualDevice:
             image = picture(self.scene, self.viewpoint, view, time_s)
         image.flags.writeable = False
         exposure = Exposure(image, pose, time_s, taken_s)
+        for observe in self.observers:
+            observe(exposure)
         if faults.picture == "frozen":
             self._frozen = exposure
         return exposure

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from scope_ptz.errors import InputError
 from scope_ptz.geometry import Axis
 
 
@@ -37,3 +39,19 @@ class Faults(BaseModel):
     move_status: Literal["", "lying", "missing"] = ""
     down: bool = False
     clock_skew_s: float = Field(default=0.0, ge=-1e6, le=1e6)
+
+
+def checked_faults(content: Mapping[str, object]) -> Faults:
+    """Return faults from names and values.
+
+    Raises:
+        InputError: A fault is unknown or has a wrong value.
+    """
+    try:
+        return Faults.model_validate(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = ".".join(str(part) for part in first["loc"][:1])
+        known = ", ".join(Faults.model_fields)
+        what = f"There is no fault '{name}'. Known: {known}." if first["type"] == "extra_forbidden" else f"{name}: {first['msg']}."
+        raise InputError(what) from error

@@ -1,0 +1,113 @@
+"""A VAPIX client: sends requests and returns replies, and keeps control of the device's queue."""
+
+from __future__ import annotations
+
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from scope_ptz.camera.axis import requests
+from scope_ptz.camera.axis.replies import VapixError, check_done, parse_position, parse_presets, parse_queue
+from scope_ptz.camera.control import ControlHeldError
+from scope_ptz.camera.network.errors import CameraReplyError, CameraSignInError
+from scope_ptz.errors import CameraError
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.axis.replies import Position, QueuePlace
+    from scope_ptz.camera.axis.requests import VapixRequest
+    from scope_ptz.camera.network.address import DeviceAddress
+    from scope_ptz.camera.network.http import DeviceHttp, DeviceReply
+
+NOT_HERE = (404, 405, 501)
+"""Statuses with which a device says that it has no such interface."""
+
+
+class DeviceControlHeldError(ControlHeldError):
+    """Another client has control of the device, by the device's own queue."""
+
+    def __init__(self, camera: str, place: QueuePlace) -> None:
+        wait = f"about {place.seconds} s" if place.seconds >= 0 else "an unknown time"
+        # VAPIX tells the place in the queue and no names.
+        CameraError.__init__(
+            self,
+            f"{camera} is controlled by another client of its own control queue (this client would be number {place.place}, "
+            f"after {wait}). Wait, or ask them to release it.",
+        )
+        self.holder = None
+
+
+class VapixClient:
+    """The connection to one channel of a device.
+
+    Args:
+        http: The device.
+        channel: The video channel, from 1.
+    """
+
+    def __init__(self, http: DeviceHttp, channel: int = 1) -> None:
+        self.http, self.channel = http, channel
+        self.queueing = False
+        """Whether the control queue is on, so that commands need control."""
+        self._control_until_s = 0.0
+
+    @property
+    def address(self) -> DeviceAddress:
+        return self.http.address
+
+    async def send(self, request: VapixRequest) -> DeviceReply:
+        """Send a request.
+
+        Raises:
+            CameraError: The device cannot be reached, or has no such interface.
+        """
+        reply = await self.http.get(request.path, request.query, repeat=request.repeat, accept=NOT_HERE)
+        if reply.status in NOT_HERE:
+            raise CameraReplyError(f"The camera at {self.address} has no {request.path}. Check its model and firmware.")
+        return reply
+
+    async def command(self, request: VapixRequest) -> None:
+        """Send a command that moves the camera or changes it, with control of the queue.
+
+        Raises:
+            VapixError: The device refuses the command.
+            ControlHeldError: Another client has control.
+        """
+        await self.take_control()
+        check_done((await self.send(request)).body)
+
+    async def position(self) -> Position:
+        """Read the position."""
+        return parse_position((await self.send(requests.query(self.channel, "position"))).body)
+
+    async def presets(self) -> dict[int, str]:
+        """Read the names of the presets by number."""
+        return parse_presets((await self.send(requests.query(self.channel, "presetposcam"))).body)
+
+    async def take_control(self) -> None:
+        """Take control if the device has its control queue on, and keep it.
+
+        Raises:
+            ControlHeldError: Another client has control. This client leaves the queue and does not press.
+        """
+        if not self.queueing or monotonic() < self._control_until_s:
+            return
+        try:
+            place = parse_queue((await self.send(requests.control_queue(self.channel, "request"))).body)
+        except VapixError as error:
+            raise CameraError(f"The control queue of the camera at {self.address} gives no place. {error}") from None
+        if place.place != 1:
+            await self.drop_control()
+            raise DeviceControlHeldError(f"The camera at {self.address}", place)
+        left_s = place.poll_s if place.seconds < 0 else min(place.poll_s, place.seconds)
+        self._control_until_s = monotonic() + left_s / 2
+
+    async def drop_control(self) -> None:
+        """Give control back, or leave the queue."""
+        if not self.queueing:
+            return
+        self._control_until_s = 0.0
+        try:
+            await self.send(requests.control_queue(self.channel, "drop"))
+        except CameraSignInError:
+            raise
+        except CameraError:
+            return  # the queue forgets a client that is silent

@@ -1,0 +1,170 @@
+"""What an AXIS device is and can do, read from the device."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from scope_ptz.camera.axis import requests
+from scope_ptz.camera.axis.client import VapixClient
+from scope_ptz.camera.axis.replies import DeviceLimits, VapixError, parse_limits, parse_table, text_of, values_of
+from scope_ptz.camera.axis.scales import SpeedScale, ZoomScale, optics_of, zoom_scale
+from scope_ptz.camera.capabilities import Capabilities, Velocity
+from scope_ptz.camera.network.errors import CameraReplyError, NotACameraError
+from scope_ptz.errors import CameraError
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics
+
+KNOWN_OPTICS = {"AXIS M5075-G": AXIS_M5075_G}
+"""Optics of models by product name, for devices that do not report their field angles."""
+
+RTSP_PORT = 554
+"""The standard port of RTSP servers."""
+
+DEFAULT_SPEEDS = ((1.0, 1.0), (100.0, 100.0))
+"""Assumed for devices without a speed table: 100 is 100 degrees per second."""
+
+DEFAULT_ZOOM_RATE = 1.0
+"""Assumed top speed of the zoom in octaves per second; VAPIX reports none."""
+
+
+@dataclass(frozen=True, slots=True)
+class AxisDevice:
+    """A device as its replies describe it.
+
+    Attributes:
+        model: Product name, empty if it reports none.
+        limits: Limits in degrees and magnification.
+        optics: Field of view by magnification.
+        zoom: Zoom positions and magnification.
+        speeds: Speeds and degrees per second.
+        capabilities: What it can do beyond moving to a pose.
+        supported: Names of the functions whose ``PTZ.Support`` parameter is true, such as ``AutoFocus``.
+        queueing: Whether its control queue is on.
+        locked: Whether its position is locked.
+        sizes: Picture sizes that it announces, width and height; empty if it announces none.
+    """
+
+    model: str
+    limits: Limits
+    optics: Optics
+    zoom: ZoomScale
+    speeds: SpeedScale
+    capabilities: Capabilities
+    supported: frozenset[str]
+    queueing: bool
+    locked: bool
+    sizes: tuple[tuple[int, int], ...]
+
+
+async def read_device(client: VapixClient, *, fields_deg: tuple[float, float] | None = None) -> AxisDevice:
+    """Read what a device is and can do.
+
+    Args:
+        client: The connection.
+        fields_deg: Horizontal fields of view at the widest and the closest zoom, in place of what the device reports.
+
+    Raises:
+        NotACameraError: It is not an AXIS camera, or it has no pan, tilt and zoom.
+        CameraError: It cannot be reached, refuses the account, or reports no field of view.
+    """
+    channel = client.channel
+    brand = await _parameters(client, "root.Brand")
+    ptz = await _parameters(client, "root.PTZ")
+    image = await _parameters(client, "root.Properties.Image")
+    model = brand.get("Brand.ProdFullName") or brand.get("Brand.ProdShortName") or ""
+    reported = await _limits(client)
+    widest, closest = fields_deg or _fields(model[:60], reported)
+    zoom = zoom_scale(
+        await _table(client, "zoom", "zoomSteps"), reported.min_zoom_units, reported.max_zoom_units, widest, closest
+    )  # fmt: skip
+    speeds = SpeedScale(await _table(client, "speed", "speeds") or DEFAULT_SPEEDS)
+    supported = frozenset(
+        name.rsplit(".", 1)[1] for name, value in ptz.items() if name.startswith(f"PTZ.Support.S{channel}.") and value == "true"
+    )
+    various = f"PTZ.Various.V{channel}."
+    return AxisDevice(
+        model=model[:60],
+        limits=_limits_in_degrees(reported, zoom),
+        optics=optics_of(zoom, widest, closest),
+        zoom=zoom,
+        speeds=speeds,
+        capabilities=_capabilities(supported, speeds),
+        supported=supported,
+        queueing=ptz.get(f"{various}CtlQueueing") == "true",
+        locked=ptz.get(f"{various}Locked") == "true",
+        sizes=_sizes(image.get("Properties.Image.Resolution", "")),
+    )
+
+
+async def read_rtsp_port(client: VapixClient) -> int:
+    """Return the port of the RTSP server: the one that the device reports, or the standard port."""
+    text = (await _parameters(client, "root.Network.RTSP")).get("Network.RTSP.Port", "")
+    return int(text) if text.isdecimal() and 0 < int(text) < 65536 else RTSP_PORT
+
+
+def _capabilities(supported: frozenset[str], speeds: SpeedScale) -> Capabilities:
+    """Return the capabilities. A device without ``PTZ.Support`` parameters is taken to drive and to keep presets."""
+    silent = not supported
+    top = Velocity(
+        speeds.top_dps if silent or "ContinuousPan" in supported else 0.0,
+        speeds.top_dps if silent or "ContinuousTilt" in supported else 0.0,
+        DEFAULT_ZOOM_RATE if silent or "ContinuousZoom" in supported else 0.0,
+    )
+    return Capabilities(
+        top,
+        edits_presets=silent or "ServerPreset" in supported,
+        focus=bool(supported & {"AutoFocus", "RelativeFocus"}),
+        iris=bool(supported & {"AutoIris", "RelativeIris"}),
+    )
+
+
+async def _limits(client: VapixClient) -> DeviceLimits:
+    try:
+        return parse_limits((await client.send(requests.query(client.channel, "limits"))).body)
+    except (VapixError, CameraReplyError) as error:
+        message = f"What answers at {client.address} is not an AXIS camera with pan, tilt and zoom. {error}"
+        raise NotACameraError(message) from None
+
+
+async def _parameters(client: VapixClient, group: str) -> dict[str, str]:
+    """Return a group of parameters; empty if the device has no such group."""
+    try:
+        return values_of(text_of((await client.send(requests.parameters(group))).body))
+    except (VapixError, CameraReplyError):
+        return {}
+
+
+async def _table(client: VapixClient, group: str, attribute: str) -> tuple[tuple[float, float], ...]:
+    """Return a calibration table; empty if the device has none, as older firmware."""
+    request = requests.attributes(client.channel, "zoom" if group == "zoom" else "speed")
+    try:
+        rows = parse_table((await client.send(request)).body, client.channel, attribute, group)
+    except (VapixError, CameraReplyError):
+        return ()
+    return rows if len(rows) >= 2 else ()
+
+
+def _fields(model: str, reported: DeviceLimits) -> tuple[float, float]:
+    widest, closest = reported.max_field_angle, reported.min_field_angle
+    if widest is not None and closest is not None and 0 < closest < widest <= 1800:
+        return widest / 10, closest / 10
+    if (optics := KNOWN_OPTICS.get(model)) is not None:
+        return optics.table[0][1], optics.table[-1][1]
+    raise CameraError(
+        "The camera does not report its field of view. Give it in degrees: ?hfov_wide=...&hfov_tele=..., from the data sheet."
+    )
+
+
+def _limits_in_degrees(reported: DeviceLimits, zoom: ZoomScale) -> Limits:
+    endless = reported.max_pan_deg - reported.min_pan_deg >= 360.0
+    return Limits(
+        reported.min_pan_deg, reported.max_pan_deg, reported.min_tilt_deg, reported.max_tilt_deg,
+        zoom.min_zoom, zoom.max_zoom, pan_endless=endless,
+    )  # fmt: skip
+
+
+def _sizes(text: str) -> tuple[tuple[int, int], ...]:
+    """Return the sizes of ``1920x1080,1280x720,...``."""
+    pairs = (part.strip().partition("x") for part in text.split(","))
+    return tuple(
+        (int(w), int(h)) for w, _, h in pairs if w.isdecimal() and h.isdecimal() and 0 < int(w) <= 20000 and 0 < int(h) <= 20000
+    )

@@ -1,0 +1,190 @@
+"""VAPIX requests: paths and queries, built from checked values. Nothing is sent here.
+
+Sources: the pan/tilt/zoom, video streaming and parameter management chapters of the VAPIX library.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from scope_ptz.camera.capabilities import check_preset_name
+from scope_ptz.errors import InputError
+
+PTZ_PATH = "/axis-cgi/com/ptz.cgi"
+CONFIGURATION_PATH = "/axis-cgi/com/ptzconfig.cgi"
+QUEUE_PATH = "/axis-cgi/com/ptzqueue.cgi"
+PARAMETER_PATH = "/axis-cgi/param.cgi"
+SNAPSHOT_PATH = "/axis-cgi/jpg/image.cgi"
+MJPEG_PATH = "/axis-cgi/mjpg/video.cgi"
+RTSP_PATH = "/axis-media/media.amp"
+
+_REFUSED_IN_PRESET_NAMES = '"<>~:'
+
+
+@dataclass(frozen=True, slots=True)
+class VapixRequest:
+    """A request.
+
+    Attributes:
+        path: The path on the device.
+        query: Names and values, not yet encoded.
+        repeat: Whether sending it twice has the same effect as sending it once.
+    """
+
+    path: str
+    query: dict[str, str]
+    repeat: bool = True
+
+
+def absolute(channel: int, pan_deg: float, tilt_deg: float, zoom_units: int) -> VapixRequest:
+    """Move to an absolute position. Angles are degrees, zoom is in units of the device (1 to 19999)."""
+    _check_finite(pan_deg=pan_deg, tilt_deg=tilt_deg)
+    query = {"pan": _number(_within(pan_deg, 180.0)), "tilt": _number(_within(tilt_deg, 180.0))}
+    return _ptz(channel, **query, zoom=str(min(max(zoom_units, 1), 19999)))
+
+
+def continuous_pan_tilt(channel: int, pan: int, tilt: int, *, proportional: bool = False) -> VapixRequest:
+    """Move at a velocity of -100 to 100.
+
+    Args:
+        channel: The video channel.
+        pan: Positive to the right.
+        tilt: Positive upwards.
+        proportional: Whether the device would scale the velocity with the zoom; it is told not to.
+    """
+    extra = {"proportionalspeed": "disabled"} if proportional else {}
+    return _ptz(channel, continuouspantiltmove=f"{_speed(pan)},{_speed(tilt)}", **extra)
+
+
+def continuous_zoom(channel: int, zoom: int) -> VapixRequest:
+    """Zoom at a velocity of -100 to 100, positive to zoom in."""
+    return _ptz(channel, continuouszoommove=str(_speed(zoom)))
+
+
+def stop(channel: int) -> tuple[VapixRequest, ...]:
+    """Stop continuous motion of all axes, and moves to a position."""
+    return continuous_pan_tilt(channel, 0, 0), continuous_zoom(channel, 0), _ptz(channel, move="stop")
+
+
+def home(channel: int) -> VapixRequest:
+    """Go to the home position."""
+    return _ptz(channel, move="home")
+
+
+def go_to_preset(channel: int, name: str) -> VapixRequest:
+    """Go to a preset by name."""
+    return _ptz(channel, gotoserverpresetname=name)
+
+
+def save_preset(channel: int, name: str) -> VapixRequest:
+    """Save the current position as a preset.
+
+    Raises:
+        InputError: The device does not allow the name.
+    """
+    check_preset_name(name)
+    if found := sorted(set(name) & set(_REFUSED_IN_PRESET_NAMES)):
+        raise InputError(f"A preset name of an AXIS camera may not contain {' '.join(found)}. Choose another name.")
+    return VapixRequest(CONFIGURATION_PATH, {"camera": _channel(channel), "setserverpresetname": name})
+
+
+def remove_preset(channel: int, name: str) -> VapixRequest:
+    """Remove a preset by name."""
+    return VapixRequest(CONFIGURATION_PATH, {"camera": _channel(channel), "removeserverpresetname": name})
+
+
+def autofocus(channel: int, *, on: bool) -> VapixRequest:
+    """Turn autofocus on or off."""
+    return _ptz(channel, autofocus=_switch(on))
+
+
+def autoiris(channel: int, *, on: bool) -> VapixRequest:
+    """Turn the automatic iris on or off."""
+    return _ptz(channel, autoiris=_switch(on))
+
+
+def relative_focus(channel: int, steps: int) -> VapixRequest:
+    """Move the focus by steps, positive to focus farther away."""
+    return replace(_ptz(channel, rfocus=str(_steps(steps))), repeat=False)
+
+
+def relative_iris(channel: int, steps: int) -> VapixRequest:
+    """Move the iris by steps, positive to open it."""
+    return replace(_ptz(channel, riris=str(_steps(steps))), repeat=False)
+
+
+def query(channel: int, what: Literal["position", "limits", "presetposcam", "speed"]) -> VapixRequest:
+    """Read the position, the limits, the presets or the speed."""
+    return _ptz(channel, query=what)
+
+
+def attributes(channel: int, group: Literal["zoom", "speed"]) -> VapixRequest:
+    """Read a calibration table."""
+    return _ptz(channel, query="attributes", group=group, format="json")
+
+
+def control_queue(channel: int, action: Literal["request", "drop", "query"]) -> VapixRequest:
+    """Request, drop or query PTZ control."""
+    return VapixRequest(QUEUE_PATH, {"camera": _channel(channel), "control": action})
+
+
+def parameters(group: str) -> VapixRequest:
+    """List a group of parameters, such as ``root.PTZ``."""
+    return VapixRequest(PARAMETER_PATH, {"action": "list", "group": group})
+
+
+def snapshot(channel: int, width: int, height: int, *, compression: int = 15) -> VapixRequest:
+    """Take one JPEG picture. ``compression`` is 0 (best) to 100."""
+    query = {"camera": _channel(channel), "resolution": f"{width}x{height}", "compression": str(compression)}
+    return VapixRequest(SNAPSHOT_PATH, query)
+
+
+def mjpeg(channel: int, width: int, height: int, rate_hz: float, *, compression: int = 25) -> VapixRequest:
+    """Open a motion JPEG stream of at most ``rate_hz`` pictures per second."""
+    picture = snapshot(channel, width, height, compression=compression)
+    return VapixRequest(MJPEG_PATH, {**picture.query, "fps": str(min(max(math.ceil(rate_hz), 1), 60))})
+
+
+def rtsp_path(channel: int, width: int, height: int, rate_hz: float) -> str:
+    """Return path and query of an H.264 stream."""
+    rate = min(max(math.ceil(rate_hz), 1), 60)
+    return f"{RTSP_PATH}?camera={_channel(channel)}&videocodec=h264&resolution={width}x{height}&fps={rate}"
+
+
+def _ptz(channel: int, **arguments: str) -> VapixRequest:
+    return VapixRequest(PTZ_PATH, {"camera": _channel(channel), **arguments})
+
+
+def _channel(channel: int) -> str:
+    if channel < 1:
+        raise InputError(f"The channel of an AXIS camera is 1 or more, got {channel}.")
+    return str(channel)
+
+
+def _check_finite(**values: float) -> None:
+    for name, value in values.items():
+        if not math.isfinite(value):
+            raise InputError(f"{name} is a finite number, got {value}.")
+
+
+def _within(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)
+
+
+def _number(value: float) -> str:
+    """Return a number without an exponent, which devices do not read, and without a negative zero."""
+    return f"{value:.4f}".rstrip("0").rstrip(".").replace("-0", "0", 1) if abs(value) < 5e-5 else f"{value:.4f}"
+
+
+def _speed(value: int) -> int:
+    return min(max(value, -100), 100)
+
+
+def _steps(value: int) -> int:
+    return min(max(value, -9999), 9999)
+
+
+def _switch(on: bool) -> str:
+    return "on" if on else "off"

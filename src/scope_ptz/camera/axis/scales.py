@@ -1,0 +1,96 @@
+"""Units of AXIS devices: zoom positions to magnification, and speeds of -100 to 100 to degrees per second."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from scope_ptz.geometry import Optics
+
+OPTICAL_END_UNITS = 9999.0
+"""Zoom positions above this one are digital."""
+
+
+@dataclass(frozen=True, slots=True)
+class ZoomScale:
+    """Zoom positions and magnifications as a table, both rising. Between the rows it is linear.
+
+    Attributes:
+        table: Rows of (zoom position, magnification).
+    """
+
+    table: tuple[tuple[float, float], ...]
+
+    def __post_init__(self) -> None:
+        if len(self.table) < 2 or any(b[0] <= a[0] or b[1] <= a[1] for a, b in zip(self.table, self.table[1:], strict=False)):
+            raise ValueError("a zoom scale needs two or more rows that rise")
+
+    @property
+    def min_zoom(self) -> float:
+        return self.table[0][1]
+
+    @property
+    def max_zoom(self) -> float:
+        return self.table[-1][1]
+
+    def to_zoom(self, units: float) -> float:
+        """Return the magnification at a zoom position."""
+        import numpy as np
+
+        return float(np.interp(units, [u for u, _ in self.table], [z for _, z in self.table]))
+
+    def to_units(self, zoom: float) -> int:
+        """Return the zoom position nearest to a magnification."""
+        import numpy as np
+
+        return round(float(np.interp(zoom, [z for _, z in self.table], [u for u, _ in self.table])))
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedScale:
+    """Speeds of 1 to 100 and degrees per second as a table, both rising.
+
+    Attributes:
+        table: Rows of (speed, degrees per second).
+    """
+
+    table: tuple[tuple[float, float], ...]
+
+    @property
+    def top_dps(self) -> float:
+        """The highest speed in degrees per second."""
+        return self.table[-1][1]
+
+    def to_speed(self, dps: float) -> int:
+        """Return the speed of -100 to 100 for a velocity. Any velocity but 0 moves the camera."""
+        import numpy as np
+
+        if dps == 0:
+            return 0
+        speed = float(np.interp(abs(dps), [d for _, d in self.table], [s for s, _ in self.table]))
+        return int(math.copysign(max(1, round(speed)), dps))
+
+
+def zoom_scale(
+    rows: tuple[tuple[float, float], ...], min_units: float, max_units: float, widest: float, closest: float
+) -> ZoomScale:
+    """Return the zoom scale of a device.
+
+    Args:
+        rows: Its own table, empty if it has none.
+        min_units: The lowest zoom position.
+        max_units: The highest zoom position.
+        widest: Horizontal field of view in degrees at the widest zoom, for a device without a table.
+        closest: Horizontal field of view in degrees at the closest zoom.
+    """
+    max_units = min(max_units, OPTICAL_END_UNITS)
+    kept = tuple(row for row in rows if min_units <= row[0] <= max_units)
+    if len(kept) >= 2:
+        return ZoomScale(kept)
+    ratio = math.tan(math.radians(widest) / 2) / math.tan(math.radians(closest) / 2)
+    return ZoomScale(((min_units, 1.0), (max_units, ratio)))
+
+
+def optics_of(scale: ZoomScale, widest: float, closest: float) -> Optics:
+    """Return the optics: the focal length grows linearly with magnification between the two known fields of view."""
+    return Optics(((scale.min_zoom, widest), (scale.max_zoom, closest)))

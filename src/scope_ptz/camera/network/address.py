@@ -1,0 +1,96 @@
+"""The address of a device, and how addresses that the device returns are pinned to it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from urllib.parse import urlsplit, urlunsplit
+
+from scope_ptz.camera.network.errors import ForeignAddressError
+from scope_ptz.errors import InputError
+
+_HTTP_SCHEMES = ("http", "https")
+_HOST = re.compile(r"[A-Za-z0-9._-]+|\[[0-9A-Fa-f:.]+\]")
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceAddress:
+    """Where a device is. Credentials go to this host and port only.
+
+    Attributes:
+        host: Host name, IPv4 address, or IPv6 address in brackets.
+        port: Port of the web interface.
+        tls: Whether the connection is encrypted.
+    """
+
+    host: str
+    port: int
+    tls: bool = False
+
+    @property
+    def base_url(self) -> str:
+        """The start of every URL of the device, without a slash at the end."""
+        return f"{'https' if self.tls else 'http'}://{self.host}:{self.port}"
+
+    def __str__(self) -> str:
+        standard = 443 if self.tls else 80
+        return self.host if self.port == standard else f"{self.host}:{self.port}"
+
+    def has_origin(self, scheme: str, host: str, port: int | None) -> bool:
+        """Return whether scheme, host and port are those of this address."""
+        mine = "https" if self.tls else "http"
+        port = port or (443 if scheme == "https" else 80)
+        return (scheme, host.strip("[]").lower(), port) == (mine, self.host.strip("[]").lower(), self.port)
+
+    def pin_http(self, url: str) -> str:
+        """Return a URL that the device returned, rewritten to its configured scheme, host and port.
+
+        Devices behind address translation return addresses of their own network. Path and query are kept, credentials are dropped.
+
+        Raises:
+            ForeignAddressError: It is not an HTTP URL.
+        """
+        parts = urlsplit(url)
+        if parts.scheme not in ("", *_HTTP_SCHEMES) or (not parts.scheme and not url.startswith("/")):
+            raise ForeignAddressError(f"The camera at {self} returned an address that is not HTTP ({parts.scheme[:20]}:). Refused.")
+        path = "/" + parts.path.lstrip("/")
+        return self.base_url + urlunsplit(("", "", path, parts.query, ""))
+
+    def pin_rtsp(self, url: str, default_port: int = 554) -> str:
+        """Return a stream URL that the device returned, rewritten to its configured host. The stream's own port is kept.
+
+        Raises:
+            ForeignAddressError: It is not an RTSP URL.
+        """
+        parts = urlsplit(url)
+        try:
+            port = parts.port or default_port
+        except ValueError:
+            port = 0
+        if parts.scheme not in ("rtsp", "rtsps") or not 0 < port < 65536:
+            raise ForeignAddressError(f"The camera at {self} returned a stream address that is not RTSP. Refused.")
+        return urlunsplit((parts.scheme, f"{self.host}:{port}", "/" + parts.path.lstrip("/"), parts.query, ""))
+
+
+def parse_address(text: str, *, tls: bool = False) -> tuple[str, DeviceAddress]:
+    """Parse ``user@host[:port]``.
+
+    Args:
+        text: The address. The user may be missing.
+        tls: Whether the connection is encrypted; it decides the default port.
+
+    Returns:
+        The user name, "" if there is none, and the address.
+
+    Raises:
+        InputError: The host or the port is wrong, or there is a password. The message does not repeat the text.
+    """
+    user, _, place = text.rstrip("/").rpartition("@")
+    if ":" in user:
+        raise InputError("Leave the password out of the camera's address. Set SCOPE_CAMERA_PASSWORD instead.")
+    host, colon, port = place.rpartition(":") if not place.endswith("]") and ":" in place else (place, "", "")
+    if not _HOST.fullmatch(host):
+        raise InputError("The camera's address is user@host or user@host:port, for example operator@10.0.0.7.")
+    if colon and not (port.isdecimal() and 0 < int(port) < 65536):
+        raise InputError("The port of the camera's address is a number from 1 to 65535.")
+    return user, DeviceAddress(host, int(port) if colon else (443 if tls else 80), tls)

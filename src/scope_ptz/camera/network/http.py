@@ -1,0 +1,261 @@
+"""HTTP to one device: sign-in, time limits, retries of reads, and errors that say what to do."""
+
+from __future__ import annotations
+
+import ssl
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager
+from dataclasses import dataclass, field
+
+import anyio
+import httpx2
+
+from scope_ptz.camera.network.address import DeviceAddress
+from scope_ptz.camera.network.credentials import Credentials
+from scope_ptz.camera.network.errors import (
+    CameraReplyError,
+    CameraSignInError,
+    CameraTimeoutError,
+    CameraUnreachableError,
+    ForeignAddressError,
+)
+from scope_ptz.camera.network.sign_in import PinnedSignIn
+from scope_ptz.errors import CameraError
+
+MAX_BODY_BYTES = 32 * 2**20
+"""The longest reply that is read. A 4K JPEG has about 4 MB."""
+
+_BACKOFF_S = (0.15, 0.4)
+"""Pauses before a read is repeated."""
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceTimeouts:
+    """Time limits in seconds."""
+
+    connect_s: float = 4.0
+    reply_s: float = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceReply:
+    """A reply. ``body`` may hold anything: it comes from the device.
+
+    Attributes:
+        status: HTTP status; 2xx, or one of the statuses that the caller accepts.
+        content_type: Media type without parameters, in lower case.
+        body: The body.
+    """
+
+    status: int
+    content_type: str
+    body: bytes = field(repr=False)
+
+
+class DeviceHttp:
+    """An HTTP client for one device. It follows no redirects and uses no proxy.
+
+    Args:
+        address: The device.
+        credentials: The account.
+        timeouts: Time limits.
+        verify: How the certificate is checked.
+    """
+
+    def __init__(
+        self,
+        address: DeviceAddress,
+        credentials: Credentials,
+        *,
+        timeouts: DeviceTimeouts | None = None,
+        verify: ssl.SSLContext | bool = True,
+    ) -> None:
+        self.address, self._credentials = address, credentials
+        # Without TLS there is nothing to verify, and reading the certificate store takes 50 ms.
+        self._verify = verify if address.tls else False
+        self._timeouts = timeouts or DeviceTimeouts()
+        self._client = httpx2.AsyncClient(
+            base_url=address.base_url,
+            auth=PinnedSignIn(address, credentials),
+            timeout=httpx2.Timeout(self._timeouts.reply_s, connect=self._timeouts.connect_s),
+            # A device closes idle connections at will, and a command must not fail because of it.
+            limits=httpx2.Limits(max_connections=8, max_keepalive_connections=4, keepalive_expiry=2.0),
+            follow_redirects=False,
+            trust_env=False,
+            verify=self._verify,
+        )
+
+    def __repr__(self) -> str:
+        return f"DeviceHttp({self.address})"
+
+    async def get(
+        self, path: str, parameters: Mapping[str, str] | None = None, *, repeat: bool = True, accept: tuple[int, ...] = ()
+    ) -> DeviceReply:
+        """Send a GET request.
+
+        Args:
+            path: The path on the device.
+            parameters: The query.
+            repeat: Whether the request may be sent again after a lost connection. Commands that add up may not.
+            accept: Statuses besides 2xx that are returned and not raised.
+
+        Raises:
+            CameraError: One of the errors of ``camera.network.errors``.
+        """
+        return await self._send("GET", path, parameters, repeat=repeat, accept=accept)
+
+    async def post_json(self, path: str, message: Mapping[str, object], *, accept: tuple[int, ...] = ()) -> DeviceReply:
+        """Post a JSON message that only reads."""
+        return await self._send("POST", path, None, json=message, repeat=True, accept=accept)
+
+    async def post(
+        self, path: str, content: bytes, headers: Mapping[str, str], *, repeat: bool, accept: tuple[int, ...] = ()
+    ) -> DeviceReply:
+        """Post a message. The arguments are those of ``get``; ``headers`` say what the content is."""
+        return await self._send("POST", path, None, content=content, headers=headers, repeat=repeat, accept=accept)
+
+    async def _send(
+        self,
+        method: str,
+        path: str,
+        parameters: Mapping[str, str] | None,
+        *,
+        repeat: bool,
+        accept: tuple[int, ...],
+        json: Mapping[str, object] | None = None,
+        content: bytes | None = None,
+        headers: Mapping[str, str] | None = None,
+    ) -> DeviceReply:
+        for pause_s in (*(_BACKOFF_S if repeat else ()), None):
+            try:
+                with connection_errors(self.address), anyio.fail_after(self._timeouts.connect_s + self._timeouts.reply_s):
+                    async with self._client.stream(
+                        method, path, params=parameters, json=json, content=content, headers=headers
+                    ) as response:
+                        check_status(self.address, response, accept)
+                        body = await _read(self.address, response)
+                        return DeviceReply(response.status_code, _media_type(response), body)
+            except CameraUnreachableError:
+                if pause_s is None:
+                    raise
+                await anyio.sleep(pause_s)
+        raise AssertionError("the last attempt returns or raises")
+
+    @asynccontextmanager
+    async def stream(
+        self, path: str, parameters: Mapping[str, str] | None = None
+    ) -> AsyncIterator[tuple[str, AsyncIterator[bytes]]]:
+        """Return a context with the content type and the body of an endless reply, as chunks of bytes."""
+        with connection_errors(self.address):
+            async with self._client.stream("GET", path, params=parameters) as response:
+                check_status(self.address, response, ())
+                yield response.headers.get("content-type", ""), response.aiter_raw()
+
+    def send_blocking(self, path: str, queries: tuple[Mapping[str, str], ...], *, timeout_s: float = 2.0) -> None:
+        """Send GET requests from a thread, on a connection of their own. It works when the event loop does not.
+
+        Raises:
+            CameraError: A request failed; those before it arrived.
+        """
+        with connection_errors(self.address), self._blocking_client(timeout_s) as client:
+            for query in queries:
+                check_status(self.address, client.get(path, params=query), ())
+
+    def post_blocking(self, path: str, content: bytes, headers: Mapping[str, str], *, timeout_s: float = 2.0) -> None:
+        """Post a message from a thread, on a connection of its own.
+
+        Raises:
+            CameraError: The request failed.
+        """
+        with connection_errors(self.address), self._blocking_client(timeout_s) as client:
+            check_status(self.address, client.post(path, content=content, headers=dict(headers)), ())
+
+    def _blocking_client(self, timeout_s: float) -> httpx2.Client:
+        # A fresh sign-in: the one of the event loop counts its requests and is not safe in two threads.
+        return httpx2.Client(
+            base_url=self.address.base_url, auth=PinnedSignIn(self.address, self._credentials), timeout=timeout_s,
+            cookies=self._client.cookies, follow_redirects=False, trust_env=False, verify=self._verify,
+        )  # fmt: skip
+
+    async def close(self) -> None:
+        """Close all connections."""
+        await self._client.aclose()
+
+
+@contextmanager
+def connection_errors(address: DeviceAddress) -> Iterator[None]:
+    """Return a context that turns failures of the transport into camera errors.
+
+    The original error is dropped: its request carries headers and its text may carry an address with credentials.
+    """
+    try:
+        yield
+    except (httpx2.TimeoutException, TimeoutError) as error:
+        if isinstance(error, httpx2.ConnectTimeout):
+            failure: CameraError = CameraUnreachableError(_nobody(address, "nothing answers"))
+        else:
+            failure = CameraTimeoutError(
+                f"The camera at {address} did not answer in time. It may be rebooting; check the network, then try again."
+            )
+    except httpx2.ConnectError as error:
+        text = str(error).lower()
+        if "certificate" in text or "ssl" in text:
+            failure = CameraUnreachableError(
+                f"The TLS connection to {address} failed. Its certificate is not trusted, or it does not speak TLS at this port."
+            )
+        else:
+            failure = CameraUnreachableError(_nobody(address, "the connection was refused or the name is unknown"))
+    except (httpx2.NetworkError, httpx2.RemoteProtocolError):
+        failure = CameraUnreachableError(
+            f"The connection to the camera at {address} broke. It may be rebooting; check the network and try again."
+        )
+    except (httpx2.HTTPError, httpx2.InvalidURL, NotImplementedError, ValueError):
+        failure = CameraReplyError(
+            f"The camera at {address} sent a reply that is not valid HTTP. Is this the port of its web interface?"
+        )
+    else:
+        return
+    raise failure from None
+
+
+def check_status(address: DeviceAddress, response: httpx2.Response, accept: tuple[int, ...]) -> None:
+    """Raise the camera error of a status that is neither 2xx nor accepted."""
+    status = response.status_code
+    if response.is_success or status in accept:
+        return
+    if status == 401:
+        raise CameraSignInError(f"The camera at {address} refuses the user name or the password. Check both, then try again.")
+    if status == 403:
+        raise CameraSignInError(f"The account may not do this on the camera at {address}. Give it the right to control PTZ.")
+    if 300 <= status < 400:
+        raise ForeignAddressError(_redirect(address, response))
+    if status in (502, 503, 504):
+        raise CameraUnreachableError(f"The camera at {address} is not ready (HTTP {status}). It may be starting; try again.")
+    raise CameraReplyError(f"The camera at {address} answered with HTTP {status}. Check that its model and firmware are supported.")
+
+
+def _redirect(address: DeviceAddress, response: httpx2.Response) -> str:
+    try:
+        target = httpx2.URL(response.headers.get("location", ""))
+        where = f"{target.scheme}://{target.host}"[:80] if target.host else "another path"
+    except (httpx2.InvalidURL, ValueError):
+        where = "an unreadable address"
+    hint = " Add ?tls=on to the camera." if where == f"https://{address.host}" else ""
+    return f"The camera at {address} redirects to {where}. Redirects are not followed and no credentials were sent there.{hint}"
+
+
+async def _read(address: DeviceAddress, response: httpx2.Response) -> bytes:
+    body = bytearray()
+    async for chunk in response.aiter_bytes():
+        body += chunk
+        if len(body) > MAX_BODY_BYTES:
+            raise CameraReplyError(f"The camera at {address} sent more than {MAX_BODY_BYTES // 2**20} MB. The reply was dropped.")
+    return bytes(body)
+
+
+def _media_type(response: httpx2.Response) -> str:
+    return str(response.headers.get("content-type", "")).partition(";")[0].strip().lower()
+
+
+def _nobody(address: DeviceAddress, what: str) -> str:
+    return f"The camera at {address} cannot be reached: {what}. Check the address, the cable and that the camera is on."

@@ -1,0 +1,104 @@
+"""Motion JPEG: pictures from a ``multipart/x-mixed-replace`` body."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from scope_ptz.camera.network.errors import CameraReplyError, PictureError
+
+MAX_PART_BYTES: Final = 16 * 2**20
+"""The longest picture that is read."""
+
+MAX_HEADER_BYTES: Final = 8192
+"""The longest header of a part."""
+
+_BOUNDARY = re.compile(r'boundary="?([^";,\s]+)"?', re.IGNORECASE)
+_LENGTH = re.compile(rb"^content-length:[ \t]*(\d{1,9})[ \t]*\r?$", re.IGNORECASE | re.MULTILINE)
+_HEADER_END = re.compile(rb"\r?\n\r?\n")
+
+
+def boundary_of(content_type: str) -> bytes:
+    """Return the delimiter of the parts, with its leading dashes.
+
+    Raises:
+        CameraReplyError: It is no multipart stream.
+    """
+    found = _BOUNDARY.search(content_type)
+    if not content_type.lower().startswith("multipart/") or found is None:
+        raise CameraReplyError("The camera's MJPEG stream is not multipart. Use ?stream=rtsp, or check its model and firmware.")
+    # Some devices announce the boundary with its dashes and some without.
+    return b"--" + found.group(1).encode("latin-1", "replace").lstrip(b"-")
+
+
+class MjpegParser:
+    """Splits a multipart body into pictures. It reads chunks of any size and keeps at most one part in memory.
+
+    Args:
+        boundary: The delimiter, as ``boundary_of`` returns it.
+    """
+
+    def __init__(self, boundary: bytes) -> None:
+        self._boundary = boundary
+        self._buffer = bytearray()
+        self._length: int | None = None
+        self._in_part = False
+        self._searched = 0
+
+    def feed(self, chunk: bytes) -> list[bytes]:
+        """Add bytes and return the pictures that are complete.
+
+        Raises:
+            PictureError: A part is longer than a picture can be, or its header has no end.
+        """
+        self._buffer += chunk
+        pictures = []
+        while (picture := self._next()) is not None:
+            if picture:
+                pictures.append(picture)
+        return pictures
+
+    def _next(self) -> bytes | None:
+        """Return the next part, empty if it has none; None if more bytes are needed."""
+        if not self._in_part and not self._read_header():
+            return None
+        buffer = self._buffer
+        if self._length is not None:
+            if len(buffer) < self._length:
+                return None
+            return self._take(self._length)
+        end = buffer.find(self._boundary, self._searched)
+        if end < 0:
+            self._searched = max(0, len(buffer) - len(self._boundary))
+            if len(buffer) > MAX_PART_BYTES:
+                raise PictureError("A part of the camera's MJPEG stream has no end. Restart the camera.", "damaged")
+            return None
+        return self._take(end).rstrip(b"\r\n") if end else self._take(0)
+
+    def _read_header(self) -> bool:
+        """Drop everything up to the end of the next header. Return whether there is one."""
+        buffer = self._buffer
+        start = buffer.find(self._boundary)
+        if start < 0:
+            del buffer[: max(0, len(buffer) - len(self._boundary))]
+            return False
+        # The line of the boundary ends before the header, so an empty line right after it ends an empty header.
+        found = _HEADER_END.search(buffer, start + len(self._boundary))
+        if found is None:
+            del buffer[:start]
+            if len(buffer) > MAX_HEADER_BYTES:
+                raise PictureError("A header of the camera's MJPEG stream has no end. Restart the camera.", "damaged")
+            return False
+        length = _LENGTH.search(buffer, start, found.start() + 1)
+        self._length = int(length.group(1)) if length else None
+        if self._length is not None and self._length > MAX_PART_BYTES:
+            raise PictureError("A picture of the camera's MJPEG stream is longer than 16 MB. Restart the camera.", "damaged")
+        del buffer[: found.end()]
+        self._in_part, self._searched = True, 0
+        return True
+
+    def _take(self, length: int) -> bytes:
+        part = bytes(self._buffer[:length])
+        del self._buffer[:length]
+        self._in_part, self._length = False, None
+        return part

@@ -1,0 +1,129 @@
+"""JPEG pictures of a device: decoding with checks, and detection of black and frozen pictures."""
+
+from __future__ import annotations
+
+import hashlib
+from io import BytesIO
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from scope_ptz.camera.network.errors import PictureError, PictureFault
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from scope_ptz.geometry import Pose
+
+BLACK_LEVEL = 6
+"""A picture without any brighter pixel is black. The noise of a sensor in the dark is brighter."""
+
+FROZEN_TURN_DEG = 1.0
+"""A picture that is the same to the last bit after a turn of more than this is frozen."""
+
+STANDING_DEG = 0.05
+"""Poses of two successive pictures that differ by less are one pose."""
+
+_START, _END = b"\xff\xd8", b"\xff\xd9"
+
+
+def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = None) -> NDArray[np.uint8]:
+    """Decode a JPEG picture.
+
+    Args:
+        data: The file.
+        width: The expected width in pixels; None for any.
+        height: The expected height in pixels; None for any.
+
+    Returns:
+        Array of shape ``(H, W, 3)``, uint8, RGB.
+
+    Raises:
+        PictureError: The picture is truncated, damaged, or of another size.
+    """
+    from PIL import Image, UnidentifiedImageError
+
+    if not data.startswith(_START):
+        raise PictureError("The camera sent something that is not a JPEG picture. Check its model and firmware.", "damaged")
+    if _END not in data[-64:]:
+        raise PictureError("The camera sent a picture without its end. Check the network, then try again.", "truncated")
+    try:
+        with Image.open(BytesIO(data), formats=("JPEG",)) as picture:
+            size = picture.size
+            if (width, height) != (None, None) and size != (width, height):
+                raise PictureError(
+                    f"The camera sent a picture of {size[0]}x{size[1]} pixels instead of {width}x{height}. "
+                    "Ask for a size that it offers with ?width=...&height=...",
+                    "size",
+                )
+            return np.array(picture.convert("RGB"))
+    except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        fault: PictureFault = "truncated" if "truncated" in str(error) else "damaged"
+        what = "without its end" if fault == "truncated" else "that is damaged"
+        raise PictureError(f"The camera sent a picture {what}. Check the network, then try again.", fault) from None
+
+
+def is_black(image: NDArray[np.uint8]) -> bool:
+    """Return whether a picture shows nothing at all."""
+    return bool(image.max() <= BLACK_LEVEL) if image[::8, ::8].max() <= BLACK_LEVEL else False
+
+
+def check_not_black(image: NDArray[np.uint8]) -> None:
+    """Raise PictureError if a picture shows nothing at all."""
+    if is_black(image):
+        raise PictureError("The picture of the camera is black. Check its lens cover, its iris and the light.", "black")
+
+
+class FrozenCheck:
+    """Detects a picture that stays the same although the camera turns.
+
+    Pictures of a scene at rest may be the same, so a picture is compared with one of another pose. Only poses at which the camera
+    stands count: while it moves, a picture and a pose may belong to slightly different moments.
+    """
+
+    def __init__(self) -> None:
+        self._digest = b""
+        self._stood_at: Pose | None = None
+        self._last: Pose | None = None
+
+    def is_frozen(self, data: bytes, pose: Pose) -> bool:
+        """Return whether a picture was seen before, with the camera standing at a clearly different pose.
+
+        Args:
+            data: The picture's bytes: a JPEG file, or pixels.
+            pose: The pose at which it was taken.
+        """
+        digest = hashlib.blake2b(data, digest_size=16).digest()
+        is_standing = self._last is not None and _turn_deg(self._last, pose) < STANDING_DEG
+        self._last = pose
+        if digest != self._digest:
+            self._digest, self._stood_at = digest, None
+        elif is_standing and self._stood_at is None:
+            self._stood_at = pose
+        elif is_standing and self._stood_at is not None:
+            return _turn_deg(self._stood_at, pose) > FROZEN_TURN_DEG
+        return False
+
+    def lags(self, data: bytes, pose: Pose, give_up_s: float) -> bool:
+        """Return whether a picture is still the one of another pose, as with an encoder that freezes it during a move.
+
+        Args:
+            data: The picture's bytes.
+            pose: The pose at which it was taken.
+            give_up_s: The time on ``time.monotonic`` from which such a picture is an error.
+
+        Raises:
+            PictureError: The picture is still frozen at that time.
+        """
+        if not self.is_frozen(data, pose):
+            return False
+        if monotonic() > give_up_s:
+            raise PictureError("The picture is frozen: it stays the same while the camera turns. Restart the camera.", "frozen")
+        return True
+
+
+def _turn_deg(first: Pose, second: Pose) -> float:
+    """Return the largest turn of an axis in degrees. A zoom of 10% counts as a degree."""
+    pan = abs((second.pan_deg - first.pan_deg + 180) % 360 - 180)
+    return max(pan, abs(second.tilt_deg - first.tilt_deg), 10 * abs(second.zoom / first.zoom - 1))

@@ -1,0 +1,111 @@
+"""The recent poses of a camera, from which the pose at an exposure is interpolated."""
+
+from __future__ import annotations
+
+import asyncio
+from bisect import bisect_left
+from collections import deque
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from time import monotonic
+
+from scope_ptz.geometry import Pose, wrap_pan_deg
+
+MAX_SAMPLES = 128
+"""About six seconds of readings."""
+
+POLL_S = 0.05
+"""Seconds between two readings. At 400 degrees per second squared, a straight line between them is off by 0.13 degrees at most."""
+
+
+class PoseTrack:
+    """Readings of the position with their times, newest last. Times are seconds on any one clock and never go back."""
+
+    def __init__(self) -> None:
+        self._samples: deque[tuple[float, Pose]] = deque(maxlen=MAX_SAMPLES)
+
+    @property
+    def oldest_s(self) -> float:
+        """Time of the oldest reading; infinity if there is none."""
+        return self._samples[0][0] if self._samples else float("inf")
+
+    @property
+    def newest_s(self) -> float:
+        """Time of the newest reading; minus infinity if there is none."""
+        return self._samples[-1][0] if self._samples else float("-inf")
+
+    def add(self, time_s: float, pose: Pose) -> None:
+        """Add a reading."""
+        if time_s > self.newest_s:
+            self._samples.append((time_s, pose))
+
+    def at(self, time_s: float) -> Pose:
+        """Return the pose at a time, interpolated between the readings around it; the nearest one outside of them.
+
+        Raises:
+            ValueError: There is no reading.
+        """
+        if not self._samples:
+            raise ValueError("a pose track without readings has no pose")
+        times = [sample_s for sample_s, _ in self._samples]
+        index = bisect_left(times, time_s)
+        if index == 0:
+            return self._samples[0][1]
+        if index == len(times):
+            return self._samples[-1][1]
+        (before_s, before), (after_s, after) = self._samples[index - 1], self._samples[index]
+        share = (time_s - before_s) / (after_s - before_s)
+        pan_deg = before.pan_deg + share * wrap_pan_deg(after.pan_deg - before.pan_deg)
+        return Pose(
+            pan_deg
+            if before.pan_deg <= pan_deg <= after.pan_deg or after.pan_deg <= pan_deg <= before.pan_deg
+            else wrap_pan_deg(pan_deg),
+            before.tilt_deg + share * (after.tilt_deg - before.tilt_deg),
+            before.zoom * (after.zoom / before.zoom) ** share,
+        )
+
+
+class PosePoller:
+    """Reads the position again and again while a stream is open. ``close`` it with the stream.
+
+    Args:
+        read_pose: Reads the position.
+    """
+
+    def __init__(self, read_pose: Callable[[], Awaitable[Pose]]) -> None:
+        self._read_pose, self._track = read_pose, PoseTrack()
+        self._changed = asyncio.Event()
+        self._failure: Exception | None = None
+        self._task = asyncio.get_running_loop().create_task(self._poll())
+
+    async def at(self, time_s: float) -> Pose | None:
+        """Return the pose at a time on ``time.monotonic``; None if it lies before the first reading.
+
+        Raises:
+            CameraError: The position cannot be read.
+        """
+        while self._track.newest_s < time_s:
+            if self._failure is not None:
+                raise self._failure
+            self._changed.clear()
+            await self._changed.wait()
+        return None if time_s < self._track.oldest_s else self._track.at(time_s)
+
+    async def close(self) -> None:
+        """Stop reading and wait until the last reading has ended."""
+        self._task.cancel()
+        with suppress(asyncio.CancelledError):
+            await self._task
+
+    async def _poll(self) -> None:
+        try:
+            while True:
+                before_s = monotonic()
+                pose = await self._read_pose()
+                # The device reads its encoders somewhere between the request and the reply.
+                self._track.add((before_s + monotonic()) / 2, pose)
+                self._changed.set()
+                await asyncio.sleep(POLL_S)
+        except Exception as error:  # whatever it is, the consumer of the stream has to see it
+            self._failure = error
+            self._changed.set()

@@ -1,0 +1,133 @@
+"""RTSP video, read by PyAV in a thread."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from contextlib import suppress
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote, urlsplit, urlunsplit
+
+from anyio import to_thread
+
+from scope_ptz.camera.network.errors import CameraUnreachableError, PictureError
+from scope_ptz.camera.network.streams import GIVE_UP_S, STALLED_S, LivePicture, LiveStream
+from scope_ptz.errors import CameraError, ConfigError
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.network.credentials import Credentials
+
+
+def import_av() -> Any:
+    """Import PyAV.
+
+    Raises:
+        ConfigError: It is not installed.
+    """
+    try:
+        import av
+    except ImportError:
+        raise ConfigError("RTSP needs PyAV. Install scope-ptz[camera], or use ?stream=mjpeg.") from None
+    return av
+
+
+class RtspStream(LiveStream):
+    """H.264 or H.265 over RTSP. Every frame is decoded, and the newest one is kept.
+
+    Args:
+        url: The stream, without credentials.
+        credentials: The account; None if the stream needs none.
+        width: Expected width in pixels.
+        height: Expected height in pixels.
+        transport: ``tcp`` or ``udp``.
+        stalled_s: Seconds without a picture after which the stream is opened again.
+        give_up_s: Seconds without a picture after which the stream is lost.
+
+    Raises:
+        ConfigError: PyAV is not installed.
+    """
+
+    def __init__(
+        self,
+        url: str,
+        credentials: Credentials | None,
+        *,
+        width: int,
+        height: int,
+        transport: str = "tcp",
+        stalled_s: float = STALLED_S,
+        give_up_s: float = GIVE_UP_S,
+    ) -> None:
+        self._av = import_av()
+        self._place = urlsplit(url).netloc
+        self._url = _with_credentials(url, credentials)
+        self._size, self._transport = (width, height), transport
+        self._stalled_s, self._give_up_s = stalled_s, give_up_s
+        self._newest: LivePicture | None = None
+        self._failure: CameraError | None = None
+        self._closing = threading.Event()
+        self._loop, self._changed = asyncio.get_running_loop(), asyncio.Event()
+        self._thread = threading.Thread(target=self._read, name=f"rtsp {self._place}", daemon=True)
+        self._thread.start()
+
+    def __repr__(self) -> str:
+        return f"RtspStream({self._place})"
+
+    async def next(self) -> LivePicture:
+        while self._newest is None:
+            if self._failure is not None:
+                raise self._failure
+            self._changed.clear()
+            await self._changed.wait()
+        picture, self._newest = self._newest, None
+        if (size := picture.image.shape[1::-1]) != self._size:
+            wanted = "{}x{}".format(*self._size)
+            raise PictureError(f"The stream has {size[0]}x{size[1]} pixels instead of {wanted}. Change the stream's size.", "size")
+        return picture
+
+    async def close(self) -> None:
+        self._closing.set()
+        await to_thread.run_sync(self._thread.join, self._stalled_s + 2.0)
+
+    def _read(self) -> None:
+        """Read until the stream is closed or lost. It runs in the thread."""
+        last_s, pause_s = monotonic(), 0.1
+        while not self._closing.is_set():
+            before_s = last_s
+            # FFmpeg's errors repeat the address with its password, so they are dropped.
+            with suppress(self._av.FFmpegError, OSError, ValueError):
+                for picture in self._pictures():
+                    last_s = picture.arrived_s
+                    self._hand_over(picture, None)
+            if monotonic() - last_s > self._give_up_s:
+                message = f"The RTSP stream at {self._place} cannot be read. Check the account and the port, or use ?stream=mjpeg."
+                self._hand_over(None, CameraUnreachableError(message))
+                return
+            pause_s = 0.1 if last_s > before_s else min(2 * pause_s, 2.0)
+            self._closing.wait(pause_s)
+
+    def _pictures(self) -> Any:
+        options = {"rtsp_transport": self._transport, "fflags": "nobuffer", "flags": "low_delay"}
+        with self._av.open(self._url, options=options, timeout=self._stalled_s) as container:
+            for frame in container.decode(video=0):
+                if self._closing.is_set():
+                    return
+                image = frame.to_ndarray(format="rgb24")
+                yield LivePicture(image, image[::16, ::16].tobytes(), monotonic())
+
+    def _hand_over(self, picture: LivePicture | None, failure: CameraError | None) -> None:
+        if picture is not None:
+            self._newest = picture
+        self._failure = failure
+        with suppress(RuntimeError):  # the loop has ended, and nobody waits
+            self._loop.call_soon_threadsafe(self._changed.set)
+
+
+def _with_credentials(url: str, credentials: Credentials | None) -> str:
+    """Return the URL with user and password, which is FFmpeg's only way to take them."""
+    if credentials is None or not credentials.user:
+        return url
+    parts = urlsplit(url)
+    account = f"{quote(credentials.user, safe='')}:{quote(credentials.password, safe='')}"
+    return urlunsplit((parts.scheme, f"{account}@{parts.netloc}", parts.path, parts.query, ""))

@@ -1,0 +1,182 @@
+"""Live pictures of a device: the newest one wins, and a stalled or broken stream is opened again."""
+
+from __future__ import annotations
+
+import asyncio
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import anyio
+from anyio import to_thread
+
+from scope_ptz.camera.network.errors import CameraTimeoutError, CameraUnreachableError, PictureError
+from scope_ptz.camera.network.mjpeg import MjpegParser, boundary_of
+from scope_ptz.camera.network.pictures import decode_jpeg
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from scope_ptz.camera.network.http import DeviceHttp
+
+STALLED_S = 5.0
+"""A stream without a picture for this long is stalled."""
+
+MAX_DAMAGED = 5
+"""Damaged pictures in a row that are skipped."""
+
+GIVE_UP_S = 15.0
+"""A stream that cannot be opened again for this long is lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class LivePicture:
+    """A picture of a stream.
+
+    Attributes:
+        image: Array of shape ``(H, W, 3)``, uint8, RGB.
+        data: Bytes that are the same for the same picture.
+        arrived_s: When its last byte arrived, on ``time.monotonic``.
+    """
+
+    image: NDArray[np.uint8]
+    data: bytes
+    arrived_s: float
+
+
+class LiveStream(ABC):
+    """A stream of pictures. ``close`` it when it is no longer needed."""
+
+    @abstractmethod
+    async def next(self) -> LivePicture:
+        """Wait for a picture that was not returned yet, and return the newest one.
+
+        Raises:
+            CameraError: The stream is lost, or its pictures are damaged.
+        """
+
+    @abstractmethod
+    async def close(self) -> None:
+        """Close the connection and wait until it is closed."""
+
+
+class MjpegStream(LiveStream):
+    """Motion JPEG over HTTP. Only pictures that somebody waits for are decoded.
+
+    Args:
+        http: The device.
+        path: Path of the stream.
+        parameters: Query of the stream.
+        width: Expected width in pixels.
+        height: Expected height in pixels.
+        stalled_s: Seconds without a picture after which the stream is opened again.
+        give_up_s: Seconds without a picture after which the stream is lost.
+    """
+
+    def __init__(
+        self,
+        http: DeviceHttp,
+        path: str,
+        parameters: dict[str, str],
+        *,
+        width: int,
+        height: int,
+        stalled_s: float = STALLED_S,
+        give_up_s: float = GIVE_UP_S,
+    ) -> None:
+        self._http, self._path, self._parameters = http, path, parameters
+        self._width, self._height = width, height
+        self._stalled_s, self._give_up_s = stalled_s, give_up_s
+        self._newest: tuple[bytes, float] | None = None
+        self._changed = asyncio.Event()
+        self._failure: Exception | None = None
+        self.reconnects = 0
+        """How many times the stream was opened again."""
+        # A task without a task group: the stream outlives the call that opens it, and a failure waits for ``next``.
+        self._task = asyncio.get_running_loop().create_task(self._read())
+
+    async def next(self) -> LivePicture:
+        for left in range(MAX_DAMAGED, -1, -1):
+            data, arrived_s = await self._wait()
+            try:
+                image = await to_thread.run_sync(partial(decode_jpeg, data, width=self._width, height=self._height))
+            except PictureError as error:
+                if error.fault == "size" or not left:
+                    raise
+            else:
+                return LivePicture(image, data, arrived_s)
+        raise AssertionError("the last picture is returned or raises")
+
+    async def _wait(self) -> tuple[bytes, float]:
+        while self._newest is None:
+            if self._failure is not None:
+                raise self._failure
+            self._changed.clear()
+            await self._changed.wait()
+        newest, self._newest = self._newest, None
+        return newest
+
+    async def close(self) -> None:
+        self._task.cancel()
+        with suppress(asyncio.CancelledError):
+            await self._task
+
+    async def _read(self) -> None:
+        last_s, pause_s = monotonic(), 0.1
+        try:
+            while True:
+                seen_s = last_s
+                failure: Exception = CameraUnreachableError(
+                    "The camera closed its MJPEG stream again and again. Restart the camera."
+                )
+                try:
+                    last_s = await self._read_once(last_s)
+                except (CameraUnreachableError, CameraTimeoutError, PictureError) as error:
+                    failure = error
+                    last_s = max(last_s, self._last_s)
+                pause_s = 0.1 if last_s > seen_s else min(2 * pause_s, 2.0)
+                if monotonic() - last_s > self._give_up_s:
+                    self._fail(failure)
+                    return
+                self.reconnects += 1
+                await anyio.sleep(pause_s)
+        except Exception as error:  # whatever it is, the consumer has to see it
+            self._fail(error)
+
+    _last_s = 0.0
+
+    async def _read_once(self, last_s: float) -> float:
+        """Read one connection to its end. Return when the last picture arrived."""
+        async with self._http.stream(self._path, self._parameters) as (content_type, chunks):
+            parser = MjpegParser(boundary_of(content_type))
+            iterator = aiter(chunks)
+            due_s = monotonic() + self._stalled_s
+            while True:
+                try:
+                    with anyio.fail_after(max(0.001, due_s - monotonic())):
+                        chunk = await anext(iterator)
+                except StopAsyncIteration:
+                    return max(last_s, self._last_s)
+                except TimeoutError:
+                    raise PictureError(
+                        f"The camera's stream shows no new picture for {self._stalled_s:g} s. Check the network or restart it.",
+                        "stalled",
+                    ) from None
+                if pictures := parser.feed(chunk):
+                    self._last_s = monotonic()
+                    due_s = self._last_s + self._stalled_s
+                    self._newest = pictures[-1], self._last_s
+                    self._changed.set()
+
+    def _fail(self, error: Exception) -> None:
+        self._failure = error
+        self._changed.set()
+
+
+LiveStreamOpener = Callable[[], LiveStream]
+"""A function that opens a stream."""

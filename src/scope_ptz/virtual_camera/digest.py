@@ -1,0 +1,184 @@
+"""Digest authentication (RFC 7616) as a server: challenges, and checks of what clients answer. HTTP and RTSP share it."""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import re
+import secrets
+from base64 import urlsafe_b64decode, urlsafe_b64encode
+from collections.abc import Callable
+from dataclasses import dataclass
+from struct import Struct
+from time import monotonic
+from urllib.parse import urlsplit
+
+from scope_ptz.virtual_camera.accounts import Account, Accounts
+
+NONCE_LIFETIME_S = 300.0
+"""Seconds for which a nonce is accepted. After that, a correct answer gets a new challenge that is marked stale."""
+
+_ALGORITHMS: dict[str, Callable[[bytes], hashlib._Hash]] = {"SHA-256": hashlib.sha256, "MD5": hashlib.md5}
+# Clients that read only one challenge either take the first one and know SHA-256, or take the last one and know MD5 (FFmpeg).
+
+_PARAMETER = re.compile(r'([\w*-]+)\s*=\s*(?:"((?:[^"\\]|\\.)*)"|([^\s,"]+))\s*(?:,|$)')
+_NONCE = Struct("!d12s")  # time of issue, random bytes
+_SIGNATURE_BYTES = 16
+_WINDOW = 64  # nonce counts this far below the highest one may still arrive: requests of one client overtake each other
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The result of a check.
+
+    Attributes:
+        account: Who sent the request; None if it must be refused.
+        stale: Whether a refused client need only repeat its request with a new nonce.
+    """
+
+    account: Account | None = None
+    stale: bool = False
+
+
+class DigestAuthenticator:
+    """Asks clients for a password and checks their answers. The password itself never crosses the network.
+
+    Nonces are signed by the server, so that requests without an account cost it no memory.
+
+    Args:
+        accounts: Who may sign in.
+        realm: Name of what is protected. Clients show it.
+        qop: Whether ``qop=auth`` is offered and required. Many RTSP clients do not know it.
+        nonce_lifetime_s: Seconds for which a nonce is accepted.
+        now_s: The clock of nonces.
+    """
+
+    def __init__(
+        self,
+        accounts: Accounts,
+        realm: str,
+        *,
+        qop: bool = True,
+        nonce_lifetime_s: float = NONCE_LIFETIME_S,
+        now_s: Callable[[], float] = monotonic,
+    ) -> None:
+        self._accounts, self.realm, self._qop = accounts, realm.replace("\\", "").replace('"', ""), qop
+        self._lifetime_s, self._now_s = nonce_lifetime_s, now_s
+        self._key = secrets.token_bytes(32)
+        self._used: dict[str, _NonceCounts] = {}
+
+    def challenges(self, *, stale: bool = False) -> list[str]:
+        """Return the values of the ``WWW-Authenticate`` headers of a refusal, one for each algorithm."""
+        nonce = self._new_nonce()
+        ending = (', qop="auth"' if self._qop else "") + (", stale=true" if stale else "")
+        return [f'Digest realm="{self.realm}", nonce="{nonce}", algorithm={name}{ending}' for name in _ALGORITHMS]
+
+    def check(self, authorization: str | None, method: str, uri: str | None = None) -> Verdict:
+        """Check the ``Authorization`` header of a request.
+
+        Args:
+            authorization: The value of the header, None if there is none.
+            method: The method of the request, such as ``GET`` or ``DESCRIBE``.
+            uri: What the request asks for: path and query in HTTP. None accepts any address in the answer, because RTSP clients
+                name the stream in requests for its tracks.
+        """
+        answer = _parse(authorization or "")
+        algorithm = _ALGORITHMS.get(answer.get("algorithm", "MD5").upper())
+        nonce, answered_uri = answer.get("nonce", ""), answer.get("uri", "")
+        issued_s = self._issued_s(nonce)
+        if algorithm is None or issued_s is None or (uri is not None and not _same_target(answered_uri, uri)):
+            return Verdict()
+        if (self._qop or "qop" in answer) and not (answer.get("qop") == "auth" and answer.get("cnonce")):
+            return Verdict()
+        account = self._accounts.find(answer.get("username", ""))
+        # An unknown name costs as much time as a wrong password, so that names cannot be found by timing.
+        password = secrets.token_hex(16) if account is None else account.password
+        expected = self._response(algorithm, answer, password, method)
+        if not hmac.compare_digest(expected.encode(), answer.get("response", "").lower().encode()) or account is None:
+            return Verdict()
+        if answer.get("realm") != self.realm:
+            return Verdict()
+        if self._now_s() - issued_s > self._lifetime_s or not self._is_first_use(nonce, issued_s, answer):
+            return Verdict(stale=True)
+        return Verdict(account)
+
+    def _response(self, algorithm: Callable[[bytes], hashlib._Hash], answer: dict[str, str], password: str, method: str) -> str:
+        def digest(*parts: str) -> str:
+            return algorithm(":".join(parts).encode()).hexdigest()
+
+        secret = digest(answer.get("username", ""), self.realm, password)
+        request = digest(method, answer.get("uri", ""))
+        if "qop" not in answer:
+            return digest(secret, answer.get("nonce", ""), request)
+        return digest(secret, answer.get("nonce", ""), answer.get("nc", ""), answer["cnonce"], answer["qop"], request)
+
+    def _new_nonce(self) -> str:
+        content = _NONCE.pack(self._now_s(), secrets.token_bytes(12))
+        return urlsafe_b64encode(content + self._signature(content)).decode()
+
+    def _issued_s(self, nonce: str) -> float | None:
+        """Return when this server issued a nonce, None if it did not."""
+        try:
+            content = urlsafe_b64decode(nonce.encode())
+        except ValueError:
+            return None
+        content, signature = content[: _NONCE.size], content[_NONCE.size :]
+        if len(content) != _NONCE.size or not hmac.compare_digest(signature, self._signature(content)):
+            return None
+        return float(_NONCE.unpack(content)[0])
+
+    def _signature(self, content: bytes) -> bytes:
+        return hmac.digest(self._key, content, "sha256")[:_SIGNATURE_BYTES]
+
+    def _is_first_use(self, nonce: str, issued_s: float, answer: dict[str, str]) -> bool:
+        """Return whether a nonce count is new. Without ``qop`` there is no count, and a nonce may be used again."""
+        if "qop" not in answer:
+            return True
+        try:
+            count = int(answer.get("nc", ""), 16)
+        except ValueError:
+            return False
+        if nonce not in self._used:
+            oldest_s = self._now_s() - self._lifetime_s
+            self._used = {known: counts for known, counts in self._used.items() if counts.issued_s >= oldest_s}
+            self._used[nonce] = _NonceCounts(issued_s)
+        return self._used[nonce].add(count)
+
+
+@dataclass(slots=True)
+class _NonceCounts:
+    """The counts that were used with a nonce: the highest one, and a bit for each of those just below it."""
+
+    issued_s: float
+    highest: int = 0
+    seen: int = 0
+
+    def add(self, count: int) -> bool:
+        """Note a count and return whether it is new."""
+        if count > self.highest:
+            shift = min(count - self.highest, _WINDOW)
+            self.seen = ((self.seen << shift) | 1) & ((1 << _WINDOW) - 1)
+            self.highest = count
+            return True
+        below = self.highest - count
+        if count < 1 or below >= _WINDOW or self.seen >> below & 1:
+            return False
+        self.seen |= 1 << below
+        return True
+
+
+def _parse(authorization: str) -> dict[str, str]:
+    """Return the parameters of a digest answer, empty if it is none."""
+    scheme, _, rest = authorization.strip().partition(" ")
+    if scheme.lower() != "digest":
+        return {}
+    found = _PARAMETER.findall(rest)
+    return {name.lower(): re.sub(r"\\(.)", r"\1", quoted) or plain for name, quoted, plain in found}
+
+
+def _same_target(answered: str, target: str) -> bool:
+    """Return whether a client signed this request. Some clients sign the full address in place of path and query."""
+    if answered == target:
+        return True
+    parts = urlsplit(answered)
+    return bool(parts.scheme) and (parts.path or "/") + (f"?{parts.query}" if parts.query else "") == target

@@ -1,0 +1,80 @@
+"""Who may do what: sign-in by digest, and the roles of accounts."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from ipaddress import ip_address
+
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import PlainTextResponse, Response
+
+from scope_ptz.virtual_camera.accounts import Accounts, Role
+from scope_ptz.virtual_camera.digest import DigestAuthenticator
+from scope_ptz.virtual_camera.vapix.replies import Client
+
+Handler = Callable[[Request, Client], Awaitable[Response]]
+
+
+class Gate:
+    """Admits the clients of one camera. Passwords in plain text (Basic) are never asked for and never accepted.
+
+    Args:
+        accounts: Who may use the camera.
+        realm: Name of what is protected.
+    """
+
+    def __init__(self, accounts: Accounts, realm: str) -> None:
+        self._accounts = accounts
+        self._digest = DigestAuthenticator(accounts, realm)
+
+    def for_role(self, role: Role, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
+        """Return an endpoint that admits accounts of a role and above."""
+
+        async def endpoint(request: Request) -> Response:
+            client = self._client(request)
+            if isinstance(client, Response):
+                return client
+            if client.role < role:
+                return PlainTextResponse("Forbidden\n", 403)
+            return await handler(request, client)
+
+        return endpoint
+
+    def refusal(self, *, stale: bool = False) -> Response:
+        """Return the reply that asks for an account."""
+        response = PlainTextResponse("Unauthorized\n", 401)
+        for challenge in self._digest.challenges(stale=stale):
+            response.headers.append("WWW-Authenticate", challenge)
+        return response
+
+    def _client(self, request: Request) -> Client | Response:
+        if self._accounts.open_to_all:
+            return Client(client_address(request), Role.ADMINISTRATOR)
+        target = request.scope["raw_path"].decode("latin-1")
+        if query := request.scope["query_string"].decode("latin-1"):
+            target += f"?{query}"
+        verdict = self._digest.check(request.headers.get("authorization"), request.method, target)
+        if verdict.account is None:
+            return self.refusal(stale=verdict.stale)
+        return Client(verdict.account.name, verdict.account.role)
+
+
+def client_address(connection: HTTPConnection) -> str:
+    """Return the address of a client."""
+    return connection.client.host if connection.client else ""
+
+
+def is_local(connection: HTTPConnection) -> bool:
+    """Return whether a client runs on this machine."""
+    try:
+        address = ip_address(client_address(connection))
+    except ValueError:
+        return False
+    mapped = getattr(address, "ipv4_mapped", None)
+    return (mapped or address).is_loopback
+
+
+def is_foreign_page(request: Request) -> bool:
+    """Return whether a web page from elsewhere made a browser send a request."""
+    origin = request.headers.get("origin")
+    return origin is not None and origin.partition("://")[2] != request.headers.get("host")

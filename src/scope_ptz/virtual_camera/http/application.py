@@ -1,0 +1,69 @@
+"""The web application of one virtual camera."""
+
+from __future__ import annotations
+
+from html import escape
+
+import anyio
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, Response
+from starlette.routing import BaseRoute, Mount, Route
+from starlette.types import ASGIApp
+
+from scope_ptz.virtual_camera.accounts import Role
+from scope_ptz.virtual_camera.http.access import Gate
+from scope_ptz.virtual_camera.http.faults import FaultMiddleware
+from scope_ptz.virtual_camera.http.truth_headers import TruthHeaders
+from scope_ptz.virtual_camera.http.vapix_routes import VapixRoutes
+from scope_ptz.virtual_camera.http.virtual_routes import VirtualRoutes
+from scope_ptz.virtual_camera.live_source import LiveSource
+from scope_ptz.virtual_camera.truth import TruthLog
+from scope_ptz.virtual_camera.vapix.replies import Client
+from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+
+PAGE = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</title>
+<h1>{name}</h1><img src="/axis-cgi/mjpg/video.cgi" alt="Live picture" style="max-width:100%">"""
+
+
+class CameraApplication:
+    """What a camera answers on its port.
+
+    Args:
+        unit: The camera as VAPIX shows it.
+        source: Its live picture.
+        truth: The ground truth of its frames, None if it is not offered.
+        onvif: An application that answers below ``/onvif/`` and signs its clients in by itself; None for none.
+
+    Attributes:
+        app: The ASGI application.
+        closing: Set when the server ends; streams end then.
+        jpegs: The encoder that all pictures share.
+    """
+
+    def __init__(self, unit: VapixUnit, source: LiveSource, truth: TruthLog | None, onvif: ASGIApp | None) -> None:
+        self.closing = anyio.Event()
+        device = unit.device
+        gate = Gate(device.accounts, unit.realm)
+        vapix = VapixRoutes(unit, source, gate, TruthHeaders(truth) if truth is not None else None, self.closing)
+        self.jpegs = vapix.jpegs
+        self._virtual = VirtualRoutes(device, gate, truth)
+
+        async def page(_: Request, __: Client) -> Response:
+            return HTMLResponse(PAGE.format(name=escape(device.name)))
+
+        routes: list[BaseRoute] = [
+            Route("/", gate.for_role(Role.VIEWER, page)),
+            *vapix.routes(),
+            *self._virtual.routes(),
+        ]
+        if onvif is not None:
+            routes.append(Mount("/onvif", onvif))
+        faults = Middleware(FaultMiddleware, device=device, gate=gate, closing=self.closing)
+        self.app = Starlette(routes=routes, middleware=[faults])
+
+    def close(self) -> None:
+        """End all streams."""
+        self.closing.set()
+        self._virtual.close()

@@ -1,0 +1,70 @@
+"""The faults of a camera at the level of HTTP, applied to every request but those that switch faults."""
+
+from __future__ import annotations
+
+import random
+
+import anyio
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.http.access import Gate
+from scope_ptz.virtual_camera.http.connection import break_off
+
+CONTROL_PATH = "/virtual/"
+"""Requests below this path see no faults, so that faults can be switched off."""
+
+GARBAGE = b"\x00\xff<<<%%garbage}{"
+
+
+class _BrokenOffError(Exception):
+    """The connection of a reply was broken off while it was sent."""
+
+
+class FaultMiddleware:
+    """Drops, delays, refuses and damages replies as the device's faults say.
+
+    Args:
+        app: The application behind.
+        device: The camera.
+        gate: Refuses clients as it does for a wrong password.
+        closing: Set when the server ends; no reply is delayed after that.
+    """
+
+    def __init__(self, app: ASGIApp, device: VirtualDevice, gate: Gate, closing: anyio.Event) -> None:
+        self._app, self._device, self._gate, self._closing = app, device, gate, closing
+        self._random = random.Random(0)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http" or scope["path"].startswith(CONTROL_PATH):
+            await self._app(scope, receive, send)
+            return
+        faults = self._device.faults
+        if faults.stall_s:
+            with anyio.move_on_after(faults.stall_s):
+                await self._closing.wait()
+        if faults.down or self._random.random() < faults.drop:
+            await break_off(scope, receive)
+        elif faults.unauthorized:
+            await self._gate.refusal()(scope, receive, send)
+        else:
+            await self._answer(scope, receive, send)
+
+    async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
+        async def faulty(message: Message) -> None:
+            if self._device.faults.down:
+                raise _BrokenOffError
+            await send(_damaged(message) if self._device.faults.garbage else message)
+
+        try:
+            await self._app(scope, receive, faulty)
+        except* _BrokenOffError:
+            await break_off(scope, receive)
+
+
+def _damaged(message: Message) -> Message:
+    """Return a message with garbage in place of what it says."""
+    if message["type"] == "http.response.start":
+        kept = [(name, value) for name, value in message["headers"] if name.lower() != b"content-length"]
+        return {**message, "status": 200 if message["status"] == 204 else message["status"], "headers": kept}
+    return {**message, "body": GARBAGE}

@@ -1,0 +1,96 @@
+"""JPEGs of exposures. Clients that want the same size and compression share one encoding."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from anyio import to_thread
+from numpy.typing import NDArray
+
+from scope_ptz.errors import CameraError, InputError
+from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
+from scope_ptz.virtual_camera.picture_size import fitted, parse_resolution
+
+DEFAULT_COMPRESSION = 30
+"""The compression of AXIS cameras, from 0 (best picture) to 100."""
+
+MAX_SHARED = 8  # sizes and compressions for which the newest encoding is kept
+
+
+@dataclass(frozen=True, slots=True)
+class PictureFormat:
+    """Size in pixels and compression (0 to 100) of a JPEG."""
+
+    width: int
+    height: int
+    compression: int = DEFAULT_COMPRESSION
+
+
+def picture_format(device: VirtualDevice, resolution: str, compression: str) -> PictureFormat:
+    """Return the format that a client asks for. Empty texts stand for the defaults.
+
+    Raises:
+        InputError: The resolution is not WIDTHxHEIGHT or larger than the camera's, or the compression is not 0 to 100.
+    """
+    width, height = parse_resolution(device, resolution)
+    if compression and not (compression.isdecimal() and int(compression[:6]) <= 100):
+        raise InputError(f"compression: expected 0 to 100, got {compression[:60]!r}")
+    return PictureFormat(width, height, int(compression) if compression else DEFAULT_COMPRESSION)
+
+
+def encode(image: NDArray[np.uint8], wanted: PictureFormat) -> bytes:
+    """Return an RGB picture as JPEG. A picture of another shape is cropped at its sides or at top and bottom, never stretched."""
+    image = fitted(image, wanted.width, wanted.height)
+    quality = round(98 - 0.85 * wanted.compression)
+    done, content = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])
+    if not done:
+        raise CameraError("The picture cannot be encoded.")
+    return bytes(content)
+
+
+def with_comment(jpeg: bytes, text: str) -> bytes:
+    """Return a JPEG with a comment segment after its start marker."""
+    content = text.encode()[:65_000]
+    return jpeg[:2] + b"\xff\xfe" + (len(content) + 2).to_bytes(2, "big") + content + jpeg[2:]
+
+
+class SharedJpegs:
+    """Encodes each exposure at most once for each format.
+
+    Args:
+        device: The camera, whose faults apply to its pictures.
+    """
+
+    def __init__(self, device: VirtualDevice) -> None:
+        self._device = device
+        self._newest: OrderedDict[PictureFormat, tuple[Exposure, asyncio.Task[bytes]]] = OrderedDict()
+        self.encodings = 0
+        """Number of encodings so far."""
+
+    async def snapshot(self, wanted: PictureFormat) -> tuple[Exposure, bytes]:
+        """Take a picture and return it with its JPEG."""
+        exposure = await to_thread.run_sync(self._device.expose)
+        return exposure, await self.jpeg(exposure, wanted)
+
+    async def jpeg(self, exposure: Exposure, wanted: PictureFormat) -> bytes:
+        """Return the JPEG of an exposure."""
+        known = self._newest.get(wanted)
+        if known is None or known[0] is not exposure:
+            known = exposure, asyncio.create_task(self._encode(exposure, wanted))
+            self._newest[wanted] = known
+            self._newest.move_to_end(wanted)
+            if len(self._newest) > MAX_SHARED:
+                self._newest.popitem(last=False)
+        content = await asyncio.shield(known[1])
+        return content[: len(content) // 2] if self._device.faults.picture == "truncated" else content
+
+    async def _encode(self, exposure: Exposure, wanted: PictureFormat) -> bytes:
+        self.encodings += 1
+        if self._device.faults.picture == "size":
+            height, width = exposure.image.shape[:2]
+            wanted = PictureFormat(min(width, wanted.width // 2), min(height, wanted.height // 2), wanted.compression)
+        return await to_thread.run_sync(encode, exposure.image, wanted)

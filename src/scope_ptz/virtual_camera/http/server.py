@@ -1,0 +1,206 @@
+"""Serves virtual cameras, each on a port of its own, in the running event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import socket
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from contextlib import asynccontextmanager, contextmanager
+from dataclasses import dataclass
+from ipaddress import ip_address
+
+import anyio
+import uvicorn
+from starlette.types import ASGIApp
+
+from scope_ptz.errors import ConfigError
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.http.application import CameraApplication
+from scope_ptz.virtual_camera.http.connection import BreakableProtocol
+from scope_ptz.virtual_camera.live_source import LiveSource
+from scope_ptz.virtual_camera.truth import TruthLog
+from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+
+SHUTDOWN_S = 3
+"""Seconds that replies have to end when the server ends."""
+
+RETRY_S = 1.0  # pause of the live picture after a failure
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class ServedCamera:
+    """A virtual camera on the network.
+
+    Attributes:
+        device: The camera.
+        unit: Its state in VAPIX.
+        source: Its live picture, for further servers of the same camera.
+        application: What answers on the port.
+        host: Address that the camera listens at.
+        port: Port of HTTP.
+    """
+
+    device: VirtualDevice
+    unit: VapixUnit
+    source: LiveSource
+    application: CameraApplication
+    host: str
+    port: int
+
+    @property
+    def url(self) -> str:
+        """The address for a client on this machine, such as ``http://127.0.0.1:8080``."""
+        return f"http://{self._reachable}:{self.port}"
+
+    @property
+    def rtsp_url(self) -> str | None:
+        """The address of the H.264 stream for a client on this machine; None if it is not served."""
+        port = self.unit.rtsp_port
+        return None if port is None else f"rtsp://{self._reachable}:{port}/axis-media/media.amp"
+
+    @property
+    def _reachable(self) -> str:
+        host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(self.host, self.host)  # noqa: S104 - compared, not bound to
+        return f"[{host}]" if ":" in host else host
+
+
+@asynccontextmanager
+async def serve(
+    devices: Sequence[VirtualDevice],
+    *,
+    host: str = "127.0.0.1",
+    ports: Sequence[int] = (),
+    truth: bool = False,
+    onvif: Callable[[VirtualDevice], ASGIApp] | None = None,
+    rate_hz: float = 25.0,
+    latency_s: float = 0.0,
+) -> AsyncIterator[tuple[ServedCamera, ...]]:
+    """Serve cameras while the context is open.
+
+    Args:
+        devices: The cameras.
+        host: Address to listen at. Beyond this machine, all cameras must have accounts.
+        ports: A port for each camera; 0, or none at all, lets the system choose.
+        truth: Whether clients on this machine get the ground truth of frames.
+        onvif: Makes the application that answers below ``/onvif/`` for a camera.
+        rate_hz: Frames per second of live pictures.
+        latency_s: Time from exposure until a frame is sent.
+
+    Raises:
+        ConfigError: A port is taken or not allowed, or a camera without accounts would be open to the network.
+    """
+    ports = ports or [0] * len(devices)
+    if len(ports) != len(devices):
+        raise ConfigError(f"There are {len(devices)} cameras and {len(ports)} ports. Give one port for each camera.")
+    if not _is_loopback(host) and any(device.accounts.open_to_all for device in devices):
+        raise ConfigError(f"A camera without accounts would be open to the network at {host}. Give it an account.")
+    logs = [TruthLog(device) if truth else None for device in devices]
+    sockets = listen(host, ports)
+    cameras = tuple(
+        _camera(device, listener, log, onvif, LiveSource(device, rate_hz=rate_hz, latency_s=latency_s))
+        for device, listener, log in zip(devices, sockets, logs, strict=True)
+    )
+    servers = [_Server(_configuration(camera)) for camera in cameras]
+    running = [asyncio.create_task(server.serve([listener])) for server, listener in zip(servers, sockets, strict=True)]
+    sources = [asyncio.create_task(_keep_running(camera.source)) for camera in cameras]
+    try:
+        for server in servers:
+            await server.ready.wait()
+        yield cameras
+    finally:
+        with anyio.CancelScope(shield=True):
+            for camera in cameras:
+                camera.application.close()
+            for server in servers:
+                server.should_exit = True
+            await asyncio.gather(*running, return_exceptions=True)
+            for task in sources:
+                task.cancel()
+            await asyncio.gather(*sources, return_exceptions=True)
+            for log in logs:
+                if log is not None:
+                    log.close()
+
+
+class _Server(uvicorn.Server):
+    """A server that says when it listens, and leaves signals to the program around it."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.ready = asyncio.Event()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self.ready.set()
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
+
+
+def _camera(
+    device: VirtualDevice,
+    listener: socket.socket,
+    log: TruthLog | None,
+    onvif: Callable[[VirtualDevice], ASGIApp] | None,
+    source: LiveSource,
+) -> ServedCamera:
+    unit = VapixUnit(device)
+    application = CameraApplication(unit, source, log, onvif(device) if onvif is not None else None)
+    host, port = listener.getsockname()[:2]
+    return ServedCamera(device, unit, source, application, host, port)
+
+
+def _configuration(camera: ServedCamera) -> uvicorn.Config:
+    return uvicorn.Config(
+        camera.application.app,
+        http=BreakableProtocol,
+        ws="none",
+        lifespan="off",
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        proxy_headers=False,  # what a client says about its address is not believed
+        timeout_keep_alive=15,
+        timeout_graceful_shutdown=SHUTDOWN_S,
+    )
+
+
+def listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
+    """Return listening sockets, and close all of them if one cannot be had.
+
+    Raises:
+        ConfigError: A port is taken or not allowed.
+    """
+    sockets: list[socket.socket] = []
+    try:
+        for port in ports:
+            sockets.append(socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET))
+            # asyncio sets it only for sockets that name their protocol. Without it, replies wait up to 40 ms for an ACK.
+            sockets[-1].setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    except (OSError, OverflowError) as error:
+        for opened in sockets:
+            opened.close()
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ConfigError(f"Port {port} at {host} cannot be used: {reason}. Choose another port, or 0 for any.") from error
+    return sockets
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+async def _keep_running(source: LiveSource) -> None:
+    """Run a live picture. After a failure, clients see no new frames until it works again."""
+    while True:
+        try:
+            await source.run()
+        except* Exception as group:
+            logger.warning("The live picture of %s failed and is started again: %s", source.device.name, group.exceptions[0])
+            await asyncio.sleep(RETRY_S)

@@ -1,0 +1,104 @@
+"""Motion JPEG: an endless reply with one part for each frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import anyio
+from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
+
+from scope_ptz.virtual_camera.device import Exposure
+from scope_ptz.virtual_camera.http.connection import break_off
+from scope_ptz.virtual_camera.http.jpeg import PictureFormat, SharedJpegs, with_comment
+from scope_ptz.virtual_camera.live_source import LiveSource
+
+BOUNDARY = "myboundary"
+STUCK_S = 20.0
+"""Seconds after which a client that takes no bytes is dropped."""
+
+
+@dataclass(frozen=True, slots=True)
+class StreamOptions:
+    """What a client asks for. ``fps``, ``frames`` and ``duration_s`` are 0 for no limit.
+
+    Attributes:
+        picture: Size and compression.
+        fps: Frames per second at most.
+        frames: Number of frames after which the stream ends.
+        duration_s: Seconds after which it ends.
+        truth: Returns the headers of a part and the comment of its JPEG; None for none.
+    """
+
+    picture: PictureFormat
+    fps: float = 0.0
+    frames: int = 0
+    duration_s: float = 0.0
+    truth: Callable[[Exposure], tuple[Mapping[str, str], str]] | None = None
+
+
+class MotionJpeg(Response):
+    """A stream of JPEGs. It ends when its client leaves or does not read, when its limits are reached, or when the server ends."""
+
+    def __init__(self, source: LiveSource, jpegs: SharedJpegs, options: StreamOptions, closing: anyio.Event) -> None:
+        super().__init__(media_type=f"multipart/x-mixed-replace; boundary={BOUNDARY}", headers={"Cache-Control": "no-cache"})
+        del self.headers["content-length"]
+        self._source, self._jpegs, self._options, self._closing = source, jpegs, options, closing
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
+        if scope["method"] == "HEAD":
+            await send({"type": "http.response.body", "body": b""})
+            return
+        complete = False
+        async with anyio.create_task_group() as group:
+
+            async def cancel_after(ended: Callable[[], object]) -> None:
+                await ended()  # type: ignore[misc]
+                group.cancel_scope.cancel()
+
+            group.start_soon(cancel_after, self._closing.wait)
+            group.start_soon(cancel_after, lambda: _until_gone(receive))
+            complete = await self._send_parts(send)
+            group.cancel_scope.cancel()
+        if complete:
+            await send({"type": "http.response.body", "body": f"--{BOUNDARY}--\r\n".encode()})
+        else:
+            await break_off(scope, receive)
+
+    async def _send_parts(self, send: Send) -> bool:
+        """Send frames until a limit. Return False if the client is stuck."""
+        options, sent, due_s = self._options, 0, 0.0
+        started_s = anyio.current_time()
+        async with self._source.subscribe() as exposures:
+            async for exposure in exposures:
+                # Half a frame early is in time: otherwise a rate that does not divide the camera's would become a lower one.
+                if options.fps:
+                    if exposure.taken_s < due_s - 0.5 / self._source.rate_hz:
+                        continue
+                    due_s = (due_s if exposure.taken_s < due_s + 1 / options.fps else exposure.taken_s) + 1 / options.fps
+                part = await self._part(exposure)
+                with anyio.move_on_after(STUCK_S) as patience:
+                    await send({"type": "http.response.body", "body": part, "more_body": True})
+                if patience.cancelled_caught:
+                    return False
+                sent += 1
+                if sent == options.frames or (options.duration_s and anyio.current_time() - started_s >= options.duration_s):
+                    return True
+        return True
+
+    async def _part(self, exposure: Exposure) -> bytes:
+        jpeg = await self._jpegs.jpeg(exposure, self._options.picture)
+        extra: Mapping[str, str] = {}
+        if self._options.truth is not None:
+            extra, comment = self._options.truth(exposure)
+            jpeg = with_comment(jpeg, comment)
+        head = {"Content-Type": "image/jpeg", "Content-Length": str(len(jpeg)), **extra}
+        lines = "".join(f"{name}: {value}\r\n" for name, value in head.items())
+        return f"--{BOUNDARY}\r\n{lines}\r\n".encode() + jpeg + b"\r\n"
+
+
+async def _until_gone(receive: Receive) -> None:
+    while (await receive())["type"] != "http.disconnect":
+        pass

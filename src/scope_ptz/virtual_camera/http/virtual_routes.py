@@ -1,0 +1,116 @@
+"""Addresses that a real camera does not have: faults, reboots and ground truth, for clients on the same machine only."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from scope_ptz.errors import InputError
+from scope_ptz.virtual_camera.accounts import Role
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.faults import Faults, checked_faults
+from scope_ptz.virtual_camera.http.access import Gate, Handler, is_foreign_page, is_local
+from scope_ptz.virtual_camera.http.vapix_routes import read_arguments, read_body
+from scope_ptz.virtual_camera.truth import TruthLog, origin_fields
+from scope_ptz.virtual_camera.vapix.replies import Client
+
+DOWN_S = 10.0
+"""Seconds for which a camera is off the network while it reboots, unless told otherwise."""
+
+
+class VirtualRoutes:
+    """The addresses below ``/virtual/`` of one camera.
+
+    Args:
+        device: The camera.
+        gate: Admits clients.
+        truth: The ground truth, None if it is not offered.
+    """
+
+    def __init__(self, device: VirtualDevice, gate: Gate, truth: TruthLog | None) -> None:
+        self._device, self._gate, self._truth = device, gate, truth
+        self._reboot: asyncio.Task[None] | None = None
+
+    def routes(self) -> list[Route]:
+        """Return the routes."""
+        found = [
+            Route("/virtual/faults", self._endpoint(self._faults), methods=["GET", "POST", "DELETE"]),
+            Route("/virtual/reboot", self._endpoint(self._start_reboot), methods=["POST"]),
+        ]
+        if self._truth is not None:
+            found.append(Route("/virtual/truth", self._endpoint(self._origin, Role.VIEWER), methods=["GET"]))
+        return found
+
+    def close(self) -> None:
+        """End a reboot that is under way."""
+        if self._reboot is not None:
+            self._reboot.cancel()
+
+    def _endpoint(self, handler: Handler, role: Role = Role.ADMINISTRATOR) -> Callable[[Request], Awaitable[Response]]:
+        admitted = self._gate.for_role(role, handler)
+
+        async def endpoint(request: Request) -> Response:
+            if not is_local(request) or is_foreign_page(request):
+                return JSONResponse({"error": "This address answers programs on the same machine only."}, 403)
+            return await admitted(request)
+
+        return endpoint
+
+    async def _faults(self, request: Request, _: Client) -> Response:
+        if request.method == "POST":
+            try:
+                self._device.faults = changed(self._device.faults, await read_body(request))
+            except InputError as problem:
+                return JSONResponse({"error": str(problem)}, 400)
+        elif request.method == "DELETE":
+            self._device.faults = Faults()
+        return JSONResponse(self._device.faults.model_dump(mode="json"))
+
+    async def _start_reboot(self, request: Request, _: Client) -> Response:
+        try:
+            arguments = await read_arguments(request)
+            down_s = arguments.number("down_s", 0, 600) if "down_s" in arguments else DOWN_S
+        except InputError as problem:
+            return JSONResponse({"error": str(problem)}, 400)
+        self.close()
+        self._reboot = asyncio.create_task(self._be_down(down_s))
+        return JSONResponse({"down_s": down_s})
+
+    async def _be_down(self, down_s: float) -> None:
+        device = self._device
+        device.faults = device.faults.model_copy(update={"down": True})
+        device.reboot()
+        await asyncio.sleep(down_s)
+        device.faults = device.faults.model_copy(update={"down": False})
+
+    async def _origin(self, request: Request, _: Client) -> Response:
+        assert self._truth is not None  # noqa: S101 - the route exists only with it
+        try:
+            arguments = await read_arguments(request)
+            asked = {name: arguments.numbers(name, 1)[0] for name in ("time", "taken") if name in arguments}
+        except InputError as problem:
+            return JSONResponse({"error": str(problem)}, 400)
+        origin = self._truth.at(time_s=asked.get("time"), taken_s=asked.get("taken"))
+        if origin is None:
+            return JSONResponse({"error": "No frame of that time is remembered."}, 404)
+        return JSONResponse(origin_fields(origin))
+
+
+def changed(faults: Faults, body: bytes) -> Faults:
+    """Return faults with the changes of a JSON object.
+
+    Raises:
+        InputError: The body is no JSON object, or a fault is unknown or has a wrong value.
+    """
+    try:
+        changes = json.loads(body)
+    except (ValueError, RecursionError):
+        changes = None
+    if not isinstance(changes, dict):
+        raise InputError('Expected a JSON object of faults, such as {"stall_s": 2}.')
+    return checked_faults({**faults.model_dump(), **changes})

@@ -1,0 +1,36 @@
+"""What a virtual camera says about itself, the same in all protocols."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from uuid import NAMESPACE_URL, UUID, uuid5
+
+from scope_ptz.virtual_camera.device import VirtualDevice
+
+BRAND = "AXIS"
+PRODUCT = "M5075-G"
+FIRMWARE = "11.11.0"
+"""The version of AXIS OS whose interface this follows."""
+
+
+def serial_number(device: VirtualDevice) -> str:
+    """Return twelve hexadecimal digits, constant for a viewpoint of a scene, so that clients recognise the camera again."""
+    place = f"{device.scene.name}/{device.viewpoint}"
+    return "ACCC8E" + hashlib.sha256(place.encode()).hexdigest()[:6].upper()
+
+
+def mac_address(device: VirtualDevice) -> str:
+    """Return the serial number as the address of a network card, which it is on cameras of this brand."""
+    serial = serial_number(device)
+    return ":".join(serial[k : k + 2] for k in range(0, len(serial), 2))
+
+
+def hostname(device: VirtualDevice) -> str:
+    """Return a name of letters, digits and hyphens."""
+    return re.sub(r"[^a-z0-9]+", "-", device.name.lower()).strip("-")[:63] or "camera"
+
+
+def device_uuid(device: VirtualDevice) -> UUID:
+    """Return the identity of the camera in WS-Discovery."""
+    return uuid5(NAMESPACE_URL, f"urn:scope-ptz:{serial_number(device)}:{device.name}")

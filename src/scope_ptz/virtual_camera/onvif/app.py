@@ -1,0 +1,199 @@
+"""The ONVIF services as an ASGI application."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Awaitable, Callable, Iterable, MutableMapping
+from dataclasses import dataclass
+from typing import Any
+
+from zeep.exceptions import Error as ZeepError
+
+from scope_ptz.virtual_camera.accounts import Role
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.digest import DigestAuthenticator, Verdict
+from scope_ptz.virtual_camera.identity import serial_number
+from scope_ptz.virtual_camera.onvif.clock import device_time_s
+from scope_ptz.virtual_camera.onvif.device_service import PATHS, DeviceService
+from scope_ptz.virtual_camera.onvif.login import Stamp, UsernameTokens, created, not_authorized
+from scope_ptz.virtual_camera.onvif.media2_service import Media2Service
+from scope_ptz.virtual_camera.onvif.media_service import MediaService
+from scope_ptz.virtual_camera.onvif.operations import Operations, Reply, Request
+from scope_ptz.virtual_camera.onvif.ptz_configuration import PtzConfiguration
+from scope_ptz.virtual_camera.onvif.ptz_presets import PresetOperations
+from scope_ptz.virtual_camera.onvif.ptz_service import PtzService
+from scope_ptz.virtual_camera.onvif.soap import (
+    MAX_REQUEST_BYTES,
+    Envelope,
+    SoapFault,
+    as_bytes,
+    parse_envelope,
+)  # fmt: skip
+from scope_ptz.virtual_camera.onvif.wsdl import DEVICE, MEDIA, MEDIA2, PTZ, load_document, load_operations
+
+CONTENT_TYPE = "application/soap+xml; charset=utf-8"
+
+_LOG = logging.getLogger(__name__)
+_HOST = re.compile(r"(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9._-]{1,253})(:[0-9]{1,5})?")
+
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Caller:
+    """How a client reached the device, and what it proved over HTTP.
+
+    Attributes:
+        host: The host, as it appears in an address.
+        origin: Scheme, host and port.
+        verdict: The result of HTTP digest authentication, None if the client did not try it.
+    """
+
+    host: str
+    origin: str
+    verdict: Verdict | None = None
+
+
+class OnvifApp:
+    """The ONVIF services of one camera. Clients sign in with a WS-UsernameToken or by HTTP digest.
+
+    Args:
+        device: The camera.
+        rtsp_port: Where its streams are, for the addresses in replies.
+
+    Raises:
+        ConfigError: The WSDL files are not installed.
+    """
+
+    def __init__(self, device: VirtualDevice, *, rtsp_port: int = 554) -> None:
+        self._device = device
+        self._types, self._messages = load_document().types, load_operations()
+        self._tokens = UsernameTokens(device.accounts, lambda: device_time_s(device))
+        self._digest = DigestAuthenticator(device.accounts, f"AXIS_{serial_number(device)}")
+        configuration = PtzConfiguration(device)
+        ptz = PtzService(device, configuration)
+        self._operations: dict[str, Operations] = {
+            DEVICE: DeviceService(device, self._capabilities, rtsp_port).operations(),
+            MEDIA: MediaService(device, configuration, rtsp_port).operations(),
+            MEDIA2: Media2Service(device, configuration, rtsp_port).operations(),
+            PTZ: {
+                **ptz.operations(),
+                **configuration.operations(),
+                **PresetOperations(device, configuration, ptz).operations(),
+            },
+        }
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request (ASGI)."""
+        if scope["path"].rstrip("/") not in PATHS.values():
+            return await _send(send, 404, b"")
+        if scope["method"] != "POST":
+            return await _send(send, 405, b"", [(b"allow", b"POST")])
+        caller, headers = self._caller(scope), []
+        try:
+            data = await _read(receive)
+            if data is None:
+                return None
+            status, reply = 200, self.answer(data, caller)
+        except SoapFault as fault:
+            status, reply = fault.status, fault.envelope()
+            if status == 401:
+                stale = caller.verdict is not None and caller.verdict.stale
+                headers = [(b"www-authenticate", text.encode()) for text in self._digest.challenges(stale=stale)]
+        return await _send(send, status, reply, headers)
+
+    def answer(self, data: bytes, caller: Caller) -> bytes:
+        """Return the reply to a request.
+
+        Raises:
+            SoapFault: The request is refused.
+        """
+        envelope = parse_envelope(data)
+        namespace, _, name = envelope.body.tag.removeprefix("{").rpartition("}")
+        operation = self._operations.get(namespace, {}).get(name)
+        if operation is None:
+            known = (namespace, name) in self._messages
+            what = "does not offer" if known else "does not know"
+            raise SoapFault(f"The device {what} the operation {name[:64]}.", "ActionNotSupported", receiver=known)
+        stamp = None if operation.role is None else self._admit(envelope, caller, operation.role)
+        try:
+            arguments = self._messages[namespace, name].input.body.parse(envelope.body, self._types)
+        except (ZeepError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
+            _LOG.debug("Arguments of %s: %s", name, error)
+            raise SoapFault(f"The arguments of {name} are not of the types in its WSDL.", "InvalidArgs") from error
+        reply = operation.run(Request(arguments, caller.host, caller.origin, stamp))
+        return as_bytes(self._serialized(namespace, name, reply))
+
+    def _admit(self, envelope: Envelope, caller: Caller, role: Role) -> Stamp | None:
+        """Check that the sender of a request may make it, and return when it was created, None if it does not say so.
+
+        Raises:
+            SoapFault: The sender may not.
+        """
+        if self._device.faults.unauthorized:
+            raise not_authorized("The user name or the password is wrong.")
+        if self._device.accounts.open_to_all:
+            return created(envelope.header)
+        sender = self._tokens.sender(envelope.header)
+        account = sender.account if sender else caller.verdict.account if caller.verdict else None
+        if account is None:
+            raise not_authorized("The operation needs a login.", status=401)
+        if account.role < role:
+            raise not_authorized(f"The account may not do this: it needs the role {role.name.lower()}.")
+        return sender.stamp if sender else None
+
+    def _caller(self, scope: Scope) -> Caller:
+        headers = dict(scope["headers"])
+        host, origin = _address(scope, headers.get(b"host", b"").decode("latin-1"))
+        if (answer := headers.get(b"authorization")) is None:
+            return Caller(host, origin)
+        query = scope["query_string"].decode("latin-1")
+        target = scope["raw_path"].decode("latin-1") + (f"?{query}" if query else "")
+        return Caller(host, origin, self._digest.check(answer.decode("latin-1"), scope["method"], target))
+
+    def _serialized(self, namespace: str, name: str, reply: Reply) -> Any:
+        return self._messages[namespace, name].output.serialize(**reply).content
+
+    def _capabilities(self, namespace: str) -> Any:
+        """Return the capabilities of a service as an element."""
+        reply = self._operations[namespace]["GetServiceCapabilities"].run(Request(None, "", ""))
+        return self._serialized(namespace, "GetServiceCapabilities", reply).find(f".//{{{namespace}}}Capabilities")
+
+
+def _address(scope: Scope, stated: str) -> tuple[str, str]:
+    """Return the host, and scheme with host and port, by which a client says that it reached the server."""
+    found = _HOST.fullmatch(stated)
+    if found is None:
+        host, port = scope.get("server") or ("localhost", None)
+        host = f"[{host}]" if ":" in host else host
+        return host, f"{scope['scheme']}://{host}" + (f":{port}" if port else "")
+    return found[1], f"{scope['scheme']}://{stated}"
+
+
+async def _read(receive: Receive) -> bytes | None:
+    """Return the body of a request, None if the client has gone.
+
+    Raises:
+        SoapFault: It is too large.
+    """
+    parts, size = [], 0
+    while True:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            return None
+        size += len(message.get("body", b""))
+        if size > MAX_REQUEST_BYTES:
+            raise SoapFault(f"A request has at most {MAX_REQUEST_BYTES} bytes.", "WellFormed", status=413)
+        parts.append(message.get("body", b""))
+        if not message.get("more_body", False):
+            return b"".join(parts)
+
+
+async def _send(send: Send, status: int, body: bytes, headers: Iterable[tuple[bytes, bytes]] = ()) -> None:
+    kind = [(b"content-type", CONTENT_TYPE.encode())] if body else []
+    length = (b"content-length", str(len(body)).encode())
+    await send({"type": "http.response.start", "status": status, "headers": [*kind, length, *headers]})
+    await send({"type": "http.response.body", "body": body})

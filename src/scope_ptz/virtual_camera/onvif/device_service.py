@@ -1,0 +1,169 @@
+"""The Device service: which services there are, the time, and what the device is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+from urllib.parse import quote, urlsplit
+
+from scope_ptz.virtual_camera.accounts import Role
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.identity import BRAND, FIRMWARE, PRODUCT, device_uuid, hostname, mac_address, serial_number
+from scope_ptz.virtual_camera.onvif.clock import device_datetime
+from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
+from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
+from scope_ptz.virtual_camera.onvif.wsdl import DEVICE, MEDIA, MEDIA2, PTZ
+
+PATHS = {
+    DEVICE: "/onvif/device_service",
+    MEDIA: "/onvif/media_service",
+    MEDIA2: "/onvif/media2_service",
+    PTZ: "/onvif/ptz_service",
+}
+"""Where each service is offered, by its namespace."""
+
+VERSION = {"Major": 19, "Minor": 12}
+"""Version of the ONVIF specifications that the services follow."""
+
+_CATEGORIES = {"Device": DEVICE, "Media": MEDIA, "PTZ": PTZ}
+_ABSENT = {"Analytics", "Events", "Imaging"}
+
+
+def scopes(device: VirtualDevice) -> list[str]:
+    """Return the scopes by which WS-Discovery clients choose devices."""
+    items = ("type/ptz", "type/video_encoder", "type/Network_Video_Transmitter", "Profile/Streaming")
+    named = (f"hardware/{quote(PRODUCT)}", f"name/{quote(device.name)}", f"location/{quote(device.scene.name)}")
+    return [f"onvif://www.onvif.org/{item}" for item in (*items, *named)]
+
+
+class DeviceService:
+    """The Device service.
+
+    Args:
+        device: The camera.
+        capabilities: Returns the capabilities of a service as an element, by its namespace.
+        rtsp_port: Where its streams are.
+    """
+
+    def __init__(self, device: VirtualDevice, capabilities: Callable[[str], Any], rtsp_port: int) -> None:
+        self._device, self._capabilities_of, self._rtsp_port = device, capabilities, rtsp_port
+
+    def operations(self) -> Operations:
+        """Return the operations by name. Those that a client needs before it can log in are open to all."""
+        return {
+            "GetServices": Operation(self._services, None),
+            "GetServiceCapabilities": Operation(self._service_capabilities, None),
+            "GetCapabilities": Operation(self._capabilities, None),
+            "GetSystemDateAndTime": Operation(self._time, None),
+            "GetHostname": Operation(self._hostname, None),
+            "GetWsdlUrl": Operation(lambda _: {"WsdlUrl": "https://www.onvif.org/profiles/specifications/"}, None),
+            "GetEndpointReference": Operation(self._endpoint, None),
+            "GetDeviceInformation": Operation(self._information),
+            "GetScopes": Operation(self._scopes),
+            "GetDiscoveryMode": Operation(lambda _: {"DiscoveryMode": "Discoverable"}),
+            "GetNetworkInterfaces": Operation(self._network_interfaces),
+            "GetNetworkProtocols": Operation(self._network_protocols),
+            "GetNetworkDefaultGateway": Operation(lambda _: {"NetworkGateway": {}}),
+            "GetDNS": Operation(lambda _: {"DNSInformation": {"FromDHCP": False}}),
+            "GetNTP": Operation(lambda _: {"NTPInformation": {"FromDHCP": False}}),
+            "GetUsers": Operation(self._users, Role.ADMINISTRATOR),
+        }
+
+    def _services(self, request: Request) -> Reply:
+        found = []
+        for namespace, path in PATHS.items():
+            service = {"Namespace": namespace, "XAddr": request.origin + path, "Version": VERSION}
+            if request.IncludeCapability:
+                service["Capabilities"] = {"_value_1": self._capabilities_of(namespace)}
+            found.append(service)
+        return {"Service": found}
+
+    def _service_capabilities(self, _: Request) -> Reply:
+        security = {"UsernameToken": True, "HttpDigest": True, "TLS1.2": False, "RELToken": False, "MaxUsers": 0}
+        system = {"DiscoveryResolve": True, "DiscoveryBye": True, "RemoteDiscovery": False, "SystemLogging": False}
+        network = {"IPFilter": False, "ZeroConfiguration": False, "IPVersion6": False, "DynDNS": False, "NTP": 0}
+        return {"Capabilities": {"Network": network, "Security": security, "System": system}}
+
+    def _capabilities(self, request: Request) -> Reply:
+        wanted = set(request.Category or ()) or {"All"}
+        if missing := wanted & _ABSENT:
+            raise SoapFault(f"The device has no {min(missing)} service.", "ActionNotSupported", "NoSuchService", receiver=True)
+        found: dict[str, Any] = {}
+        for category, namespace in _CATEGORIES.items():
+            if wanted & {"All", category}:
+                found[category] = {"XAddr": request.origin + PATHS[namespace]}
+        if "Media" in found:
+            found["Media"]["StreamingCapabilities"] = {"RTPMulticast": False, "RTP_TCP": True, "RTP_RTSP_TCP": True}
+        if "Device" in found:
+            found["Device"] |= _DEVICE_DETAILS
+        return {"Capabilities": found}
+
+    def _time(self, _: Request) -> Reply:
+        now = device_datetime(self._device)
+        parts = {
+            "Time": {"Hour": now.hour, "Minute": now.minute, "Second": now.second},
+            "Date": {"Year": now.year, "Month": now.month, "Day": now.day},
+        }
+        zone = {"TZ": "UTC0"}
+        return {
+            "SystemDateAndTime": {
+                "DateTimeType": "Manual", "DaylightSavings": False, "TimeZone": zone, "UTCDateTime": parts, "LocalDateTime": parts,
+            }
+        }  # fmt: skip
+
+    def _hostname(self, _: Request) -> Reply:
+        return {"HostnameInformation": {"FromDHCP": False, "Name": hostname(self._device)}}
+
+    def _endpoint(self, _: Request) -> Reply:
+        return {"GUID": str(device_uuid(self._device))}
+
+    def _information(self, _: Request) -> Reply:
+        return {
+            "Manufacturer": BRAND,
+            "Model": PRODUCT,
+            "FirmwareVersion": FIRMWARE,
+            "SerialNumber": serial_number(self._device),
+            "HardwareId": "virtual",
+        }
+
+    def _scopes(self, _: Request) -> Reply:
+        return {"Scopes": [{"ScopeDef": "Fixed", "ScopeItem": item} for item in scopes(self._device)]}
+
+    def _network_interfaces(self, request: Request) -> Reply:
+        interface: dict[str, Any] = {
+            "token": "eth0",
+            "Enabled": True,
+            "Info": {"Name": "eth0", "HwAddress": mac_address(self._device), "MTU": 1500},
+        }
+        if request.host.replace(".", "").isdigit():
+            address = {"Address": request.host, "PrefixLength": 8 if request.host.startswith("127.") else 24}
+            interface["IPv4"] = {"Enabled": True, "Config": {"Manual": [address], "DHCP": False}}
+        return {"NetworkInterfaces": [interface]}
+
+    def _network_protocols(self, request: Request) -> Reply:
+        address = urlsplit(request.origin)
+        ports = {address.scheme.upper(): address.port or 80, "RTSP": self._rtsp_port}
+        return {"NetworkProtocols": [{"Name": name, "Enabled": True, "Port": [port]} for name, port in ports.items()]}
+
+    def _users(self, _: Request) -> Reply:
+        levels = {Role.VIEWER: "User", Role.OPERATOR: "Operator", Role.ADMINISTRATOR: "Administrator"}
+        return {"User": [{"Username": account.name, "UserLevel": levels[account.role]} for account in self._device.accounts]}
+
+
+_DEVICE_DETAILS: Mapping[str, Any] = {
+    "Network": {"IPFilter": False, "ZeroConfiguration": False, "IPVersion6": False, "DynDNS": False},
+    "System": {
+        "DiscoveryResolve": True, "DiscoveryBye": True, "RemoteDiscovery": False, "SystemBackup": False, "SystemLogging": False,
+        "FirmwareUpgrade": False, "SupportedVersions": [VERSION],
+    },
+    "Security": {
+        "TLS1.1": False, "TLS1.2": False, "OnboardKeyGeneration": False, "AccessPolicyConfig": False, "X.509Token": False,
+        "SAMLToken": False, "KerberosToken": False, "RELToken": False,
+    },
+}  # fmt: skip
+
+
+def require_token(name: str, token: str | None, known: str, subcode: str) -> None:
+    """Raise a fault unless a token is the known one."""
+    if token != known:
+        raise invalid_argument(f"There is no {name} '{str(token)[:64]}'.", subcode)

@@ -1,0 +1,134 @@
+"""WS-Discovery: devices announce themselves and answer probes by UDP multicast."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import socket
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager, closing
+from dataclasses import dataclass
+from ipaddress import ip_address
+from time import time
+from typing import cast
+
+from scope_ptz.errors import ConfigError
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.identity import device_uuid
+from scope_ptz.virtual_camera.onvif.device_service import PATHS, scopes
+from scope_ptz.virtual_camera.onvif.discovery_messages import Sender, Target, parse_query
+from scope_ptz.virtual_camera.onvif.wsdl import DEVICE
+
+GROUP = "239.255.255.250"
+PORT = 3702
+"""The multicast address and port of WS-Discovery."""
+
+MAX_DATAGRAM_BYTES = 8192
+"""Larger datagrams are ignored."""
+
+logger = logging.getLogger(__name__)
+
+Address = tuple[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Discoverable:
+    """A device with the port of its HTTP server."""
+
+    device: VirtualDevice
+    http_port: int
+
+
+class _Responder(asyncio.DatagramProtocol):
+    def __init__(self, cameras: Sequence[Discoverable], host: str) -> None:
+        instance = int(time())
+        self._senders = [(camera, Sender(_target(camera, host), instance)) for camera in cameras]
+        self._transport: asyncio.DatagramTransport | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        self._transport = cast("asyncio.DatagramTransport", transport)
+
+    def announce(self, group: Address, *, leaving: bool = False) -> None:
+        """Tell everyone that the devices are there, or that they leave."""
+        for camera, sender in self._senders:
+            if not camera.device.faults.down:
+                self._send(sender.bye() if leaving else sender.hello(), group)
+
+    def datagram_received(self, data: bytes, address: Address) -> None:
+        query = parse_query(data) if len(data) <= MAX_DATAGRAM_BYTES else None
+        for camera, sender in self._senders:
+            if query is not None and not camera.device.faults.down and query.matches(sender.target):
+                xaddr = sender.target.xaddr or _xaddr(_own_address(address), camera.http_port)
+                self._send(sender.match(query, xaddr), address)
+
+    def error_received(self, error: Exception) -> None:
+        logger.debug("WS-Discovery: %s", error)
+
+    def _send(self, data: bytes, address: Address) -> None:
+        if self._transport is not None and not self._transport.is_closing():
+            self._transport.sendto(data, address)
+
+
+@asynccontextmanager
+async def discoverable(cameras: Sequence[Discoverable], *, host: str = "127.0.0.1", port: int = PORT) -> AsyncIterator[int]:
+    """Announce cameras and answer probes while the context is open. Its value is the port.
+
+    Args:
+        cameras: The cameras.
+        host: Address of the network interface, at which the HTTP servers listen too; ``0.0.0.0`` for the default one.
+        port: The UDP port; 0 lets the system choose, which only clients that know it find.
+
+    Raises:
+        ConfigError: The interface cannot be used for multicast.
+    """
+    try:
+        interface = socket.gethostbyname(host)  # ONVIF uses WS-Discovery over IPv4
+        listener = _listen(interface, port)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise ConfigError(f"WS-Discovery cannot use UDP port {port} at {host}: {reason}. Serve without discovery.") from error
+    group = (GROUP, listener.getsockname()[1])
+    loop = asyncio.get_running_loop()
+    transport, responder = await loop.create_datagram_endpoint(lambda: _Responder(cameras, interface), sock=listener)
+    try:
+        responder.announce(group)
+        yield group[1]
+        responder.announce(group, leaving=True)
+    finally:
+        transport.close()
+
+
+def _listen(interface: str, port: int) -> socket.socket:
+    listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        # Other programs on this machine may be discoverable too: multicast reaches all sockets of the port.
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        # Bound to the group, so that nothing but multicast arrives, where the system allows it (Windows does not).
+        try:
+            listener.bind((GROUP, port))
+        except OSError:
+            listener.bind((interface, port))
+        listener.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + socket.inet_aton(interface))
+        listener.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
+        listener.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
+        listener.setblocking(False)
+    except OSError:
+        listener.close()
+        raise
+    return listener
+
+
+def _target(camera: Discoverable, host: str) -> Target:
+    xaddr = "" if ip_address(host).is_unspecified else _xaddr(host, camera.http_port)
+    return Target(device_uuid(camera.device), tuple(scopes(camera.device)), xaddr)
+
+
+def _xaddr(host: str, port: int) -> str:
+    return f"http://{host}:{port}{PATHS[DEVICE]}"
+
+
+def _own_address(client: Address) -> str:
+    """Return the address of this machine as a client sees it."""
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
+        probe.connect(client)  # sends nothing: it only asks the routing table
+        return str(probe.getsockname()[0])

@@ -1,0 +1,170 @@
+"""The messages of WS-Discovery (April 2005, as ONVIF uses it): probes that are read, and what is answered."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import urlsplit
+from uuid import UUID, uuid4
+
+from lxml import etree
+from lxml.builder import ElementMaker
+
+from scope_ptz.virtual_camera.onvif.soap import ENVELOPE, MEMBER_ADDRESSING, SoapFault, as_bytes, parse_envelope
+from scope_ptz.virtual_camera.onvif.wsdl import DEVICE
+
+DISCOVERY = "http://schemas.xmlsoap.org/ws/2005/04/discovery"
+NETWORK = "http://www.onvif.org/ver10/network/wsdl"
+EVERYONE = "urn:schemas-xmlsoap-org:ws:2005:04:discovery"
+
+TYPES = {(NETWORK, "NetworkVideoTransmitter"), (DEVICE, "Device")}
+"""What the device is, as namespaces and names."""
+
+_ANONYMOUS = "http://schemas.xmlsoap.org/ws/2004/08/addressing/role/anonymous"
+_NAMESPACES = {"env": ENVELOPE, "wsa": MEMBER_ADDRESSING, "d": DISCOVERY, "dn": NETWORK, "tds": DEVICE}
+_E = ElementMaker(namespace=ENVELOPE, nsmap=_NAMESPACES)
+_A = ElementMaker(namespace=MEMBER_ADDRESSING)
+_D = ElementMaker(namespace=DISCOVERY)
+_TYPES_TEXT = "dn:NetworkVideoTransmitter tds:Device"
+_METADATA_VERSION = "1"
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A device that can be found.
+
+    Attributes:
+        uuid: Its identity.
+        scopes: What it says of itself.
+        xaddr: The address of its Device service; empty if it depends on who asks.
+    """
+
+    uuid: UUID
+    scopes: tuple[str, ...]
+    xaddr: str
+
+    @property
+    def address(self) -> str:
+        """The identity as an address."""
+        return f"urn:uuid:{self.uuid}"
+
+
+@dataclass(frozen=True, slots=True)
+class Query:
+    """A Probe or a Resolve.
+
+    Attributes:
+        message_id: What the answer relates to.
+        resolves: The address that a Resolve asks for, None for a Probe.
+        types: The types that a Probe asks for.
+        scopes: The scopes that a Probe asks for.
+        match_by: How scopes are compared.
+    """
+
+    message_id: str
+    resolves: str | None
+    types: frozenset[tuple[str, str]] = frozenset()
+    scopes: tuple[str, ...] = ()
+    match_by: str = ""
+
+    def matches(self, target: Target) -> bool:
+        """Return whether a device is meant."""
+        if self.resolves is not None:
+            return self.resolves == target.address
+        if not self.types <= TYPES:
+            return False
+        rule = self.match_by.removeprefix(DISCOVERY)
+        if rule in ("", "/rfc3986"):
+            return all(any(_begins(scope, wanted) for scope in target.scopes) for wanted in self.scopes)
+        return rule == "/strcmp0" and set(self.scopes) <= set(target.scopes)
+
+
+def parse_query(data: bytes) -> Query | None:
+    """Parse a datagram. Return None for everything that is neither a Probe nor a Resolve."""
+    try:
+        envelope = parse_envelope(data)
+        if envelope.header is None:
+            return None
+        message_id = (envelope.header.findtext(f"{{{MEMBER_ADDRESSING}}}MessageID") or "").strip()
+        if not message_id or len(message_id) > 256:
+            return None
+        body = envelope.body
+        if body.tag == f"{{{DISCOVERY}}}Resolve":
+            address = body.findtext(f"{{{MEMBER_ADDRESSING}}}EndpointReference/{{{MEMBER_ADDRESSING}}}Address") or ""
+            return Query(message_id, address.strip())
+        if body.tag != f"{{{DISCOVERY}}}Probe":
+            return None
+        types, scopes = body.find(f"{{{DISCOVERY}}}Types"), body.find(f"{{{DISCOVERY}}}Scopes")
+        names = () if types is None else (types.text or "").split()
+        return Query(
+            message_id,
+            None,
+            frozenset(_qname(types, name) for name in names),
+            () if scopes is None else tuple((scopes.text or "").split()),
+            "" if scopes is None else scopes.get("MatchBy", ""),
+        )
+    except (SoapFault, ValueError):
+        return None
+
+
+class Sender:
+    """Builds the messages of one device, with the sequence numbers that clients order them by.
+
+    Args:
+        target: The device.
+        instance: A number that grows with each start of the device.
+    """
+
+    def __init__(self, target: Target, instance: int) -> None:
+        self.target, self._instance, self._number = target, instance, 0
+
+    def hello(self) -> bytes:
+        """Return the announcement that the device is there."""
+        return self._message("Hello", EVERYONE, None, _D.Hello(*self._description(self.target.xaddr)))
+
+    def bye(self) -> bytes:
+        """Return the announcement that the device leaves."""
+        return self._message("Bye", EVERYONE, None, _D.Bye(self._reference()))
+
+    def match(self, query: Query, xaddr: str) -> bytes:
+        """Return the answer to a query that means the device.
+
+        Args:
+            query: The query.
+            xaddr: The address of the Device service, as the client can reach it.
+        """
+        kind = "Probe" if query.resolves is None else "Resolve"
+        found = _D(f"{kind}Match", *self._description(xaddr))
+        return self._message(f"{kind}Matches", _ANONYMOUS, query.message_id, _D(f"{kind}Matches", found))
+
+    def _reference(self) -> Any:
+        return _A.EndpointReference(_A.Address(self.target.address))
+
+    def _description(self, xaddr: str) -> list[Any]:
+        addresses = [_D.XAddrs(xaddr)] if xaddr else []
+        scopes = _D.Scopes(" ".join(self.target.scopes))
+        return [self._reference(), _D.Types(_TYPES_TEXT), scopes, *addresses, _D.MetadataVersion(_METADATA_VERSION)]
+
+    def _message(self, action: str, to: str, relates_to: str | None, body: Any) -> bytes:
+        self._number += 1
+        header = _E.Header(_A.MessageID(f"urn:uuid:{uuid4()}"))
+        if relates_to is not None:
+            header.append(_A.RelatesTo(relates_to))
+        header.append(_A.To(to))
+        header.append(_A.Action(f"{DISCOVERY}/{action}"))
+        header.append(_D.AppSequence(InstanceId=str(self._instance), MessageNumber=str(self._number)))
+        return as_bytes(_E.Envelope(header, _E.Body(body)))
+
+
+def _qname(element: etree._Element, name: str) -> tuple[str, str]:
+    prefix, _, local = name.rpartition(":")
+    return element.nsmap.get(prefix or None, ""), local
+
+
+def _begins(scope: str, wanted: str) -> bool:
+    """Return whether a scope lies below another one: same scheme and host, and a path that begins with its segments."""
+    ours, theirs = urlsplit(scope), urlsplit(wanted)
+    if (ours.scheme.lower(), ours.netloc.lower()) != (theirs.scheme.lower(), theirs.netloc.lower()):
+        return False
+    segments = theirs.path.strip("/").split("/") if theirs.path.strip("/") else []
+    return ours.path.strip("/").split("/")[: len(segments)] == segments

@@ -1,0 +1,169 @@
+"""The PTZ node and its configuration: spaces, defaults and limits."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from typing import Any
+
+from scope_ptz.virtual_camera.accounts import Role
+from scope_ptz.virtual_camera.device import MAX_PRESETS, VirtualDevice
+from scope_ptz.virtual_camera.onvif import spaces as s
+from scope_ptz.virtual_camera.onvif.device_service import require_token
+from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
+from scope_ptz.virtual_camera.onvif.soap import invalid_argument
+
+NODE = "ptz-node"
+CONFIGURATION = "ptz-configuration"
+PROFILE_COUNT = 1
+
+MIN_TIMEOUT_S, MAX_TIMEOUT_S = 0.1, 60.0
+"""Shortest and longest time of a continuous move, in seconds."""
+
+
+def duration_s(value: Any) -> float | None:
+    """Return a duration of a request in seconds, None if it is not one within the limits."""
+    seconds = value.total_seconds() if isinstance(value, timedelta) else None  # isodate keeps months and years apart
+    return seconds if seconds is not None and MIN_TIMEOUT_S <= seconds <= MAX_TIMEOUT_S else None
+
+
+class PtzConfiguration:
+    """The PTZ configuration, whose defaults clients may change.
+
+    Attributes:
+        spaces: The spaces of the camera.
+        position: The space of positions in status and presets, and of absolute moves that name none.
+        translation: The space of relative moves that name none.
+        timeout_s: Seconds of a continuous move that names no timeout.
+        speed: Share of the top speed of moves that name none.
+        zoom_speed: The same for the zoom.
+    """
+
+    def __init__(self, device: VirtualDevice) -> None:
+        self.spaces = s.Spaces(device.limits, device.optics, device.width / device.height)
+        self.name = "PTZ"
+        self.position, self.translation = s.POSITION, s.TRANSLATION
+        self.timeout_s, self.speed, self.zoom_speed = 5.0, 1.0, 1.0
+
+    def operations(self) -> Operations:
+        """Return the operations by name."""
+        return {
+            "GetNodes": Operation(lambda _: {"PTZNode": [self._node()]}),
+            "GetNode": Operation(self._get_node),
+            "GetConfigurations": Operation(lambda _: {"PTZConfiguration": [self.values()]}),
+            "GetConfiguration": Operation(self._get_configuration),
+            "GetCompatibleConfigurations": Operation(lambda _: {"PTZConfiguration": [self.values()]}),
+            "GetConfigurationOptions": Operation(self._options),
+            "SetConfiguration": Operation(self._set, Role.ADMINISTRATOR),
+        }
+
+    def values(self) -> dict[str, Any]:
+        """Return the configuration as a reply has it."""
+        pan_tilt = self.spaces.positions[0]
+        return {
+            "token": CONFIGURATION,
+            "Name": self.name,
+            "UseCount": PROFILE_COUNT,
+            "NodeToken": NODE,
+            "DefaultAbsolutePantTiltPositionSpace": self.position,
+            "DefaultAbsoluteZoomPositionSpace": s.ZOOM_POSITION,
+            "DefaultRelativePanTiltTranslationSpace": self.translation,
+            "DefaultRelativeZoomTranslationSpace": s.ZOOM_TRANSLATION,
+            "DefaultContinuousPanTiltVelocitySpace": s.VELOCITY,
+            "DefaultContinuousZoomVelocitySpace": s.ZOOM_VELOCITY,
+            "DefaultPTZSpeed": {
+                "PanTilt": {"x": self.speed, "y": self.speed, "space": s.SPEED},
+                "Zoom": {"x": self.zoom_speed, "space": s.ZOOM_SPEED},
+            },
+            "DefaultPTZTimeout": timedelta(seconds=self.timeout_s),
+            "PanTiltLimits": {"Range": _described(pan_tilt)},
+            "ZoomLimits": {"Range": _described(self.spaces.zoom_positions[0])},
+        }
+
+    def _node(self) -> dict[str, Any]:
+        return {
+            "token": NODE,
+            "FixedHomePosition": False,
+            "Name": "PTZ",
+            "SupportedPTZSpaces": self._all_spaces(),
+            "MaximumNumberOfPresets": MAX_PRESETS,
+            "HomeSupported": True,
+        }
+
+    def _all_spaces(self) -> dict[str, Any]:
+        groups = {
+            "AbsolutePanTiltPositionSpace": self.spaces.positions,
+            "AbsoluteZoomPositionSpace": self.spaces.zoom_positions,
+            "RelativePanTiltTranslationSpace": self.spaces.translations,
+            "RelativeZoomTranslationSpace": self.spaces.zoom_translations,
+            "ContinuousPanTiltVelocitySpace": self.spaces.velocities,
+            "ContinuousZoomVelocitySpace": self.spaces.zoom_velocities,
+            "PanTiltSpeedSpace": self.spaces.speeds,
+            "ZoomSpeedSpace": self.spaces.zoom_speeds,
+        }
+        return {name: [_described(space) for space in group] for name, group in groups.items()}
+
+    def _get_node(self, request: Request) -> Reply:
+        require_token("PTZ node", request.NodeToken, NODE, "NoEntity")
+        return {"PTZNode": self._node()}
+
+    def _get_configuration(self, request: Request) -> Reply:
+        self._require(request.PTZConfigurationToken)
+        return {"PTZConfiguration": self.values()}
+
+    def _options(self, request: Request) -> Reply:
+        self._require(request.ConfigurationToken)
+        timeout = {"Min": timedelta(seconds=MIN_TIMEOUT_S), "Max": timedelta(seconds=MAX_TIMEOUT_S)}
+        return {"PTZConfigurationOptions": {"Spaces": self._all_spaces(), "PTZTimeout": timeout}}
+
+    def _set(self, request: Request) -> Reply:
+        wanted = request.PTZConfiguration
+        self._require(wanted.token)
+        position = _known(self.spaces.positions, wanted.DefaultAbsolutePantTiltPositionSpace, self.position)
+        translation = _known(self.spaces.translations, wanted.DefaultRelativePanTiltTranslationSpace, self.translation)
+        _known(self.spaces.zoom_positions, wanted.DefaultAbsoluteZoomPositionSpace, s.ZOOM_POSITION)
+        _known(self.spaces.zoom_translations, wanted.DefaultRelativeZoomTranslationSpace, s.ZOOM_TRANSLATION)
+        _known(self.spaces.velocities, wanted.DefaultContinuousPanTiltVelocitySpace, s.VELOCITY)
+        _known(self.spaces.zoom_velocities, wanted.DefaultContinuousZoomVelocitySpace, s.ZOOM_VELOCITY)
+        speed, zoom_speed = self.shares(wanted.DefaultPTZSpeed, "ConfigModify")
+        timeout_s: float | None = self.timeout_s
+        if wanted.DefaultPTZTimeout is not None:
+            timeout_s = duration_s(wanted.DefaultPTZTimeout)
+        if wanted.NodeToken != NODE or timeout_s is None:
+            raise invalid_argument("The node or the default timeout is not one of the options.", "ConfigModify")
+        self.name = (wanted.Name or self.name)[:64]
+        self.position, self.translation, self.timeout_s = position, translation, timeout_s
+        self.speed, self.zoom_speed = speed, zoom_speed
+        return {}
+
+    def shares(self, speed: Any, subcode: str = "InvalidSpeed") -> tuple[float, float]:
+        """Return shares of the top speeds of pan and tilt, and of the zoom. Absent ones and zeros mean the default.
+
+        Raises:
+            SoapFault: A number is not from 0 to 1, or the space is unknown.
+        """
+        pan_tilt, zoom = getattr(speed, "PanTilt", None), getattr(speed, "Zoom", None)
+        share, zoom_share = self.speed, self.zoom_speed
+        if pan_tilt is not None:
+            space = s.chosen(self.spaces.speeds, pan_tilt, s.SPEED)
+            s.Space(space.uri, space.x, space.x).check(pan_tilt, subcode)
+            share = min(max(pan_tilt.x, pan_tilt.y) or self.speed, 1.0)
+        if zoom is not None:
+            s.chosen(self.spaces.zoom_speeds, zoom, s.ZOOM_SPEED).check(zoom, subcode)
+            zoom_share = min(zoom.x or self.zoom_speed, 1.0)
+        return share, zoom_share
+
+    def _require(self, token: str | None) -> None:
+        require_token("PTZ configuration", token, CONFIGURATION, "NoConfig")
+
+
+def _described(space: s.Space) -> dict[str, Any]:
+    described: dict[str, Any] = {"URI": space.uri, "XRange": {"Min": space.x[0], "Max": space.x[1]}}
+    if space.y is not None:
+        described["YRange"] = {"Min": space.y[0], "Max": space.y[1]}
+    return described
+
+
+def _known(group: tuple[s.Space, ...], uri: str | None, default: str) -> str:
+    if uri is not None and uri not in {space.uri for space in group}:
+        raise invalid_argument("A default space is not one of the options.", "ConfigModify")
+    return uri or default

@@ -1,0 +1,143 @@
+"""The PTZ service: moves and status."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from scope_ptz.camera.capabilities import Velocity
+from scope_ptz.camera.motion import top_speed
+from scope_ptz.geometry import Pose
+from scope_ptz.virtual_camera.accounts import Role
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.onvif import spaces as s
+from scope_ptz.virtual_camera.onvif.clock import device_datetime, device_time_s
+from scope_ptz.virtual_camera.onvif.media_profiles import require_profile
+from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
+from scope_ptz.virtual_camera.onvif.ptz_configuration import PtzConfiguration, duration_s
+from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
+
+
+class PtzService:
+    """Moves and status.
+
+    Args:
+        device: The camera.
+        configuration: Its PTZ configuration.
+    """
+
+    def __init__(self, device: VirtualDevice, configuration: PtzConfiguration) -> None:
+        self._device, self._configuration, self._spaces = device, configuration, configuration.spaces
+
+    def operations(self) -> Operations:
+        """Return the operations by name."""
+        return {
+            "GetServiceCapabilities": Operation(self._capabilities, None),
+            "GetStatus": Operation(self._status),
+            "AbsoluteMove": Operation(self._absolute, Role.OPERATOR),
+            "RelativeMove": Operation(self._relative, Role.OPERATOR),
+            "ContinuousMove": Operation(self._continuous, Role.OPERATOR),
+            "Stop": Operation(self._stop, Role.OPERATOR),
+        }
+
+    def position(self, pose: Pose) -> dict[str, Any]:
+        """Return a pose as a vector in the default spaces."""
+        x, y = self._spaces.position(pose, self._configuration.position)
+        return {
+            "PanTilt": {"x": x, "y": y, "space": self._configuration.position},
+            "Zoom": {"x": self._spaces.zoom_position(pose), "space": s.ZOOM_POSITION},
+        }
+
+    def _capabilities(self, _: Request) -> Reply:
+        # The two last ones are younger than the WSDL files that onvif-zeep-async ships.
+        reports = self._device.reported_moving() is not None
+        more = {"MoveStatus": "true" if reports else "false", "StatusPosition": "true"}
+        return {"Capabilities": {"EFlip": False, "Reverse": False, "GetCompatibleConfigurations": True, "_attr_1": more}}
+
+    def _status(self, request: Request) -> Reply:
+        require_profile(request.ProfileToken)
+        status = {"Position": self.position(self._device.pose()), "UtcTime": device_datetime(self._device)}
+        if (moving := self._device.reported_moving()) is not None:
+            word = "MOVING" if moving else "IDLE"
+            status["MoveStatus"] = {"PanTilt": word, "Zoom": word}
+        return {"PTZStatus": status}
+
+    def _absolute(self, request: Request) -> Reply:
+        require_profile(request.ProfileToken)
+        pan_tilt, zoom = _axes(request.Position)
+        pose = self._device.destination
+        if pan_tilt is not None:
+            space = s.chosen(self._spaces.positions, pan_tilt, self._configuration.position)
+            space.check(pan_tilt, "InvalidPosition")
+            pose = self._spaces.at_position(pose, space, pan_tilt.x, pan_tilt.y)
+        if zoom is not None:
+            s.chosen(self._spaces.zoom_positions, zoom, s.ZOOM_POSITION).check(zoom, "InvalidPosition")
+            pose = self._spaces.at_zoom_position(pose, zoom.x)
+        self._move(pose, request.Speed)
+        return {}
+
+    def _relative(self, request: Request) -> Reply:
+        require_profile(request.ProfileToken)
+        pan_tilt, zoom = _axes(request.Translation)
+        here, pose = self._device.pose(), self._device.destination
+        if pan_tilt is not None:
+            space = s.chosen(self._spaces.translations, pan_tilt, self._configuration.translation)
+            space.check(pan_tilt, "InvalidTranslation")
+            there = self._spaces.turned(here, space, pan_tilt.x, pan_tilt.y)
+            pose = replace(there, zoom=pose.zoom)
+        if zoom is not None:
+            s.chosen(self._spaces.zoom_translations, zoom, s.ZOOM_TRANSLATION).check(zoom, "InvalidTranslation")
+            pose = replace(pose, zoom=self._spaces.zoomed(here, zoom.x).zoom)
+        self._move(pose, request.Speed)
+        return {}
+
+    def _continuous(self, request: Request) -> Reply:
+        require_profile(request.ProfileToken)
+        pan_tilt, zoom = _axes(request.Velocity)
+        velocity, top = self._device.driven, top_speed(self._device.head)
+        if pan_tilt is not None:
+            s.chosen(self._spaces.velocities, pan_tilt, s.VELOCITY).check(pan_tilt, "InvalidVelocity")
+            velocity = replace(velocity, pan_dps=pan_tilt.x * top.pan_dps, tilt_dps=pan_tilt.y * top.tilt_dps)
+        if zoom is not None:
+            s.chosen(self._spaces.zoom_velocities, zoom, s.ZOOM_VELOCITY).check(zoom, "InvalidVelocity")
+            velocity = replace(velocity, zoom_rate=zoom.x * top.zoom_rate)
+        timeout_s: float | None = self._configuration.timeout_s
+        if request.Timeout is not None and (timeout_s := duration_s(request.Timeout)) is None:
+            raise invalid_argument("The timeout is outside the range of the options.", "TimeoutNotSupported")
+        if velocity == Velocity():
+            self._device.stop(sent_s=self._sent_s(request, latest=False))
+            return {}
+        # A command that a stop has overtaken on its way is dropped. The reply is the same: it was carried out and is over.
+        self._device.drive(velocity, timeout_s=timeout_s, sent_s=self._sent_s(request, latest=True))
+        return {}
+
+    def _stop(self, request: Request) -> Reply:
+        require_profile(request.ProfileToken)
+        pan_tilt, zoom = request.PanTilt, request.Zoom
+        if pan_tilt is None and zoom is None:
+            pan_tilt = zoom = True
+        sent_s = self._sent_s(request, latest=False)
+        self._device.stop(pan_tilt=bool(pan_tilt), zoom=bool(zoom), sent_s=sent_s)
+        return {}
+
+    def _sent_s(self, request: Request, *, latest: bool) -> float | None:
+        """Return when a request was created: for a move the latest, for a stop the earliest moment that its time stamp allows.
+
+        Both err towards carrying out the move. A client whose clock is ahead must not hold up others.
+        """
+        if request.stamp is None:
+            return None
+        created_s = request.stamp.latest_s if latest else request.stamp.earliest_s
+        return min(created_s, device_time_s(self._device)) - self._device.faults.clock_skew_s
+
+    def _move(self, pose: Pose, speed: Any) -> None:
+        share, zoom_share = self._configuration.shares(speed)
+        self._device.move(pose, speed_share=share, zoom_share=zoom_share)
+
+
+def _axes(vector: Any) -> tuple[Any, Any]:
+    """Return the parts of a vector for pan and tilt, and for the zoom."""
+    pan_tilt, zoom = getattr(vector, "PanTilt", None), getattr(vector, "Zoom", None)
+    if pan_tilt is None and zoom is None:
+        raise SoapFault("The move names neither pan and tilt nor zoom.", "InvalidArgs")
+    return pan_tilt, zoom

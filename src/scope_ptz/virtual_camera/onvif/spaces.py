@@ -1,0 +1,160 @@
+"""The coordinate spaces of ONVIF, and what their numbers mean for this camera.
+
+Positive x is right and positive y is up in all of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from scope_ptz.geometry import Limits, Optics, Perspective, Pose, wrap_pan_deg
+from scope_ptz.geometry.sphere import pan_tilt_deg
+from scope_ptz.virtual_camera.onvif.soap import invalid_argument
+
+_PAN_TILT = "http://www.onvif.org/ver10/tptz/PanTiltSpaces/"
+_ZOOM = "http://www.onvif.org/ver10/tptz/ZoomSpaces/"
+
+POSITION = _PAN_TILT + "PositionGenericSpace"
+POSITION_DEGREES = _PAN_TILT + "SphericalPositionSpaceDegrees"
+TRANSLATION = _PAN_TILT + "TranslationGenericSpace"
+TRANSLATION_DEGREES = _PAN_TILT + "SphericalTranslationSpaceDegrees"
+TRANSLATION_FOV = _PAN_TILT + "TranslationSpaceFov"
+VELOCITY = _PAN_TILT + "VelocityGenericSpace"
+SPEED = _PAN_TILT + "GenericSpeedSpace"
+ZOOM_POSITION = _ZOOM + "PositionGenericSpace"
+ZOOM_TRANSLATION = _ZOOM + "TranslationGenericSpace"
+ZOOM_VELOCITY = _ZOOM + "VelocityGenericSpace"
+ZOOM_SPEED = _ZOOM + "ZoomGenericSpeedSpace"
+
+_TOLERANCE = 1e-4  # clients that calculate in single precision miss an end of a range by a little
+
+Range = tuple[float, float]
+UNIT: Range = (-1.0, 1.0)
+SHARE: Range = (0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Space:
+    """A space with its ranges; a space of one dimension has no y."""
+
+    uri: str
+    x: Range
+    y: Range | None = None
+
+    def check(self, vector: Any, subcode: str) -> None:
+        """Raise a fault if a vector is not within the ranges, or has a number that is not finite."""
+        for axis, limits in (("x", self.x), ("y", self.y)):
+            if limits is None:
+                continue
+            value = getattr(vector, axis)
+            if value is None or not limits[0] - _TOLERANCE <= value <= limits[1] + _TOLERANCE:
+                raise invalid_argument(f"{axis} is from {limits[0]:g} to {limits[1]:g}, got {value}.", subcode)
+
+
+def chosen(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:
+    """Return the space of a vector: the one that it names, else the default.
+
+    Raises:
+        SoapFault: The device does not have it.
+    """
+    wanted = getattr(vector, "space", None) or default
+    for space in spaces:
+        if space.uri == wanted:
+            return space
+    raise invalid_argument("The device does not support this space.", "SpaceNotSupported")
+
+
+@dataclass(frozen=True, slots=True)
+class Spaces:
+    """All spaces of a camera."""
+
+    limits: Limits
+    optics: Optics
+    aspect: float
+
+    @property
+    def _pan(self) -> Range:
+        return (-180.0, 180.0) if self.limits.pan_endless else (self.limits.min_pan_deg, self.limits.max_pan_deg)
+
+    @property
+    def _tilt(self) -> Range:
+        return self.limits.min_tilt_deg, self.limits.max_tilt_deg
+
+    @property
+    def _zoom(self) -> Range:
+        return self.limits.min_zoom, self.limits.max_zoom
+
+    @property
+    def positions(self) -> tuple[Space, ...]:
+        return Space(POSITION, UNIT, UNIT), Space(POSITION_DEGREES, self._pan, self._tilt)
+
+    @property
+    def translations(self) -> tuple[Space, ...]:
+        degrees = Space(TRANSLATION_DEGREES, _both_ways(self._pan), _both_ways(self._tilt))
+        return Space(TRANSLATION, UNIT, UNIT), Space(TRANSLATION_FOV, UNIT, UNIT), degrees
+
+    velocities = (Space(VELOCITY, UNIT, UNIT),)
+    speeds = (Space(SPEED, SHARE),)
+    zoom_positions = (Space(ZOOM_POSITION, SHARE),)
+    zoom_translations = (Space(ZOOM_TRANSLATION, UNIT),)
+    zoom_velocities = (Space(ZOOM_VELOCITY, UNIT),)
+    zoom_speeds = (Space(ZOOM_SPEED, SHARE),)
+
+    def at_position(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
+        """Return the pose at a position of pan and tilt, with the zoom of ``pose``."""
+        if space.uri == POSITION:
+            x, y = _from_unit(x, self._pan), _from_unit(y, self._tilt)
+        return replace(pose, pan_deg=x, tilt_deg=y)
+
+    def at_zoom_position(self, pose: Pose, x: float) -> Pose:
+        """Return a pose at a position of the zoom."""
+        low, high = self._zoom
+        return replace(pose, zoom=low + x * (high - low))
+
+    def turned(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
+        """Return the pose after a translation of pan and tilt. It may lie beyond the limits."""
+        if space.uri == TRANSLATION_FOV:
+            return self._centred(pose, x, y)
+        if space.uri == TRANSLATION:
+            x, y = x * _span(self._pan) / 2, y * _span(self._tilt) / 2
+        return pose.turned(x, y)
+
+    def zoomed(self, pose: Pose, x: float) -> Pose:
+        """Return the pose after a translation of the zoom, within its limits."""
+        low, high = self._zoom
+        return replace(pose, zoom=min(max(pose.zoom + x * (high - low), low), high))
+
+    def position(self, pose: Pose, uri: str) -> tuple[float, float]:
+        """Return the position of pan and tilt in a space."""
+        if uri == POSITION:
+            return _to_unit(pose.pan_deg, self._pan), _to_unit(pose.tilt_deg, self._tilt)
+        return pose.pan_deg, pose.tilt_deg
+
+    def zoom_position(self, pose: Pose) -> float:
+        """Return the position of the zoom."""
+        low, high = self._zoom
+        return min(max((pose.zoom - low) / (high - low), 0.0), 1.0)
+
+    def _centred(self, pose: Pose, x: float, y: float) -> Pose:
+        """Return the pose that centres a point of the picture, where -1 and 1 are its borders."""
+        size = 1000
+        view = Perspective(pose.pan_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), size, round(size / self.aspect))
+        pan_deg, tilt_deg = pan_tilt_deg(view.directions([0.5 + x / 2, 0.5 - y / 2]))
+        return replace(pose, pan_deg=pose.pan_deg + wrap_pan_deg(float(pan_deg) - pose.pan_deg), tilt_deg=float(tilt_deg))
+
+
+def _span(limits: Range) -> float:
+    return limits[1] - limits[0]
+
+
+def _both_ways(limits: Range) -> Range:
+    return -_span(limits), _span(limits)
+
+
+def _from_unit(value: float, limits: Range) -> float:
+    return limits[0] + (value + 1.0) / 2.0 * _span(limits)
+
+
+def _to_unit(value: float, limits: Range) -> float:
+    return min(max(2.0 * (value - limits[0]) / _span(limits) - 1.0, -1.0), 1.0)

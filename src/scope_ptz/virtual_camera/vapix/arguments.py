@@ -1,0 +1,65 @@
+"""The arguments of a VAPIX request, with conversions that say which argument is wrong."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from scope_ptz.errors import InputError
+
+MAX_SHOWN = 60  # characters of a client's text that an error repeats
+
+
+class Arguments:
+    """The arguments of a request by name. All conversions raise ``InputError`` for a wrong value.
+
+    Args:
+        values: Text by name; the first of several values of one name counts.
+    """
+
+    def __init__(self, values: Mapping[str, str]) -> None:
+        self._values = dict(values)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._values
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def items(self) -> Iterator[tuple[str, str]]:
+        """Return pairs of name and text."""
+        return iter(self._values.items())
+
+    def text(self, name: str, default: str = "") -> str:
+        """Return the text of an argument."""
+        return self._values.get(name, default)
+
+    def number(self, name: str, low: float, high: float) -> float:
+        """Return a finite number, clamped to a range."""
+        return min(max(self._numbers(name, 1)[0], low), high)
+
+    def whole(self, name: str, low: int, high: int) -> int:
+        """Return a whole number, clamped to a range. Decimals are cut off, as AXIS documents."""
+        return int(self.number(name, low, high))
+
+    def numbers(self, name: str, count: int) -> tuple[float, ...]:
+        """Return finite numbers that are separated by commas."""
+        return tuple(self._numbers(name, count))
+
+    def choice(self, name: str, known: tuple[str, ...]) -> str:
+        """Return one of several words."""
+        value = self._values[name]
+        if value not in known:
+            raise InputError(f"{name}: unknown value: {value[:MAX_SHOWN]}")
+        return value
+
+    def _numbers(self, name: str, count: int) -> list[float]:
+        text = self._values[name]
+        try:
+            found = [float(part) for part in text.split(",")]
+        except ValueError:
+            found = []
+        if len(found) != count or not all(map(math.isfinite, found)):
+            what = "a number" if count == 1 else f"{count} numbers with commas between them"
+            raise InputError(f"{name}: expected {what}, got {text[:MAX_SHOWN]!r}")
+        return found

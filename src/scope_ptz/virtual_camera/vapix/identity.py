@@ -1,0 +1,26 @@
+"""What the camera says about itself."""
+
+from __future__ import annotations
+
+from scope_ptz.virtual_camera.identity import BRAND, FIRMWARE, PRODUCT
+from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+
+
+def identity(unit: VapixUnit) -> dict[str, str]:
+    """Return brand, product, versions and serial number under the names of VAPIX."""
+    return {
+        "Architecture": "aarch64",
+        "Brand": BRAND,
+        "BuildDate": "Jan 01 2026 00:00",
+        "HardwareID": "virtual",
+        "ProdFullName": f"{BRAND} {PRODUCT} PTZ Camera",
+        "ProdNbr": PRODUCT,
+        "ProdShortName": f"{BRAND} {PRODUCT}",
+        "ProdType": "PTZ Camera",
+        "ProdVariant": "SCOPE virtual camera",
+        "SerialNumber": unit.serial,
+        "Soc": "virtual",
+        "SocSerialNumber": "",
+        "Version": FIRMWARE,
+        "WebURL": "http://www.axis.com",
+    }

@@ -1,0 +1,135 @@
+"""The movement commands of ``ptz.cgi``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from scope_ptz.camera.capabilities import Velocity
+from scope_ptz.errors import InputError
+from scope_ptz.geometry import Perspective, Pose, pan_tilt_deg
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.vapix import scales
+from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN, Arguments
+from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+
+STEP_SHARE = 0.25
+"""Share of the picture by which ``move=left`` and the like turn the camera."""
+
+DIRECTIONS = {
+    "up": (0, 1),
+    "down": (0, -1),
+    "left": (-1, 0),
+    "right": (1, 0),
+    "upleft": (-1, 1),
+    "upright": (1, 1),
+    "downleft": (-1, -1),
+    "downright": (1, -1),
+}
+WORDS = ("home", *DIRECTIONS, "stop")
+
+ABSOLUTE, RELATIVE = ("pan", "tilt", "zoom"), ("rpan", "rtilt", "rzoom")
+CONTINUOUS = ("continuouspantiltmove", "continuouszoommove")
+PRESETS = ("gotoserverpresetname", "gotoserverpresetno", "gotodevicepreset")
+PIXELS = ("center", "areazoom")
+COMMANDS = ("move", *PRESETS, *PIXELS, *CONTINUOUS, *ABSOLUTE, *RELATIVE)
+"""Arguments that move the camera."""
+
+
+def move(unit: VapixUnit, arguments: Arguments) -> None:
+    """Carry out the movement commands of one request.
+
+    Raises:
+        InputError: An argument is wrong, or there is no such preset. Nothing has moved then.
+    """
+    device = unit.device
+    if "move" in arguments:
+        _move_word(unit, arguments.choice("move", WORDS))
+    elif any(name in arguments for name in PRESETS):
+        _go(unit, _preset_pose(device, arguments))
+    elif any(name in arguments for name in PIXELS):
+        _go(unit, _pixel_pose(device, arguments))
+    elif any(name in arguments for name in CONTINUOUS):
+        _drive(device, arguments)
+    else:
+        _go(unit, _target(device, arguments))
+
+
+def _go(unit: VapixUnit, pose: Pose) -> None:
+    unit.device.move(pose, speed_share=scales.speed_share(unit.speed), zoom_share=1.0)
+
+
+def _move_word(unit: VapixUnit, word: str) -> None:
+    device = unit.device
+    if word == "stop":
+        device.stop()
+    elif word == "home":
+        _go(unit, device.home)
+    else:
+        right, up = DIRECTIONS[word]
+        view = _view(device, device.pose(), device.width, device.height)
+        _go(unit, device.pose().turned(right * STEP_SHARE * view.hfov_deg, up * STEP_SHARE * view.vfov_deg))
+
+
+def _target(device: VirtualDevice, arguments: Arguments) -> Pose:
+    """Return the pose that absolute and relative arguments ask for. Axes that are not named go on to where they go."""
+    here, end = device.pose(), device.destination
+    pan, tilt, zoom = end.pan_deg, end.tilt_deg, end.zoom
+    if "pan" in arguments:
+        pan = arguments.number("pan", -180, 180)
+    elif "rpan" in arguments:
+        pan = here.pan_deg + arguments.number("rpan", -360, 360)
+    if "tilt" in arguments:
+        tilt = arguments.number("tilt", -180, 180)
+    elif "rtilt" in arguments:
+        tilt = here.tilt_deg + arguments.number("rtilt", -360, 360)
+    if "zoom" in arguments:
+        zoom = scales.magnification(arguments.whole("zoom", 1, scales.MAX_ZOOM_STEP), device.limits)
+    elif "rzoom" in arguments:
+        steps = arguments.whole("rzoom", -scales.MAX_ZOOM_STEP, scales.MAX_ZOOM_STEP)
+        zoom = scales.magnification(scales.zoom_step(here.zoom, device.limits) + steps, device.limits)
+    return Pose(pan, tilt, zoom)
+
+
+def _drive(device: VirtualDevice, arguments: Arguments) -> None:
+    """Drive pan and tilt, zoom, or all three. What a request does not name goes on at its speed."""
+    velocity, head = device.driven, device.head
+    if "continuouspantiltmove" in arguments:
+        pan, tilt = (scales.speed_share(value) for value in arguments.numbers("continuouspantiltmove", 2))
+        velocity = replace(velocity, pan_dps=pan * head.pan.speed, tilt_dps=tilt * head.tilt.speed)
+    if "continuouszoommove" in arguments:
+        share = arguments.number("continuouszoommove", -100, 100) / 100
+        velocity = replace(velocity, zoom_rate=share * head.zoom.speed)
+    if velocity == Velocity():
+        device.stop()
+    else:
+        device.drive(velocity)
+
+
+def _preset_pose(device: VirtualDevice, arguments: Arguments) -> Pose:
+    if "gotoserverpresetname" in arguments:
+        return device.find_preset(arguments.text("gotoserverpresetname")[:MAX_SHOWN]).pose
+    name = "gotoserverpresetno" if "gotoserverpresetno" in arguments else "gotodevicepreset"
+    return device.preset(arguments.whole(name, 0, 10_000)).pose
+
+
+def _pixel_pose(device: VirtualDevice, arguments: Arguments) -> Pose:
+    """Return the pose that brings a pixel to the centre, for ``areazoom`` with another magnification."""
+    width = arguments.whole("imagewidth", 1, 100_000) if "imagewidth" in arguments else device.width
+    height = arguments.whole("imageheight", 1, 100_000) if "imageheight" in arguments else device.height
+    here = device.pose()
+    if "areazoom" in arguments:
+        x, y, percent = arguments.numbers("areazoom", 3)
+        if percent < 1:
+            raise InputError(f"areazoom: the zoom is 1 or more, got {percent:g}")
+        zoom = device.optics.zoom_for_focal(device.optics.focal(here.zoom) * percent / 100)
+    else:
+        (x, y), zoom = arguments.numbers("center", 2), here.zoom
+    point = np.clip([x / width, y / height], 0.0, 1.0)
+    pan, tilt = pan_tilt_deg(_view(device, here, width, height).directions(point))
+    return Pose(device.limits.aim_pan_deg(float(pan)), float(tilt), zoom)
+
+
+def _view(device: VirtualDevice, pose: Pose, width: int, height: int) -> Perspective:
+    return Perspective(pose.pan_deg, pose.tilt_deg, device.optics.hfov_deg(pose.zoom), width, height)

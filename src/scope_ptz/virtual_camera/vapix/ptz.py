@@ -1,0 +1,153 @@
+"""``/axis-cgi/com/ptz.cgi``, ``ptzconfig.cgi`` and ``ptzqueue.cgi``."""
+
+from __future__ import annotations
+
+from scope_ptz.errors import CameraError, InputError
+from scope_ptz.virtual_camera.identity import PRODUCT
+from scope_ptz.virtual_camera.vapix import moves, replies
+from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN, Arguments
+from scope_ptz.virtual_camera.vapix.control_queue import QueueStatus
+from scope_ptz.virtual_camera.vapix.queries import QUERIES, query
+from scope_ptz.virtual_camera.vapix.replies import DONE, Client, Reply
+from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+
+UNSUPPORTED = (
+    "focus", "rfocus", "continuousfocusmove", "iris", "riris", "continuousirismove", "brightness", "rbrightness",
+    "continuousbrightnessmove", "ircutfilter", "backlight", "auxiliary",
+)  # fmt: skip
+"""Commands of other AXIS cameras. This one has automatic focus and iris only."""
+
+FORBIDDEN_IN_NAMES = '"<>~:'
+"""Characters that preset names of AXIS cameras cannot have."""
+
+COMMANDS = f"""Available commands:
+{{camera=[n]}}
+whoami=yes
+center=[x],[y]
+  imagewidth=[n]
+  imageheight=[n]
+areazoom=[x],[y],[z]
+  imagewidth=[n]
+  imageheight=[n]
+move={{ {" | ".join(moves.WORDS)} }}
+pan=[abspos]
+tilt=[abspos]
+zoom=[n]
+rpan=[offset]
+rtilt=[offset]
+rzoom=[offset]
+autofocus={{ on }}
+autoiris={{ on }}
+continuouspantiltmove=[x-speed],[y-speed]
+continuouszoommove=[speed]
+setserverpresetname=[name]
+setserverpresetno=[n]
+removeserverpresetname=[name]
+removeserverpresetno=[n]
+gotoserverpresetname=[name]
+gotoserverpresetno=[n]
+gotodevicepreset=[n]
+speed=[n]
+query={{ {" | ".join(QUERIES)} }}
+  format={{ json }}
+"""
+
+
+def ptz(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
+    """Answer a request to ``ptz.cgi``: a query, or commands."""
+    try:
+        _check_camera(arguments)
+        if "query" in arguments:
+            return query(unit, arguments)
+        if "info" in arguments:
+            return Reply(200, COMMANDS)
+        if "whoami" in arguments:
+            return replies.lines([f"AXIS {PRODUCT}"])
+        return _command(unit, arguments, client)
+    except (InputError, CameraError) as problem:
+        return replies.error(str(problem))
+
+
+def _command(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
+    for name in arguments:
+        if name in UNSUPPORTED:
+            raise InputError(f"{name}: not supported by this camera")
+    for name in ("autofocus", "autoiris"):
+        if name in arguments and arguments.choice(name, ("on", "off")) == "off":
+            raise InputError(f"{name}: this camera has automatic focus and iris only")
+    moving = any(name in arguments for name in moves.COMMANDS)
+    known = moving or any(name in arguments for name in ("speed", "autofocus", "autoiris"))
+    if not known:
+        raise InputError("no command; info=1 lists the commands")
+    unit.queue.check(client)
+    if "speed" in arguments:
+        unit.speed = arguments.whole("speed", 1, 100)
+    if moving:
+        moves.move(unit, arguments)
+    return DONE
+
+
+def ptz_config(unit: VapixUnit, arguments: Arguments) -> Reply:
+    """Answer a request to ``ptzconfig.cgi``, which saves, renames and removes presets."""
+    try:
+        _check_camera(arguments)
+        _configure(unit, arguments)
+    except (InputError, CameraError) as problem:
+        return replies.error(str(problem))
+    return DONE
+
+
+def _configure(unit: VapixUnit, arguments: Arguments) -> None:
+    device = unit.device
+    home = "home" in arguments and arguments.choice("home", ("yes", "no")) == "yes"
+    if "setserverpresetname" in arguments:
+        device.save_preset(_preset_name(arguments, "setserverpresetname"))
+    elif "setserverpresetno" in arguments:
+        number = arguments.whole("setserverpresetno", 0, 10_000)
+        known = {preset.number: preset.name for preset in device.presets()}
+        device.save_preset(known.get(number, f"p{number}"), number=number)
+    elif "renameserverpresetno" in arguments:
+        device.rename_preset(arguments.whole("renameserverpresetno", 0, 10_000), _preset_name(arguments, "newname"))
+    elif "removeserverpresetname" in arguments:
+        device.remove_preset(device.find_preset(arguments.text("removeserverpresetname")[:MAX_SHOWN]).number)
+    elif "removeserverpresetno" in arguments:
+        device.remove_preset(arguments.whole("removeserverpresetno", 0, 10_000))
+    elif "removeallserverpresets" in arguments and arguments.choice("removeallserverpresets", ("yes",)):
+        for preset in device.presets():
+            device.remove_preset(preset.number)
+    elif not home:
+        raise InputError("no command; setserverpresetname, removeserverpresetname and home are some")
+    if home:
+        device.set_home()
+
+
+def ptz_queue(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
+    """Answer a request to ``ptzqueue.cgi``: position in the queue, seconds left, and seconds between polls."""
+    try:
+        status = _queue_status(unit, arguments, client)
+    except (InputError, CameraError) as problem:
+        return replies.error(str(problem))
+    fields = (status.position, status.seconds, status.poll_s)
+    return Reply(200, "".join(f'<a name="{value}"></a>' for value in fields) + "\n", "text/html; charset=utf-8")
+
+
+def _queue_status(unit: VapixUnit, arguments: Arguments, client: Client) -> QueueStatus:
+    _check_camera(arguments)
+    if "control" not in arguments:
+        raise InputError("control: expected request, drop or query")
+    if not unit.queue.enabled:
+        raise CameraError("control queueing is off (PTZ.Various.V1.CtlQueueing)")
+    actions = {"request": unit.queue.request, "drop": unit.queue.drop, "query": unit.queue.status}
+    return actions[arguments.choice("control", tuple(actions))](client)
+
+
+def _check_camera(arguments: Arguments) -> None:
+    if "camera" in arguments and arguments.text("camera") not in ("1", "all"):
+        raise InputError(f"camera: there is only camera 1, got {arguments.text('camera')[:MAX_SHOWN]!r}")
+
+
+def _preset_name(arguments: Arguments, argument: str) -> str:
+    name = arguments.text(argument)
+    if any(character in FORBIDDEN_IN_NAMES for character in name):
+        raise InputError(f"{argument}: a preset name cannot have any of {' '.join(FORBIDDEN_IN_NAMES)}")
+    return name

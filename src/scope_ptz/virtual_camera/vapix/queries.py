@@ -1,0 +1,124 @@
+"""The queries of ``ptz.cgi``: position, limits, presets, speed and attributes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from scope_ptz.geometry import Limits
+from scope_ptz.virtual_camera.device import DevicePreset, VirtualDevice
+from scope_ptz.virtual_camera.vapix import replies, scales
+from scope_ptz.virtual_camera.vapix.arguments import Arguments
+from scope_ptz.virtual_camera.vapix.replies import Reply
+from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+
+GROUPS = ("zoom", "speed")
+
+Attributes = Mapping[str, str | Sequence[Mapping[str, str]]]
+
+
+def query(unit: VapixUnit, arguments: Arguments) -> Reply:
+    """Answer ``query=...``.
+
+    Raises:
+        InputError: There is no such query.
+    """
+    return QUERIES[arguments.choice("query", tuple(QUERIES))](unit, arguments)
+
+
+def _position(unit: VapixUnit, _: Arguments) -> Reply:
+    pose = unit.device.pose()
+    content = {
+        "pan": f"{pose.pan_deg:.4f}",
+        "tilt": f"{pose.tilt_deg:.4f}",
+        "zoom": scales.zoom_step(pose.zoom, unit.device.limits),
+        "autofocus": "on",
+        "autoiris": "on",
+    }
+    return replies.values(content)
+
+
+def limit_values(device: VirtualDevice) -> dict[str, object]:
+    """Return the limits of the camera. Field angles are in tenths of a degree."""
+    limits, optics = device.limits, device.optics
+    return {
+        "MinPan": f"{limits.min_pan_deg:g}",
+        "MaxPan": f"{limits.max_pan_deg:g}",
+        "MinTilt": f"{limits.min_tilt_deg:g}",
+        "MaxTilt": f"{limits.max_tilt_deg:g}",
+        "MinZoom": 1,
+        "MaxZoom": scales.MAX_ZOOM_STEP,
+        "MinFieldAngle": round(10 * optics.hfov_deg(limits.max_zoom)),
+        "MaxFieldAngle": round(10 * optics.hfov_deg(limits.min_zoom)),
+    }
+
+
+def _limits(unit: VapixUnit, _: Arguments) -> Reply:
+    return replies.values(limit_values(unit.device))
+
+
+def _speed(unit: VapixUnit, _: Arguments) -> Reply:
+    return replies.values({"speed": unit.speed})
+
+
+def _presets(unit: VapixUnit, arguments: Arguments) -> Reply:
+    return _preset_list(arguments, [f"presetposno{each.number}={each.name}" for each in unit.device.presets()])
+
+
+def preset_data(preset: DevicePreset, limits: Limits) -> str:
+    """Return the pose of a preset as AXIS cameras write it: ``tilt=...:pan=...:zoom=...``."""
+    pose = preset.pose
+    return f"tilt={pose.tilt_deg:.6f}:pan={pose.pan_deg:.6f}:zoom={scales.zoom_step(pose.zoom, limits)}"
+
+
+def _preset_positions(unit: VapixUnit, arguments: Arguments) -> Reply:
+    limits = unit.device.limits
+    rows = [f"presetposno{each.number}={each.name}:{preset_data(each, limits)}" for each in unit.device.presets()]
+    return _preset_list(arguments, rows)
+
+
+def _preset_list(arguments: Arguments, rows: list[str]) -> Reply:
+    if arguments.text("format") == "json":
+        return replies.document({"Camera 1": {"presets": rows}})
+    return replies.lines(["Preset Positions for camera 1", *rows])
+
+
+def _attributes(unit: VapixUnit, arguments: Arguments) -> Reply:
+    groups = (arguments.choice("group", GROUPS),) if "group" in arguments else GROUPS
+    found: dict[str, str | Sequence[Mapping[str, str]]] = {}
+    if "zoom" in groups:
+        found.update(_zoom_attributes(unit.device))
+    if "speed" in groups:
+        rows = scales.speed_table(unit.device.head.pan)
+        found["speeds"] = [{"value": str(value), "speed": f"{speed:g}"} for value, speed in rows]
+    if arguments.text("format") == "json":
+        return replies.document({"Camera 1": found})
+    return replies.lines(["Attributes for camera 1", *(f"{name}={_plain(value)}" for name, value in found.items())])
+
+
+def _zoom_attributes(device: VirtualDevice) -> Attributes:
+    """Return the zoom calibration, with a row for each row of the lens's table."""
+    limits = device.limits
+    inside = [zoom for zoom, _ in device.optics.table if limits.min_zoom <= zoom <= limits.max_zoom]
+    steps = sorted({1, scales.MAX_ZOOM_STEP, *(scales.zoom_step(zoom, limits) for zoom in inside)})
+    return {
+        "maxOpticalZoomMag": f"{limits.max_zoom:g}",
+        "zoomSteps": [{"value": str(step), "zoom": f"{scales.magnification(step, limits):.6f}"} for step in steps],
+    }
+
+
+def _plain(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    return ",".join(" | ".join(f"{name}={each}" for name, each in row.items()) for row in value)
+
+
+QUERIES: dict[str, Callable[[VapixUnit, Arguments], Reply]] = {
+    "position": _position,
+    "limits": _limits,
+    "speed": _speed,
+    "presetposall": _presets,
+    "presetposcam": _presets,
+    "presetposcamdata": _preset_positions,
+    "attributes": _attributes,
+}

@@ -1,0 +1,60 @@
+"""Replies of VAPIX requests, and who asks."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from scope_ptz.virtual_camera.accounts import Role
+
+
+@dataclass(frozen=True, slots=True)
+class Client:
+    """Who sends a request. ``name`` is the account, or the address of a client of a camera without accounts."""
+
+    name: str
+    role: Role
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """A reply: HTTP status, body and media type."""
+
+    status: int
+    body: str = ""
+    content_type: str = "text/plain; charset=utf-8"
+
+
+DONE = Reply(204)
+"""A command is carried out. There is nothing else to say."""
+
+
+def error(message: str) -> Reply:
+    """Return an error of a PTZ request. Its HTTP status is that of a success, as on AXIS cameras."""
+    return Reply(200, f"Error: {_one_line(message)}\n")
+
+
+def parameter_error(message: str) -> Reply:
+    """Return an error of ``param.cgi``."""
+    return Reply(200, f"# Error: {_one_line(message)}\n")
+
+
+def lines(content: Iterable[str]) -> Reply:
+    """Return lines of text."""
+    return Reply(200, "".join(f"{line}\n" for line in content))
+
+
+def values(content: Mapping[str, object]) -> Reply:
+    """Return ``name=value`` lines."""
+    return lines(f"{name}={value}" for name, value in content.items())
+
+
+def document(content: Mapping[str, Any]) -> Reply:
+    """Return a JSON document."""
+    return Reply(200, json.dumps(content), "application/json")
+
+
+def _one_line(message: str) -> str:
+    return " ".join(message.split())

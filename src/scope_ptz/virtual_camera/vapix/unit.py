@@ -1,0 +1,41 @@
+"""What VAPIX keeps for a device beside the device itself: its identity, the move speed and the control queue."""
+
+from __future__ import annotations
+
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.identity import serial_number
+from scope_ptz.virtual_camera.vapix.control_queue import ControlQueue
+
+RESOLUTIONS = ((1920, 1080), (1280, 720), (1024, 576), (800, 450), (640, 360), (480, 270), (320, 180), (160, 90))
+
+
+class VapixUnit:
+    """A device as VAPIX shows it.
+
+    Args:
+        device: The camera.
+
+    Attributes:
+        speed: The move speed of pan and tilt, 1 to 100.
+        queue: Who controls the camera.
+        serial: The serial number, which is constant for a viewpoint of a scene.
+        rtsp_port: The port of its RTSP server, None if there is none.
+    """
+
+    def __init__(self, device: VirtualDevice) -> None:
+        self.device = device
+        self.speed = 100
+        self.queue = ControlQueue()
+        self.rtsp_port: int | None = None
+        self.serial = serial_number(device)
+
+    @property
+    def realm(self) -> str:
+        """The name of what a password protects."""
+        return f"AXIS_{self.serial}"
+
+    def resolutions(self) -> list[str]:
+        """Return the resolutions that the camera lists, largest first."""
+        full = (self.device.width, self.device.height)
+        smaller = [size for size in RESOLUTIONS if size[0] < full[0] and size[1] < full[1]]
+        return [f"{width}x{height}" for width, height in (full, *smaller)]

@@ -1,0 +1,123 @@
+"""``scope camera serve``: wrong options, and the program from its start to Ctrl-C."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import httpx2
+import pytest
+
+from scope_ptz.cli.camera.serve import parse_faults
+from scope_ptz.errors import ConfigError, InputError
+from scope_ptz.factory.virtual_cameras import VirtualCameraOptions, make_accounts, make_devices
+from scope_ptz.settings import ScopeSettings
+from scope_ptz.virtual_camera.accounts import Role
+from tests.cli.conftest import SCENE, Scope
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--scene", "nowhere"], "There is no scene 'nowhere'"),
+        (["--scene", SCENE, "--viewpoint", "cellar"], "There is no viewpoint 'cellar'"),
+        (["--scene", SCENE, "--scene", SCENE, "--viewpoint", "mast"], "one viewpoint for each scene"),
+        (["--scene", SCENE, "--time-scale", "0"], "time scale"),
+        (["--scene", SCENE, "--fault", "stall"], "NAME=VALUE"),
+        (["--scene", SCENE, "--fault", "rain=1"], "There is no fault 'rain'"),
+        (["--scene", SCENE, "--fault", "drop=2"], "drop: "),
+        (["--scene", SCENE, "--user", "root", "--no-accounts"], "not both"),
+        (["--scene", SCENE, "--user", "root:king"], "There is no role 'king'"),
+        (["--scene", SCENE, "--user", "root", "--user", "root"], "a name of its own"),
+        (["--scene", SCENE, "--no-accounts", "--host", "0.0.0.0", "--port", "0"], "open to the network"),  # noqa: S104
+        (["--scene", SCENE, "--host", "192.0.2.1", "--port", "0"], "cannot be used"),
+    ],
+)
+def test_wrong_options_end_in_one_line(scope: Scope, options: list[str], message: str) -> None:
+    done = scope("camera", "serve", *options)
+    assert done.code == 2
+    assert message in done.err
+    assert done.out == ""
+    assert len(done.err.splitlines()) == 1
+
+
+def test_the_help_of_the_group_lists_it(scope: Scope) -> None:
+    assert "serve" in scope("camera", "--help").out
+    assert "camera" in scope("--help").out
+
+
+def test_faults_from_texts() -> None:
+    texts = ["drop=0.5", "unauthorized=true", "stuck=pan,tilt", "picture=black", "clock_skew_s=-3600"]
+    assert parse_faults(texts) == {
+        "drop": 0.5,
+        "unauthorized": True,
+        "stuck": ["pan", "tilt"],
+        "picture": "black",
+        "clock_skew_s": -3600,
+    }
+    with pytest.raises(InputError):
+        parse_faults(["drop"])
+
+
+def test_each_account_gets_a_password_of_its_own_unless_one_is_configured() -> None:
+    root, guard = make_accounts(["root", "guard:operator"], ScopeSettings(virtual_camera_password=None))
+    assert (root.role, guard.role) == (Role.ADMINISTRATOR, Role.OPERATOR)
+    assert root.password != guard.password
+    assert len(root.password) >= 16
+    assert root.password not in repr(root)
+    chosen = ScopeSettings.model_validate({"virtual_camera_password": "chosen"})
+    assert [account.password for account in make_accounts(["a", "b:viewer"], chosen)] == ["chosen", "chosen"]
+    with pytest.raises(ConfigError, match="SCOPE_VIRTUAL_CAMERA_PASSWORD is empty"):
+        make_accounts(["a"], ScopeSettings.model_validate({"virtual_camera_password": ""}))
+
+
+def test_held_time_stands_still_and_motors_do_not(scenes: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SCOPE_SCENES_DIR", str(scenes))
+    (held,) = make_devices(VirtualCameraOptions(scenes=(SCENE,), hold_time=True, time_scale=50.0), [])
+    (running,) = make_devices(VirtualCameraOptions(scenes=(SCENE,)), [])
+    assert held.clock.now_s() == held.clock.now_s() == held.scene.file.start_s
+    assert held.time_scale == 50.0
+    assert running.clock.now_s() < running.clock.now_s()
+
+
+@pytest.mark.full
+def test_it_serves_until_ctrl_c(scenes: Path) -> None:
+    command = [sys.executable, "-m", "scope_ptz.cli", "camera", "serve", "--scene", SCENE, "--viewpoint", "roof", "--port", "0"]
+    environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes)}
+    with subprocess.Popen(
+        [*command, "--truth", "--json"], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        started = json.loads(process.stdout.readline())
+        (camera,) = started["cameras"]
+        assert (camera["scene"], camera["viewpoint"]) == (SCENE, "roof")
+        auth = httpx2.DigestAuth("root", started["passwords"]["root"])
+        with httpx2.Client(base_url=camera["url"], auth=auth, trust_env=False, timeout=60) as session:
+            assert session.get("/axis-cgi/com/ptz.cgi", params={"query": "position"}).text.startswith("pan=")
+            picture = session.get("/axis-cgi/jpg/image.cgi")
+            assert picture.headers["x-scope-viewpoint"] == "roof"
+        process.send_signal(signal.SIGINT)
+        rest, errors = process.communicate(timeout=30)
+    assert (process.returncode, rest, errors) == (130, "", "scope: cancelled.\n")
+
+
+@pytest.mark.full
+def test_a_configured_password_is_never_printed(scenes: Path) -> None:
+    command = [sys.executable, "-m", "scope_ptz.cli", "camera", "serve", "--scene", SCENE, "--port", "0"]
+    environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes), "SCOPE_VIRTUAL_CAMERA_PASSWORD": "very-secret"}
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        assert process.stdout is not None
+        lines = [process.stdout.readline()]
+        while "Ctrl-C" not in lines[-1]:
+            lines.append(process.stdout.readline())
+            assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        lines += process.communicate(timeout=30)[0].splitlines()
+    text = "\n".join(lines)
+    assert "very-secret" not in text
+    assert "Account root (administrator), password from SCOPE_VIRTUAL_CAMERA_PASSWORD" in text
+    assert "curl --digest --user root" in text
