@@ -88,7 +88,7 @@ class OnvifClient:
     async def prepare_stop(self, profile: str) -> None:
         """Make ready what ``stop_blocking`` needs."""
         self._stop_profile = profile
-        self._stop_service = await self._make_service("ptz")
+        self._stop_service = await self.make_service("ptz")
 
     def stop_blocking(self) -> None:
         """Stop pan, tilt and zoom from a thread, on a connection of its own.
@@ -123,7 +123,8 @@ class OnvifClient:
         camera.create_onvif_service = partial(_service_of, self, camera)
         return camera
 
-    async def _make_service(self, name: str, camera: Any = None) -> Any:
+    async def make_service(self, name: str, camera: Any = None) -> Any:
+        """Return a new service on the pinned transport."""
         camera = camera or self._camera
         with soap_errors(self.address, f"the {name} service"):
             xaddr, wsdl, binding = camera.get_definition(name)
@@ -147,5 +148,5 @@ async def _service_of(client: OnvifClient, camera: Any, name: str, *_: Any, **__
     """Return a service of a camera, made at the first call."""
     key = (name.lower(), None)
     if key not in camera.services:
-        camera.services[key] = await client._make_service(key[0], camera)  # noqa: SLF001 - the client's own function
+        camera.services[key] = await client.make_service(key[0], camera)
     return camera.services[key]
