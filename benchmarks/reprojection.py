@@ -25,7 +25,7 @@ from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.environment import worker_command
 from scope_ptz.geometry import AXIS_M5075_G, Perspective, Pose
 from scope_ptz.simulator.pack import Scene, find_scenes
-from scope_ptz.simulator.reproject import atlas_map, colour_view
+from scope_ptz.simulator.reproject import colour_view, view_map
 from scope_ptz.simulator.truth import view_truth
 from scope_ptz.simulator.viewpoint import Viewpoint
 
@@ -72,7 +72,7 @@ def _poses(viewpoint: Viewpoint) -> dict[str, Pose]:
 def _report(scene: Scene, viewpoint: Viewpoint, name: str, pose: Pose) -> None:
     view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), WIDTH, HEIGHT)
     sheet = viewpoint.colour_atlas.sheet
-    floats = np.ascontiguousarray(atlas_map(viewpoint, viewpoint.colour_atlas, view))
+    floats = np.ascontiguousarray(view_map(viewpoint, viewpoint.colour_atlas, view))
     fixed = cv2.convertMaps(floats, None, cv2.CV_16SC2)
     view_truth(scene, viewpoint.name, view, 0.0)
     times = _interleaved(

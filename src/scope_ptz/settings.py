@@ -21,6 +21,9 @@ class ScopeSettings(BaseSettings):
 
     runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
     scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
+    tile_cache_mb: int | None = Field(
+        default=None, ge=1, description="Limit in MB on the memory of a viewpoint's tiles. Without it, all that was read is kept."
+    )
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
     )
@@ -36,6 +39,10 @@ class ScopeSettings(BaseSettings):
     judge_model: str = Field(default="", description="Name of the judge on its server.")
     judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
     virtual_camera_password: SecretStr | None = Field(default=None, description="Password of the accounts of virtual cameras.")
+
+    def tile_bytes(self) -> int | None:
+        """Return the limit on the memory of a viewpoint's tiles in bytes."""
+        return None if self.tile_cache_mb is None else self.tile_cache_mb * 1_000_000
 
     def models_file(self) -> Path | None:
         """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""

@@ -111,17 +111,19 @@ def test_a_walker_shows_the_phase_of_its_stride(analytic_scene: Scene) -> None:
     assert phases == [0.0, 0.25, 0.5, 0.75, 0.0, 0.0]
 
 
-def test_a_soft_shadow_darkens_the_ground_and_is_not_part_of_the_actor(analytic_scene: Scene) -> None:
+def test_a_soft_shadow_darkens_the_ground_and_is_not_part_of_the_actor(
+    analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
     scene = Scene(analytic_scene.folder)
     viewpoint = scene.viewpoint("mast")
     view = _view(0.0, -8.0, 1.0)
     (appearance,) = appearances(scene, viewpoint, 4.0)
     sprite = appearance.sprite
-    shadow = np.zeros_like(viewpoint.sprite_colour(appearance.sheet, sprite))
+    shadow = np.zeros_like(viewpoint.sprites.colour(appearance.sheet, sprite))
     shadow[..., 3] = 128
-    viewpoint._sprites[appearance.sheet.number, sprite.left, sprite.top] = shadow
-    distances = viewpoint.sprite_distances(appearance.sheet)
-    viewpoint._sprite_distances[appearance.sheet.number] = np.zeros_like(distances)
+    nothing = np.zeros_like(viewpoint.sprites.distances(appearance.sheet, sprite))
+    monkeypatch.setattr(viewpoint.sprites, "colour", lambda *_: shadow)
+    monkeypatch.setattr(viewpoint.sprites, "distances", lambda *_: nothing)
     still, shaded = picture(scene, "mast", view, 8.0), picture(scene, "mast", view, 4.0)
     changed = (still != shaded).any(axis=-1)
     assert changed.any()

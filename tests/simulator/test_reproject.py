@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import AXIS_M5075_G, Equirectangular, Perspective, pan_tilt_deg
+from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import Grid, atlas_map, colour_view, depth_view, id_view, step_px
+from scope_ptz.simulator.reproject import colour_view, depth_view, id_view, view_map
 from tests.support.synthetic_pack import BAND, HEIGHT, WIDTH, perfect_view
 
 POSES = [
@@ -108,7 +109,7 @@ def test_the_interpolated_map_is_exact_to_a_fraction_of_a_pixel(
     view = _view(pan, tilt, zoom)
     viewpoint = analytic_scene.viewpoint("mast")
     atlas = viewpoint.depth_atlas  # no tiles: the map of the panorama alone
-    where = atlas_map(viewpoint, atlas, view)
+    where = view_map(viewpoint, atlas, view)
     slot = atlas.slots[0][0]
     ys, xs = np.mgrid[5 : view.height : 53, 3 : view.width : 61]
     rays = view.directions(np.stack([(xs + 0.5) / view.width, (ys + 0.5) / view.height], axis=-1))
@@ -126,7 +127,7 @@ def test_no_view_reads_outside_its_pictures(analytic_scene: Scene, pan: float, t
     """Uninitialised memory must never be visible, because it differs between runs."""
     viewpoint = analytic_scene.viewpoint("mast")
     atlas = viewpoint.colour_atlas if colour else viewpoint.id_atlas
-    where = atlas_map(viewpoint, atlas, _view(pan, tilt, zoom))
+    where = view_map(viewpoint, atlas, _view(pan, tilt, zoom))
     covered = np.zeros(where.shape[:2], dtype=bool)
     for slots in atlas.slots:
         for slot in slots:
@@ -177,7 +178,7 @@ def test_a_viewpoint_that_does_not_face_north(analytic_scene: Scene) -> None:
 def test_a_view_costs_at_most_three_bare_look_ups(analytic_scene: Scene, pose: tuple[float, float, float]) -> None:
     viewpoint = analytic_scene.viewpoint("mast")
     view = _view(*pose, width=1280, height=720)
-    where = np.ascontiguousarray(atlas_map(viewpoint, viewpoint.colour_atlas, view))
+    where = np.ascontiguousarray(view_map(viewpoint, viewpoint.colour_atlas, view))
     sheet = viewpoint.colour_atlas.sheet
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)  # then the thread's own time is all of it, however busy the machine

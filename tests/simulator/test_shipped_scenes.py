@@ -51,7 +51,7 @@ def test_packs_are_small_and_undamaged(scene: Scene) -> None:
             viewpoint.pictures.colour(tile.colour)
             viewpoint.pictures.numbers(tile.ids)
         for sheet in manifest.actors:
-            viewpoint.sprite_colour(sheet, sheet.sprites[0])
+            viewpoint.sprites.colour(sheet, sheet.sprites[0])
 
 
 def test_presets_are_within_the_limits_of_the_camera(scene: Scene) -> None:

@@ -18,11 +18,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from scope_ptz.errors import ConfigError
+from scope_ptz.errors import ConfigError, PackError
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
 from scope_ptz.virtual_camera.faults import Faults
+from scope_ptz.virtual_camera.http import server as server_module
 from scope_ptz.virtual_camera.http.jpeg import PictureFormat
 from scope_ptz.virtual_camera.http.server import ServedCamera, serve
 
@@ -209,6 +210,25 @@ async def test_a_lower_frame_rate_skips_frames(served_device: VirtualDevice) -> 
         frames = await Parts(response).take(4)
     times = [float(headers["x-scope-taken"]) for headers, _ in frames]
     assert times[-1] - times[0] > 0.29
+
+
+async def test_a_live_picture_that_fails_is_started_again(
+    served_device: VirtualDevice, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(server_module, "RETRY_S", 0.01)
+    expose, failures = served_device.expose, iter([PackError("The pack is damaged."), OSError("disk")])
+
+    def failing(*size: int) -> Exposure:
+        if error := next(failures, None):
+            raise error
+        return expose(*size)
+
+    monkeypatch.setattr(served_device, "expose", failing)
+    async with camera_and_client(served_device) as (_, session):
+        reply = await session.get(VIDEO, params={"nbrofframes": "2"})
+    assert reply.content.count(b"Content-Type: image/jpeg") == 2
+    assert "The pack is damaged." in caplog.text
+    assert "disk" in caplog.text
 
 
 async def test_several_cameras_in_one_process(analytic_scene: Scene, served_device: VirtualDevice) -> None:

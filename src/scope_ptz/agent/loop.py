@@ -168,6 +168,7 @@ class _Episode:
                 frame_height=info.frame_height,
                 scene=frame.origin.scene if frame.origin else None,
                 viewpoint=frame.origin.viewpoint if frame.origin else None,
+                rendering=info.rendering,
                 scene_time_s=self.camera.clock.now_s(),
                 pose=RecordedPose.of(self.start),
                 presets=presets,

@@ -79,6 +79,7 @@ class Started(_Record):
         planner_details: what determines the planner's decisions, such as the exact prompt.
         scene: the scene of a simulated camera; otherwise None.
         viewpoint: the viewpoint of a simulated camera; otherwise None.
+        rendering: version of the simulator's rendering; None for other cameras and in traces of version 0.1.0, which had the first.
         frame: name of the picture that was taken before the first step.
     """
 
@@ -97,6 +98,7 @@ class Started(_Record):
     frame_height: int
     scene: str | None
     viewpoint: str | None
+    rendering: int | None = None
     scene_time_s: float
     pose: RecordedPose
     presets: tuple[str, ...]

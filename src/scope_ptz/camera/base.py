@@ -33,6 +33,7 @@ class CameraInfo:
         frame_height: Height of a frame in pixels.
         simulated: Whether the pictures are computed.
         capabilities: What else the camera can do.
+        rendering: Version of the simulator's rendering; None for other cameras.
     """
 
     name: str
@@ -42,6 +43,7 @@ class CameraInfo:
     frame_height: int
     simulated: bool
     capabilities: Capabilities = NO_CAPABILITIES
+    rendering: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

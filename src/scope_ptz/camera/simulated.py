@@ -16,7 +16,8 @@ from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.views import picture
+from scope_ptz.simulator.prefetch import Prefetch
+from scope_ptz.simulator.views import RENDERING_VERSION, picture
 
 TICK_S = 0.05
 """Interval at which a moving camera checks for a new command."""
@@ -64,6 +65,7 @@ class SimulatedCamera(Camera):
             frame_height=height,
             simulated=True,
             capabilities=Capabilities(top_speed(head), edits_presets=True),
+            rendering=RENDERING_VERSION,
         )
         self._motion = HeadMotion(head, self._info.limits, preset_pose(self._presets.home))
 
@@ -75,6 +77,10 @@ class SimulatedCamera(Camera):
     def viewpoint(self) -> str:
         """Name of the current optical centre."""
         return self._viewpoint.name
+
+    def prefetch(self) -> Prefetch:
+        """Read the current viewpoint in the background, so that no later frame from there has to wait for a file."""
+        return Prefetch(self._viewpoint, self._info.frame_width, self._info.optics, self._info.limits)
 
     async def pose(self) -> Pose:
         return self._pose_now()

@@ -34,4 +34,5 @@ def open_scene(name: str) -> Scene:
     """
     from scope_ptz.simulator.pack import load_scene
 
-    return load_scene(name, scene_search(load_settings()))
+    settings = load_settings()
+    return load_scene(name, scene_search(settings), tile_bytes=settings.tile_bytes())

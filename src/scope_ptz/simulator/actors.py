@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Perspective, Projection, pan_tilt_deg
+from scope_ptz.simulator.mapping.grid import Grid, step_px
+from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import ActorSheet, Extent, SceneActor, Sprite
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import Grid, step_px
 from scope_ptz.simulator.runs import measure
-from scope_ptz.simulator.tiles import Tiles
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 TOLERANCE_M = 0.15
@@ -55,6 +55,17 @@ class Appearance:
 
 
 @dataclass(frozen=True, slots=True)
+class ActorInView:
+    """An actor at one instant: its sprites, its ground point (3,) relative to the optical centre, path time, and stride phase."""
+
+    actor: SceneActor
+    sheet: ActorSheet
+    offset_m: Floats
+    path_s: float
+    phase: float
+
+
+@dataclass(frozen=True, slots=True)
 class PathPosition:
     """Where an actor is on its path: path time, metres walked since its start, ground point (3,) in world coordinates."""
 
@@ -85,30 +96,36 @@ def composited(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appear
     return _seen(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
 
+def composited_actors(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[ActorInView]:
+    """Return the same actors as ``composited``, farthest first, without choosing sprites."""
+    moving = ((actor, time_s) for actor in scene.file.actors)
+    return _present(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
+
+
 def _seen(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[Appearance]:
-    sheets = {sheet.number: sheet for sheet in viewpoint.manifest.actors}
-    seen = [
-        _appearance(viewpoint, actor, sheets[actor.number], here)
-        for actor, time_s in actors
-        if actor.number in sheets and (here := path_position(actor, time_s)) is not None
-    ]
-    return sorted(seen, key=lambda a: (-a.distance_m, a.actor.number))
+    return [_appearance(viewpoint, present) for present in _present(viewpoint, actors)]
 
 
-def _sprite(sheet: ActorSheet, here: PathPosition) -> Sprite:
-    """Return the sprite nearest on the path and, for walkers, nearest in the phase of the stride."""
-    phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
+def _present(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[ActorInView]:
+    found = []
+    for actor, time_s in actors:
+        sheet, here = viewpoint.sheets.get(actor.number), path_position(actor, time_s)
+        if sheet is not None and here is not None:
+            phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
+            found.append(ActorInView(actor, sheet, viewpoint.offset(here.position_m), here.path_s, phase))
+    return sorted(found, key=lambda a: (-float(np.linalg.norm(a.offset_m)), a.actor.number))
+
+
+def _appearance(viewpoint: Viewpoint, present: ActorInView) -> Appearance:
+    actor, sheet, now = present.actor, present.sheet, present.offset_m
 
     def misfit(sprite: Sprite) -> tuple[float, float]:
-        off = abs(sprite.phase - phase)
-        return abs(sprite.path_s - here.path_s), min(off, 1.0 - off)
+        off = abs(sprite.phase - present.phase)
+        return abs(sprite.path_s - present.path_s), min(off, 1.0 - off)
 
-    return min(sheet.sprites, key=misfit)
-
-
-def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here: PathPosition) -> Appearance:
-    sprite = _sprite(sheet, here)
-    then, now = viewpoint.offset(np.array(sprite.position_m)), viewpoint.offset(here.position_m)
+    # The sprite nearest on the path and, for walkers, nearest in the phase of the stride.
+    sprite = min(sheet.sprites, key=misfit)
+    then = viewpoint.offset(np.array(sprite.position_m))
     scale = float(np.linalg.norm(then) / np.linalg.norm(now))
     rendered = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
     hfov_deg = float(np.degrees(2 * np.arctan(sprite.width / 2 * scale / rendered.focal_px)))
@@ -125,7 +142,7 @@ def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here
 
 def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     """Return the actor's present silhouette, including hidden parts."""
-    own = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet)) > 0
+    own = viewpoint.sprites.distances(appearance.sheet, appearance.sprite) > 0
     measures = measure(own.astype(np.uint16), appearance.view)
     if not len(measures.numbers):
         return Extent(number=appearance.actor.number, solid_angle_sr=0.0, hull=[], distance_m=appearance.distance_m)
@@ -145,23 +162,21 @@ def shows(appearance: Appearance, projection: Projection) -> bool:
     return bool(Tiles([appearance.view]).in_view(projection))
 
 
-def draw(
+def draw_numbers(
     viewpoint: Viewpoint,
     projection: Projection,
     appearance: Appearance,
     depth_m: NDArray[np.float32],
-    picture: NDArray[np.uint8] | None,
-    numbers: NDArray[np.uint16] | None,
+    numbers: NDArray[np.uint16],
 ) -> None:
-    """Draw one actor into a picture and into its instance numbers, in place.
+    """Draw one actor into a view's instance numbers, in place.
 
     Args:
         viewpoint: The viewpoint that holds the actor's sprites.
-        projection: Projection of the picture.
+        projection: Projection of the view.
         appearance: The actor at this instant.
         depth_m: (H, W) distances of the still world.
-        picture: (H, W, 3) RGB to draw into, or None.
-        numbers: (H, W) instance numbers to draw into, or None.
+        numbers: (H, W) instance numbers to draw into.
     """
     sprite = Tiles([appearance.view])
     showing = next(iter(sprite.in_view(projection)), None)
@@ -173,44 +188,10 @@ def draw(
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
     still_m = depth_m[place] * (1 + TOLERANCE_SHARE) + TOLERANCE_M
-    own = distance_m > 0
-    if numbers is not None:
-        numbers[place][own & (distance_m <= still_m)] = appearance.actor.number
-    if picture is not None:
-        drop = grid.to_pixels(grid.directions()[..., 2])
-        height_m = float(appearance.offset_m[2])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ground_m = np.where(drop * height_m > 0, height_m / drop, np.inf)
-        _blend(picture[place], _sample(viewpoint, appearance, where, projection), np.where(own, distance_m, ground_m) <= still_m)
-
-
-def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.float32], projection: Projection) -> NDArray[np.uint8]:
-    """Return the sprite's (H, W, 4) premultiplied colour at the points of a map.
-
-    A sprite that is denser than the view is shrunk first, which prevents aliasing.
-    """
-    colour = viewpoint.sprite_colour(appearance.sheet, appearance.sprite)
-    shrink = projection.density / appearance.view.focal_px
-    if shrink < 0.75:
-        size = max(1, round(colour.shape[1] * shrink)), max(1, round(colour.shape[0] * shrink))
-        factor = np.array([size[0] / colour.shape[1], size[1] / colour.shape[0]], dtype=np.float32)
-        colour = cv2.resize(colour, size, interpolation=cv2.INTER_AREA)
-        where = (where + np.float32(0.5)) * factor - np.float32(0.5)
-    return np.asarray(cv2.remap(colour, where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0)))
-
-
-def _blend(picture: NDArray[np.uint8], premultiplied: NDArray[np.uint8], shows: NDArray[np.bool_]) -> None:
-    """Blend premultiplied colour over a picture, in place, where ``shows`` is true."""
-    over = cv2.bitwise_and(premultiplied, premultiplied, mask=shows.view(np.uint8))
-    through = cv2.cvtColor(255 - over[..., 3], cv2.COLOR_GRAY2RGB)
-    cv2.add(cv2.multiply(picture, through, scale=1 / 255), np.ascontiguousarray(over[..., :3]), dst=picture)
+    numbers[place][(distance_m > 0) & (distance_m <= still_m)] = appearance.actor.number
 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:
     """Return (h, w) present distances of the sprite's pixels in metres, 0 where the sprite does not show the actor."""
-    codes = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet))
+    codes = viewpoint.sprites.distances(appearance.sheet, appearance.sprite)
     return np.where(codes > 0, viewpoint.depth_metres[codes] / np.float32(appearance.scale), np.float32(0.0))
-
-
-def _crop(sprite: Sprite, sheet: NDArray) -> NDArray:  # type: ignore[type-arg]
-    return sheet[sprite.top : sprite.top + sprite.height, sprite.left : sprite.left + sprite.width]

@@ -5,7 +5,10 @@ The file suffix determines the coding.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -23,9 +26,27 @@ NUMBER_SUFFIXES = (".png", ".webp")
 
 def read_colour(path: Path) -> NDArray[np.uint8]:
     """Return (H, W, 3) RGB, or (H, W, 4) straight RGBA when the picture has transparency. The array is read-only."""
+    if path.suffix == ".avif" and (pixels := _read_avif(path)) is not None:
+        return pixels
     with _open(path, COLOUR_SUFFIXES) as image:
         mode = "RGBA" if image.has_transparency_data else "RGB"
         return np.asarray(image if image.mode == mode else image.convert(mode))
+
+
+def _read_avif(path: Path) -> NDArray[np.uint8] | None:
+    """Return the pixels of an AVIF file without Pillow's own copy of them, or None if Pillow does not offer that.
+
+    Pillow copies the decoder's buffer into an image, and NumPy copies that image. A panorama needs half the time and 100 MB less
+    when NumPy uses the decoder's buffer.
+    """
+    with _opened(path) as image:
+        decoder: Any = getattr(image, "_decoder", None)
+        channels = {"RGB": 3, "RGBA": 4}.get(image.mode)
+        if not hasattr(decoder, "get_frame") or channels is None or getattr(image, "n_frames", 1) != 1:
+            return None
+        width, height = image.size
+        pixels = np.frombuffer(decoder.get_frame(0)[0], np.uint8)
+    return pixels.reshape(height, width, channels) if pixels.size == height * width * channels else None
 
 
 def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
@@ -44,18 +65,18 @@ def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
 
 def read_ids(path: Path) -> NDArray[np.uint16]:
     """Return (H, W) numbers from 0 to 65535, exactly as written: instance numbers or distance codes."""
-    if path.suffix == ".webp":
-        return _read_pairs(path)
-    with _open(path, NUMBER_SUFFIXES) as image:
-        return np.array(image).astype(np.uint16)
+    return decode_numbers(read_coded_numbers(path))
 
 
-def _read_pairs(path: Path) -> NDArray[np.uint16]:
-    """Return the numbers in a lossless WebP file.
+def read_coded_numbers(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
+    """Return numbers as the file holds them: (H, W, 3) byte channels of a WebP file, or the (H, W) numbers of a PNG file.
 
-    OpenCV needs half the time and less than half the memory of Pillow, which decodes a still picture as an animation with one
-    frame. These are the largest layers of a pack.
+    ``decode_numbers`` turns any part of the array into numbers, so that the largest layers of a pack need not be in memory twice.
+    OpenCV needs half the time and less than half the memory of Pillow, which decodes a still WebP picture as an animation.
     """
+    if path.suffix != ".webp":
+        with _open(path, NUMBER_SUFFIXES) as image:
+            return np.array(image).astype(np.uint16)
     try:
         content = np.fromfile(path, np.uint8)
     except OSError as error:
@@ -63,9 +84,16 @@ def _read_pairs(path: Path) -> NDArray[np.uint16]:
     channels = cv2.imdecode(content, cv2.IMREAD_COLOR_RGB) if content.size else None
     if channels is None:
         raise _undecodable(path, "it is no WebP picture, or is cut short")
+    return np.asarray(channels)
+
+
+def decode_numbers(coded: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.uint16]:
+    """Return the (H, W) numbers of coded rows."""
+    if coded.ndim == 2:
+        return coded.astype(np.uint16, copy=False)
     # High byte in red, low byte in green: swapped, the two are little-endian numbers already.
-    pairs = np.empty((*channels.shape[:2], 2), np.uint8)
-    cv2.mixChannels([channels], [pairs], [0, 1, 1, 0])
+    pairs = np.empty((*coded.shape[:2], 2), np.uint8)
+    cv2.mixChannels([coded], [pairs], [0, 1, 1, 0])
     return pairs.view("<u2")[..., 0]
 
 
@@ -102,13 +130,19 @@ def decode_depth(codes: NDArray[np.uint16], near_m: float, far_m: float) -> NDAr
 def _open(path: Path, suffixes: tuple[str, ...]) -> Image.Image:
     if path.suffix not in suffixes:
         raise PackError(f"{path} is no picture that this program reads ({', '.join(suffixes)}).")
+    with _opened(path) as image:
+        image.load()
+        return image
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Image.Image]:
+    """Yield the picture in a file before its pixels are decoded. Errors inside the context are reported as a damaged file."""
     try:
         with path.open("rb") as file:
-            image = Image.open(file)
-            image.load()
+            yield Image.open(file)
     except (OSError, ValueError) as error:
         raise _undecodable(path, error) from error
-    return image
 
 
 def _undecodable(path: Path, reason: object) -> PackError:

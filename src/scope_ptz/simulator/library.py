@@ -22,10 +22,11 @@ class Library:
     Args:
         search: Extra folders of scenes, searched before the built-in ones.
         open_viewpoints: How many viewpoints, over all scenes, keep their layers in memory.
+        tile_bytes: Limits the memory of each viewpoint's tiles; see ``Scene``.
     """
 
-    def __init__(self, search: Iterable[Path] = (), open_viewpoints: int = OPEN_VIEWPOINTS) -> None:
-        self._search = tuple(search)
+    def __init__(self, search: Iterable[Path] = (), open_viewpoints: int = OPEN_VIEWPOINTS, tile_bytes: int | None = None) -> None:
+        self._search, self._tile_bytes = tuple(search), tile_bytes
         self._recent = RecentViewpoints(open_viewpoints)
         self._scenes: dict[str, Scene] = {}
         self._lock = RLock()
@@ -39,5 +40,5 @@ class Library:
     def _open(self, name: str) -> Scene:
         scene, number = variation_of(name)
         if number is None or name in find_scenes(self._search):
-            return load_scene(name, self._search, self._recent)
+            return load_scene(name, self._search, self._recent, self._tile_bytes)
         return self(scene).varied(number)

@@ -28,6 +28,10 @@ class Pictures:
         """Return a layer of (H, W) instance numbers (0 = not annotated) or distance codes."""
         return self._sized(layer, layers.read_ids(self.checked(layer)))
 
+    def coded_numbers(self, layer: Layer) -> NDArray[np.uint8] | NDArray[np.uint16]:
+        """Return such a layer as the file holds it; ``layers.decode_numbers`` decodes any of its rows."""
+        return self._sized(layer, layers.read_coded_numbers(self.checked(layer)))
+
     def checked(self, layer: Layer) -> Path:
         """Verify the checksum of a layer's file and return its path."""
         path = (self.folder / layer.file).resolve()

@@ -5,23 +5,24 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import cached_property
-from itertools import product
 from pathlib import Path
-from threading import RLock
 from typing import TypeVar
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ValidationError
 
 from scope_ptz.errors import PackError
+from scope_ptz.geometry import direction
 from scope_ptz.simulator import layers
-from scope_ptz.simulator.atlas import Atlas, Scale
+from scope_ptz.simulator.blending import TileBlender
 from scope_ptz.simulator.files import read_regular_file
-from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Sprite
+from scope_ptz.simulator.mapping.tiles import Tiles
+from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pictures import Pictures
-from scope_ptz.simulator.tiles import Tiles
+from scope_ptz.simulator.sheets.atlas import Atlas, Scale
+from scope_ptz.simulator.sprites.choice import SpriteChoice
+from scope_ptz.simulator.sprites.store import SpriteStore
 
 COLOUR_SCALES = (
     Scale(1.0, sharpening=0.6),
@@ -37,30 +38,28 @@ COLOUR_SCALES = (
 about as dense as the stored picture, or denser. Sharpening compensates for the blur of shrinking and bilinear look-up; the amounts
 bring the Laplacian variance of views closest to that of directly rendered ones."""
 
-EDGE_PX = 2
-"""Search radius for covered pixels around a half-covered pixel of a sprite."""
-
-MIN_COVERED = 3
-"""Number of covered pixels needed to recolour a half-covered one."""
-
 _File = TypeVar("_File", bound=BaseModel)
 
 
 class Viewpoint:
     """A viewpoint folder. Layers are read on demand, and every read is verified against the manifest.
 
+    Args:
+        folder: The folder.
+        scene: The scene that it belongs to.
+        place: The scene's entry for this viewpoint.
+        tile_bytes: Limit on the memory of tiles at all scales; see ``Atlas``.
+
     Raises:
         PackError: The manifest is missing, damaged or belongs to another scene.
     """
 
-    def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint) -> None:
+    def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint, tile_bytes: int | None = None) -> None:
         self.folder, self.pictures = folder, Pictures(folder)
         self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
         self.name = place.name
-        self._sprite_sheets: dict[int, NDArray[np.uint8]] = {}
-        self._sprites: dict[tuple[int, int, int], NDArray[np.uint8]] = {}
-        self._sprite_distances: dict[int, NDArray[np.uint16]] = {}
-        self._lock = RLock()
+        self.sprites = SpriteStore(self.pictures)
+        self._choices: dict[int, SpriteChoice] = {}
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
                 f"{folder} was baked for viewpoint '{manifest.viewpoint}' of scene '{manifest.scene}' version "
@@ -72,10 +71,20 @@ class Viewpoint:
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
         # The sheets refer to the files and not to this object. Without a reference cycle, memory is freed with the last reference.
         read, depth = self.pictures, manifest.depth
-        self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: read.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
-        self.id_atlas = id_atlas = Atlas([_size(n) for n in ids], lambda i: read.numbers(ids[i]), np.uint16, 1)
-        self.depth_atlas = Atlas([_size(depth)], lambda _: read.numbers(depth), np.uint16, 1)
-        self.owner_atlas = Atlas([_size(depth)], lambda _: _owners(id_atlas, depth), np.uint16, 1)
+        pans_deg = [tile.pan_deg for tile in tiles]
+        blender = TileBlender(lambda i: read.colour(tiles[i].colour), self.tiles, manifest.band, _small_things(scene, manifest))
+
+        def colour(atlas: Atlas, index: int) -> NDArray[np.uint8]:
+            return blender.blended(atlas, index - 1) if index else read.colour(manifest.base)
+
+        sizes = [_size(c) for c in colours]
+        self.colour_atlas = Atlas(sizes, colour, np.uint8, 3, COLOUR_SCALES, pans_deg=pans_deg, tile_bytes=tile_bytes)
+        decode = layers.decode_numbers
+        self.id_atlas = id_atlas = Atlas(
+            [_size(n) for n in ids], lambda _, i: read.coded_numbers(ids[i]), np.uint16, 1, decode=decode
+        )
+        self.depth_atlas = Atlas([_size(depth)], lambda *_: read.coded_numbers(depth), np.uint16, 1, decode=decode)
+        self.owner_atlas = Atlas([_size(depth)], lambda *_: _owners(id_atlas, depth), np.uint16, 1)
 
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
@@ -85,14 +94,17 @@ class Viewpoint:
     @cached_property
     def world_to_camera(self) -> NDArray[np.float64]:
         """(3, 3) rotation from world axes (x east, y north) to the camera's own frame (y forward at pan 0)."""
-        bearing = np.radians(self.manifest.pan0_bearing_deg)
-        c, s = np.cos(bearing), np.sin(bearing)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return _world_to_camera(self.manifest)
 
     @cached_property
     def extents(self) -> dict[int, Extent]:
         """Whole silhouettes of the instances that can be seen from here, by instance number."""
         return {extent.number: extent for extent in self.manifest.extents}
+
+    @cached_property
+    def sheets(self) -> dict[int, ActorSheet]:
+        """Sprite sheets by number of the actor."""
+        return {sheet.number: sheet for sheet in self.manifest.actors}
 
     def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return world points (..., 3) as vectors from the optical centre, in metres in the camera's own frame."""
@@ -121,37 +133,31 @@ class Viewpoint:
         depth = self.manifest.depth
         return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
 
-    def sprite_distances(self, sheet: ActorSheet) -> NDArray[np.uint16]:
-        """Return an actor's sheet as (H, W) distance codes, 0 where it does not show the actor. Read once and shared."""
-        with self._lock:
-            if sheet.number not in self._sprite_distances:
-                self._sprite_distances[sheet.number] = self.pictures.numbers(sheet.depth)
-            return self._sprite_distances[sheet.number]
+    def sprite_choice(self, actor: SceneActor, sheet: ActorSheet) -> SpriteChoice:
+        """Return what chooses among an actor's sprites. Computed once and shared."""
+        if actor.number not in self._choices:
+            self._choices[actor.number] = SpriteChoice(actor, sheet.sprites, self.offset, self.world_to_camera)
+        return self._choices[actor.number]
 
-    def sprite_colour(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint8]:
-        """Return one sprite as (h, w, 4) colour premultiplied by alpha. Computed once and shared; the ground truth never needs it.
 
-        Raises:
-            PackError: The actor's sheet has no transparency.
-        """
-        key = (sheet.number, sprite.left, sprite.top)
-        with self._lock:
-            if key not in self._sprites:
-                self._sprites[key] = self._premultiplied_sprite(sheet, sprite)
-            return self._sprites[key]
+def _world_to_camera(manifest: Manifest) -> NDArray[np.float64]:
+    bearing = np.radians(manifest.pan0_bearing_deg)
+    c, s = np.cos(bearing), np.sin(bearing)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
-    def _premultiplied_sprite(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint8]:
-        if sheet.number not in self._sprite_sheets:
-            colour = self.pictures.colour(sheet.colour)
-            if colour.shape[2] != 4:
-                raise PackError(f"{self.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
-            self._sprite_sheets[sheet.number] = colour
-        colour, distances = self._sprite_sheets[sheet.number], self.sprite_distances(sheet)
-        # Edge pixels take their colour from covered pixels around them, so the crop is larger than the sprite.
-        top, left = max(0, sprite.top - EDGE_PX), max(0, sprite.left - EDGE_PX)
-        crop = slice(top, sprite.top + sprite.height + EDGE_PX), slice(left, sprite.left + sprite.width + EDGE_PX)
-        y, x = sprite.top - top, sprite.left - left
-        return np.ascontiguousarray(_premultiplied(colour[crop], distances[crop] > 0)[y : y + sprite.height, x : x + sprite.width])
+
+def _small_things(scene: SceneFile, manifest: Manifest) -> list[NDArray[np.float64]]:
+    """Return outlines, each (n, 3) directions, of the texts that face the viewpoint and of all instances."""
+    turn = _world_to_camera(manifest)
+    outlines = [direction(*np.array(e.hull, dtype=np.float64).T) for e in manifest.extents if len(e.hull) > 2]
+    for text in scene.texts:
+        centre, right, up = (np.array(v, dtype=np.float64) for v in (text.centre_m, text.right, text.up))
+        offset = centre - manifest.position_m
+        if np.cross(right, up) @ offset < 0:
+            sides = right * text.width_m / 2, up * text.height_m / 2
+            corners = np.array([offset + a * sides[0] + b * sides[1] for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+            outlines.append(corners @ turn.T / np.linalg.norm(corners, axis=-1, keepdims=True))
+    return outlines
 
 
 def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
@@ -160,30 +166,6 @@ def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
     rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
     columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
     return np.ascontiguousarray(ids.sheet[rows[:, None], columns])
-
-
-def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Return (H, W, 4) colour times alpha.
-
-    Lossy coding mixes the black of empty pixels into an actor's half-covered edge, so edge pixels take their colour from the
-    covered pixels around them. Edges are few, so only they are processed one by one.
-    """
-    alpha = colour[..., 3]
-    sheet = cv2.multiply(colour, cv2.merge([alpha, alpha, alpha, np.full_like(alpha, 255)]), scale=1 / 255)
-    covered = own & (alpha > 250)
-    rows, columns = np.nonzero(own & (alpha <= 250))
-    total, count = np.zeros((len(rows), 3)), np.zeros(len(rows))
-    for down, right in product(range(-EDGE_PX, EDGE_PX + 1), repeat=2):
-        beside = rows + down, columns + right
-        there = np.clip(beside[0], 0, alpha.shape[0] - 1), np.clip(beside[1], 0, alpha.shape[1] - 1)
-        counts = covered[there] & (there[0] == beside[0]) & (there[1] == beside[1])
-        total += colour[..., :3][there] * counts[:, None]
-        count += counts
-    enough = count >= MIN_COVERED
-    rows, columns = rows[enough], columns[enough]
-    inward = total[enough] / count[enough, None]
-    sheet[rows, columns, :3] = np.rint(inward * (alpha[rows, columns, None] / 255))
-    return np.asarray(sheet)
 
 
 def _size(layer: Layer) -> tuple[int, int]:

@@ -6,22 +6,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.actors import Appearance, composited, draw, shows
+from scope_ptz.simulator.actors import composited, composited_actors, draw_numbers, shows
+from scope_ptz.simulator.drawing import actor_patch
+from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import colour_view, id_view, outlined_depth_view
-from scope_ptz.simulator.viewpoint import Viewpoint
+from scope_ptz.simulator.reproject import colour_view, id_view
+
+RENDERING_VERSION = 2
+"""Version of the rendering, which traces record. It is raised when the same pack, pose and time give other pixels.
+
+- 1: tiles end in hard edges; actors are shown by the sprite nearest on their path.
+- 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, bent and faded.
+
+The ground truth of a view is the same in both.
+"""
 
 
 def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint8]:
     """Return what a camera at a viewpoint sees at a time, as (H, W, 3) RGB."""
     here = scene.viewpoint(viewpoint)
-    actors = _in_view(scene, here, projection, time_s)
-    # Distances before colour: decoding instance numbers needs the most memory, and then the colour is not in memory yet.
-    depth_m = outlined_depth_view(here, projection, id_view(here, projection)) if actors else None
+    # Actors before the still world: decoding instance numbers needs the most memory, and then the colour is not in memory yet.
+    patches = [actor_patch(here, projection, actor) for actor in composited_actors(scene, here, time_s)]
     image = colour_view(here, projection)
-    if depth_m is not None:
-        for actor in actors:
-            draw(here, projection, actor, depth_m, image, None)
+    for patch in patches:
+        if patch is not None:
+            patch.draw(image)
     return image
 
 
@@ -29,12 +38,8 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     """Return the instance or actor that each pixel of that picture shows as (H, W) numbers, 0 for none."""
     here = scene.viewpoint(viewpoint)
     numbers = id_view(here, projection)
-    if actors := _in_view(scene, here, projection, time_s):
+    if actors := [a for a in composited(scene, here, time_s) if shows(a, projection)]:
         depth_m = outlined_depth_view(here, projection, numbers)
         for actor in actors:
-            draw(here, projection, actor, depth_m, None, numbers)
+            draw_numbers(here, projection, actor, depth_m, numbers)
     return numbers
-
-
-def _in_view(scene: Scene, viewpoint: Viewpoint, projection: Projection, time_s: float) -> list[Appearance]:
-    return [a for a in composited(scene, viewpoint, time_s) if shows(a, projection)]

@@ -12,7 +12,7 @@ import anyio
 from scope_ptz.camera.base import CameraInfo, Frame
 from scope_ptz.camera.network.errors import PictureError
 from scope_ptz.camera.network.pictures import FrozenCheck, check_not_black, is_black
-from scope_ptz.camera.network.pose_track import PoseTrack
+from scope_ptz.camera.network.pose_track import PosePoller, PoseTrack
 from scope_ptz.camera.network.streams import LiveStream
 from scope_ptz.geometry import Perspective, Pose
 
@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 
 RETRIES = 3
 """How often a damaged snapshot is taken again."""
-
-MAX_GAP_S = 0.3
-"""Readings of the position that are farther apart are not interpolated."""
 
 FROZEN_PATIENCE_S = 2.0
 """How long a picture may lag behind the motors, as with an encoder that freezes it during a move."""
@@ -101,31 +98,26 @@ class DevicePictures(ABC):
         Raises:
             CameraError: The stream is lost, or its pictures are damaged, black or frozen.
         """
-        track, offset_s = PoseTrack(), clock.now_s() - monotonic()
-        continuous_s = 0.0  # since when the readings are dense enough to interpolate between them
-        stream, due_s = self.open_stream(rate_hz), float("-inf")
-        frozen, give_up_s = FrozenCheck(), monotonic() + FROZEN_PATIENCE_S
+        offset_s = clock.now_s() - monotonic()
+        stream, poses, frozen = self.open_stream(rate_hz), PosePoller(read_pose), FrozenCheck()
+        due_s, give_up_s = float("-inf"), monotonic() + FROZEN_PATIENCE_S
         try:
             while True:
                 await anyio.sleep(max(0.0, due_s - monotonic()))
-                if track.newest_s < monotonic() - MAX_GAP_S:
-                    continuous_s = monotonic()
-                    track.add(continuous_s, await read_pose())
                 picture = await stream.next()
                 exposed_s = picture.arrived_s - self._latency_s
-                if exposed_s < continuous_s:
-                    continue  # the consumer was away, and nobody knows where the camera was at this exposure
-                due_s = max(due_s + 1.0 / rate_hz, monotonic())
-                if track.newest_s < exposed_s:
-                    track.add(monotonic(), await read_pose())
-                pose = track.at(exposed_s)
+                pose = await poses.at(exposed_s)
+                if pose is None:
+                    continue  # exposed before the stream was opened
                 check_not_black(picture.image)
                 if frozen.lags(picture.data, pose, give_up_s):
                     continue
-                give_up_s = monotonic() + FROZEN_PATIENCE_S
+                due_s = max(due_s + 1.0 / rate_hz, monotonic())
                 yield _frame(picture.image, pose, info, exposed_s + offset_s)
+                give_up_s = monotonic() + FROZEN_PATIENCE_S  # counted from the consumer's return
         finally:
             with anyio.CancelScope(shield=True):
+                await poses.close()
                 await stream.close()
 
     async def _take(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:

@@ -22,6 +22,9 @@ BLACK_LEVEL = 6
 FROZEN_TURN_DEG = 1.0
 """A picture that is the same to the last bit after a turn of more than this is frozen."""
 
+STANDING_DEG = 0.05
+"""Poses of two successive pictures that differ by less are one pose."""
+
 _START, _END = b"\xff\xd8", b"\xff\xd9"
 
 
@@ -75,27 +78,32 @@ def check_not_black(image: NDArray[np.uint8]) -> None:
 class FrozenCheck:
     """Detects a picture that stays the same although the camera turns.
 
-    Pictures of a scene at rest may be the same, so a picture is only compared with one of another pose.
+    Pictures of a scene at rest may be the same, so a picture is compared with one of another pose. Only poses at which the camera
+    stands count: while it moves, a picture and a pose may belong to slightly different moments.
     """
 
     def __init__(self) -> None:
         self._digest = b""
-        self._pose: Pose | None = None
+        self._stood_at: Pose | None = None
+        self._last: Pose | None = None
 
     def is_frozen(self, data: bytes, pose: Pose) -> bool:
-        """Return whether a picture is the one that was seen first at a clearly different pose.
+        """Return whether a picture was seen before, with the camera standing at a clearly different pose.
 
         Args:
             data: The picture's bytes: a JPEG file, or pixels.
             pose: The pose at which it was taken.
         """
         digest = hashlib.blake2b(data, digest_size=16).digest()
-        if digest != self._digest or self._pose is None:
-            self._digest, self._pose = digest, pose
-            return False
-        first = self._pose
-        turn = max(abs((pose.pan_deg - first.pan_deg + 180) % 360 - 180), abs(pose.tilt_deg - first.tilt_deg))
-        return turn > FROZEN_TURN_DEG or abs(pose.zoom / first.zoom - 1) > 0.1
+        is_standing = self._last is not None and _turn_deg(self._last, pose) < STANDING_DEG
+        self._last = pose
+        if digest != self._digest:
+            self._digest, self._stood_at = digest, None
+        elif is_standing and self._stood_at is None:
+            self._stood_at = pose
+        elif is_standing and self._stood_at is not None:
+            return _turn_deg(self._stood_at, pose) > FROZEN_TURN_DEG
+        return False
 
     def lags(self, data: bytes, pose: Pose, give_up_s: float) -> bool:
         """Return whether a picture is still the one of another pose, as with an encoder that freezes it during a move.
@@ -113,3 +121,9 @@ class FrozenCheck:
         if monotonic() > give_up_s:
             raise PictureError("The picture is frozen: it stays the same while the camera turns. Restart the camera.", "frozen")
         return True
+
+
+def _turn_deg(first: Pose, second: Pose) -> float:
+    """Return the largest turn of an axis in degrees. A zoom of 10% counts as a degree."""
+    pan = abs((second.pan_deg - first.pan_deg + 180) % 360 - 180)
+    return max(pan, abs(second.tilt_deg - first.tilt_deg), 10 * abs(second.zoom / first.zoom - 1))

@@ -14,7 +14,7 @@ import anyio
 import uvicorn
 from starlette.types import ASGIApp
 
-from scope_ptz.errors import ConfigError, ScopeError
+from scope_ptz.errors import ConfigError
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.application import CameraApplication
 from scope_ptz.virtual_camera.http.connection import BreakableProtocol
@@ -187,6 +187,6 @@ async def _keep_running(source: LiveSource) -> None:
     while True:
         try:
             await source.run()
-        except* ScopeError as group:
-            logger.warning("The live picture of %s stopped: %s", source.device.name, group.exceptions[0])
+        except* Exception as group:
+            logger.warning("The live picture of %s failed and is started again: %s", source.device.name, group.exceptions[0])
             await asyncio.sleep(RETRY_S)

@@ -19,8 +19,11 @@ Place = tuple[slice, slice]
 _BEHIND = 1e-6
 _FAR_PX = 1e5
 _INSET_PX = 1.5
-_SHIFT = 8
+POLYGON_SHIFT = 8
+"""Bits after the binary point of polygon coordinates, as OpenCV expects them."""
 _SIDE_POINTS = 8
+
+KEPT_ANSWERS = 4  # a view and its half-size version, for two cameras
 
 
 class TileInView(NamedTuple):
@@ -42,7 +45,9 @@ class TileInView(NamedTuple):
         rows, columns = self.place
         mask = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.uint8)
         return np.asarray(
-            cv2.fillConvexPoly(mask, self.polygon - (columns.start << _SHIFT, rows.start << _SHIFT), 255, shift=_SHIFT)
+            cv2.fillConvexPoly(
+                mask, self.polygon - (columns.start << POLYGON_SHIFT, rows.start << POLYGON_SHIFT), 255, shift=POLYGON_SHIFT
+            )
         )
 
 
@@ -55,17 +60,26 @@ class Tiles:
         self._order = np.array(order, dtype=np.int64)
         self._axes = np.array([camera_axes(v.pan_deg, v.tilt_deg) for v in views]).reshape(-1, 3, 3)
         self._reach_deg = np.array([v.reach_deg for v in views])
-        self._outlines = np.array([v.directions(_OUTLINE) for v in views]).reshape(-1, len(_OUTLINE), 3)
+        self._answers: list[tuple[Projection, list[TileInView]]] = []
+        self._outlines = np.array([v.directions(OUTLINE) for v in views]).reshape(-1, len(OUTLINE), 3)
 
     def in_view(self, projection: Projection) -> list[TileInView]:
-        """Return every tile that may show in a picture."""
+        """Return every tile that may show in a picture. The last answers are kept, because several layers ask the same."""
+        for known, found in self._answers:
+            if known == projection:
+                return found
+        found = self._find(projection)
+        self._answers = [(projection, found), *self._answers[: KEPT_ANSWERS - 1]]
+        return found
+
+    def _find(self, projection: Projection) -> list[TileInView]:
         if not self.views:
             return []
         apart = angle_between_deg(self._axes[:, 2], projection.directions((0.5, 0.5)))
         near = self._order[(apart <= self._reach_deg + projection.reach_deg)[self._order]]
         size = np.array([projection.width, projection.height])
         outlines = projection.points(self._outlines[near])
-        places = _bounds(projection, outlines)
+        places = bounds(projection, outlines)
         if isinstance(projection, Perspective):
             turns = list(self._axes[near] @ camera_axes(projection.pan_deg, projection.tilt_deg).T)
             polygons = _inset(outlines[:, ::_SIDE_POINTS] * size)
@@ -104,11 +118,11 @@ def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
     away = (across / np.maximum(np.sqrt((sides**2).sum(axis=-1)), 1e-9)).min(axis=1)
     inset = middle + (corners - middle) * np.maximum(0.0, 1.0 - _INSET_PX / np.maximum(away, 1e-9))[:, None, None]
     clear = np.abs(corners).max(axis=(1, 2)) < _FAR_PX  # also false for NaN
-    fixed = np.rint((np.where(clear[:, None, None], inset, 0.0) - 0.5) * (1 << _SHIFT)).astype(np.int32)
+    fixed = np.rint((np.where(clear[:, None, None], inset, 0.0) - 0.5) * (1 << POLYGON_SHIFT)).astype(np.int32)
     return [polygon if fine else None for polygon, fine in zip(fixed, clear.tolist(), strict=True)]
 
 
-def _bounds(projection: Projection, points: Floats) -> list[Place]:
+def bounds(projection: Projection, points: Floats) -> list[Place]:
     """Return the rows and columns that each outline (n, m, 2) spans; they are empty where it misses the picture."""
     size = np.array([projection.width, projection.height])
     unclear = np.isnan(points).any(axis=(1, 2))
@@ -130,4 +144,4 @@ def _outline() -> Floats:
     return np.concatenate([np.stack(p, axis=-1) for p in ((side, zero), (one, side), (1 - side, one), (zero, 1 - side))])
 
 
-_OUTLINE = _outline()
+OUTLINE = _outline()

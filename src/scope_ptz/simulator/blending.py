@@ -1,0 +1,188 @@
+"""Blend the borders of tiles into what surrounds them, and match their tone to the panorama.
+
+A tile is a sharp picture inside a soft one. Its border would show as a hard edge, so over some pixels it fades into what lies below
+it: the panorama, or less sharp tiles. This happens once, when a tile is read, and costs nothing when a view is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import Perspective, angle_between_deg
+from scope_ptz.simulator.mapping.grid import Grid, step_px
+from scope_ptz.simulator.mapping.panorama import panorama_map
+from scope_ptz.simulator.mapping.tiles import POLYGON_SHIFT, Tiles
+from scope_ptz.simulator.models import Band
+from scope_ptz.simulator.sheets.atlas import Atlas
+
+FADE_PX, MOST_FADE_SHARE = 90.0, 0.2
+"""A tile fades over this many of its pixels, but over no more than this share of its shorter side."""
+
+HIDDEN_PX = 4.0
+"""The outermost pixels of a tile show only what lies below it, because views cut tiles off a little inside their border."""
+
+JOINT_PX = 12.0
+"""Tiles that continue each other fade over this many pixels. They overlap by about 28."""
+
+SHARP_SHARE = 0.7
+"""A tile continues another if it is at least this sharp in comparison."""
+
+COARSE_PX = 4  # cells in which the distance from soft areas is computed
+
+KEPT_FADE_PX = 28.0
+"""Texts and small things near the border stay sharp. The tile fades over this many pixels around them."""
+
+SMALL_PX = 160.0
+"""Things larger than this in a tile may fade."""
+
+TONE_CELL_PX = 32
+"""Tone is matched between means of cells of this size, which keeps every detail of the tile."""
+
+MAX_TONE_SHIFT = 24.0
+"""Largest change of tone, in steps of 0 to 255. Larger differences are not of tone, but of content."""
+
+KEPT_TILES = 4  # toned tiles kept in memory, because neighbours need them soon after
+
+Floats = NDArray[np.float32]
+
+
+class Outlines:
+    """Outlines, each (n, 3) directions, of things that stay sharp where they are small."""
+
+    def __init__(self, outlines: Sequence[NDArray[np.float64]]) -> None:
+        self._outlines = list(outlines)
+        middles = np.array([outline.mean(axis=0) for outline in outlines]).reshape(-1, 3)
+        self._middles = middles
+        reach = (angle_between_deg(outline, middle).max() for outline, middle in zip(outlines, middles, strict=True))
+        self._reach_deg = np.array(list(reach))
+
+    def small_in(self, view: Perspective) -> NDArray[np.uint8]:
+        """Return an (H, W) mask of the small things in a view."""
+        mask = np.zeros((view.height, view.width), np.uint8)
+        size = np.array([view.width, view.height])
+        apart_deg = angle_between_deg(self._middles, view.directions((0.5, 0.5)))
+        small_deg = math.degrees(SMALL_PX / view.focal_px)
+        for k in np.flatnonzero((apart_deg <= view.reach_deg + self._reach_deg) & (self._reach_deg < small_deg)):
+            points = view.points(self._outlines[k]) * size
+            if not np.isnan(points).any() and np.ptp(points, axis=0).max() <= SMALL_PX:
+                cv2.fillConvexPoly(mask, cv2.convexHull(np.rint(points).astype(np.int32)), 255)
+        return mask
+
+
+class TileBlender:
+    """Reads the tiles of a viewpoint with faded borders.
+
+    Args:
+        read: Reads tile ``i`` as (H, W, 3) RGB, as stored.
+        tiles: Geometry of the tiles.
+        band: The band of the sphere that the panorama covers.
+        keep_sharp: Outlines, each (n, 3) directions, of things that stay sharp where they are small.
+    """
+
+    def __init__(
+        self, read: Callable[[int], NDArray[np.uint8]], tiles: Tiles, band: Band, keep_sharp: Sequence[NDArray[np.float64]]
+    ) -> None:
+        self._read, self._tiles, self._band, self._outlines = read, tiles, band, Outlines(keep_sharp)
+        self._toned: OrderedDict[int, NDArray[np.uint8]] = OrderedDict()
+
+    def blended(self, atlas: Atlas, index: int) -> NDArray[np.uint8]:
+        """Return tile ``index`` as (H, W, 3) RGB. The panorama is taken from the atlas."""
+        view = self._tiles.views[index]
+        below = self._panorama(atlas, view)
+        toned = self._toned_tile(atlas, index, below)
+        order = self._tiles.in_view(view)
+        own = next(k for k, showing in enumerate(order) if showing.tile == index)
+        grid_step = step_px(view)
+        for showing in reversed(order[own + 1 :]):  # the least sharp first
+            grid = Grid(view, grid_step, showing.place)
+            other = self._tiles.views[showing.tile]
+            nodes = self._tiles.points(showing, view, grid.x, grid.y) * (other.width, other.height) - 0.5
+            where = grid.to_pixels(nodes)
+            if not _reaches(where, other):
+                continue
+            layer = cv2.remap(self._toned_tile(atlas, showing.tile), where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0))
+            part = below[showing.place]
+            part[...] = _mixed(layer, part)
+        return _mixed(toned, below)
+
+    def _panorama(self, atlas: Atlas, view: Perspective) -> NDArray[np.uint8]:
+        where = panorama_map(self._band, atlas.need(0, 0), Grid(view, step_px(view)))
+        return np.asarray(cv2.remap(atlas.sheet, where, None, cv2.INTER_LINEAR))
+
+    def _toned_tile(self, atlas: Atlas, index: int, panorama: NDArray[np.uint8] | None = None) -> NDArray[np.uint8]:
+        """Return a tile in the tone of the panorama, (H, W, 4), with its share in the picture as fourth channel."""
+        if index not in self._toned:
+            view = self._tiles.views[index]
+            around = self._panorama(atlas, view) if panorama is None else panorama
+            share = np.rint(_share(self._tiles, index, self._outlines) * 255).astype(np.uint8)
+            self._toned[index] = cv2.merge([*cv2.split(_in_tone(self._read(index), around)), share])
+            while len(self._toned) > KEPT_TILES:
+                self._toned.popitem(last=False)
+        self._toned.move_to_end(index)
+        return self._toned[index]
+
+
+def _reaches(where: Floats, other: Perspective) -> bool:
+    return bool(np.any((where[..., 0] > 0) & (where[..., 0] < other.width) & (where[..., 1] > 0) & (where[..., 1] < other.height)))
+
+
+def _mixed(over: NDArray[np.uint8], under: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return (H, W, 4) colour with its share as fourth channel over (H, W, 3) colour."""
+    share = cv2.extractChannel(over, 3) / np.float32(255)
+    return np.asarray(cv2.blendLinear(cv2.cvtColor(over, cv2.COLOR_RGBA2RGB), np.ascontiguousarray(under), share, 1 - share))
+
+
+def _in_tone(tile: NDArray[np.uint8], panorama: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return a tile whose means over large cells are those of the panorama."""
+    height, width = tile.shape[:2]
+    cells = max(2, round(width / TONE_CELL_PX)), max(2, round(height / TONE_CELL_PX))
+    means = (cv2.resize(picture, cells, interpolation=cv2.INTER_AREA).astype(np.float32) for picture in (panorama, tile))
+    shift = np.clip(next(means) - next(means), -MAX_TONE_SHIFT, MAX_TONE_SHIFT)
+    smooth = cv2.resize(cv2.GaussianBlur(shift, (3, 3), 0), (width, height), interpolation=cv2.INTER_LINEAR)
+    return np.asarray(cv2.add(tile, smooth, dtype=cv2.CV_8U))
+
+
+def _share(tiles: Tiles, index: int, outlines: Outlines) -> Floats:
+    """Return the (H, W) share of a tile in the picture.
+
+    It falls to 0 at the tile's border: slowly where the sharp area ends, and over a few pixels where another tile continues it.
+    """
+    view = tiles.views[index]
+    columns, rows = (np.minimum(np.arange(n) + 0.5, n - np.arange(n) - 0.5) for n in (view.width, view.height))
+    inside = np.minimum(rows[:, None], columns[None, :]).astype(np.float32) - np.float32(HIDDEN_PX)
+    fade_px = min(FADE_PX, MOST_FADE_SHARE * min(view.width, view.height))
+    share = np.minimum(_smooth(inside / JOINT_PX), _smooth((_to_soft_px(tiles, index, fade_px) - HIDDEN_PX) / fade_px))
+    kept = outlines.small_in(view)
+    if kept.any():
+        away = np.asarray(cv2.distanceTransform(255 - kept, cv2.DIST_L2, 5))
+        share = np.maximum(share, np.minimum(_smooth(1 - away / KEPT_FADE_PX), _smooth(inside / JOINT_PX)))
+    return share
+
+
+def _to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
+    """Return the (H, W) distance of a tile's pixels from where no tile is about as sharp, exact up to ``reach_px``."""
+    view = tiles.views[index]
+    pad = COARSE_PX * math.ceil(reach_px / COARSE_PX + 1)
+    width, height = view.width + 2 * pad, view.height + 2 * pad
+    hfov_deg = math.degrees(2 * math.atan(width / 2 / view.focal_px))
+    around = Perspective(view.pan_deg, view.tilt_deg, hfov_deg, width, height)
+    sharp = np.zeros((-(-height // COARSE_PX), -(-width // COARSE_PX)), np.uint8)
+    for showing in tiles.in_view(around):
+        if showing.polygon is not None and tiles.views[showing.tile].focal_px >= SHARP_SHARE * view.focal_px:
+            cv2.fillConvexPoly(sharp, showing.polygon // COARSE_PX, 255, shift=POLYGON_SHIFT)
+    # The distance is huge where every tile around is sharp.
+    away = np.minimum(cv2.distanceTransform(sharp, cv2.DIST_L2, 5), pad) * np.float32(COARSE_PX)
+    fine = cv2.resize(away, (sharp.shape[1] * COARSE_PX, sharp.shape[0] * COARSE_PX), interpolation=cv2.INTER_LINEAR)
+    return np.asarray(fine[pad : pad + view.height, pad : pad + view.width])
+
+
+def _smooth(share: NDArray[np.floating]) -> Floats:
+    """Return 0 to 1 for 0 to 1, without a kink at either end."""
+    t = np.clip(share, 0, 1)
+    return np.asarray(t * t * (3 - 2 * t), dtype=np.float32)

@@ -1,0 +1,1 @@
+"""Maps from the pixels of a view to the stored pictures."""

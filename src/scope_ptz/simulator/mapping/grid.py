@@ -1,0 +1,97 @@
+"""Coarse grids over a picture, on which maps are computed exactly and from which they are interpolated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable
+from copy import copy
+from functools import lru_cache
+from typing import cast
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import Equirectangular, Projection, pan_tilt_deg
+from scope_ptz.simulator.mapping.tiles import Place
+
+MAX_MAP_ERROR_PX = 0.04
+"""Largest permitted error of an interpolated map, in pixels of the view."""
+
+MAX_STEP_PX = 32
+
+Floats = NDArray[np.float64]
+
+
+class Grid:
+    """Nodes ``step`` pixels apart that cover a part of a picture and one step beyond it.
+
+    ``x`` and ``y`` are the columns and rows of the nodes in pixels, counted from the picture's top-left corner.
+    """
+
+    def __init__(self, projection: Projection, step: int, place: Place | None = None) -> None:
+        self.projection, self.step = projection, step
+        self.place = place or (slice(0, projection.height), slice(0, projection.width))
+        rows, columns = self.place
+        self.x: Floats = columns.start + (np.arange(-(-(columns.stop - columns.start) // step) + 2) - 0.5) * step
+        self.y: Floats = rows.start + (np.arange(-(-(rows.stop - rows.start) // step) + 2) - 0.5) * step
+
+    @property
+    def covers_all(self) -> bool:
+        """Whether the grid covers the whole picture."""
+        rows, columns = self.place
+        return (rows.stop - rows.start, columns.stop - columns.start) == (self.projection.height, self.projection.width)
+
+    def directions(self) -> Floats:
+        """Return (rows, columns, 3) unit vectors at the nodes."""
+        points = np.stack(np.meshgrid(self.x / self.projection.width, self.y / self.projection.height), axis=-1)
+        return self.projection.directions(points)
+
+    def inner(self, part: Place) -> Grid:
+        """Return the grid of those nodes that a part of the picture needs. Values interpolated from it are exactly the same."""
+        found = copy(self)
+        spans = []
+        for whole, wanted, nodes in zip(self.place, part, ("y", "x"), strict=True):
+            first = (wanted.start - whole.start) // self.step
+            last = -(-(wanted.stop - whole.start) // self.step) + 2
+            setattr(found, nodes, getattr(self, nodes)[first:last])
+            spans.append(slice(whole.start + first * self.step, wanted.stop))
+        found.place = spans[0], spans[1]
+        return found
+
+    def to_pixels(self, nodes: Floats, part: Place | None = None) -> NDArray[np.float32]:
+        """Interpolate node values to the centre of each pixel.
+
+        Args:
+            nodes: (rows, columns) or (rows, columns, n) values at all nodes.
+            part: The rows and columns of the picture that are needed; the default is all that the grid covers. The result is
+                exactly that part of the whole.
+        """
+        n, (rows, columns) = self.step, part or self.place
+        top, left = rows.start - self.place[0].start, columns.start - self.place[1].start
+        height, width = rows.stop - rows.start, columns.stop - columns.start
+        first_row, first_column = top // n, left // n
+        last_row, last_column = -(-(top + height) // n) + 2, -(-(left + width) // n) + 2
+        used = nodes[first_row:last_row, first_column:last_column].astype(np.float32)
+        fine: NDArray[np.float32] = cv2.resize(used, (used.shape[1] * n, used.shape[0] * n), interpolation=cv2.INTER_LINEAR)
+        y, x = n + top - first_row * n, n + left - first_column * n
+        return fine[y : y + height, x : x + width]
+
+
+def step_px(projection: Projection) -> int:
+    """Return the largest power of two that keeps ``step ** 2 / 8 * curvature`` within ``MAX_MAP_ERROR_PX``."""
+    return _step_px(cast(Hashable, projection))
+
+
+@lru_cache(maxsize=64)
+def _step_px(projection: Projection) -> int:
+    if isinstance(projection, Equirectangular):
+        return 8
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.0], [0.5, 1.0]])
+    poles = projection.points(np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]))
+    if np.any(np.all((poles > -0.05) & (poles < 1.05), axis=-1)):
+        return 1
+    _, tilt = pan_tilt_deg(projection.directions(corners))
+    from_pole = math.radians(90.0 - float(np.abs(tilt).max()))
+    widest = math.sqrt(8 * MAX_MAP_ERROR_PX * projection.density * math.sin(from_pole))
+    return int(min(MAX_STEP_PX, 2 ** math.floor(math.log2(max(1.0, widest)))))

@@ -1,0 +1,1 @@
+"""The sheets that hold a viewpoint's pictures."""

@@ -1,0 +1,113 @@
+"""Where the pictures of an atlas lie on its sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from scope_ptz.errors import PackError
+
+MAX_SIDE_PX = 32766
+"""OpenCV's remap addresses its source with 16-bit integers."""
+
+BORDER_PX = 2
+"""Border around every slot: one pixel for the bilinear neighbour, one for rounding."""
+
+HEIGHT_CLASS_PX = 32
+"""Tiles whose heights differ by less share shelves, so that neighbouring tiles lie side by side."""
+
+Size = tuple[int, int]
+"""Width, height."""
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """The place of one picture at one scale: its first pixel in the sheet, without the border, its size and its shelf."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+    shelf: int
+
+
+class Shelf(NamedTuple):
+    """A range of whole rows of the sheet, from ``top`` to ``bottom - 1``, with the pictures that lie side by side in it.
+
+    ``pictures`` holds (index of the picture, index of the scale) pairs.
+    """
+
+    top: int
+    bottom: int
+    pictures: tuple[tuple[int, int], ...]
+
+
+class Layout(NamedTuple):
+    """The slots of each picture, one per scale; the shelves; and the width and height of the sheet."""
+
+    slots: list[tuple[Slot, ...]]
+    shelves: list[Shelf]
+    size: Size
+
+
+def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[float] | None = None) -> Layout:
+    """Place the pictures on shelves of falling height, and widen the sheet until it is low enough.
+
+    Args:
+        sizes: Width and height of the panorama and of each tile.
+        scales: Sizes at which each picture is kept, relative to its own.
+        pans_deg: Directions of the tiles. If given, tiles are ordered by scale and direction, so that a shelf holds tiles that
+            are seen together, and the panorama has shelves of its own.
+
+    Raises:
+        PackError: The pictures do not fit.
+    """
+    scaled = [[(max(1, round(w * s)), max(1, round(h * s))) for s in scales] for w, h in sizes]
+    flat = [(i, k) for i, sized in enumerate(scaled) for k in range(len(sized))]
+
+    def falling_height(at: tuple[int, int]) -> tuple[float, ...]:
+        i, k = at
+        height = scaled[i][k][1]
+        if pans_deg is None:
+            return (-height,)
+        return (0.0, -height) if i == 0 else (1.0, -(-height // HEIGHT_CLASS_PX), k, pans_deg[i - 1])
+
+    flat.sort(key=falling_height)
+    sheet_width = max(w for sized in scaled for w, _ in sized) + 2 * BORDER_PX
+    while sheet_width <= MAX_SIDE_PX:
+        rows = _rows(flat, scaled, sheet_width, apart=pans_deg is not None)
+        slots: dict[tuple[int, int], Slot] = {}
+        shelves: list[Shelf] = []
+        top = 0
+        for row in rows:
+            x = 0
+            for i, k in row:
+                width, height = scaled[i][k]
+                slots[i, k] = Slot(x + BORDER_PX, top + BORDER_PX, width, height, len(shelves))
+                x += width + 2 * BORDER_PX
+            bottom = top + max(scaled[i][k][1] for i, k in row) + 2 * BORDER_PX
+            shelves.append(Shelf(top, bottom, tuple(row)))
+            top = bottom
+        if top <= MAX_SIDE_PX:
+            return Layout([tuple(slots[i, k] for k in range(len(scales))) for i in range(len(sizes))], shelves, (sheet_width, top))
+        if sheet_width == MAX_SIDE_PX:
+            break
+        sheet_width = min(MAX_SIDE_PX, sheet_width * 5 // 4)
+    raise PackError("This viewpoint has more pixels than one sheet of 32766 x 32766 holds. Bake it with fewer or smaller tiles.")
+
+
+def _rows(
+    flat: Sequence[tuple[int, int]], scaled: Sequence[Sequence[Size]], sheet_width: int, *, apart: bool
+) -> list[list[tuple[int, int]]]:
+    """Fill rows from left to right. If ``apart``, the panorama and the tiles never share a row."""
+    rows: list[list[tuple[int, int]]] = []
+    x = sheet_width + 1
+    for i, k in flat:
+        width = scaled[i][k][0] + 2 * BORDER_PX
+        if x + width > sheet_width or (apart and (rows[-1][0][0] == 0) != (i == 0)):
+            rows.append([])
+            x = 0
+        rows[-1].append((i, k))
+        x += width
+    return rows

@@ -1,0 +1,39 @@
+"""Large arrays whose memory can be given back to the system part by part."""
+
+from __future__ import annotations
+
+import math
+import mmap
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+CAN_RELEASE = hasattr(mmap, "MADV_DONTNEED") and hasattr(mmap, "MAP_PRIVATE") and hasattr(mmap, "MAP_ANONYMOUS")
+"""Whether the system can take memory back before the whole array is freed. Without it, nothing is ever released early."""
+
+
+class ReleasableArray:
+    """An array in memory of its own. Parts that are never written take no memory, and whole rows can be released again.
+
+    Attributes:
+        array: The array of the requested shape. Rows that were never written, or were released, hold zeros.
+    """
+
+    def __init__(self, shape: tuple[int, ...], dtype: type[np.generic]) -> None:
+        self._row_bytes = math.prod(shape[1:]) * np.dtype(dtype).itemsize
+        self._memory: mmap.mmap | None = None
+        self.array: NDArray[Any]
+        if CAN_RELEASE:
+            self._memory = mmap.mmap(-1, max(1, shape[0] * self._row_bytes), flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+            self.array = np.frombuffer(self._memory, dtype, math.prod(shape)).reshape(shape)
+        else:
+            self.array = np.zeros(shape, dtype)
+
+    def release_rows(self, first: int, last: int) -> None:
+        """Give the memory of rows ``first`` to ``last - 1`` back. Memory pages shared with other rows are kept."""
+        if self._memory is not None:
+            start = -(-first * self._row_bytes // mmap.PAGESIZE) * mmap.PAGESIZE
+            stop = last * self._row_bytes // mmap.PAGESIZE * mmap.PAGESIZE
+            if stop > start:
+                self._memory.madvise(mmap.MADV_DONTNEED, start, stop - start)

@@ -1,0 +1,1 @@
+"""Stored pictures of moving actors: reading them and choosing among them."""

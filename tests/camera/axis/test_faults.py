@@ -1,0 +1,492 @@
+"""Every fault ends in a typed error that says what to do, with the camera stopped and the password kept."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from contextlib import aclosing
+from pathlib import Path
+
+import anyio
+import pytest
+
+from scope_ptz.camera.axis.camera import AxisCamera
+from scope_ptz.camera.axis.requests import mjpeg
+from scope_ptz.camera.control import ControlHeldError
+from scope_ptz.camera.network.errors import (
+    CameraReplyError,
+    CameraSignInError,
+    CameraTimeoutError,
+    CameraUnreachableError,
+    ForeignAddressError,
+    NotACameraError,
+    PictureError,
+    PictureNotStillError,
+    PositionNotReachedError,
+)
+from scope_ptz.camera.network.streams import MjpegStream
+from scope_ptz.errors import CameraError, InputError, UnknownNameError
+from scope_ptz.geometry import Pose
+from tests.camera.axis.fake_vapix import PASSWORD, FakeVapix
+from tests.camera.axis.opening import device_http, opened
+from tests.support.loopback import Loopback, nobody_listens
+
+pytestmark = pytest.mark.anyio
+
+THERE = Pose(40.0, -10.0, 2.0)
+
+
+async def _until(condition: Callable[[], object], timeout_s: float = 5.0) -> None:
+    with anyio.fail_after(timeout_s):
+        while not condition():  # noqa: ASYNC110 - the fake lives in another thread
+            await anyio.sleep(0.01)
+
+
+# --- at the start
+
+
+async def test_unreachable_at_start() -> None:
+    with nobody_listens() as url:
+        port = int(url.rsplit(":", 1)[1].split("/")[0])
+        with pytest.raises(CameraUnreachableError, match="Check the address"):
+            async with opened(port):
+                pass
+
+
+async def test_wrong_password_is_named_and_not_shown(fake: FakeVapix, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.DEBUG)
+    with pytest.raises(CameraSignInError, match="refuses the user name or the password") as caught:
+        async with opened(fake.loopback.port, password="not-the-password"):  # noqa: S106 - a wrong one
+            pass
+    shown = f"{caught.value!r} {caught.value.__cause__!r} {caplog.text}"
+    assert "not-the-password" not in shown
+    assert caught.value.__suppress_context__ or caught.value.__context__ is None
+    sent = [request.headers.get("authorization", "") for request in fake.loopback.requests]
+    assert sent
+    assert all("not-the-password" not in each for each in sent)
+
+
+async def test_password_in_clear_text_is_refused(fake: FakeVapix) -> None:
+    fake.basic_only = True
+    with pytest.raises(CameraSignInError, match="clear text"):
+        async with opened(fake.loopback.port):
+            pass
+    assert not [r for r in fake.loopback.requests if "authorization" in r.headers]
+
+
+async def test_something_else_answers(fake: FakeVapix) -> None:
+    fake.cloak = frozenset({"limits"})
+    with pytest.raises(NotACameraError, match="not an AXIS camera"):
+        async with opened(fake.loopback.port):
+            pass
+
+
+async def test_garbage_at_start(fake: FakeVapix) -> None:
+    fake.garbage = True
+    with pytest.raises(NotACameraError):
+        async with opened(fake.loopback.port):
+            pass
+
+
+async def test_no_field_of_view_is_asked_for(fake: FakeVapix) -> None:
+    fake.cloak = frozenset({"fields"})
+    with pytest.raises(CameraError, match="hfov_wide"):
+        async with opened(fake.loopback.port):
+            pass
+    async with opened(fake.loopback.port, fields_deg=(60.0, 12.0)) as camera:
+        assert camera.info.optics.hfov_deg(1.0) == pytest.approx(60.0)
+
+
+async def test_old_firmware_without_tables_works(fake: FakeVapix) -> None:
+    fake.cloak = frozenset({"zoom", "speed"})
+    async with opened(fake.loopback.port) as camera:
+        arrival = await camera.move(Pose(10.0, 0.0, 3.0))
+        assert arrival.pose.zoom == pytest.approx(3.0, rel=0.01)
+        # Without a table, the magnification follows from the two fields of view.
+        assert camera.info.limits.max_zoom == pytest.approx(5.81, abs=0.01)
+
+
+# --- redirects
+
+
+async def test_credentials_do_not_follow_a_redirect(fake: FakeVapix) -> None:
+    async def listen(exchange: object) -> None:
+        raise AssertionError("nobody may come here")
+
+    with Loopback([], listen) as elsewhere:
+        async with opened(fake.loopback.port) as camera:
+            fake.redirect = f"{elsewhere.root}/axis-cgi/com/ptz.cgi"
+            with pytest.raises(ForeignAddressError, match="no credentials were sent"):
+                await camera.pose()
+            with pytest.raises(ForeignAddressError):
+                await camera.frame()
+        assert elsewhere.requests == []
+
+
+# --- on the way
+
+
+async def test_unreachable_during_a_move(fake: FakeVapix) -> None:
+    fake.speed_dps = 20.0
+    async with opened(fake.loopback.port) as camera:
+        fake.on_move = lambda device: setattr(device, "hang_up", 60)
+        with pytest.raises(CameraUnreachableError, match="broke"):
+            await camera.move(THERE)
+
+
+async def test_short_interruption_is_survived(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.hang_up = 1
+        assert (await camera.pose()).zoom == pytest.approx(1.0)
+        fake.hang_up = 2
+        await camera.frame()
+
+
+async def test_slow_camera_times_out(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port, reply_s=0.2) as camera:
+        fake.delay_s = 2.0
+        with pytest.raises(CameraTimeoutError, match="did not answer in time"):
+            await camera.pose()
+        fake.delay_s = 0.0
+
+
+async def test_reboot_between_commands(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        await camera.move(THERE)
+        fake.status = 503
+        with pytest.raises(CameraUnreachableError, match="may be starting"):
+            await camera.pose()
+        fake.status = 0
+        fake.nudge(0.0)  # a reboot goes to home
+        assert (await camera.move(THERE)).pose.pan_deg == pytest.approx(THERE.pan_deg, abs=0.1)
+
+
+async def test_account_changed_meanwhile(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.password = "changed"  # noqa: S105 - of the fake
+        with pytest.raises(CameraSignInError):
+            await camera.move(THERE)
+        fake.password = PASSWORD
+
+
+async def test_garbage_position(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.garbage = True
+        with pytest.raises(CameraReplyError, match="not VAPIX text"):
+            await camera.pose()
+
+
+# --- pictures
+
+
+@pytest.mark.parametrize(("fault", "words"), [("truncated", "without its end"), ("black", "is black"), ("size", "320x180")])
+async def test_broken_pictures(fake: FakeVapix, fault: str, words: str) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.picture = fault
+        with pytest.raises(PictureError, match=words) as caught:
+            await camera.frame()
+        assert caught.value.fault == fault
+        if fault != "black":
+            with pytest.raises(PictureError):
+                async with aclosing(camera.frames()) as stream:
+                    await anext(stream)
+        fake.picture = ""
+        assert (await camera.frame()).width == 640
+
+
+async def test_black_picture_does_not_undo_a_move(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.picture = "black"
+        assert (await camera.move(THERE)).pose.pan_deg == pytest.approx(THERE.pan_deg, abs=0.1)
+
+
+async def test_frozen_picture(fake: FakeVapix, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scope_ptz.camera.network.device_pictures.FROZEN_PATIENCE_S", 0.2)
+    async with opened(fake.loopback.port) as camera:
+        fake.picture = "frozen"
+        await camera.move(Pose(0.0, 0.0, 1.0))
+        with pytest.raises(PictureError, match="frozen") as caught:
+            await camera.move(THERE)
+        assert caught.value.fault == "frozen"
+
+
+async def test_same_pictures_at_one_pose_are_fine(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.picture = "frozen"
+        for _ in range(3):
+            await camera.frame()
+
+
+def _live(camera: AxisCamera) -> MjpegStream:
+    """A stream that loses its patience within a test."""
+    request = mjpeg(1, 640, 360, 25.0)
+    http = camera._client.http
+    return MjpegStream(http, request.path, request.query, width=640, height=360, stalled_s=0.15, give_up_s=0.6)
+
+
+async def test_stalled_stream_is_lost(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        live = _live(camera)
+        try:
+            await live.next()
+            fake.stall_after = 0
+            with pytest.raises(PictureError, match="no new picture") as caught:
+                while True:
+                    await live.next()
+            assert caught.value.fault == "stalled"
+        finally:
+            await live.close()
+
+
+async def test_stalled_stream_is_opened_again(fake: FakeVapix) -> None:
+    fake.stall_after = 2
+    async with opened(fake.loopback.port) as camera:
+        live = _live(camera)
+        try:
+            for _ in range(6):
+                await live.next()
+            assert live.reconnects >= 2
+        finally:
+            await live.close()
+
+
+async def test_stream_is_opened_again(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera, aclosing(camera.frames()) as stream:
+        await anext(stream)
+        fake.hang_up = 1
+        for _ in range(5):
+            frame = await anext(stream)
+        assert frame.width == 640
+
+
+# --- positions
+
+
+async def test_stuck_motor(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.stuck = frozenset({"pan"})
+        with pytest.raises(PositionNotReachedError, match=r"position never arrived.*pan motor"):
+            await camera.move(THERE)
+
+
+async def test_move_that_does_not_end(fake: FakeVapix) -> None:
+    fake.speed_dps = 5.0
+    async with opened(fake.loopback.port, settling={"timeout_s": 0.3}) as camera:
+        with pytest.raises(PositionNotReachedError, match="still moves"):
+            await camera.move(THERE)
+        assert fake.moves[-1][1] == "move=stop"
+
+
+async def test_two_controllers(fake: FakeVapix) -> None:
+    fake.speed_dps = 100.0
+    async with opened(fake.loopback.port) as camera, anyio.create_task_group() as group:
+
+        async def interfere() -> None:
+            await _until(lambda: fake.moves)
+            fake.nudge(-60.0)
+
+        group.start_soon(interfere)
+        with pytest.raises(PositionNotReachedError, match="somebody else"):
+            await camera.move(THERE)
+
+
+async def test_limit_that_appears_later_is_reported_as_clamping(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.clamp_pan = 30.0
+        arrival = await camera.move(THERE)
+        assert arrival.clamped == ("pan",)
+        assert arrival.pose.pan_deg == pytest.approx(30.0, abs=0.1)
+
+
+async def test_picture_that_keeps_moving(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.shake = True
+        with pytest.raises(PictureNotStillError, match="keeps moving"):
+            await camera.move(THERE)
+
+
+async def test_actors_do_not_prevent_settling(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.actor = True
+        assert (await camera.move(THERE)).clamped == ()
+
+
+# --- presets
+
+
+async def test_preset_deleted_meanwhile(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.on_move = lambda device: device.presets.clear()
+        with pytest.raises(UnknownNameError, match="gate"):
+            await camera.go_to_preset("gate")
+
+
+async def test_preset_names_that_the_device_refuses(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        for name in ('a"b', "a<b", "a:b", "a~b"):
+            with pytest.raises(InputError, match="may not contain"):
+                await camera.save_preset(name)
+        assert await camera.presets() == await camera.presets()
+        assert not fake.moves
+
+
+# --- control queue
+
+
+async def test_control_queue_is_respected(fake: FakeVapix) -> None:
+    fake.queueing = fake.other_has_control = True
+    async with opened(fake.loopback.port) as camera:
+        with pytest.raises(ControlHeldError, match=r"control queue.*number 2.*410 s"):
+            await camera.move(THERE)
+        # It asked once, left the queue, and sent no motion.
+        assert [text for _, text in fake.moves if not text.startswith(("move=stop", "continuous"))] == [
+            "queue request",
+            "queue drop",
+        ]
+        fake.other_has_control = False
+        await camera.move(THERE)
+        assert any(text.startswith("pan=") for _, text in fake.moves)
+    assert fake.moves[-1][1] == "queue drop"
+
+
+async def test_no_queue_no_requests(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        await camera.move(THERE)
+    assert not [text for _, text in fake.moves if text.startswith("queue")]
+
+
+# --- a continuous move never runs away
+
+
+async def test_drive_ends_although_the_loop_is_blocked(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        await camera.drive(20.0, timeout_s=0.2)
+        assert fake.driving
+        threading.Event().wait(0.8)  # the event loop is blocked, on purpose
+        assert not fake.driving
+
+
+async def test_drive_ends_when_the_camera_is_closed(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        await camera.drive(20.0, 5.0, 0.5, timeout_s=10.0)
+        assert fake.driving
+    assert not fake.driving
+
+
+async def test_drive_ends_on_cancel(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        with anyio.CancelScope() as scope:
+            scope.cancel()
+            await camera.drive(20.0, timeout_s=10.0)
+        await _until(lambda: any("move=stop" in text for _, text in fake.moves))
+        assert not fake.driving
+
+
+async def test_drive_whose_reply_is_lost_ends(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        # The device carries the command out, and its reply is lost.
+        original = fake.loopback.then
+
+        async def lose(exchange: object) -> None:
+            fake.loopback.then = original
+            path = exchange.request.path  # type: ignore[attr-defined]
+            fake._command({"continuouspantiltmove": "20,0"} if "continuous" in path else {})
+            exchange.hang_up()  # type: ignore[attr-defined]
+
+        fake.loopback.then = lose
+        with pytest.raises(CameraUnreachableError):
+            await camera.drive(20.0, timeout_s=10.0)
+        await _until(lambda: not fake.driving)
+
+
+async def test_lost_link_is_stopped_when_it_is_back(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        await camera.drive(20.0, timeout_s=0.1)
+        fake.status = 503
+        await anyio.sleep(0.3)
+        assert fake.driving
+        fake.status = 0
+        await _until(lambda: not fake.driving)
+
+
+async def test_renewed_drive_goes_on(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        for _ in range(6):
+            await camera.drive(10.0, timeout_s=0.3)
+            await anyio.sleep(0.1)
+            assert fake.driving
+        await camera.stop()
+        assert not fake.driving
+
+
+async def test_move_after_a_drive_is_not_cut_short(fake: FakeVapix) -> None:
+    fake.speed_dps = 100.0
+    async with opened(fake.loopback.port) as camera:
+        await camera.drive(-20.0, timeout_s=0.2)
+        arrival = await camera.move(THERE)
+        assert arrival.pose.pan_deg == pytest.approx(THERE.pan_deg, abs=0.1)
+
+
+async def test_cancelled_move_is_stopped(fake: FakeVapix) -> None:
+    fake.speed_dps = 10.0
+    async with opened(fake.loopback.port) as camera:
+        with anyio.move_on_after(0.15):
+            await camera.move(THERE)
+        assert fake.moves[-1][1] == "move=stop"
+        stopped = await camera.pose()
+        await anyio.sleep(0.1)
+        assert (await camera.pose()).pan_deg == stopped.pan_deg
+
+
+# --- lens
+
+
+async def test_focus_and_iris(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        await camera.set_autofocus(on=True)
+        await camera.step_focus(-250)
+        await camera.set_autoiris(on=False)
+        assert [text for _, text in fake.moves] == ["autofocus=on", "autofocus=off", "rfocus=-250", "autoiris=off"]
+        with pytest.raises(CameraError, match="no iris in steps"):
+            await camera.step_iris(10)
+        with pytest.raises(InputError, match="9999"):
+            await camera.step_focus(100_000)
+
+
+async def test_a_step_is_never_sent_twice(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.on_move = lambda device: setattr(device, "hang_up", 1)
+        with pytest.raises(CameraUnreachableError):
+            await camera.step_focus(100)
+        assert len([text for _, text in fake.moves if text.startswith("rfocus")]) <= 1
+
+
+# --- nothing is left over
+
+
+@pytest.mark.parametrize("times", [10, pytest.param(100, marks=pytest.mark.full)])
+async def test_reconnects_leave_nothing(fake: FakeVapix, times: int) -> None:
+    def sockets() -> int:
+        return len(list(Path("/proc/self/fd").iterdir()))
+
+    async def once() -> None:
+        async with opened(fake.loopback.port) as camera:
+            await camera.pose()
+            await camera.drive(5.0, timeout_s=5.0)
+            async with aclosing(camera.frames()) as stream:
+                await anext(stream)
+
+    await once()
+    await anyio.sleep(0.2)
+    before, threads = sockets(), {t.name for t in threading.enumerate()}
+    for _ in range(times):
+        await once()
+    await _until(lambda: sockets() <= before + 2)
+    assert not [t.name for t in threading.enumerate() if "drive watch" in t.name]
+    assert len(threading.enumerate()) <= len(threads) + 4  # anyio keeps a few worker threads
+
+
+def test_nothing_shows_the_password() -> None:
+    http = device_http(1)
+    assert PASSWORD not in repr(http) + str(http) + repr(vars(AxisCamera))

@@ -1,0 +1,159 @@
+"""What a live picture needs: prefetching, bounded memory, blended tiles, and actors that keep their heading."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.errors import PackError
+from scope_ptz.geometry import AXIS_M5075_G, Perspective
+from scope_ptz.simulator.actors import composited_actors
+from scope_ptz.simulator.drawing import actor_patch
+from scope_ptz.simulator.mapping.cover import Cover
+from scope_ptz.simulator.mapping.tiles import Tiles
+from scope_ptz.simulator.occlusion import outlined_depth_part, outlined_depth_view
+from scope_ptz.simulator.pack import Scene, load_scene
+from scope_ptz.simulator.pictures import Pictures
+from scope_ptz.simulator.prefetch import Prefetch
+from scope_ptz.simulator.reproject import colour_view, id_view, view_map
+from scope_ptz.simulator.sheets.memory import CAN_RELEASE, ReleasableArray
+from scope_ptz.simulator.sprites.choice import Aspect, bend
+from scope_ptz.simulator.views import RENDERING_VERSION, picture
+from tests.support.synthetic_pack import HEIGHT, WIDTH
+
+
+def _view(pan: float, tilt: float, zoom: float, width: int = WIDTH, height: int = HEIGHT) -> Perspective:
+    return Perspective(pan, tilt, AXIS_M5075_G.hfov_deg(zoom), width, height)
+
+
+def test_after_prefetching_no_view_reads_a_file(analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = Scene(analytic_scene.folder)
+    assert Prefetch(scene.viewpoint("mast"), width=WIDTH).wait(60)
+    monkeypatch.setattr(Pictures, "checked", lambda *_: pytest.fail("a file was read"))
+    for pan, tilt, zoom in ((0.0, -8.0, 1.0), (0.0, -8.0, 2.0), (10.0, -6.0, 3.3), (18.5, -3.0, 5.0), (-170.0, -40.0, 5.0)):
+        picture(scene, "mast", _view(pan, tilt, zoom), 4.0)
+
+
+def test_prefetching_a_damaged_viewpoint_says_so(analytic_scene: Scene, tmp_path: Path) -> None:
+    scene = Scene(analytic_scene.folder)
+    viewpoint = scene.viewpoint("mast")
+    viewpoint.pictures.folder = tmp_path
+    with pytest.raises(PackError, match="missing"):
+        Prefetch(viewpoint, width=WIDTH).wait(60)
+
+
+def test_a_bounded_cache_shows_the_same_pictures(analytic_scene: Scene) -> None:
+    bounded, free = Scene(analytic_scene.folder, tile_bytes=1), Scene(analytic_scene.folder)
+    views = [_view(pan, -3.0, zoom) for zoom in (2.0, 5.0, 3.0) for pan in (18.5, -4.0, 10.0, -16.0)]
+    for view in (*views, *reversed(views)):
+        got, expected = (colour_view(scene.viewpoint("mast"), view) for scene in (bounded, free))
+        np.testing.assert_array_equal(got, expected)
+
+
+@pytest.mark.skipif(not CAN_RELEASE, reason="this system cannot take memory back")
+def test_released_rows_are_empty_and_others_are_kept() -> None:
+    memory = ReleasableArray((64, 4096), np.uint16)
+    memory.array[...] = 7
+    memory.release_rows(16, 48)
+    assert (memory.array[:16] == 7).all() and (memory.array[48:] == 7).all()
+    assert (memory.array[16:48] == 0).all()
+
+
+@given(st.integers(0, 200), st.integers(0, 300), st.integers(8, 160), st.integers(8, 300), st.floats(1, 5), st.floats(-30, 30))
+@settings(max_examples=30, deadline=None)
+def test_a_part_is_exactly_that_part_of_the_whole(
+    analytic_scene: Scene, top: int, left: int, height: int, width: int, zoom: float, pan: float
+) -> None:
+    view, viewpoint = _view(pan, -5.0, zoom, 640, 360), analytic_scene.viewpoint("mast")
+    part = slice(top, min(360, top + height)), slice(left, min(640, left + width))
+    for atlas in (viewpoint.colour_atlas, viewpoint.id_atlas, viewpoint.depth_atlas):
+        np.testing.assert_array_equal(view_map(viewpoint, atlas, view, part), view_map(viewpoint, atlas, view)[part])
+    whole = outlined_depth_view(viewpoint, view, id_view(viewpoint, view))
+    needed = np.full((part[0].stop - part[0].start, part[1].stop - part[1].start), 255, np.uint8)
+    np.testing.assert_array_equal(outlined_depth_part(viewpoint, view, part, needed), whole[part])
+
+
+@given(st.floats(-20, 20), st.floats(-12, 12), st.floats(5, 40))
+@settings(max_examples=40, deadline=None)
+def test_cells_that_count_as_covered_are_covered(pan: float, tilt: float, hfov_deg: float) -> None:
+    view = _view(0.0, 0.0, 1.0, 640, 360)
+    for showing in Tiles([Perspective(pan, tilt, hfov_deg, 300, 200)]).in_view(view):
+        assert showing.polygon is not None
+        cover = Cover(view.width, view.height)
+        cover.add(showing.polygon)
+        whole = np.zeros((view.height, view.width), np.uint8)
+        mask = showing.mask()
+        assert mask is not None
+        whole[showing.place] = mask
+        for y in range(0, view.height, 8):
+            for x in range(0, view.width, 8):
+                cell = slice(y, y + 8), slice(x, x + 8)
+                if cover.gap(cell) is None:
+                    assert (whole[cell] == 255).all()
+
+
+def test_a_tile_ends_without_an_edge(analytic_scene: Scene) -> None:
+    viewpoint = analytic_scene.viewpoint("mast")
+    for index, view in enumerate(viewpoint.tiles.views):
+        slot = viewpoint.colour_atlas.need(1 + index)
+        border = viewpoint.colour_atlas.sheet[slot.y, slot.x : slot.x + slot.width].astype(int)
+        panorama = Perspective(view.pan_deg, view.tilt_deg, view.hfov_deg, view.width, view.height)
+        around = [s for s in viewpoint.tiles.in_view(panorama) if s.tile != index]
+        if around:
+            continue  # it may end on another tile
+        still = Scene(analytic_scene.folder).viewpoint("mast")
+        still.tiles.__init__([])  # type: ignore[misc]
+        soft = colour_view(still, panorama)[0].astype(int)
+        assert np.abs(border - soft).mean() < 3
+
+
+def test_a_sprite_from_above_is_turned_the_way_its_actor_goes(analytic_scene: Scene) -> None:
+    (actor,) = analytic_scene.file.actors
+    bicycle = actor.model_copy(update={"size_m": (0.6, 1.8, 1.9)})
+    south = np.array([0.0, -1.0, 0.0])
+    above, ahead = Aspect(np.array([-1.0, 0.2, -5.2]), south), Aspect(np.array([-0.5, 4.0, -5.2]), south)
+    drawn = bend(bicycle, above, ahead)
+    # From above, south is to the left; from further away it is down, and the upright rider takes part in the fit.
+    turned = drawn @ np.array([-1.0, 0.0])
+    assert turned[1] < -0.3
+    np.testing.assert_allclose(bend(bicycle, ahead, ahead), np.eye(2), atol=1e-9)
+
+
+def test_shares_of_sprites_add_up(analytic_scene: Scene) -> None:
+    viewpoint = analytic_scene.viewpoint("mast")
+    shares = set()
+    for time_s in np.arange(1.1, 7.0, 0.05):
+        for actor in composited_actors(analytic_scene, viewpoint, float(time_s)):
+            choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
+            found = choice.choose(Aspect(actor.offset_m, choice.heading(actor.path_s)), actor.phase)
+            assert sum(weighted.weight for weighted in found) == pytest.approx(1.0)
+            shares.add(len(found))
+    assert shares == {1, 2}
+
+
+def test_an_actor_behind_the_camera_adds_nothing(analytic_scene: Scene) -> None:
+    viewpoint = analytic_scene.viewpoint("mast")
+    (actor,) = composited_actors(analytic_scene, viewpoint, 4.0)
+    assert actor_patch(viewpoint, _view(0.0, -8.0, 1.0), actor) is not None
+    assert actor_patch(viewpoint, _view(180.0, -8.0, 1.0), actor) is None
+
+
+@pytest.mark.full
+def test_the_cyclist_on_the_crossing_stays_upright() -> None:
+    """At 8.7 s it comes towards the camera, so it is higher than wide; from above it lies along the road."""
+    scene = load_scene("high-street")
+    viewpoint = scene.viewpoint("crossing")
+    for time_s in (8.5, 8.7, 8.76, 10.9):
+        actor = next(a for a in composited_actors(scene, viewpoint, time_s) if a.actor.category == "cyclist")
+        choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
+        best = choice.choose(Aspect(actor.offset_m, choice.heading(actor.path_s)), actor.phase)[0]
+        assert abs((best.sprite.pan_deg - np.degrees(np.arctan2(*actor.offset_m[:2])) + 180) % 360 - 180) < 15
+
+
+def test_the_camera_names_the_version_of_the_rendering(analytic_scene: Scene) -> None:
+    assert SimulatedCamera(analytic_scene).info.rendering == RENDERING_VERSION == 2
