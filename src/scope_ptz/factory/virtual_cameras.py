@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import secrets
 from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from scope_ptz.virtual_camera.device import VirtualDevice
     from scope_ptz.virtual_camera.http.server import ServedCamera
 
+logger = logging.getLogger(__name__)
+
 MAX_TIME_SCALE = 1000.0
 
 
@@ -29,6 +32,7 @@ class VirtualCameraOptions:
         viewpoints: Viewpoint of each camera; none at all for the scenes' home viewpoints.
         host: Address to listen at.
         port: Port of the first camera; further ones follow. 0 lets the system choose all.
+        rtsp_port: Port of RTSP of the first camera, in the same way.
         time_scale: How many times faster than real the motors are.
         hold_time: Whether scene time stands still, so that actors do not move.
         latency_s: Time from exposure until a frame is sent.
@@ -41,6 +45,7 @@ class VirtualCameraOptions:
     viewpoints: tuple[str, ...] = ()
     host: str = "127.0.0.1"
     port: int = 0
+    rtsp_port: int = 0
     time_scale: float = 1.0
     hold_time: bool = False
     latency_s: float = 0.0
@@ -118,17 +123,33 @@ async def serve_virtual_cameras(
         ConfigError: A package is missing, a port is taken, or a camera without accounts would be open to the network.
     """
     try:
-        from scope_ptz.virtual_camera.http.server import serve
+        from scope_ptz.virtual_camera.http.server import listen, serve
         from scope_ptz.virtual_camera.onvif.app import OnvifApp
         from scope_ptz.virtual_camera.onvif.discovery import Discoverable, discoverable
+        from scope_ptz.virtual_camera.rtsp.server import RtspServer
     except ModuleNotFoundError as error:
         raise ConfigError(f"{error.name} is missing. Install it with: pip install 'scope-ptz[serve]'") from error
-    ports = [options.port + k if options.port else 0 for k in range(len(devices))]
+    ports, rtsp_ports = ([first + k if first else 0 for k in range(len(devices))] for first in (options.port, options.rtsp_port))
     async with AsyncExitStack() as stack:
+        listeners = [stack.enter_context(listener) for listener in listen(options.host, rtsp_ports)]
+        rtsp_port_of = {device: listener.getsockname()[1] for device, listener in zip(devices, listeners, strict=True)}
         cameras = await stack.enter_async_context(
-            serve(devices, host=options.host, ports=ports, truth=options.truth, latency_s=options.latency_s, onvif=OnvifApp)
+            serve(
+                devices,
+                host=options.host,
+                ports=ports,
+                truth=options.truth,
+                latency_s=options.latency_s,
+                onvif=lambda device: OnvifApp(device, rtsp_port=rtsp_port_of[device]),
+            )
         )
+        for camera, listener in zip(cameras, listeners, strict=True):
+            await stack.enter_async_context(RtspServer(camera.source, realm=camera.unit.realm).listen(listener))
+            camera.unit.rtsp_port = rtsp_port_of[camera.device]
         if options.discovery:
             found = [Discoverable(camera.device, camera.port) for camera in cameras]
-            await stack.enter_async_context(discoverable(found, host=options.host))
+            try:
+                await stack.enter_async_context(discoverable(found, host=options.host))
+            except ConfigError as error:  # the cameras can be used without being found
+                logger.warning("%s", error)
         yield cameras

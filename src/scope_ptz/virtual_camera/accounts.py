@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -41,6 +41,9 @@ class Accounts:
     def open_to_all(self) -> bool:
         """Whether the camera asks nobody for a password."""
         return not self._accounts
+
+    def __iter__(self) -> Iterator[Account]:
+        return iter(self._accounts.values())
 
     def find(self, name: str) -> Account | None:
         """Return an account by name."""

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from scope_ptz.virtual_camera.http.server import ServedCamera
 
 
+DEFAULT_RTSP_PORT = 8554  # 554 is reserved for the system
+
+
 def serve(
     scene: Annotated[list[str], typer.Option("--scene", help="Scene of a camera; see `scope scene list` (repeatable).")],
     viewpoint: Annotated[
@@ -27,6 +30,10 @@ def serve(
     port: Annotated[
         int, typer.Option("--port", min=0, max=65535, help="Port of the first camera; further ones follow. 0: any.")
     ] = 8080,
+    rtsp_port: Annotated[
+        int | None,
+        typer.Option("--rtsp-port", min=0, max=65535, help="The same for RTSP (default: 8554; any if --port is 0)."),
+    ] = None,
     user: Annotated[
         list[str] | None,
         typer.Option(
@@ -59,6 +66,7 @@ def serve(
         viewpoints=tuple(viewpoint or ()),
         host=host,
         port=port,
+        rtsp_port=rtsp_port if rtsp_port is not None else DEFAULT_RTSP_PORT if port else 0,
         time_scale=time_scale,
         hold_time=hold_time,
         latency_s=latency,
@@ -116,12 +124,13 @@ def _print(
     if as_json:
         passwords = {account.name: account.password for account in shown}
         rows: list[dict[str, Any]] = [
-            {"scene": each.device.scene.name, "viewpoint": each.device.viewpoint, "url": each.url} for each in cameras
+            {"scene": each.device.scene.name, "viewpoint": each.device.viewpoint, "url": each.url, "rtsp_url": each.rtsp_url}
+            for each in cameras
         ]
         put_json({"cameras": rows, "users": [account.name for account in accounts], "passwords": passwords})
     else:
         for each in cameras:
-            put(f"{each.device.name}: {each.url} (ONVIF: {each.url}/onvif/device_service)")
+            put(f"{each.device.name}: {each.url} (ONVIF: {each.url}/onvif/device_service, RTSP: {each.rtsp_url})")
         for account in accounts:
             secret = f"password {account.password}" if account in shown else "password from SCOPE_VIRTUAL_CAMERA_PASSWORD"
             put(f"Account {account.name} ({account.role.name.lower()}), {secret}")
@@ -133,6 +142,7 @@ def _print(
         put(f"  curl {sign_in}-o picture.jpg {url}/axis-cgi/jpg/image.cgi")
         put(f"  curl {sign_in}'{url}/axis-cgi/com/ptz.cgi?rpan=20'")
         put(f"  ffplay {url.replace('http://', f'http://{in_url}')}/axis-cgi/mjpg/video.cgi")
+        put(f"  ffplay {(cameras[0].rtsp_url or '').replace('rtsp://', f'rtsp://{in_url}')}")
         if options.truth:
             put(f"  curl {sign_in}{url}/virtual/truth")
         put("")

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from scope_ptz.errors import CameraError, InputError
 from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
+from scope_ptz.virtual_camera.picture_size import fitted, parse_resolution
 
 DEFAULT_COMPRESSION = 30
 """The compression of AXIS cameras, from 0 (best picture) to 100."""
 
-MIN_SIDE_PX = 16
 MAX_SHARED = 8  # sizes and compressions for which the newest encoding is kept
 
 
@@ -36,14 +36,7 @@ def picture_format(device: VirtualDevice, resolution: str, compression: str) -> 
     Raises:
         InputError: The resolution is not WIDTHxHEIGHT or larger than the camera's, or the compression is not 0 to 100.
     """
-    width, height = device.width, device.height
-    if resolution:
-        sides = resolution.lower().split("x")
-        if len(sides) != 2 or not all(side.isdecimal() and len(side) < 6 for side in sides):
-            raise InputError(f"resolution: expected WIDTHxHEIGHT, got {resolution[:60]!r}")
-        width, height = (int(side) for side in sides)
-        if not (MIN_SIDE_PX <= width <= device.width and MIN_SIDE_PX <= height <= device.height):
-            raise InputError(f"resolution: at most {device.width}x{device.height}, got {resolution[:60]}")
+    width, height = parse_resolution(device, resolution)
     if compression and not (compression.isdecimal() and int(compression[:6]) <= 100):
         raise InputError(f"compression: expected 0 to 100, got {compression[:60]!r}")
     return PictureFormat(width, height, int(compression) if compression else DEFAULT_COMPRESSION)
@@ -51,13 +44,7 @@ def picture_format(device: VirtualDevice, resolution: str, compression: str) -> 
 
 def encode(image: NDArray[np.uint8], wanted: PictureFormat) -> bytes:
     """Return an RGB picture as JPEG. A picture of another shape is cropped at its sides or at top and bottom, never stretched."""
-    height, width = image.shape[:2]
-    if (width, height) != (wanted.width, wanted.height):
-        scale = max(wanted.width / width, wanted.height / height)
-        inner_width, inner_height = round(wanted.width / scale), round(wanted.height / scale)
-        left, top = (width - inner_width) // 2, (height - inner_height) // 2
-        inner = image[top : top + inner_height, left : left + inner_width]
-        image = np.asarray(cv2.resize(inner, (wanted.width, wanted.height), interpolation=cv2.INTER_AREA), np.uint8)
+    image = fitted(image, wanted.width, wanted.height)
     quality = round(98 - 0.85 * wanted.compression)
     done, content = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])
     if not done:

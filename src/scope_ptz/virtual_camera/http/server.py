@@ -53,8 +53,18 @@ class ServedCamera:
     @property
     def url(self) -> str:
         """The address for a client on this machine, such as ``http://127.0.0.1:8080``."""
-        reachable = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(self.host, self.host)  # noqa: S104 - compared, not bound to
-        return f"http://[{reachable}]:{self.port}" if ":" in reachable else f"http://{reachable}:{self.port}"
+        return f"http://{self._reachable}:{self.port}"
+
+    @property
+    def rtsp_url(self) -> str | None:
+        """The address of the H.264 stream for a client on this machine; None if it is not served."""
+        port = self.unit.rtsp_port
+        return None if port is None else f"rtsp://{self._reachable}:{port}/axis-media/media.amp"
+
+    @property
+    def _reachable(self) -> str:
+        host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(self.host, self.host)  # noqa: S104 - compared, not bound to
+        return f"[{host}]" if ":" in host else host
 
 
 @asynccontextmanager
@@ -88,7 +98,7 @@ async def serve(
     if not _is_loopback(host) and any(device.accounts.open_to_all for device in devices):
         raise ConfigError(f"A camera without accounts would be open to the network at {host}. Give it an account.")
     logs = [TruthLog(device) if truth else None for device in devices]
-    sockets = _listen(host, ports)
+    sockets = listen(host, ports)
     cameras = tuple(
         _camera(device, listener, log, onvif, LiveSource(device, rate_hz=rate_hz, latency_s=latency_s))
         for device, listener, log in zip(devices, sockets, logs, strict=True)
@@ -159,8 +169,12 @@ def _configuration(camera: ServedCamera) -> uvicorn.Config:
     )
 
 
-def _listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
-    """Return listening sockets, and close all of them if one cannot be had."""
+def listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
+    """Return listening sockets, and close all of them if one cannot be had.
+
+    Raises:
+        ConfigError: A port is taken or not allowed.
+    """
     sockets: list[socket.socket] = []
     try:
         for port in ports:

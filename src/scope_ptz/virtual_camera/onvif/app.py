@@ -64,15 +64,11 @@ class OnvifApp:
         device: The camera.
         rtsp_port: Where its streams are, for the addresses in replies.
 
-    Attributes:
-        rtsp_port: Where its streams are; assign it if the port becomes known later.
-
     Raises:
-        ConfigError: zeep or the WSDL files are not installed.
+        ConfigError: The WSDL files are not installed.
     """
 
     def __init__(self, device: VirtualDevice, *, rtsp_port: int = 554) -> None:
-        self.rtsp_port = rtsp_port
         self._device = device
         self._types, self._messages = load_document().types, load_operations()
         self._tokens = UsernameTokens(device.accounts, lambda: device_time_s(device))
@@ -80,9 +76,9 @@ class OnvifApp:
         configuration = PtzConfiguration(device)
         ptz = PtzService(device, configuration)
         self._operations: dict[str, Operations] = {
-            DEVICE: DeviceService(device, self._capabilities).operations(),
-            MEDIA: MediaService(device, configuration, lambda: self.rtsp_port).operations(),
-            MEDIA2: Media2Service(device, configuration, lambda: self.rtsp_port).operations(),
+            DEVICE: DeviceService(device, self._capabilities, rtsp_port).operations(),
+            MEDIA: MediaService(device, configuration, rtsp_port).operations(),
+            MEDIA2: Media2Service(device, configuration, rtsp_port).operations(),
             PTZ: {
                 **ptz.operations(),
                 **configuration.operations(),

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from typing import Any
-from urllib.parse import quote
+from urllib.parse import quote, urlsplit
 
+from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.identity import BRAND, FIRMWARE, PRODUCT, device_uuid, hostname, mac_address, serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_datetime
@@ -41,10 +42,11 @@ class DeviceService:
     Args:
         device: The camera.
         capabilities: Returns the capabilities of a service as an element, by its namespace.
+        rtsp_port: Where its streams are.
     """
 
-    def __init__(self, device: VirtualDevice, capabilities: Callable[[str], Any]) -> None:
-        self._device, self._capabilities_of = device, capabilities
+    def __init__(self, device: VirtualDevice, capabilities: Callable[[str], Any], rtsp_port: int) -> None:
+        self._device, self._capabilities_of, self._rtsp_port = device, capabilities, rtsp_port
 
     def operations(self) -> Operations:
         """Return the operations by name. Those that a client needs before it can log in are open to all."""
@@ -60,6 +62,11 @@ class DeviceService:
             "GetScopes": Operation(self._scopes),
             "GetDiscoveryMode": Operation(lambda _: {"DiscoveryMode": "Discoverable"}),
             "GetNetworkInterfaces": Operation(self._network_interfaces),
+            "GetNetworkProtocols": Operation(self._network_protocols),
+            "GetNetworkDefaultGateway": Operation(lambda _: {"NetworkGateway": {}}),
+            "GetDNS": Operation(lambda _: {"DNSInformation": {"FromDHCP": False}}),
+            "GetNTP": Operation(lambda _: {"NTPInformation": {"FromDHCP": False}}),
+            "GetUsers": Operation(self._users, Role.ADMINISTRATOR),
         }
 
     def _services(self, request: Request) -> Reply:
@@ -132,6 +139,15 @@ class DeviceService:
             address = {"Address": request.host, "PrefixLength": 8 if request.host.startswith("127.") else 24}
             interface["IPv4"] = {"Enabled": True, "Config": {"Manual": [address], "DHCP": False}}
         return {"NetworkInterfaces": [interface]}
+
+    def _network_protocols(self, request: Request) -> Reply:
+        address = urlsplit(request.origin)
+        ports = {address.scheme.upper(): address.port or 80, "RTSP": self._rtsp_port}
+        return {"NetworkProtocols": [{"Name": name, "Enabled": True, "Port": [port]} for name, port in ports.items()]}
+
+    def _users(self, _: Request) -> Reply:
+        levels = {Role.VIEWER: "User", Role.OPERATOR: "Operator", Role.ADMINISTRATOR: "Administrator"}
+        return {"User": [{"Username": account.name, "UserLevel": levels[account.role]} for account in self._device.accounts]}
 
 
 _DEVICE_DETAILS: Mapping[str, Any] = {

@@ -41,7 +41,7 @@ class Discoverable:
 
 class _Responder(asyncio.DatagramProtocol):
     def __init__(self, cameras: Sequence[Discoverable], host: str) -> None:
-        self._host, instance = host, int(time())
+        instance = int(time())
         self._senders = [(camera, Sender(_target(camera, host), instance)) for camera in cameras]
         self._transport: asyncio.DatagramTransport | None = None
 
@@ -82,13 +82,14 @@ async def discoverable(cameras: Sequence[Discoverable], *, host: str = "127.0.0.
         ConfigError: The interface cannot be used for multicast.
     """
     try:
-        listener = _listen(host, port)
+        interface = socket.gethostbyname(host)  # ONVIF uses WS-Discovery over IPv4
+        listener = _listen(interface, port)
     except OSError as error:
         reason = error.strerror or str(error)
         raise ConfigError(f"WS-Discovery cannot use UDP port {port} at {host}: {reason}. Serve without discovery.") from error
     group = (GROUP, listener.getsockname()[1])
     loop = asyncio.get_running_loop()
-    transport, responder = await loop.create_datagram_endpoint(lambda: _Responder(cameras, host), sock=listener)
+    transport, responder = await loop.create_datagram_endpoint(lambda: _Responder(cameras, interface), sock=listener)
     try:
         responder.announce(group)
         yield group[1]
@@ -97,7 +98,7 @@ async def discoverable(cameras: Sequence[Discoverable], *, host: str = "127.0.0.
         transport.close()
 
 
-def _listen(host: str, port: int) -> socket.socket:
+def _listen(interface: str, port: int) -> socket.socket:
     listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         # Other programs on this machine may be discoverable too: multicast reaches all sockets of the port.
@@ -106,10 +107,9 @@ def _listen(host: str, port: int) -> socket.socket:
         try:
             listener.bind((GROUP, port))
         except OSError:
-            listener.bind((host, port))
-        interface = socket.inet_aton(host)
-        listener.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + interface)
-        listener.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
+            listener.bind((interface, port))
+        listener.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + socket.inet_aton(interface))
+        listener.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
         listener.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
         listener.setblocking(False)
     except OSError:

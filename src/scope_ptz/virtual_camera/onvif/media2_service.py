@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from scope_ptz.virtual_camera.device import VirtualDevice
@@ -20,10 +19,10 @@ class Media2Service:
     Args:
         device: The camera.
         ptz: Its PTZ configuration.
-        rtsp_port: Returns where its streams are.
+        rtsp_port: Where its streams are.
     """
 
-    def __init__(self, device: VirtualDevice, ptz: PtzConfiguration, rtsp_port: Callable[[], int]) -> None:
+    def __init__(self, device: VirtualDevice, ptz: PtzConfiguration, rtsp_port: int) -> None:
         self._device, self._ptz, self._rtsp_port = device, ptz, rtsp_port
 
     def operations(self) -> Operations:
@@ -121,7 +120,7 @@ class Media2Service:
         profiles.require_profile(request.ProfileToken)
         if request.Protocol not in _PROTOCOLS:
             raise invalid_argument("The stream is offered over RTSP, by unicast.", "InvalidStreamSetup")
-        return {"Uri": profiles.stream_uri(request, self._rtsp_port())}
+        return {"Uri": profiles.stream_uri(request, self._rtsp_port)}
 
     def _snapshot_uri(self, request: Request) -> Reply:
         profiles.require_profile(request.ProfileToken)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from datetime import timedelta
 from typing import Any
 
@@ -19,10 +18,10 @@ class MediaService:
     Args:
         device: The camera.
         ptz: Its PTZ configuration.
-        rtsp_port: Returns where its streams are.
+        rtsp_port: Where its streams are.
     """
 
-    def __init__(self, device: VirtualDevice, ptz: PtzConfiguration, rtsp_port: Callable[[], int]) -> None:
+    def __init__(self, device: VirtualDevice, ptz: PtzConfiguration, rtsp_port: int) -> None:
         self._device, self._ptz, self._rtsp_port = device, ptz, rtsp_port
 
     def operations(self) -> Operations:
@@ -135,7 +134,7 @@ class MediaService:
         setup = request.StreamSetup
         if getattr(setup, "Stream", None) == "RTP-Multicast":
             raise invalid_argument("There is no multicast stream.", "InvalidStreamSetup")
-        return {"MediaUri": _media_uri(profiles.stream_uri(request, self._rtsp_port()))}
+        return {"MediaUri": _media_uri(profiles.stream_uri(request, self._rtsp_port))}
 
     def _snapshot_uri(self, request: Request) -> Reply:
         profiles.require_profile(request.ProfileToken)

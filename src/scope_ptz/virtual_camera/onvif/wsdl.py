@@ -5,12 +5,13 @@ from __future__ import annotations
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
+
+from zeep import Settings
+from zeep.transports import Transport
+from zeep.wsdl import Document
 
 from scope_ptz.errors import ConfigError
-
-if TYPE_CHECKING:
-    from zeep.wsdl import Document
 
 DEVICE = "http://www.onvif.org/ver10/device/wsdl"
 MEDIA = "http://www.onvif.org/ver10/media/wsdl"
@@ -30,15 +31,8 @@ def load_document() -> Document:
     Device, Media and PTZ come from the files that onvif-zeep-async ships, Media2 from a file of this package.
 
     Raises:
-        ConfigError: zeep or the WSDL files are not installed.
+        ConfigError: The WSDL files are not installed.
     """
-    try:
-        from zeep import Settings
-        from zeep.transports import Transport
-        from zeep.wsdl import Document
-    except ImportError as error:
-        raise ConfigError(f"The ONVIF services of a virtual camera need zeep. {_INSTALL}") from error
-
     folders = (_OWN_FOLDER, _shipped_folder())
 
     class LocalFiles(Transport):

@@ -123,7 +123,11 @@ def _properties(unit: VapixUnit) -> dict[str, str]:
 
 def _media(unit: VapixUnit) -> dict[str, str]:
     resolution = unit.resolutions()[0]
+    rtsp = {"Network.RTSP.Enabled": "no"}
+    if unit.rtsp_port is not None:
+        rtsp = {"Network.RTSP.Enabled": "yes", "Network.RTSP.Port": str(unit.rtsp_port)}
     return {
+        **rtsp,
         "Image.I0.Appearance.ColorEnabled": "yes",
         "Image.I0.Appearance.Compression": "30",
         "Image.I0.Appearance.MirrorEnabled": "no",

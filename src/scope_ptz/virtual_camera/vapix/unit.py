@@ -19,12 +19,14 @@ class VapixUnit:
         speed: The move speed of pan and tilt, 1 to 100.
         queue: Who controls the camera.
         serial: The serial number, which is constant for a viewpoint of a scene.
+        rtsp_port: The port of its RTSP server, None if there is none.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
         self.device = device
         self.speed = 100
         self.queue = ControlQueue()
+        self.rtsp_port: int | None = None
         self.serial = serial_number(device)
 
     @property

@@ -1,0 +1,255 @@
+"""One RTSP connection: reads requests one after the other, and answers them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import random
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+
+from anyio import to_thread
+
+from scope_ptz.errors import ScopeError
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.digest import DigestAuthenticator
+from scope_ptz.virtual_camera.live_source import LiveSource
+from scope_ptz.virtual_camera.rtsp.encoder import parameter_sets
+from scope_ptz.virtual_camera.rtsp.messages import Interleaved, MalformedError, RefusedError, Reply, Request, read_message
+from scope_ptz.virtual_camera.rtsp.sdp import describe
+from scope_ptz.virtual_camera.rtsp.session import Session
+from scope_ptz.virtual_camera.rtsp.sessions import Sessions
+from scope_ptz.virtual_camera.rtsp.sinks import InterleavedSink, bound_unsent, open_udp
+from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat, StreamUrl, parse_url, stream_format
+from scope_ptz.virtual_camera.rtsp.transport_header import TransportOffer, choose_transport
+
+IDLE_S = 60.0
+"""Seconds after which a connection without sessions is closed."""
+
+READ_S = 10.0  # for the rest of a message that has begun
+GARBAGE = b"\x00\xff<<<%%garbage}{\r\n\r\n"
+SERVER = "scope-ptz"
+
+logger = logging.getLogger(__name__)
+
+Handler = Callable[[Request], Awaitable[Reply]]
+
+
+class RtspConnection:
+    """One client's connection.
+
+    Args:
+        device: The camera.
+        source: Its live picture.
+        sessions: The sessions of all connections.
+        digest: Checks passwords.
+        chance: Decides which requests are dropped if the camera drops some.
+        reader: What the client sends.
+        writer: What it gets.
+    """
+
+    def __init__(
+        self,
+        device: VirtualDevice,
+        source: LiveSource,
+        sessions: Sessions,
+        digest: DigestAuthenticator,
+        chance: random.Random,
+        reader: asyncio.StreamReader,
+        writer: asyncio.StreamWriter,
+    ) -> None:
+        self._device, self._source, self._sessions, self._digest = device, source, sessions, digest
+        self._chance = chance
+        self._reader, self._writer = reader, writer
+        self._here: str = writer.get_extra_info("sockname")[0]
+        self._peer: str = writer.get_extra_info("peername")[0]
+        self._account = ""
+        self._own: dict[str, Session] = {}
+        self._handlers: dict[str, Handler] = {
+            "OPTIONS": self._options,
+            "DESCRIBE": self._describe,
+            "SETUP": self._setup,
+            "PLAY": self._play,
+            "PAUSE": self._pause,
+            "TEARDOWN": self._teardown,
+            "GET_PARAMETER": self._parameter,
+            "SET_PARAMETER": self._parameter,
+        }
+
+    def abort(self) -> None:
+        """Break the connection off. ``run`` ends then."""
+        self._writer.transport.abort()
+
+    async def run(self) -> None:
+        """Answer requests until either side closes the connection."""
+        bound_unsent(self._writer)
+        try:
+            while await self._serve_next():
+                pass
+        except (OSError, EOFError, TimeoutError):
+            pass  # the client left, or takes forever
+        finally:
+            for session in list(self._own.values()):
+                session.connected = False
+                if isinstance(session.sink, InterleavedSink):
+                    await self._sessions.end(session)
+            self._writer.close()
+            with suppress(OSError):
+                await self._writer.wait_closed()
+
+    async def _serve_next(self) -> bool:
+        """Serve a message and return whether the connection goes on."""
+        try:
+            async with asyncio.timeout(IDLE_S):
+                first = await self._reader.readexactly(1)
+        except TimeoutError:
+            return any(not session.ended for session in self._own.values())
+        try:
+            async with asyncio.timeout(READ_S):
+                message = await read_message(self._reader, first)
+        except MalformedError as error:
+            await self._write(Reply(error.status).encoded(None))
+            return False
+        if isinstance(message, Interleaved):
+            self._touch(message.channel)
+        elif message is not None:
+            return await self._respond(message)
+        return True
+
+    def _touch(self, channel: int) -> None:
+        for session in self._own.values():
+            if isinstance(session.sink, InterleavedSink) and channel in session.sink.channels:
+                session.touch()
+
+    async def _respond(self, request: Request) -> bool:
+        faults = self._device.faults
+        if faults.stall_s:
+            await asyncio.sleep(faults.stall_s)
+        if self._device.faults.down or self._chance.random() < faults.drop:
+            self.abort()
+            return False
+        if faults.garbage:
+            await self._write(GARBAGE)
+            return True
+        try:
+            reply = await self._answer(request)
+        except RefusedError as refused:
+            reply = Reply(refused.status, tuple(refused.headers.items()))
+        except ScopeError as error:
+            logger.warning("%s of %s failed: %s", request.method, self._device.name, error)
+            reply = Reply(500)
+        await self._write(Reply(reply.status, (("Server", SERVER), *reply.headers), reply.body).encoded(request.cseq))
+        return True
+
+    async def _write(self, content: bytes) -> None:
+        self._writer.write(content)
+        async with asyncio.timeout(READ_S):
+            await self._writer.drain()
+
+    async def _answer(self, request: Request) -> Reply:
+        handler = self._handlers.get(request.method)
+        if handler is None:
+            raise RefusedError(501, {"Public": ", ".join(self._handlers)})
+        if "require" in request.headers:
+            raise RefusedError(551, {"Unsupported": request.headers["require"]})
+        if self._device.faults.unauthorized or (request.method != "OPTIONS" and not self._device.accounts.open_to_all):
+            verdict = self._digest.check(request.headers.get("authorization"), request.method)
+            if verdict.account is None or self._device.faults.unauthorized:
+                challenges = self._digest.challenges(stale=verdict.stale)
+                return Reply(401, tuple(("WWW-Authenticate", challenge) for challenge in challenges))
+            self._account = verdict.account.name
+        return await handler(request)
+
+    def _wanted(self, url: StreamUrl) -> StreamFormat:
+        return stream_format(url, self._device, self._source.rate_hz)
+
+    def _session(self, request: Request) -> Session:
+        token = request.headers.get("session", "").partition(";")[0].strip()
+        return self._sessions.find(token, (self._peer, self._account))
+
+    def _session_header(self, session: Session) -> tuple[str, str]:
+        return "Session", f"{session.token};timeout={max(1, int(self._sessions.timeout_s))}"
+
+    async def _options(self, request: Request) -> Reply:
+        if "session" in request.headers:
+            with suppress(RefusedError):  # a sign of life, and no more than that
+                self._session(request)
+        return Reply(headers=(("Public", ", ".join(self._handlers)),))
+
+    async def _describe(self, request: Request) -> Reply:
+        url = parse_url(request.uri)
+        accepted = request.headers.get("accept", "*/*").lower()
+        if not any(each in accepted for each in ("application/sdp", "application/*", "*/*")):
+            raise RefusedError(406)
+        wanted = self._wanted(url)
+        sets = await to_thread.run_sync(parameter_sets, wanted.width, wanted.height, wanted.fps)
+        body = describe(url, wanted, sets, name=self._device.name, host=self._here)
+        head = (("Content-Type", "application/sdp"), ("Content-Base", url.content_base), ("Cache-Control", "no-cache"))
+        return Reply(headers=head, body=body)
+
+    async def _setup(self, request: Request) -> Reply:
+        url = parse_url(request.uri)
+        offer = choose_transport(request.headers.get("transport", ""))
+        if "session" in request.headers:
+            session = self._session(request)
+            if session.playing:
+                raise RefusedError(455)
+            if session.sink is not None:
+                session.sink.close()
+                session.sink = None
+        else:
+            session = self._sessions.open(self._wanted(url), (self._peer, self._account))
+        try:
+            transport = await (self._set_up_tcp(session, offer) if offer.interleaved else self._set_up_udp(session, offer))
+        except RefusedError:
+            await self._sessions.end(session)
+            raise
+        self._own = {token: each for token, each in self._own.items() if not each.ended} | {session.token: session}
+        return Reply(
+            headers=(("Transport", f'{transport};ssrc={session.clock.ssrc:08X};mode="PLAY"'), self._session_header(session))
+        )
+
+    async def _set_up_tcp(self, session: Session, offer: TransportOffer) -> str:
+        taken = {
+            c
+            for each in self._own.values()
+            if isinstance(each.sink, InterleavedSink) and not each.ended
+            for c in each.sink.channels
+        }
+        pairs = [offer.pair] if offer.pair is not None else [(k, k + 1) for k in range(0, 256, 2)]
+        channels = next((pair for pair in pairs if not taken.intersection(pair)), None)
+        if channels is None:
+            raise RefusedError(461)
+        session.sink, session.on_lost = InterleavedSink(self._writer, channels), self.abort
+        return f"RTP/AVP/TCP;unicast;interleaved={channels[0]}-{channels[1]}"
+
+    async def _set_up_udp(self, session: Session, offer: TransportOffer) -> str:
+        assert offer.pair is not None  # noqa: S101 - UDP is never offered without ports
+        session.sink = await open_udp(self._here, self._peer, offer.pair, session.touch, session.lost)
+        session.on_lost = lambda: self._sessions.end_soon(session)
+        ports, own = offer.pair, session.sink.ports
+        return f"RTP/AVP;unicast;client_port={ports[0]}-{ports[1]};server_port={own[0]}-{own[1]}"
+
+    async def _play(self, request: Request) -> Reply:
+        url = parse_url(request.uri)
+        session = self._session(request)
+        sequence, timestamp = session.play()
+        info = f"url={url.track};seq={sequence};rtptime={timestamp}"
+        return Reply(headers=(self._session_header(session), ("Range", "npt=now-"), ("RTP-Info", info)))
+
+    async def _pause(self, request: Request) -> Reply:
+        session = self._session(request)
+        session.pause()
+        return Reply(headers=(self._session_header(session),))
+
+    async def _teardown(self, request: Request) -> Reply:
+        session = self._session(request)
+        await self._sessions.end(session)
+        return Reply()
+
+    async def _parameter(self, request: Request) -> Reply:
+        """Answer a request that clients send as a sign of life. There are no parameters."""
+        head = (self._session_header(self._session(request)),) if "session" in request.headers else ()
+        if request.body:
+            raise RefusedError(451)
+        return Reply(headers=head)

@@ -1,0 +1,140 @@
+"""H.264 by libx264, for live pictures: no reordering, no look-ahead, one thread."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.errors import CameraError, ConfigError
+from scope_ptz.virtual_camera.picture_size import fitted
+from scope_ptz.virtual_camera.rtsp.rtp import CLOCK_HZ
+
+if TYPE_CHECKING:
+    from av.video.codeccontext import VideoCodecContext
+
+QUALITY_CRF = 23
+BITS_PER_PIXEL_S = 6.5
+"""Cap of the bit rate: 6 Mbit/s at 1280x720."""
+
+MIN_BITS_PER_S = 500_000  # cap for small pictures, whose headers weigh more
+
+BURST_S = 0.33
+"""Seconds of the capped bit rate that one picture may take, which bounds keyframes."""
+
+_START_CODE = re.compile(b"\x00{2,3}\x01")
+_SEI = 6
+_BT601 = 6  # matrix of the colour conversion below, which decoders read from the stream
+_BT709 = 1
+_LIMITED_RANGE = 1
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterSets:
+    """What a decoder needs before the first picture: sequence and picture parameter sets, without start codes."""
+
+    sps: bytes
+    pps: bytes
+
+    @property
+    def profile_level_id(self) -> str:
+        """Profile and level as SDP has them."""
+        return self.sps[1:4].hex()
+
+
+class H264Encoder:
+    """Encodes pictures of one size.
+
+    Args:
+        width: Width in pixels, even.
+        height: Height in pixels, even.
+        fps: Frames per second, for the control of the bit rate.
+
+    Raises:
+        ConfigError: PyAV is missing, or lacks libx264.
+    """
+
+    def __init__(self, width: int, height: int, fps: float) -> None:
+        self.width, self.height = width, height
+        self._codec = _open_codec(width, height, fps)
+        sps, pps = (nal for nal in nal_units(self._codec.extradata or b"") if nal[0] & 0x1F in (7, 8))
+        self.sets = ParameterSets(sps, pps)
+        self._last_pts = -1
+
+    def encode(self, image: NDArray[np.uint8], time_s: float, *, keyframe: bool) -> list[bytes]:
+        """Return the NAL units of a picture. It blocks for the time of one encoding.
+
+        Args:
+            image: Array of shape ``(H, W, 3)``, RGB. Another size is fitted to that of the encoder.
+            time_s: When it was taken, in seconds from any start.
+            keyframe: Whether decoding can begin here. The parameter sets come first then.
+
+        Raises:
+            CameraError: libx264 failed.
+        """
+        from av import FFmpegError
+        from av.video.frame import PictureType, VideoFrame
+
+        yuv = cv2.cvtColor(fitted(image, self.width, self.height), cv2.COLOR_RGB2YUV_I420)
+        frame = VideoFrame.from_ndarray(np.asarray(yuv, np.uint8), format="yuv420p")
+        frame.time_base = Fraction(1, CLOCK_HZ)
+        self._last_pts = frame.pts = max(self._last_pts + 1, round(time_s * CLOCK_HZ))
+        frame.pict_type = PictureType.I if keyframe else PictureType.NONE
+        try:
+            packets = self._codec.encode(frame)
+        except FFmpegError as error:
+            raise CameraError(f"The picture cannot be encoded: {error}") from error
+        found = [nal for packet in packets for nal in nal_units(bytes(packet)) if nal[0] & 0x1F != _SEI]
+        return [self.sets.sps, self.sets.pps, *found] if keyframe else found
+
+
+def nal_units(stream: bytes) -> list[bytes]:
+    """Return the NAL units of a byte stream with start codes (Annex B of H.264)."""
+    return [nal for nal in _START_CODE.split(stream) if nal]
+
+
+@lru_cache(maxsize=64)
+def parameter_sets(width: int, height: int, fps: float) -> ParameterSets:
+    """Return the parameter sets that encoders of this format have.
+
+    Raises:
+        ConfigError: PyAV is missing, or lacks libx264.
+    """
+    return H264Encoder(width, height, fps).sets
+
+
+def _open_codec(width: int, height: int, fps: float) -> VideoCodecContext:
+    try:
+        import av
+        from av.codec.context import Flags
+    except ModuleNotFoundError as error:
+        raise ConfigError("RTSP needs PyAV. Install it with: pip install 'scope-ptz[serve]'") from error
+    bits_per_s = max(MIN_BITS_PER_S, BITS_PER_PIXEL_S * width * height)
+    try:
+        codec: VideoCodecContext = av.CodecContext.create("libx264", "w")
+        codec.width, codec.height, codec.pix_fmt = width, height, "yuv420p"
+        codec.time_base, codec.framerate = Fraction(1, CLOCK_HZ), Fraction(fps).limit_denominator(1000)
+        codec.thread_count = 1
+        codec.gop_size = 10_000  # keyframes come where the caller asks for them
+        codec.flags |= Flags.global_header
+        codec.colorspace, codec.color_range = _BT601, _LIMITED_RANGE
+        codec.color_primaries = codec.color_trc = _BT709
+        codec.options = {
+            "preset": "ultrafast",
+            "tune": "zerolatency",
+            "profile": "baseline",
+            "forced-idr": "1",
+            "crf": str(QUALITY_CRF),
+            "maxrate": str(int(bits_per_s)),
+            "bufsize": str(int(bits_per_s * BURST_S)),
+        }
+        codec.open()
+    except (av.FFmpegError, ValueError) as error:
+        raise ConfigError(f"This build of PyAV cannot encode H.264 by libx264 ({error}). Install PyAV from PyPI.") from error
+    return codec

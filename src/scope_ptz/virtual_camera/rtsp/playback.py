@@ -1,0 +1,136 @@
+"""Sends a live stream to one client, newest pictures first of all: a client that is slow misses some."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import monotonic, time
+
+from scope_ptz.virtual_camera.rtsp import rtcp
+from scope_ptz.virtual_camera.rtsp.live_stream import AccessUnit
+from scope_ptz.virtual_camera.rtsp.rtp import RtpClock
+from scope_ptz.virtual_camera.rtsp.sinks import BATCH_PACKETS, Sink
+
+MAX_AGE_S = 0.5
+"""Age above which a picture is not sent any more, beside the configured latency of the stream."""
+
+MAX_QUEUED = 6  # pictures that wait for a client
+
+
+@dataclass(slots=True)
+class StreamStatistics:
+    """What a server has sent so far.
+
+    Attributes:
+        sessions: Number of sessions that were opened.
+        sent: Number of pictures that were sent whole.
+        dropped: Number of pictures that clients missed because they were slow.
+        oldest_s: Greatest age of a packet when it was sent, without the configured latency.
+    """
+
+    sessions: int = 0
+    sent: int = 0
+    dropped: int = 0
+    oldest_s: float = 0.0
+
+
+class Playback:
+    """Sends pictures from ``run`` until it is cancelled.
+
+    Args:
+        sink: Where packets go.
+        clock: The sender's numbers.
+        latency_s: The configured latency of the stream.
+        clock_skew_s: Returns the seconds by which the camera's clock is ahead.
+        statistics: Where to count.
+        on_sent: Called after each picture that the client took.
+    """
+
+    def __init__(
+        self,
+        sink: Sink,
+        clock: RtpClock,
+        *,
+        latency_s: float,
+        clock_skew_s: Callable[[], float],
+        statistics: StreamStatistics,
+        on_sent: Callable[[], None],
+    ) -> None:
+        self._sink, self._clock, self._statistics = sink, clock, statistics
+        self._latency_s, self._clock_skew_s, self._on_sent = latency_s, clock_skew_s, on_sent
+        self.start_s = monotonic() - latency_s
+        """Pictures from before this time are not sent, so that no time stamp lies before the start."""
+        self._queue: deque[AccessUnit] = deque()
+        self._changed = asyncio.Event()
+        self._needs_keyframe, self._ended = True, False
+        self._packets = self._octets = 0
+        self._reported_s = -rtcp.REPORT_INTERVAL_S
+
+    def offer(self, unit: AccessUnit) -> None:
+        """Take a picture without waiting."""
+        if unit.taken_s < self.start_s:
+            return
+        if len(self._queue) >= MAX_QUEUED:
+            self._drop_waiting()
+        if self._needs_keyframe and not unit.keyframe:
+            self._statistics.dropped += 1
+            return
+        self._needs_keyframe = False
+        self._queue.append(unit)
+        self._changed.set()
+
+    def end(self) -> None:
+        """Note that the stream has failed."""
+        self._ended = True
+        self._changed.set()
+
+    async def run(self) -> None:
+        """Send pictures until the stream ends.
+
+        Raises:
+            OSError: The client has vanished.
+        """
+        while not self._ended:
+            if not self._queue:
+                self._changed.clear()
+                await self._changed.wait()
+                continue
+            unit = self._queue.popleft()
+            self._report_if_due()
+            if await self._send(unit):
+                self._statistics.sent += 1
+                self._on_sent()
+            else:
+                self._statistics.dropped += 1
+                self._drop_waiting()
+
+    def goodbye(self) -> None:
+        """Tell the client that the stream ends."""
+        self._sink.report(rtcp.goodbye(self._clock.ssrc))
+
+    async def _send(self, unit: AccessUnit) -> bool:
+        packets = self._clock.packets(unit.contents, unit.taken_s)
+        for start in range(0, len(packets), BATCH_PACKETS):
+            age_s = monotonic() - unit.taken_s - self._latency_s
+            batch = packets[start : start + BATCH_PACKETS]
+            if age_s > MAX_AGE_S or not await self._sink.send(batch):
+                return False
+            self._statistics.oldest_s = max(self._statistics.oldest_s, age_s)
+            self._packets += len(batch)
+            self._octets += sum(map(len, unit.contents[start : start + BATCH_PACKETS]))
+        return True
+
+    def _drop_waiting(self) -> None:
+        """Drop what waits. What follows cannot be decoded without it, up to the next keyframe."""
+        self._statistics.dropped += len(self._queue)
+        self._queue.clear()
+        self._needs_keyframe = True
+
+    def _report_if_due(self) -> None:
+        now_s = monotonic()
+        if now_s - self._reported_s >= rtcp.REPORT_INTERVAL_S:
+            self._reported_s = now_s
+            unix_s, timestamp = time() + self._clock_skew_s(), self._clock.timestamp(now_s)
+            self._sink.report(rtcp.sender_report(self._clock.ssrc, unix_s, timestamp, self._packets, self._octets))

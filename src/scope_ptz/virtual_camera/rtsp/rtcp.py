@@ -1,0 +1,38 @@
+"""RTCP: reports that map time stamps to wall-clock time, and goodbyes (RFC 3550, section 6)."""
+
+from __future__ import annotations
+
+from struct import Struct
+
+REPORT_INTERVAL_S = 5.0
+CNAME = b"camera"
+
+_NTP_EPOCH_S = 2_208_988_800  # from 1900 to 1970
+_SENDER_REPORT = Struct("!BBHIIIIII")
+_HEAD = Struct("!BBHI")
+_SR, _SDES, _BYE = 200, 202, 203
+_VERSION = 2 << 6
+
+
+def sender_report(ssrc: int, unix_s: float, timestamp: int, packets: int, octets: int) -> bytes:
+    """Return a sender report with a source description.
+
+    Args:
+        ssrc: The source.
+        unix_s: Wall-clock time in Unix seconds.
+        timestamp: The RTP time stamp of the same instant.
+        packets: Number of packets sent so far.
+        octets: Bytes of payload sent so far.
+    """
+    whole = int(unix_s)
+    seconds, fraction = (whole + _NTP_EPOCH_S) & 0xFFFFFFFF, int((unix_s - whole) * 2**32)
+    counts = packets & 0xFFFFFFFF, octets & 0xFFFFFFFF
+    report = _SENDER_REPORT.pack(_VERSION, _SR, 6, ssrc, seconds, fraction, timestamp, *counts)
+    item = bytes((1, len(CNAME))) + CNAME
+    item += bytes(4 - len(item) % 4)  # the list of items ends with at least one zero, at a multiple of four bytes
+    return report + _HEAD.pack(_VERSION | 1, _SDES, 1 + len(item) // 4, ssrc) + item
+
+
+def goodbye(ssrc: int) -> bytes:
+    """Return the packet that says that a source ends."""
+    return _HEAD.pack(_VERSION | 1, _BYE, 1, ssrc)

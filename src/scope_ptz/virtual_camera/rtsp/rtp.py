@@ -1,0 +1,65 @@
+"""RTP packets of H.264 (RFC 3550, RFC 6184, packetization mode 1)."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Iterable, Iterator, Sequence
+from struct import Struct
+
+CLOCK_HZ = 90_000
+PAYLOAD_TYPE = 96
+MAX_PAYLOAD_BYTES = 1400
+"""Bytes after the RTP header, so that a packet fits into an Ethernet frame with room for tunnels."""
+
+_HEADER = Struct("!BBHII")
+_VERSION = 2 << 6
+_MARKER = 0x80
+_FU_A, _FU_START, _FU_END = 28, 0x80, 0x40
+
+
+def payloads(nal_units: Iterable[bytes]) -> list[bytes]:
+    """Return the payloads of a picture's NAL units: those that fit as they are, the others in fragments (FU-A)."""
+    found: list[bytes] = []
+    for nal in nal_units:
+        if len(nal) <= MAX_PAYLOAD_BYTES:
+            found.append(nal)
+        else:
+            found.extend(_fragments(nal))
+    return found
+
+
+def _fragments(nal: bytes) -> Iterator[bytes]:
+    indicator, kind = (nal[0] & 0xE0) | _FU_A, nal[0] & 0x1F
+    step = MAX_PAYLOAD_BYTES - 2
+    for start in range(1, len(nal), step):
+        ends = start + step >= len(nal)
+        flags = (_FU_START if start == 1 else 0) | (_FU_END if ends else 0)
+        yield bytes((indicator, flags | kind)) + nal[start : start + step]
+
+
+class RtpClock:
+    """The numbers of one sender: source, sequence, and time stamps that count from a random start (RFC 3550, 5.1)."""
+
+    def __init__(self) -> None:
+        self.ssrc = secrets.randbits(32)
+        self.sequence = secrets.randbits(16)
+        self._offset = secrets.randbits(32)
+
+    def timestamp(self, time_s: float) -> int:
+        """Return the time stamp of a time on ``time.monotonic``."""
+        return (round(time_s * CLOCK_HZ) + self._offset) & 0xFFFFFFFF
+
+    def packets(self, contents: Sequence[bytes], taken_s: float) -> list[bytes]:
+        """Return the packets of a picture. The marker bit is set in the last one.
+
+        Args:
+            contents: The payloads.
+            taken_s: When the picture was taken, on ``time.monotonic``.
+        """
+        timestamp, last = self.timestamp(taken_s), len(contents) - 1
+        found = []
+        for k, content in enumerate(contents):
+            marker = _MARKER if k == last else 0
+            found.append(_HEADER.pack(_VERSION, marker | PAYLOAD_TYPE, self.sequence, timestamp, self.ssrc) + content)
+            self.sequence = (self.sequence + 1) & 0xFFFF
+        return found

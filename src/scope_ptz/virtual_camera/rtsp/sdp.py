@@ -1,0 +1,40 @@
+"""The description of a stream (SDP, RFC 4566)."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+
+from scope_ptz.virtual_camera.rtsp.encoder import ParameterSets
+from scope_ptz.virtual_camera.rtsp.rtp import CLOCK_HZ, PAYLOAD_TYPE
+from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat, StreamUrl
+
+
+def describe(url: StreamUrl, wanted: StreamFormat, sets: ParameterSets, *, name: str, host: str) -> bytes:
+    """Return the description of a stream.
+
+    Args:
+        url: The address that the client used.
+        wanted: Size and rate.
+        sets: The parameter sets of the encoder.
+        name: Name of the camera.
+        host: Its address.
+    """
+    family = "IP6" if ":" in host else "IP4"
+    title = "".join(c if c.isprintable() else " " for c in name) or "camera"
+    sprop = ",".join(b64encode(each).decode() for each in (sets.sps, sets.pps))
+    lines = [
+        "v=0",
+        f"o=- 1 1 IN {family} {host}",
+        f"s={title}",
+        "t=0 0",
+        f"a=control:{url.content_base}",
+        "a=range:npt=now-",
+        f"m=video 0 RTP/AVP {PAYLOAD_TYPE}",
+        f"c=IN {family} {'::' if ':' in host else '0.0.0.0'}",  # noqa: S104 - no address is bound
+        f"a=rtpmap:{PAYLOAD_TYPE} H264/{CLOCK_HZ}",
+        f"a=fmtp:{PAYLOAD_TYPE} packetization-mode=1;profile-level-id={sets.profile_level_id};sprop-parameter-sets={sprop}",
+        f"a=framerate:{wanted.fps:.6f}",
+        f"a=framesize:{PAYLOAD_TYPE} {wanted.width}-{wanted.height}",
+        f"a=control:{url.track}",
+    ]
+    return ("\r\n".join(lines) + "\r\n").encode()

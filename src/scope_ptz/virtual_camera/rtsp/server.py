@@ -1,0 +1,113 @@
+"""The RTSP server of one camera, in the running event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import anyio
+from anyio import to_thread
+
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.digest import DigestAuthenticator
+from scope_ptz.virtual_camera.live_source import LiveSource
+from scope_ptz.virtual_camera.rtsp.connection import RtspConnection
+from scope_ptz.virtual_camera.rtsp.encoder import parameter_sets
+from scope_ptz.virtual_camera.rtsp.messages import MAX_LINE_BYTES
+from scope_ptz.virtual_camera.rtsp.playback import StreamStatistics
+from scope_ptz.virtual_camera.rtsp.sessions import Sessions
+
+SESSION_TIMEOUT_S = 60.0
+MAX_CONNECTIONS = 64
+WATCH_INTERVAL_S = 0.1  # how often faults and the ages of sessions are looked at
+
+
+class RtspServer:
+    """Serves the live picture of a camera.
+
+    Args:
+        source: The live picture, which runs elsewhere.
+        realm: Name of what a password protects.
+        session_timeout_s: Seconds without a sign of life after which a session ends.
+    """
+
+    def __init__(self, source: LiveSource, *, realm: str, session_timeout_s: float = SESSION_TIMEOUT_S) -> None:
+        self._source = source
+        # Many RTSP clients do not know the quality of protection that HTTP clients use.
+        self._digest = DigestAuthenticator(source.device.accounts, realm, qop=False)
+        self._sessions = Sessions(source, timeout_s=session_timeout_s)
+        self._chance = random.Random(0)
+        self._connections: dict[asyncio.Task[None], RtspConnection] = {}
+
+    @property
+    def device(self) -> VirtualDevice:
+        """The camera."""
+        return self._source.device
+
+    @property
+    def statistics(self) -> StreamStatistics:
+        """What was sent so far."""
+        return self._sessions.statistics
+
+    @property
+    def sessions(self) -> int:
+        """Number of open sessions."""
+        return len(self._sessions)
+
+    @property
+    def connections(self) -> int:
+        """Number of open connections."""
+        return len(self._connections)
+
+    @property
+    def encoders(self) -> int:
+        """Number of formats that are being encoded."""
+        return len(self._sessions.streams.formats)
+
+    @asynccontextmanager
+    async def listen(self, listener: socket.socket) -> AsyncIterator[RtspServer]:
+        """Serve at a listening socket while the context is open, and close it.
+
+        Raises:
+            ConfigError: PyAV is missing, or lacks libx264.
+        """
+        device = self.device
+        # A build without an encoder is noticed now, and the first client does not wait for it to be loaded.
+        await to_thread.run_sync(parameter_sets, device.width, device.height, self._source.rate_hz)
+        server = await asyncio.start_server(self._connected, sock=listener, limit=MAX_LINE_BYTES)
+        watcher = asyncio.create_task(self._watch())
+        try:
+            yield self
+        finally:
+            with anyio.CancelScope(shield=True):
+                server.close()
+                watcher.cancel()
+                await self._sessions.close()
+                self._break_off()
+                await asyncio.gather(watcher, *self._connections, return_exceptions=True)
+                await server.wait_closed()
+
+    def _connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        if len(self._connections) >= MAX_CONNECTIONS or self.device.faults.down:
+            writer.transport.abort()
+            return
+        connection = RtspConnection(self.device, self._source, self._sessions, self._digest, self._chance, reader, writer)
+        task = asyncio.create_task(connection.run())
+        self._connections[task] = connection
+        task.add_done_callback(self._connections.pop)
+
+    async def _watch(self) -> None:
+        while True:
+            if self.device.faults.down:
+                self._break_off()
+                await self._sessions.end_all()
+            await self._sessions.end_expired()
+            await asyncio.sleep(WATCH_INTERVAL_S)
+
+    def _break_off(self) -> None:
+        for task, connection in self._connections.items():
+            connection.abort()
+            task.cancel()

@@ -1,0 +1,95 @@
+"""The sessions of a camera: how many there may be, to whom they belong, and when they end."""
+
+from __future__ import annotations
+
+import asyncio
+from time import monotonic
+
+from scope_ptz.virtual_camera.live_source import LiveSource
+from scope_ptz.virtual_camera.rtsp.live_stream import LiveStreams
+from scope_ptz.virtual_camera.rtsp.messages import RefusedError
+from scope_ptz.virtual_camera.rtsp.playback import StreamStatistics
+from scope_ptz.virtual_camera.rtsp.session import Session
+from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat
+
+MAX_SESSIONS = 32
+ORPHAN_S = 15.0
+"""Seconds that a session outlives its connection without a sign of life. Clients by UDP may come back to it."""
+
+
+class Sessions:
+    """The sessions of a camera.
+
+    Args:
+        source: The live picture.
+        timeout_s: Seconds without a sign of life after which a session ends.
+
+    Attributes:
+        statistics: What was sent.
+        streams: The encoded streams.
+    """
+
+    def __init__(self, source: LiveSource, *, timeout_s: float) -> None:
+        self.timeout_s = timeout_s
+        self.statistics = StreamStatistics()
+        self.streams = LiveStreams(source)
+        self._source = source
+        self._sessions: dict[str, Session] = {}
+        self._ending: set[asyncio.Task[None]] = set()
+
+    def __len__(self) -> int:
+        return len(self._sessions)
+
+    def open(self, wanted: StreamFormat, owner: tuple[str, str]) -> Session:
+        """Return a new session.
+
+        Raises:
+            RefusedError: There are too many.
+        """
+        if len(self._sessions) >= MAX_SESSIONS:
+            raise RefusedError(453)
+        session = Session(wanted, owner, self._source, self.streams, self.statistics)
+        self._sessions[session.token] = session
+        self.statistics.sessions += 1
+        return session
+
+    def find(self, token: str, owner: tuple[str, str]) -> Session:
+        """Return a session of a client.
+
+        Raises:
+            RefusedError: The client has no such session.
+        """
+        session = self._sessions.get(token)
+        if session is None or session.owner != owner:
+            raise RefusedError(454)
+        session.touch()
+        return session
+
+    async def end(self, session: Session) -> None:
+        """End a session."""
+        if self._sessions.pop(session.token, None) is not None:
+            await session.close()
+
+    def end_soon(self, session: Session) -> None:
+        """End a session from a callback that cannot wait."""
+        task = asyncio.create_task(self.end(session))
+        self._ending.add(task)
+        task.add_done_callback(self._ending.discard)
+
+    async def end_all(self) -> None:
+        """End all sessions."""
+        await asyncio.gather(*(self.end(session) for session in list(self._sessions.values())))
+
+    async def end_expired(self) -> None:
+        """End the sessions whose clients gave no sign of life for too long."""
+        now_s = monotonic()
+        for session in list(self._sessions.values()):
+            limit_s = self.timeout_s if session.connected else min(ORPHAN_S, self.timeout_s)
+            if now_s - session.alive_s > limit_s:
+                await self.end(session)
+
+    async def close(self) -> None:
+        """End all sessions and streams."""
+        await self.end_all()
+        await asyncio.gather(*self._ending, return_exceptions=True)
+        await self.streams.close()

@@ -1,0 +1,175 @@
+"""Where packets go: channels of the RTSP connection, or a pair of UDP sockets."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import Protocol
+
+from scope_ptz.virtual_camera.rtsp.messages import RefusedError
+
+STUCK_S = 10.0
+"""Seconds after which a client that takes no bytes has vanished."""
+
+UNSENT_BYTES = 32 * 1024
+"""Bytes that wait in the kernel for a slow client at most. More would turn old there, where they cannot be dropped."""
+
+BATCH_PACKETS = 12  # packets that are written at once, and before which the age of a picture is checked
+_PORT_ATTEMPTS = 50
+
+
+class Sink(Protocol):
+    """Takes the packets of one client."""
+
+    async def send(self, packets: Sequence[bytes]) -> bool:
+        """Send RTP packets. Return False if they were dropped.
+
+        Raises:
+            OSError: The client has vanished.
+        """
+
+    def report(self, packet: bytes) -> None:
+        """Send an RTCP packet."""
+
+    def close(self) -> None:
+        """Release what belongs to this client alone."""
+
+
+def bound_unsent(writer: asyncio.StreamWriter) -> None:
+    """Let writes wait as soon as a client does not keep up, in place of filling buffers."""
+    writer.transport.set_write_buffer_limits(high=0)
+    raw = writer.get_extra_info("socket")
+    if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+        with suppress(OSError):
+            raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT_BYTES)
+
+
+class InterleavedSink:
+    """Sends packets over the RTSP connection.
+
+    Args:
+        writer: The connection.
+        channels: Channels for RTP and RTCP.
+    """
+
+    def __init__(self, writer: asyncio.StreamWriter, channels: tuple[int, int]) -> None:
+        self._writer, self.channels = writer, channels
+
+    async def send(self, packets: Sequence[bytes]) -> bool:
+        self._writer.write(b"".join(_framed(self.channels[0], packet) for packet in packets))
+        try:
+            async with asyncio.timeout(STUCK_S):
+                await self._writer.drain()
+        except TimeoutError:
+            raise ConnectionError("The client takes no bytes.") from None
+        return True
+
+    def report(self, packet: bytes) -> None:
+        if not self._writer.transport.is_closing():
+            self._writer.write(_framed(self.channels[1], packet))
+
+    def close(self) -> None:
+        """Leave the connection open, which belongs to requests as well."""
+
+
+def _framed(channel: int, packet: bytes) -> bytes:
+    return b"$" + bytes((channel,)) + len(packet).to_bytes(2, "big") + packet
+
+
+class UdpSink:
+    """Sends packets by UDP to the host at the other end of the RTSP connection.
+
+    Args:
+        rtp: Socket for RTP, connected to the client.
+        rtcp: Socket for RTCP, connected to the client.
+    """
+
+    def __init__(self, rtp: asyncio.DatagramTransport, rtcp: asyncio.DatagramTransport) -> None:
+        self._rtp, self._rtcp = rtp, rtcp
+        self.ports: tuple[int, int] = (rtp.get_extra_info("sockname")[1], rtcp.get_extra_info("sockname")[1])
+
+    async def send(self, packets: Sequence[bytes]) -> bool:
+        if self._rtp.is_closing():
+            raise ConnectionError("The client is gone.")
+        if self._rtp.get_write_buffer_size():  # type: ignore[attr-defined] # a full network: packets that wait would only turn old
+            return False
+        for packet in packets:
+            self._rtp.sendto(packet)
+        await asyncio.sleep(0)
+        return True
+
+    def report(self, packet: bytes) -> None:
+        if not self._rtcp.is_closing():
+            self._rtcp.sendto(packet)
+
+    def close(self) -> None:
+        self._rtp.close()
+        self._rtcp.close()
+
+
+class _Receiver(asyncio.DatagramProtocol):
+    def __init__(self, on_packet: Callable[[], None], on_gone: Callable[[], None]) -> None:
+        self._on_packet, self._on_gone = on_packet, on_gone
+
+    def datagram_received(self, _data: bytes, _addr: object) -> None:
+        self._on_packet()
+
+    def error_received(self, exc: Exception) -> None:
+        if isinstance(exc, ConnectionRefusedError):  # nobody listens at the client's port any more
+            self._on_gone()
+
+
+async def open_udp(
+    local_host: str, remote_host: str, ports: tuple[int, int], on_packet: Callable[[], None], on_gone: Callable[[], None]
+) -> UdpSink:
+    """Open a pair of neighbouring ports for a client.
+
+    Args:
+        local_host: Address of this end of the RTSP connection.
+        remote_host: Address of the other end. Packets are never sent elsewhere.
+        ports: Ports of the client.
+        on_packet: Called for every report that the client sends.
+        on_gone: Called when nobody listens at the client's ports.
+
+    Raises:
+        RefusedError: No ports are free, or the client's cannot be reached.
+    """
+    loop = asyncio.get_running_loop()
+    try:
+        pair = _bound_pair(local_host)
+    except OSError as error:
+        raise RefusedError(503) from error
+    opened: list[asyncio.DatagramTransport] = []
+    try:
+        for each, port in zip(pair, ports, strict=True):
+            each.connect((remote_host, port))
+            endpoint = await loop.create_datagram_endpoint(lambda: _Receiver(on_packet, on_gone), sock=each)
+            opened.append(endpoint[0])
+    except OSError as error:
+        for each in pair:
+            each.close()
+        for transport in opened:
+            transport.abort()
+        raise RefusedError(461) from error
+    return UdpSink(opened[0], opened[1])
+
+
+def _bound_pair(host: str) -> tuple[socket.socket, socket.socket]:
+    """Return UDP sockets at an even port and at the next one."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    for _ in range(_PORT_ATTEMPTS):
+        first, second = (socket.socket(family, socket.SOCK_DGRAM) for _ in range(2))
+        try:
+            first.bind((host, 0))
+            port = first.getsockname()[1]
+            second.bind((host, port ^ 1))
+        except (OSError, OverflowError):
+            first.close()
+            second.close()
+            continue
+        for each in (first, second):
+            each.setblocking(False)
+        return (first, second) if port % 2 == 0 else (second, first)
+    raise OSError("No pair of UDP ports is free.")

@@ -1,0 +1,103 @@
+"""The address of a stream and the options in it, such as ``rtsp://HOST/axis-media/media.amp?resolution=640x360&fps=10``."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from urllib.parse import parse_qsl, urlsplit
+
+from scope_ptz.errors import InputError
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.picture_size import parse_resolution
+from scope_ptz.virtual_camera.rtsp.messages import RefusedError
+
+PATHS = ("/axis-media/media.amp", "/onvif-media/media.amp")
+TRACK = "stream=0"
+"""The name of the one track of a stream."""
+
+MAX_FIELDS = 50
+MAX_FPS = 1000.0
+
+_AUTHORITY = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(:\d{1,5})?")
+
+
+@dataclass(frozen=True, slots=True)
+class StreamFormat:
+    """What a client wants. Clients with equal formats share an encoder.
+
+    Attributes:
+        width: Width in pixels.
+        height: Height in pixels.
+        fps: Frames per second.
+    """
+
+    width: int
+    height: int
+    fps: float
+
+
+@dataclass(frozen=True, slots=True)
+class StreamUrl:
+    """An address that a client sent, without account, trailing slash and name of the track."""
+
+    base: str
+    query: str
+
+    @property
+    def content_base(self) -> str:
+        """The address of the whole stream, as replies say it."""
+        return f"{self.base}/{self._suffix}"
+
+    @property
+    def track(self) -> str:
+        """The address of the track."""
+        return f"{self.base}/{TRACK}{self._suffix}"
+
+    @property
+    def _suffix(self) -> str:
+        return f"?{self.query}" if self.query else ""
+
+
+def parse_url(uri: str) -> StreamUrl:
+    """Return the stream that a client addresses.
+
+    Raises:
+        RefusedError: It is no RTSP address, or there is no such stream.
+    """
+    try:
+        parts = urlsplit(uri)
+    except ValueError as error:
+        raise RefusedError(400) from error
+    authority = parts.netloc.rpartition("@")[2]
+    if parts.scheme.lower() != "rtsp" or not _AUTHORITY.fullmatch(authority):
+        raise RefusedError(400)
+    # Some clients append the track to the whole address, query and all.
+    path = parts.path.removesuffix("/").removesuffix(f"/{TRACK}")
+    query = parts.query.removesuffix("/").removesuffix(f"/{TRACK}")
+    if path not in PATHS:
+        raise RefusedError(404)
+    return StreamUrl(f"rtsp://{authority}{path}", query)
+
+
+def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> StreamFormat:
+    """Return the format that an address asks for. Options that the camera does not know are ignored, as by AXIS cameras.
+
+    Args:
+        url: The address.
+        device: The camera.
+        rate_hz: Its frames per second.
+
+    Raises:
+        RefusedError: An option has a value that the camera cannot fulfil.
+    """
+    try:
+        options = {name.lower(): value for name, value in parse_qsl(url.query, max_num_fields=MAX_FIELDS)}
+        width, height = parse_resolution(device, options.get("resolution", ""))
+        fps = float(options.get("fps", "0"))
+    except (ValueError, InputError) as error:
+        raise RefusedError(400) from error
+    if width % 2 or height % 2 or not 0 <= fps <= MAX_FPS or options.get("videocodec", "h264").lower() != "h264":
+        raise RefusedError(400)
+    if options.get("camera", "1") != "1":
+        raise RefusedError(404)
+    return StreamFormat(width, height, min(fps, rate_hz) if fps else rate_hz)
