@@ -25,6 +25,8 @@ MIN_KEYFRAME_INTERVAL_S = 0.2  # new clients cannot make every picture a keyfram
 MAX_FORMATS = 8
 """Number of formats that are encoded at the same time."""
 
+_SETS = (7, 8)  # types of NAL units
+
 logger = logging.getLogger(__name__)
 
 
@@ -153,11 +155,13 @@ class _Stream:
                     viewer.offer(unit)
 
     def _damaged(self, nals: list[bytes]) -> list[bytes]:
-        """Return NAL units as the faults of the camera leave them."""
+        """Return NAL units as the faults of the camera leave them. Parameter sets stay whole, so that decoders try the rest."""
         faults = self._source.device.faults
         if faults.garbage:
-            return [nal[:1] + self._random.randbytes(len(nal) - 1) for nal in nals]
-        return [nal[: 1 + len(nal) // 2] for nal in nals] if faults.picture == "truncated" else nals
+            return [nal if nal[0] & 0x1F in _SETS else nal[:1] + self._random.randbytes(len(nal) - 1) for nal in nals]
+        if faults.picture == "truncated":
+            return [nal if nal[0] & 0x1F in _SETS else nal[: 1 + len(nal) // 2] for nal in nals]
+        return nals
 
 
 def _size(device: VirtualDevice, wanted: StreamFormat) -> tuple[int, int]:

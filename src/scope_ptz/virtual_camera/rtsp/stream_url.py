@@ -16,7 +16,7 @@ TRACK = "stream=0"
 """The name of the one track of a stream."""
 
 MAX_FIELDS = 50
-MAX_FPS = 1000.0
+MIN_FPS, MAX_FPS = 0.1, 1000.0
 
 _AUTHORITY = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(:\d{1,5})?")
 
@@ -96,7 +96,12 @@ def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> Stre
         fps = float(options.get("fps", "0"))
     except (ValueError, InputError) as error:
         raise RefusedError(400) from error
-    if width % 2 or height % 2 or not 0 <= fps <= MAX_FPS or options.get("videocodec", "h264").lower() != "h264":
+    if (
+        width % 2
+        or height % 2
+        or not (fps == 0 or MIN_FPS <= fps <= MAX_FPS)
+        or options.get("videocodec", "h264").lower() != "h264"
+    ):
         raise RefusedError(400)
     if options.get("camera", "1") != "1":
         raise RefusedError(404)
