@@ -39,6 +39,7 @@ class ScopeSettings(BaseSettings):
     judge_model: str = Field(default="", description="Name of the judge on its server.")
     judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
     virtual_camera_password: SecretStr | None = Field(default=None, description="Password of the accounts of virtual cameras.")
+    config: Path | None = Field(default=None, description="File with the cameras of a site (default: scope.yaml).")
 
     def tile_bytes(self) -> int | None:
         """Return the limit on the memory of a viewpoint's tiles in bytes."""
@@ -64,6 +65,18 @@ def load_settings() -> ScopeSettings:
         first = error.errors()[0]
         name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()
         raise ConfigError(f"The environment variable {name} has an invalid value: {first['msg']}.") from error
+
+
+def find_camera_file(settings: ScopeSettings) -> Path | None:
+    """Return the camera file: the configured one, else ``scope.yaml`` in the working folder, else in the configuration folder."""
+    if settings.config is not None:
+        return settings.config
+    return next((path for path in (Path("scope.yaml"), user_config_path("scope-ptz") / "scope.yaml") if path.is_file()), None)
+
+
+def read_secret(name: str) -> str | None:
+    """Return the value of an environment variable that a camera file names; None if it is unset or empty."""
+    return os.environ.get(name) or None
 
 
 def has_desktop() -> bool:

@@ -66,6 +66,7 @@ class Session:
         self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()
     ) -> RunResult:
         """Carry out one instruction and write its trace."""
+        self.opened.record_instruction(instruction)
         labels = RunLabels(perception_note=self.note, seed=self.flags.seed, home_viewpoint=self.flags.viewpoint)
         budgets = Budgets(max_steps=self.flags.max_steps, time_s=self.flags.time_budget)
         agent = Agent(self.planner, self.camera, self.perception, folder, budgets=budgets, labels=labels)
