@@ -15,6 +15,8 @@ import numpy as np
 from scope_ptz.errors import CameraError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
 MIN_MATCHES = 24
@@ -177,9 +179,8 @@ def _rotation_vector(turn: NDArray[np.float64]) -> NDArray[np.float64]:
     return axis * (angle / sine if sine > 1e-12 else 1.0)
 
 
-def _minimum(function: object, low: float, high: float) -> float:
+def _minimum(function: Callable[[float], float], low: float, high: float) -> float:
     """Return where a function of one number is smallest, by golden section."""
-    assert callable(function)
     share = (math.sqrt(5) - 1) / 2
     left, right = high - share * (high - low), low + share * (high - low)
     at_left, at_right = function(left), function(right)

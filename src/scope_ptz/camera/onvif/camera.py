@@ -55,7 +55,7 @@ class OnvifCamera(Camera):
         self._watch = DriveWatch(name, client.stop_blocking)
         self._info = CameraInfo(
             name, device.limits, device.zoom.optics, pictures.width, pictures.height, simulated=False,
-            capabilities=device.capabilities,
+            capabilities=device.capabilities, assumed=device.assumed,
         )  # fmt: skip
 
     @classmethod
@@ -96,11 +96,8 @@ class OnvifCamera(Camera):
         try:
             await client.connect()
             device = await read_device(client, mapping or OnvifMapping(), width=width or 1280, profile=profile)
-            if device.assumed and not assume:
-                raise CameraError(
-                    f"ONVIF does not state the {' and the '.join(device.assumed)} of the {device.name} at {client.address}. "
-                    "Measure it with `scope camera calibrate`, or add options such as hfov_wide and hfov_tele to the camera."
-                )
+            if not assume:
+                _check_known(device, str(client.address))
             pictures = await open_pictures(
                 client, credentials, device, width=width, height=height, stream=stream, rtsp_port=rtsp_port, latency_s=latency_s
             )
@@ -276,6 +273,14 @@ class OnvifCamera(Camera):
             "zoom": abs(reached.zoom / target.zoom - 1) / self._settling.zoom_tolerance,
         }
         return max(off, key=lambda axis: off[axis])
+
+
+def _check_known(device: OnvifDevice, where: str) -> None:
+    if device.assumed:
+        raise CameraError(
+            f"ONVIF does not state the {' and the '.join(device.assumed)} of the {device.name} at {where}. "
+            "Measure it with `scope camera calibrate`, or add options such as hfov_wide and hfov_tele to the camera."
+        )
 
 
 def _text(pose: Pose) -> str:
