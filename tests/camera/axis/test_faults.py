@@ -331,6 +331,23 @@ async def test_preset_names_that_the_device_refuses(fake: FakeVapix) -> None:
         assert not fake.moves
 
 
+async def test_an_account_that_may_not_save_presets(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.status = 403
+        with pytest.raises(CameraSignInError, match="may not do this"):
+            await camera.save_preset("gate two")
+        fake.status = 0
+
+
+async def test_locked_position(fake: FakeVapix) -> None:
+    fake.locked = True
+    async with opened(fake.loopback.port) as camera:
+        for command in (camera.move(THERE), camera.drive(5.0), camera.go_home()):
+            with pytest.raises(CameraError, match="is locked"):
+                await command
+    assert not fake.moves
+
+
 # --- control queue
 
 
