@@ -8,16 +8,15 @@ from pathlib import Path
 from typing import Literal
 
 from platformdirs import user_cache_path, user_config_path
-from pydantic import Field, SecretStr, ValidationError
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import BaseModel, Field, SecretStr, ValidationError
 
 from scope_ptz.errors import ConfigError
 
+_PREFIX = "scope_"
 
-class ScopeSettings(BaseSettings):
+
+class ScopeSettings(BaseModel):
     """Defaults for every command. Command-line options take precedence."""
-
-    model_config = SettingsConfigDict(env_prefix="SCOPE_", extra="ignore")
 
     runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
     scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
@@ -26,6 +25,9 @@ class ScopeSettings(BaseSettings):
     )
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
+    )
+    pictures_dir: Path | None = Field(
+        default=None, description="Folder for decoded pictures of scenes (default: in the cache folder)."
     )
     blender_python: Path | None = Field(default=None, description="A Python interpreter that can import bpy.")
     blender: Path | None = Field(default=None, description="A blender program to use in place of the bpy wheel.")
@@ -39,10 +41,15 @@ class ScopeSettings(BaseSettings):
     judge_model: str = Field(default="", description="Name of the judge on its server.")
     judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
     virtual_camera_password: SecretStr | None = Field(default=None, description="Password of the accounts of virtual cameras.")
+    config: Path | None = Field(default=None, description="File with the cameras of a site (default: scope.yaml).")
 
     def tile_bytes(self) -> int | None:
         """Return the limit on the memory of a viewpoint's tiles in bytes."""
         return None if self.tile_cache_mb is None else self.tile_cache_mb * 1_000_000
+
+    def pictures_folder(self) -> Path:
+        """Return the folder for decoded pictures of scenes."""
+        return self.pictures_dir or self.cache_dir / "pictures"
 
     def models_file(self) -> Path | None:
         """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""
@@ -58,12 +65,25 @@ def load_settings() -> ScopeSettings:
     Raises:
         ConfigError: A variable has an invalid value. The message names the variable.
     """
+    given = {name.lower().removeprefix(_PREFIX): text for name, text in os.environ.items() if name.lower().startswith(_PREFIX)}
     try:
-        return ScopeSettings()
+        return ScopeSettings.model_validate({name: given[name] for name in ScopeSettings.model_fields if name in given})
     except ValidationError as error:
         first = error.errors()[0]
         name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()
         raise ConfigError(f"The environment variable {name} has an invalid value: {first['msg']}.") from error
+
+
+def find_camera_file(settings: ScopeSettings) -> Path | None:
+    """Return the camera file: the configured one, else ``scope.yaml`` in the working folder, else in the configuration folder."""
+    if settings.config is not None:
+        return settings.config
+    return next((path for path in (Path("scope.yaml"), user_config_path("scope-ptz") / "scope.yaml") if path.is_file()), None)
+
+
+def read_secret(name: str) -> str | None:
+    """Return the value of an environment variable that a camera file names; None if it is unset or empty."""
+    return os.environ.get(name) or None
 
 
 def has_desktop() -> bool:

@@ -95,13 +95,13 @@ def _processor(texts: Sequence[str]) -> LlavaProcessor:
         vocab_size=1500, special_tokens=MARKS, initial_alphabet=pre_tokenizers.ByteLevel.alphabet(), show_progress=False
     )
     core.train_from_iterator(texts, trainer)
-    tokenizer = PreTrainedTokenizerFast(tokenizer_object=core, eos_token="<|im_end|>", pad_token="<|endoftext|>")  # noqa: S106
+    tokenizer = PreTrainedTokenizerFast(tokenizer_object=core, eos_token="<|im_end|>", pad_token="<|endoftext|>")
     tokenizer.chat_template = CHAT_TEMPLATE
     size = {"height": SIDE, "width": SIDE}
     images = CLIPImageProcessorPil(size=size, crop_size=size, do_center_crop=False)
     return LlavaProcessor(
         image_processor=images, tokenizer=tokenizer, patch_size=PATCH, vision_feature_select_strategy="default",
-        image_token="<image>",  # noqa: S106
+        image_token="<image>",
         num_additional_image_tokens=1, chat_template=CHAT_TEMPLATE,
     )  # fmt: skip
 
@@ -132,7 +132,7 @@ def tiny_owlv2(folder: Path, seed: int = 0) -> Path:
     torch.manual_seed(seed)
     words = ["!", "<|startoftext|>", "<|endoftext|>", *[c + end for c in "abcdefghijklmnopqrstuvwxyz" for end in ("", "</w>")]]
     vocabulary = {word: number for number, word in enumerate(words)}
-    tokenizer = CLIPTokenizer(vocab=vocabulary, merges=[], pad_token="!", model_max_length=16)  # noqa: S106
+    tokenizer = CLIPTokenizer(vocab=vocabulary, merges=[], pad_token="!", model_max_length=16)
     config = Owlv2Config(
         text_config={"vocab_size": len(words), "hidden_size": 32, "intermediate_size": 64, "num_hidden_layers": 1,
                      "num_attention_heads": 2, "max_position_embeddings": 16,

@@ -77,7 +77,7 @@ def test_an_old_nonce_is_stale_and_a_wrong_password_never_is(server: DigestAuthe
     time.now += 299
     assert server.check(_answer(challenge, count=1), "GET", "/a?b=1").account is OPERATOR
     time.now += 2
-    right, wrong = _answer(challenge, count=2), _answer(challenge, count=3, password="a guess")  # noqa: S106
+    right, wrong = _answer(challenge, count=2), _answer(challenge, count=3, password="a guess")
     assert server.check(right, "GET", "/a?b=1").stale
     assert not server.check(wrong, "GET", "/a?b=1").stale
     assert "stale=true" in server.challenges(stale=True)[0]

@@ -20,6 +20,7 @@ from scope_ptz.api.options import SessionOptions
 from scope_ptz.api.pictures import ToolCallImages
 from scope_ptz.api.run import Event, Run, event_of
 from scope_ptz.camera.base import Camera, Frame
+from scope_ptz.camera.guard.guarded import GuardedCamera
 from scope_ptz.errors import InputError, ScopeError
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
@@ -265,6 +266,8 @@ class AsyncScope:
         self._require_idle()
         if not instruction.strip():
             raise InputError("The instruction is empty. Describe what the camera should do.")
+        if isinstance(parts.camera, GuardedCamera):
+            parts.camera.record_instruction(instruction)
         recorder = _Recorder(options, instruction, listener)
         labels = RunLabels(perception_note=parts.note, seed=options.seed, home_viewpoint=options.viewpoint)
         agent = Agent(parts.planner, parts.camera, parts.perception, recorder.images, budgets=options.budgets, labels=labels)

@@ -112,10 +112,17 @@ class PresetInfo:
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """Where a move ended, and the axes that a limit stopped."""
+    """Where a move ended.
+
+    Attributes:
+        pose: The pose reached.
+        clamped: The axes that a limit stopped.
+        limited_by: What held the camera back, as a noun phrase, if it was not a limit of the device.
+    """
 
     pose: Pose
     clamped: tuple[Axis, ...] = field(default=())
+    limited_by: str = ""
 
 
 class Camera(ABC):

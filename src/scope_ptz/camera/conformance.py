@@ -249,9 +249,11 @@ class CameraConformance(ABC):
             start = (await camera.move(_middle(camera.info))).pose
             await camera.drive(zoom_rate=top.zoom_rate * 100, timeout_s=10.0)
             await camera.clock.sleep(math.log2(limits.max_zoom / start.zoom) / top.zoom_rate + self.stopping_s)
-            at_stop = await camera.pose()
+            closest = await camera.pose()
             await camera.stop()
-            self._expect_at(at_stop, Pose(start.pan_deg, start.tilt_deg, limits.max_zoom), camera.info)
+            _expect(closest.zoom > 1.2 * start.zoom, f"driven to zoom in from {start}, it is at {closest}")
+            _expect(closest.zoom <= limits.max_zoom * (1 + self.zoom_tolerance), f"it is at {closest}, beyond its zoom limit")
+            self._expect_at(closest, Pose(start.pan_deg, start.tilt_deg, closest.zoom), camera.info)
 
     async def test_drive_refuses_wrong_numbers(self) -> None:
         async with self.camera() as camera:

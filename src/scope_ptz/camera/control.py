@@ -18,6 +18,14 @@ if TYPE_CHECKING:
     from filelock import FileLock
 
 
+def user_name() -> str:
+    """Return the name of the user that runs this process. An account without a name, as in some containers, is a number."""
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):
+        return f"user {os.getuid()}" if hasattr(os, "getuid") else "a user without a name"
+
+
 @dataclass(frozen=True, slots=True)
 class Holder:
     """Who controls a camera.
@@ -81,7 +89,7 @@ class ControlLock:
         """
         if self._holder is not None:
             raise ControlHeldError(self._camera, self._holder)
-        process = f"{getpass.getuser()}, process {os.getpid()} on {socket.gethostname()}"
+        process = f"{user_name()}, process {os.getpid()} on {socket.gethostname()}"
         holder = Holder(name[:80], process, datetime.now(UTC).isoformat(timespec="seconds"))
         if self._path is not None:
             self._lock_file(self._path, holder)

@@ -14,12 +14,16 @@ class CameraSpec:
         scheme: The kind of camera, in lower case: ``sim``, ``blender``, or the name of a plug-in.
         address: What follows the scheme, without leading slashes and without options.
         options: ``NAME=VALUE`` pairs after a question mark: ``blender:yard.blend?samples=4``.
+        name: The name of the camera in ``scope.yaml``; empty if it is not named there.
     """
 
     scheme: str
     address: str
     options: Mapping[str, str] = field(default_factory=dict, hash=False)
+    name: str = ""
 
     def __str__(self) -> str:
+        if self.name:
+            return self.name
         options = "&".join(f"{name}={value}" for name, value in self.options.items())
         return f"{self.scheme}:{self.address}" + (f"?{options}" if options else "")

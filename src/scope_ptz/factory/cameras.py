@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -11,12 +12,13 @@ from urllib.parse import parse_qsl
 
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.clocks import Clock
+from scope_ptz.camera.control import user_name
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.entry_points import CAMERAS, call_factory, expect_product, find, installed, one_line
 from scope_ptz.errors import CameraError, InputError, ScopeError, UnknownNameError
 from scope_ptz.factory.network_cameras import NETWORK_SCHEMES, check_network_spec
 from scope_ptz.factory.scenes import scene_search
-from scope_ptz.settings import load_settings
+from scope_ptz.settings import find_camera_file, load_settings
 
 if TYPE_CHECKING:
     from scope_ptz.simulator.pack import Scene
@@ -37,7 +39,7 @@ def parse_camera(text: str) -> CameraSpec:
         text: A scene (``highway-works`` or ``sim:highway-works``), a scene or file rendered by Blender
             (``blender:highway-works``, ``blender:yard.blend``), a camera on the network (``axis://operator@10.0.0.7``), or
             ``SCHEME:ADDRESS`` for the camera of a plug-in. Options follow a question mark:
-            ``blender:yard.blend?samples=4&width=640&height=360``.
+            ``blender:yard.blend?samples=4&width=640&height=360``. A name without a colon may also be a camera in ``scope.yaml``.
 
     Raises:
         InputError: The spec is empty, its scheme or an option is unknown, a file does not exist, or it contains a password.
@@ -45,6 +47,8 @@ def parse_camera(text: str) -> CameraSpec:
     text = text.strip()
     scheme, colon, rest = text.partition(":")
     if not colon:
+        if (named := _named(text)) is not None:
+            return named
         scheme, rest = "sim", text
     scheme = scheme.lower()
     address, _, query = rest.partition("?")
@@ -60,6 +64,20 @@ def parse_camera(text: str) -> CameraSpec:
     return spec
 
 
+def _named(text: str) -> CameraSpec | None:
+    """Return the spec of a camera in ``scope.yaml``; None if the name is not there."""
+    if find_camera_file(load_settings()) is None:
+        return None
+    from scope_ptz.factory.named_cameras import named_cameras
+
+    named = named_cameras().get(text)
+    if named is None:
+        return None
+    if ":" not in named.camera:
+        raise InputError(f"The camera '{text}' in scope.yaml needs a spec with a scheme, such as sim:{named.camera[:60]}.")
+    return replace(parse_camera(named.camera), name=text)
+
+
 def camera_names() -> tuple[str, ...]:
     """Return the camera specs that can be opened: scenes, scenes that Blender can render live, and schemes of plug-ins."""
     from scope_ptz.blender.sources import scene_names
@@ -69,7 +87,12 @@ def camera_names() -> tuple[str, ...]:
     live = [f"blender:{name}" for name in scene_names()]
     plugins = [f"{entry.name}:ADDRESS" for entry in installed(CAMERAS) if entry.name not in BUILT_IN_SCHEMES]
     network = [f"{scheme}://USER@HOST" for scheme in NETWORK_SCHEMES]
-    return (*scenes, *live, "blender:FILE.blend", *network, *plugins)
+    named: tuple[str, ...] = ()
+    if find_camera_file(load_settings()) is not None:
+        from scope_ptz.factory.named_cameras import named_cameras
+
+        named = tuple(named_cameras())
+    return (*named, *scenes, *live, "blender:FILE.blend", *network, *plugins)
 
 
 class OpenCamera:
@@ -102,6 +125,13 @@ class OpenCamera:
         """A function that returns a scene by name, for ``make_perception``; None without ground truth."""
         return None if self.scene is None else {self.scene.name: self.scene}.__getitem__
 
+    def record_instruction(self, instruction: str) -> None:
+        """Record what a person asks of the camera in its audit log, if it has one."""
+        from scope_ptz.camera.guard.guarded import GuardedCamera
+
+        if isinstance(self.camera, GuardedCamera):
+            self.camera.record_instruction(instruction)
+
     async def aclose(self) -> None:
         """Close the camera and the worker process that was started for it, if any. Calling it again has no effect."""
         release, self._release = self._release, None
@@ -125,8 +155,9 @@ async def open_camera(
     preset: str | None = None,
     time_s: float | None = None,
     realtime: bool = False,
+    actor: str | None = None,
 ) -> OpenCamera:
-    """Open a camera.
+    """Open a camera. One that ``scope.yaml`` names keeps the rules there.
 
     Args:
         spec: A parsed spec, or its text.
@@ -134,6 +165,7 @@ async def open_camera(
         preset: The preset to start at. It determines the viewpoint, so only one of the two may be given.
         time_s: Scene time at the start, in seconds; the default is the scene's own start time.
         realtime: Whether scene time follows the wall clock, so that a person can watch. Otherwise moves take no wall-clock time.
+        actor: Who controls the camera, for the audit log and for others who want control; the default is the user of the system.
 
     Returns:
         The open camera, which the caller closes.
@@ -156,15 +188,19 @@ async def open_camera(
         live = await open_live_blender(spec, viewpoint=viewpoint, time_s=time_s, realtime=realtime)
         opened = OpenCamera(spec, live.camera, live.scene, live.release)
     elif spec.scheme in NETWORK_SCHEMES:
-        opened = await _open_network(spec, viewpoint, time_s)
+        opened = await _open_network(spec, viewpoint, time_s, actor)
     else:
         opened = await _open_plugin(spec, viewpoint, time_s)
-    if preset:
-        try:
+    try:
+        if spec.name:
+            from scope_ptz.factory.named_cameras import apply_rules
+
+            opened.camera = apply_rules(opened.camera, spec.name, actor=actor or f"scope: {user_name()}")
+        if preset:
             await opened.camera.go_to_preset(preset)
-        except BaseException:
-            await opened.aclose()
-            raise
+    except BaseException:
+        await opened.aclose()
+        raise
     return opened
 
 
@@ -173,17 +209,17 @@ def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | Non
     from scope_ptz.factory.scenes import open_scene
     from scope_ptz.simulator.clock import SceneClock
 
-    scene = open_scene(spec.address)
+    scene = open_scene(spec.address, keep=True)
     clock = SceneClock(scene.file.start_s if time_s is None else time_s, realtime=realtime)
     width, height = frame_size(spec)
     return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, width=width, height=height), scene)
 
 
-async def _open_network(spec: CameraSpec, viewpoint: str | None, time_s: float | None) -> OpenCamera:
+async def _open_network(spec: CameraSpec, viewpoint: str | None, time_s: float | None, actor: str | None) -> OpenCamera:
     from scope_ptz.factory.network_cameras import open_network_camera
 
     _refuse_scene_options(spec, viewpoint, time_s, "a camera on the network")
-    connected = await open_network_camera(spec)
+    connected = await open_network_camera(spec, actor=actor or f"scope: {user_name()}")
     return OpenCamera(spec, connected.camera, None, connected.release)
 
 

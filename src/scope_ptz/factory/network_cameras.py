@@ -12,6 +12,8 @@ from scope_ptz.errors import InputError, UnknownNameError
 from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:
+    from ssl import SSLContext
+
     from scope_ptz.camera.network.address import DeviceAddress
     from scope_ptz.camera.network.credentials import Credentials
 
@@ -65,8 +67,12 @@ def check_network_spec(spec: CameraSpec) -> None:
         raise InputError("Give both hfov_wide and hfov_tele in degrees, and the wide one larger.")
 
 
-async def open_network_camera(spec: CameraSpec) -> OpenNetworkCamera:
+async def open_network_camera(spec: CameraSpec, *, actor: str = "scope") -> OpenNetworkCamera:
     """Connect to a network camera and hold its control lock, so that one program at a time moves it.
+
+    Args:
+        spec: The camera.
+        actor: Who controls it, for others who want control.
 
     Raises:
         InputError: The spec or an option is wrong, or there is no password for the account.
@@ -82,25 +88,41 @@ async def open_network_camera(spec: CameraSpec) -> OpenNetworkCamera:
     credentials = find_credentials(spec)
     key = f"{address.host.lower()}:{address.port}/{spec.options.get('channel', '1')}"
     lock = ControlLock(f"The camera at {address}", key, load_settings().cache_dir / "control")
-    lock.acquire("scope")
+    lock.acquire(actor)
 
     async def release() -> None:
         lock.release()
 
     try:
-        return OpenNetworkCamera(await _open_axis(spec, address, credentials), release)
+        verify = await _trust(spec, address)
+        return OpenNetworkCamera(await _open_axis(spec, address, credentials, verify), release)
     except BaseException:
         lock.release()
         raise
 
 
-async def _open_axis(spec: CameraSpec, address: DeviceAddress, credentials: Credentials) -> Camera:
+async def _trust(spec: CameraSpec, address: DeviceAddress) -> SSLContext | bool:
+    """Return how the device's certificate is checked: by its fingerprint in ``scope.yaml``, else by the system's authorities."""
+    if not spec.name or not address.tls:
+        return True
+    from anyio import to_thread
+
+    from scope_ptz.camera.network.trust import trust_fingerprint
+    from scope_ptz.factory.named_cameras import named_cameras
+
+    named = named_cameras().get(spec.name)
+    if named is None or named.fingerprint is None:
+        return True
+    return await to_thread.run_sync(trust_fingerprint, address, named.fingerprint)
+
+
+async def _open_axis(spec: CameraSpec, address: DeviceAddress, credentials: Credentials, verify: SSLContext | bool) -> Camera:
     from scope_ptz.camera.axis.camera import AxisCamera
     from scope_ptz.camera.network.http import DeviceHttp
 
     options = spec.options
     return await AxisCamera.open(
-        DeviceHttp(address, credentials),
+        DeviceHttp(address, credentials, verify=verify),
         credentials,
         channel=int(options.get("channel", 1)),
         width=int(options.get("width", 1280)),

@@ -34,6 +34,8 @@ def pose_text(arrival: Arrival) -> str:
     """Describe the camera's pose and the limits that stopped it, as the end of a sentence."""
     pose = arrival.pose.as_dict()
     text = f"the camera is at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
-    if arrival.clamped:
+    if arrival.limited_by:
+        text += f" (held back by {arrival.limited_by})"
+    elif arrival.clamped:
         text += f" (stopped by the {' and '.join(arrival.clamped)} limit)"
     return text

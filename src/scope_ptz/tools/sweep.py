@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.camera.base import Camera, CameraInfo, Frame
 from scope_ptz.errors import CameraError
-from scope_ptz.geometry import Equirectangular, Limits, Perspective, Pose
+from scope_ptz.geometry import Equirectangular, Limits, Perspective, Pose, wrap_pan_deg
 
 _GRID_PX = 8  # The projection is computed on a grid of this spacing and interpolated, with an error below 0.02 px.
 
@@ -71,7 +71,7 @@ async def sweep(camera: Camera) -> Frame:
         try:
             for block in blocks:
                 arrival = await camera.move(block.pose)
-                if arrival.clamped:
+                if arrival.clamped and not arrival.limited_by:
                     raise CameraError(f"The sweep needs {block.pose} and the camera stops at {arrival.pose}.")
                 frames.append(await camera.frame())
         finally:
@@ -97,8 +97,14 @@ def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
         if not isinstance(frame.projection, Perspective):
             raise CameraError("A sweep needs perspective frames.")
         map_x, map_y = _block_maps(whole, frame.projection, x0, y0, x1, y1)
-        panorama[y0:y1, x0:x1] = cv2.remap(frame.image, map_x, map_y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        # A site's rules may have kept the camera away from a block. What its frame does not show stays black.
+        border = cv2.BORDER_REPLICATE if _aims_at(frame, block) else cv2.BORDER_CONSTANT
+        panorama[y0:y1, x0:x1] = cv2.remap(frame.image, map_x, map_y, cv2.INTER_LINEAR, borderMode=border)
     return Frame(panorama, pose, span, first.time_s, Equirectangular(left, span, top, bottom, width, height), origin=first.origin)
+
+
+def _aims_at(frame: Frame, block: Block) -> bool:
+    return abs(wrap_pan_deg(frame.pose.pan_deg - block.pose.pan_deg)) < 2.0 and abs(frame.pose.tilt_deg - block.pose.tilt_deg) < 2.0
 
 
 @lru_cache(maxsize=64)

@@ -57,7 +57,7 @@ async def test_unreachable_at_start() -> None:
 async def test_wrong_password_is_named_and_not_shown(fake: FakeVapix, caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.DEBUG)
     with pytest.raises(CameraSignInError, match="refuses the user name or the password") as caught:
-        async with opened(fake.loopback.port, password="not-the-password"):  # noqa: S106 - a wrong one
+        async with opened(fake.loopback.port, password="not-the-password"):
             pass
     shown = f"{caught.value!r} {caught.value.__cause__!r} {caplog.text}"
     assert "not-the-password" not in shown
@@ -164,7 +164,7 @@ async def test_reboot_between_commands(fake: FakeVapix) -> None:
 
 async def test_account_changed_meanwhile(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
-        fake.password = "changed"  # noqa: S105 - of the fake
+        fake.password = "changed"
         with pytest.raises(CameraSignInError):
             await camera.move(THERE)
         fake.password = PASSWORD

@@ -232,7 +232,7 @@ async def test_home_can_be_set(ptz: Any, device: VirtualDevice, time: HandClock)
 
 
 async def test_a_wrong_password_is_a_fault(served: ServedCamera) -> None:
-    async with connect(served, password="wrong") as client:  # noqa: S106 - it is wrong
+    async with connect(served, password="wrong") as client:
         media = await client.create_media_service()
         with pytest.raises(Fault) as refused:
             await media.GetProfiles()

@@ -133,7 +133,7 @@ async def test_consistency_of_configurations_and_options(ptz: Any) -> None:
 async def test_fault_for_an_invalid_configuration(ptz: Any) -> None:
     """PTZ-2-1-10 SET CONFIGURATION WITH INVALID TOKEN: env:Sender / ter:InvalidArgVal / ter:NoConfig."""
     (configuration,) = await ptz.GetConfigurations()
-    configuration.token = "no-such-configuration"  # noqa: S105 - not a secret
+    configuration.token = "no-such-configuration"
     with pytest.raises(Fault) as refused:
         await ptz.SetConfiguration({"PTZConfiguration": configuration, "ForcePersistence": False})
     assert subcodes(refused.value) == ["InvalidArgVal", "NoConfig"]

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import typer
 
 from scope_ptz.cli.camera import HELP
+from scope_ptz.cli.camera.by_hand import move, password, presets, snapshot, watch
 from scope_ptz.cli.camera.serve import serve
 from scope_ptz.cli.options import command
 
@@ -20,7 +21,14 @@ def _camera() -> None:
     """Group the camera commands."""
 
 
-COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = ((TEST, "serve", serve),)
+COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = (
+    (CONTROL, "snapshot", snapshot),
+    (CONTROL, "move", move),
+    (CONTROL, "presets", presets),
+    (CONTROL, "watch", watch),
+    (CONTROL, "password", password),
+    (TEST, "serve", serve),
+)
 """Panel of the help, name, and function of each command."""
 
 for panel, name, function in COMMANDS:

@@ -1,0 +1,156 @@
+"""The rules that a site sets for one camera."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
+
+Degrees = Annotated[float, Field(ge=-360.0, le=360.0, allow_inf_nan=False)]
+Share = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+
+
+class _Rules(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Region(_Rules):
+    """A rectangle of pan and tilt, such as the windows of a neighbour. Pan may run through 180: from 170 to -170.
+
+    Attributes:
+        name: What people call it. Messages show it.
+        pan_deg: From left to right, clockwise.
+        tilt_deg: From bottom to top.
+    """
+
+    name: str = Field(min_length=1, max_length=60)
+    pan_deg: tuple[Degrees, Degrees]
+    tilt_deg: tuple[Degrees, Degrees] = (-90.0, 90.0)
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Region:
+        if self.tilt_deg[0] >= self.tilt_deg[1]:
+            raise ValueError("tilt_deg is [bottom, top], with bottom below top")
+        if self.pan_deg[0] == self.pan_deg[1]:
+            raise ValueError("pan_deg is [left, right], and they differ")
+        return self
+
+    @property
+    def width_deg(self) -> float:
+        """Width in degrees of pan, above 0 and at most 360."""
+        return (self.pan_deg[1] - self.pan_deg[0]) % 360.0 or 360.0
+
+    def contains(self, pan_deg: float, tilt_deg: float) -> bool:
+        """Return whether a direction lies inside, edges excluded."""
+        turn = (pan_deg - self.pan_deg[0]) % 360.0
+        return self.tilt_deg[0] < tilt_deg < self.tilt_deg[1] and (self.width_deg == 360.0 or 0.0 < turn < self.width_deg)
+
+
+class PixelMask(_Rules):
+    """A rectangle of every frame, in shares of its width and height from the top left."""
+
+    left: Share
+    top: Share
+    right: Share
+    bottom: Share
+
+    @model_validator(mode="after")
+    def _in_order(self) -> PixelMask:
+        if self.left >= self.right or self.top >= self.bottom:
+            raise ValueError("left lies before right, and top before bottom")
+        return self
+
+
+class SoftLimits(_Rules):
+    """Limits inside those of the device. None leaves the device's own."""
+
+    min_pan_deg: Degrees | None = None
+    max_pan_deg: Degrees | None = None
+    min_tilt_deg: Degrees | None = None
+    max_tilt_deg: Degrees | None = None
+    max_zoom: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
+
+    def within(self, device: Limits) -> Limits:
+        """Return the device's limits, narrowed. A pan limit gives an endless pan stops.
+
+        Raises:
+            ValueError: Nothing is left between two limits.
+        """
+        low_pan, high_pan = device.min_pan_deg, device.max_pan_deg
+        limits = Limits(
+            low_pan if self.min_pan_deg is None else max(low_pan, self.min_pan_deg),
+            high_pan if self.max_pan_deg is None else min(high_pan, self.max_pan_deg),
+            device.min_tilt_deg if self.min_tilt_deg is None else max(device.min_tilt_deg, self.min_tilt_deg),
+            device.max_tilt_deg if self.max_tilt_deg is None else min(device.max_tilt_deg, self.max_tilt_deg),
+            device.min_zoom,
+            device.max_zoom if self.max_zoom is None else min(device.max_zoom, self.max_zoom),
+            pan_endless=device.pan_endless and self.min_pan_deg is None and self.max_pan_deg is None,
+        )
+        for name, low, high in (
+            ("pan", limits.min_pan_deg, limits.max_pan_deg),
+            ("tilt", limits.min_tilt_deg, limits.max_tilt_deg),
+            ("zoom", limits.min_zoom, limits.max_zoom),
+        ):
+            if low > high:
+                raise ValueError(f"the soft limits leave no {name}: the device's are {low:g} to {high:g}")
+        return limits
+
+
+class CameraRules(_Rules):
+    """Everything that a site may set for a camera.
+
+    Attributes:
+        soft_limits: Limits inside those of the device.
+        keep_out: Regions that no frame shows and at which the camera is never aimed.
+        masks: Rectangles of the picture that are black in every frame, such as a text overlay.
+        dead_zone_deg: Turns smaller than this are not carried out, which spares the motors. Zooming always is.
+        min_interval_s: Shortest time between two moves. An earlier move waits.
+    """
+
+    soft_limits: SoftLimits = SoftLimits()
+    keep_out: tuple[Region, ...] = ()
+    masks: tuple[PixelMask, ...] = ()
+    dead_zone_deg: Annotated[float, Field(ge=0.0, le=10.0)] = 0.0
+    min_interval_s: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
+
+    def region_at(self, pose: Pose) -> Region | None:
+        """Return the keep-out region at which a pose aims, None if it aims at none."""
+        return next((region for region in self.keep_out if region.contains(pose.pan_deg, pose.tilt_deg)), None)
+
+
+class Mounting(_Rules):
+    """How the device is mounted.
+
+    Attributes:
+        position: ``upright``, or ``ceiling`` for a device that hangs upside down and does not turn its own picture.
+        tilt_deg: How far the base leans: positive when the device's pan 0 looks up by this angle. At most 30.
+    """
+
+    position: Literal["upright", "ceiling"] = "upright"
+    tilt_deg: Annotated[float, Field(ge=-30.0, le=30.0)] = 0.0
+
+
+def nearest_outside(pose: Pose, regions: tuple[Region, ...], limits: Limits) -> Pose | None:
+    """Return the permitted pose nearest to a pose inside a region: on the region's edge, within the limits, and in no region.
+
+    None if there is no such pose on an edge of the region that contains it.
+    """
+    region = next((r for r in regions if r.contains(pose.pan_deg, pose.tilt_deg)), None)
+    if region is None:
+        return pose
+    left, right = region.pan_deg
+    edges = [Pose(pose.pan_deg, tilt, pose.zoom) for tilt in region.tilt_deg]
+    if region.width_deg < 360.0:
+        turns = (pose.pan_deg - left) % 360.0, (right - pose.pan_deg) % 360.0
+        edges += [Pose(pose.pan_deg - turns[0], pose.tilt_deg, pose.zoom), Pose(pose.pan_deg + turns[1], pose.tilt_deg, pose.zoom)]
+    edges = [Pose(wrap_pan_deg(edge.pan_deg), edge.tilt_deg, edge.zoom) for edge in edges]
+    permitted = [
+        edge for edge in edges if not limits.clamp(edge)[1] and not any(r.contains(edge.pan_deg, edge.tilt_deg) for r in regions)
+    ]
+    return min(permitted, key=lambda edge: _turn_deg(pose, edge), default=None)
+
+
+def _turn_deg(start: Pose, end: Pose) -> float:
+    return abs(wrap_pan_deg(end.pan_deg - start.pan_deg)) + abs(end.tilt_deg - start.tilt_deg)

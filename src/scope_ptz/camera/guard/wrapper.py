@@ -1,0 +1,73 @@
+"""A camera that passes every call to another one; guards override what they change."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncGenerator, AsyncIterator, Iterator
+from contextlib import aclosing, asynccontextmanager, contextmanager
+
+from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo
+from scope_ptz.geometry import Pose
+
+
+class CameraWrapper(Camera):
+    """A camera that behaves as the one inside.
+
+    Args:
+        camera: The camera inside. Closing the wrapper closes it.
+    """
+
+    def __init__(self, camera: Camera) -> None:
+        self.inner = camera
+        self.clock = camera.clock
+
+    @property
+    def info(self) -> CameraInfo:
+        return self.inner.info
+
+    async def pose(self) -> Pose:
+        return await self.inner.pose()
+
+    async def move(self, pose: Pose) -> Arrival:
+        return await self.inner.move(pose)
+
+    async def presets(self) -> list[PresetInfo]:
+        return await self.inner.presets()
+
+    async def go_to_preset(self, name: str) -> Arrival:
+        return await self.inner.go_to_preset(name)
+
+    async def go_home(self) -> Arrival:
+        return await self.inner.go_home()
+
+    async def frame(self) -> Frame:
+        return await self.inner.frame()
+
+    async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
+        async with aclosing(self.inner.frames(rate_hz=rate_hz)) as stream:
+            async for frame in stream:
+                yield frame
+
+    async def stop(self) -> None:
+        await self.inner.stop()
+
+    async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
+        await self.inner.drive(pan_dps, tilt_dps, zoom_rate, timeout_s=timeout_s)
+
+    async def save_preset(self, name: str, description: str = "") -> PresetInfo:
+        return await self.inner.save_preset(name, description)
+
+    async def remove_preset(self, name: str) -> None:
+        await self.inner.remove_preset(name)
+
+    @asynccontextmanager
+    async def control(self, holder: str) -> AsyncIterator[None]:
+        async with self.inner.control(holder):
+            yield
+
+    async def close(self) -> None:
+        await self.inner.close()
+
+    @contextmanager
+    def hold_time(self) -> Iterator[None]:
+        with self.inner.hold_time():
+            yield
