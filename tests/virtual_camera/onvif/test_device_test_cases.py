@@ -226,8 +226,10 @@ async def test_continuous_move_and_stop(ptz: Any, device: VirtualDevice, time: H
 
 async def test_profile_has_the_configuration(ptz: Any, media: Any) -> None:
     """MEDIA2_PTZ-1-1-1 and PTZ-2-1-x, with the profile of Media: its PTZ configuration is the listed one, and compatible."""
-    (profile,) = await media.GetProfiles()
     (listed,) = await ptz.GetConfigurations()
-    assert plain(profile.PTZConfiguration) == plain(listed)
-    compatible = await ptz.GetCompatibleConfigurations({"ProfileToken": profile.token})
-    assert [each.token for each in compatible] == [listed.token]
+    profiles = await media.GetProfiles()
+    assert len(profiles) == listed.UseCount
+    for profile in profiles:
+        assert plain(profile.PTZConfiguration) == plain(listed)
+        compatible = await ptz.GetCompatibleConfigurations({"ProfileToken": profile.token})
+        assert [each.token for each in compatible] == [listed.token]
