@@ -4,8 +4,8 @@
 
 Two clients read H.264 over TCP, one over UDP (FFmpeg through PyAV), and one Motion JPEG. The camera runs in a process of its own.
 What counts is memory over time, frames per second, frames that arrive late or out of order, the processor time of the camera, and
-threads and sockets that are left over at the end. The first part of the run, in which the camera sees every direction for the first
-time, is printed and not counted. Ages are measured from the exposure, by the time stamps in the streams.
+threads and sockets that are left over at the end. The first part of the run, in which the camera reads its scene and clients start,
+is printed and not counted. Ages are measured from the exposure, by the time stamps in the streams.
 """
 
 from __future__ import annotations
@@ -81,6 +81,7 @@ async def serve_camera(scene: str) -> None:
     from scope_ptz.virtual_camera.rtsp.server import RtspServer
 
     devices = make_devices(VirtualCameraOptions(scenes=(scene,)), [])
+    reading = devices[0].prefetch()
     async with serve(devices, truth=True, rate_hz=RATE_HZ) as (camera,):
         (listener,) = listen(camera.host, [0])
         async with RtspServer(camera.source, realm=camera.unit.realm).listen(listener) as rtsp:
@@ -98,6 +99,7 @@ async def serve_camera(scene: str) -> None:
                     "skipped_ticks": camera.source.late_frames,
                 }
                 print(json.dumps(figures), flush=True)
+    reading.cancel()
 
 
 def counts() -> dict[str, float]:
