@@ -41,6 +41,9 @@ class ScopeSettings(BaseModel):
     judge_model: str = Field(default="", description="Name of the judge on its server.")
     judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
     virtual_camera_password: SecretStr | None = Field(default=None, description="Password of the accounts of virtual cameras.")
+    camera_profiles_dir: Path = Field(
+        default_factory=lambda: user_config_path("scope-ptz") / "cameras", description="Folder with what was measured on cameras."
+    )
     config: Path | None = Field(default=None, description="File with the cameras of a site (default: scope.yaml).")
 
     def tile_bytes(self) -> int | None:

@@ -25,7 +25,7 @@ from scope_ptz.virtual_camera.http.server import ServedCamera
 
 pytestmark = [pytest.mark.anyio, pytest.mark.full]
 
-SECRET = "pass word"  # noqa: S105 - a space is what programs stumble over
+SECRET = "pass word"
 STREAMS = {"rtsp over tcp": ["-rtsp_transport", "tcp"], "rtsp over udp": ["-rtsp_transport", "udp"], "mjpeg": []}
 
 

@@ -34,6 +34,7 @@ class CameraInfo:
         simulated: Whether the pictures are computed.
         capabilities: What else the camera can do.
         rendering: Version of the simulator's rendering; None for other cameras.
+        assumed: What the driver only assumes until somebody measures it, such as "field of view".
     """
 
     name: str
@@ -44,6 +45,7 @@ class CameraInfo:
     simulated: bool
     capabilities: Capabilities = NO_CAPABILITIES
     rendering: int | None = None
+    assumed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -156,6 +156,7 @@ async def open_camera(
     time_s: float | None = None,
     realtime: bool = False,
     actor: str | None = None,
+    measuring: bool = False,
 ) -> OpenCamera:
     """Open a camera. One that ``scope.yaml`` names keeps the rules there.
 
@@ -166,6 +167,7 @@ async def open_camera(
         time_s: Scene time at the start, in seconds; the default is the scene's own start time.
         realtime: Whether scene time follows the wall clock, so that a person can watch. Otherwise moves take no wall-clock time.
         actor: Who controls the camera, for the audit log and for others who want control; the default is the user of the system.
+        measuring: Whether the camera is opened to be measured, so that a driver may assume what it does not know yet.
 
     Returns:
         The open camera, which the caller closes.
@@ -188,7 +190,7 @@ async def open_camera(
         live = await open_live_blender(spec, viewpoint=viewpoint, time_s=time_s, realtime=realtime)
         opened = OpenCamera(spec, live.camera, live.scene, live.release)
     elif spec.scheme in NETWORK_SCHEMES:
-        opened = await _open_network(spec, viewpoint, time_s, actor)
+        opened = await _open_network(spec, viewpoint, time_s, actor, measuring=measuring)
     else:
         opened = await _open_plugin(spec, viewpoint, time_s)
     try:
@@ -215,11 +217,13 @@ def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | Non
     return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, width=width, height=height), scene)
 
 
-async def _open_network(spec: CameraSpec, viewpoint: str | None, time_s: float | None, actor: str | None) -> OpenCamera:
+async def _open_network(
+    spec: CameraSpec, viewpoint: str | None, time_s: float | None, actor: str | None, *, measuring: bool
+) -> OpenCamera:
     from scope_ptz.factory.network_cameras import open_network_camera
 
     _refuse_scene_options(spec, viewpoint, time_s, "a camera on the network")
-    connected = await open_network_camera(spec, actor=actor or f"scope: {user_name()}")
+    connected = await open_network_camera(spec, actor=actor or f"scope: {user_name()}", measuring=measuring)
     return OpenCamera(spec, connected.camera, None, connected.release)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.factory.onvif_cameras import ANGLES, check_angles, open_onvif
 from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:
@@ -17,16 +18,19 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.address import DeviceAddress
     from scope_ptz.camera.network.credentials import Credentials
 
-NETWORK_SCHEMES: tuple[str, ...] = ("axis",)
+NETWORK_SCHEMES: tuple[str, ...] = ("axis", "onvif")
 """The schemes of drivers for network cameras."""
 
-STREAMS = ("mjpeg", "rtsp")
+STREAMS = {"axis": ("mjpeg", "rtsp"), "onvif": ("rtsp", "snapshot")}
 
 _NUMBERS = {"width": 10_000, "height": 10_000, "channel": 64, "rtsp_port": 65_535, "latency_ms": 10_000}
 _DEGREES = ("hfov_wide", "hfov_tele")
-_CHOICES = {"stream": STREAMS, "tls": ("on", "off")}
+_CHOICES = {"tls": ("on", "off")}
 
-OPTIONS = {"axis": (*_NUMBERS, *_CHOICES, *_DEGREES)}
+OPTIONS = {
+    "axis": (*_NUMBERS, "stream", *_CHOICES, *_DEGREES),
+    "onvif": (*(name for name in _NUMBERS if name != "channel"), "stream", "profile", *_CHOICES, *_DEGREES, *ANGLES),
+}
 """The options of each scheme."""
 
 
@@ -53,26 +57,29 @@ def check_network_spec(spec: CameraSpec) -> None:
 
     parse_address(spec.address, tls=spec.options.get("tls") == "on")
     known = OPTIONS[spec.scheme]
+    choices = {**_CHOICES, "stream": STREAMS[spec.scheme]}
     for name, value in spec.options.items():
         if name not in known:
             raise UnknownNameError("camera option", name[:40], known)
         if name in _NUMBERS and not (value.isdecimal() and 0 < int(value) <= _NUMBERS[name]):
             raise InputError(f"The camera option {name} is a whole number from 1 to {_NUMBERS[name]}, got '{value[:40]}'.")
-        if name in _CHOICES and value not in _CHOICES[name]:
-            raise InputError(f"The camera option {name} is {' or '.join(_CHOICES[name])}, got '{value[:40]}'.")
+        if name in choices and value not in choices[name]:
+            raise InputError(f"The camera option {name} is {' or '.join(choices[name])}, got '{value[:40]}'.")
         if name in _DEGREES:
             _degrees(name, value)
+    check_angles(spec)
     fields = _fields(spec)
     if ("hfov_wide" in spec.options) != ("hfov_tele" in spec.options) or (fields is not None and fields[0] <= fields[1]):
         raise InputError("Give both hfov_wide and hfov_tele in degrees, and the wide one larger.")
 
 
-async def open_network_camera(spec: CameraSpec, *, actor: str = "scope") -> OpenNetworkCamera:
+async def open_network_camera(spec: CameraSpec, *, actor: str = "scope", measuring: bool = False) -> OpenNetworkCamera:
     """Connect to a network camera and hold its control lock, so that one program at a time moves it.
 
     Args:
         spec: The camera.
         actor: Who controls it, for others who want control.
+        measuring: Whether it is opened to be measured, so that a driver may assume what it does not know yet.
 
     Raises:
         InputError: The spec or an option is wrong, or there is no password for the account.
@@ -95,7 +102,11 @@ async def open_network_camera(spec: CameraSpec, *, actor: str = "scope") -> Open
 
     try:
         verify = await _trust(spec, address)
-        return OpenNetworkCamera(await _open_axis(spec, address, credentials, verify), release)
+        if spec.scheme == "onvif":
+            camera = await open_onvif(spec, address, credentials, verify, _fields(spec), measuring=measuring)
+        else:
+            camera = await _open_axis(spec, address, credentials, verify)
+        return OpenNetworkCamera(camera, release)
     except BaseException:
         lock.release()
         raise

@@ -8,6 +8,7 @@ import typer
 
 from scope_ptz.cli.camera import HELP
 from scope_ptz.cli.camera.by_hand import move, password, presets, snapshot, watch
+from scope_ptz.cli.camera.measure import calibrate, discover, probe
 from scope_ptz.cli.camera.serve import serve
 from scope_ptz.cli.options import command
 
@@ -22,6 +23,9 @@ def _camera() -> None:
 
 
 COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = (
+    (FIND, "discover", discover),
+    (FIND, "probe", probe),
+    (FIND, "calibrate", calibrate),
     (CONTROL, "snapshot", snapshot),
     (CONTROL, "move", move),
     (CONTROL, "presets", presets),

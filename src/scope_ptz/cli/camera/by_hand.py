@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.base import Arrival, Camera, Frame
 
 CameraSpecArgument = Annotated[
-    str, typer.Argument(metavar="CAMERA", help="Camera: a name in scope.yaml, axis://USER@HOST, sim:SCENE, ...")
+    str, typer.Argument(metavar="CAMERA", help="Camera: a name in scope.yaml, axis://USER@HOST, onvif://USER@HOST, sim:SCENE, ...")
 ]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Say what the camera would do, and do nothing.")]
 

@@ -1,0 +1,301 @@
+"""Calibration of a camera from its own pictures: signs and response of pan and tilt, fields of view, latency, settling."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from anyio import to_thread
+
+from scope_ptz.camera.measuring import registration as r
+from scope_ptz.camera.measuring.registration import Matches, RegistrationError
+from scope_ptz.camera.network.settling import motion_share
+from scope_ptz.errors import CameraError
+from scope_ptz.geometry import Pose, wrap_pan_deg
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from scope_ptz.camera.base import Camera
+
+ANGLE_TOLERANCE = 0.03
+FIELD_TOLERANCE = 0.05
+"""Shares by which a measurement may differ from what the device states, before it contradicts it."""
+
+TILT_ZERO_TOLERANCE_DEG = 3.0
+"""Degrees by which the horizon of the pictures may differ from a tilt of 0."""
+
+PLACES_DEG = (0.0, 60.0, -60.0, 120.0)
+"""Turns from the start at which the measurement is tried until a place has enough detail."""
+
+_SMALL, _LARGE = 0.12, 0.35  # turns as shares of the field of view: for the sign, and for the perspective
+_SHOTS, _RUNS = 5, 3
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class AxisResponse:
+    """How the picture answers to a commanded turn.
+
+    Attributes:
+        scale: Degrees that the camera really turns for each degree that it states; negative if it turns the other way.
+        inverted: Whether it turns the other way.
+    """
+
+    scale: float
+
+    @property
+    def inverted(self) -> bool:
+        return self.scale < 0
+
+
+@dataclass(frozen=True, slots=True)
+class FieldOfView:
+    """A field of view at a zoom.
+
+    Attributes:
+        zoom: Magnification as the camera states it.
+        share: Its share of the camera's zoom range, 0 to 1.
+        stated_deg: Horizontal field of view by the camera's own table, in degrees.
+        measured_deg: Horizontal field of view by the pictures, in degrees.
+    """
+
+    zoom: float
+    share: float
+    stated_deg: float
+    measured_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """What was measured.
+
+    Attributes:
+        pan: Response of pan.
+        tilt: Response of tilt.
+        tilt_offset_deg: Degrees by which the picture's tilt is above the stated one.
+        fields: Fields of view, widest first.
+        snapshot_s: Median seconds to take a picture.
+        move_s: Median seconds of a move of 20 degrees, until the driver reports arrival.
+        settling_s: Median seconds from then until the picture stands.
+        residual_px: Typical error of the registration in pixels.
+        contradictions: What the pictures contradict, as sentences.
+    """
+
+    pan: AxisResponse
+    tilt: AxisResponse
+    tilt_offset_deg: float
+    fields: tuple[FieldOfView, ...]
+    snapshot_s: float
+    move_s: float
+    settling_s: float
+    residual_px: float
+    contradictions: tuple[str, ...] = field(default=())
+
+
+async def calibrate(
+    camera: Camera, *, zooms: int = 6, assumed: tuple[str, ...] = (), progress: Progress = lambda _: None
+) -> Calibration:
+    """Measure a camera, and bring it back to where it stood.
+
+    Moving things in view do no harm while most of the picture stands still. Time of a simulated world is held.
+
+    Args:
+        camera: The camera. Nobody else may move it.
+        zooms: At how many zooms the field of view is measured.
+        assumed: What the driver only assumes, so that a measurement replaces it and contradicts nothing: "pan range",
+            "tilt range", "field of view".
+        progress: Is told what happens.
+
+    Raises:
+        RegistrationError: No place has enough detail.
+        CameraError: The camera fails.
+    """
+    start = await camera.pose()
+    try:
+        return await _calibrate(camera, start, zooms, assumed, progress)
+    finally:
+        with suppress(CameraError):
+            await camera.move(start)
+
+
+async def _calibrate(camera: Camera, start: Pose, zooms: int, assumed: tuple[str, ...], progress: Progress) -> Calibration:
+    snapshot_s = await _snapshot_s(camera)
+    failure = RegistrationError("The camera has no room to turn.")
+    for place_deg in PLACES_DEG:
+        base = _base(camera, start, place_deg)
+        progress(f"Looking for detail at pan {base.pan_deg:.0f}.")
+        try:
+            with camera.hold_time():
+                response = await _response(camera, base, progress)
+                fields = await _fields(camera, base, response, zooms, progress)
+        except RegistrationError as error:
+            failure = error
+            continue
+        progress("Timing moves.")
+        move_s, settling_s = await _settling(camera, base)
+        pan, tilt = AxisResponse(response.pan), AxisResponse(response.tilt)
+        contradictions = _contradictions(pan, tilt, response.tilt_offset_deg, fields, assumed)
+        return Calibration(
+            pan, tilt, response.tilt_offset_deg, fields, snapshot_s, move_s, settling_s, response.residual_px, contradictions
+        )
+    raise failure
+
+
+@dataclass(frozen=True, slots=True)
+class _Response:
+    pan: float
+    tilt: float
+    tilt_offset_deg: float
+    focal_px: float
+    residual_px: float
+
+
+async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response:
+    """Measure how the picture turns at the widest zoom, with the focal length from the pictures alone."""
+    stated = camera.info.optics.hfov_deg(base.zoom)
+    centre, here = await _look(camera, base)
+    focal = r.focal_px(stated, centre.shape[1])
+    rough = []
+    for pan_deg, tilt_deg in ((_SMALL * stated, 0.0), (0.0, _vertical(camera, base, _SMALL * stated / 2))):
+        pair, turned = await _turned(camera, base, centre, here, pan_deg, tilt_deg)
+        found = r.rotation(pair, focal)
+        rough.append(found.angle_deg / (abs(turned) or 1.0))
+    # The second turns are chosen so that the pictures overlap well whatever a commanded degree is.
+    pan_deg = min(_LARGE * stated / max(rough[0], 0.05), 3 * _LARGE * stated)
+    tilt_deg = _vertical(camera, base, min(_LARGE * stated * 0.5 / max(rough[1], 0.05), 60.0))
+    pairs = [await _turned(camera, base, centre, here, *turn) for turn in ((pan_deg, 0.0), (-pan_deg, 0.0), (0.0, tilt_deg))]
+    focal = await to_thread.run_sync(r.focal_from, [pair for pair, _ in pairs])
+    right, left, up = (r.rotation(pair, focal) for pair, _ in pairs)
+    pan = statistics.mean(math.copysign(each.angle_deg, each.right_deg) / pairs[k][1] for k, each in enumerate((right, left)))
+    tilt = math.copysign(up.angle_deg, up.up_deg) / pairs[2][1]
+    # A turn about the vertical shows as roll as far as the camera looks up or down.
+    seen_tilt = math.degrees(math.atan2(right.roll_deg - left.roll_deg, right.right_deg - left.right_deg))
+    seen_tilt = seen_tilt if pan > 0 else math.degrees(math.atan2(left.roll_deg - right.roll_deg, left.right_deg - right.right_deg))
+    progress(f"Pan turns {pan:+.3f} and tilt {tilt:+.3f} degrees for each degree.")
+    residual = statistics.mean(each.residual_px for each in (right, left, up))
+    return _Response(pan, tilt, seen_tilt - here.tilt_deg, focal, residual)
+
+
+async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, progress: Progress) -> tuple[FieldOfView, ...]:
+    """Measure the field of view at zooms from the widest to the closest one, by turns of a known angle."""
+    limits, optics = camera.info.limits, camera.info.optics
+    width = camera.info.frame_width
+    fields = [FieldOfView(limits.min_zoom, 0.0, optics.hfov_deg(limits.min_zoom), r.hfov_deg(response.focal_px, width))]
+    ratio = limits.max_zoom / limits.min_zoom
+    if ratio < 1.01:
+        return tuple(fields)
+    correction = fields[0].measured_deg / fields[0].stated_deg
+    for step in range(1, zooms):
+        zoom = limits.min_zoom * ratio ** (step / (zooms - 1)) if step < zooms - 1 else limits.max_zoom
+        stated = optics.hfov_deg(zoom)
+        expected = min(stated * correction, fields[-1].measured_deg)
+        at = Pose(base.pan_deg, base.tilt_deg, zoom)
+        for share in (0.25, 0.06):  # the second one is for a table that is far off
+            try:
+                centre, here = await _look(camera, at)
+                pair, turned = await _turned(camera, at, centre, here, share * expected / abs(response.pan), 0.0)
+                focal = r.focal_for_angle(pair, turned * response.pan)
+                break
+            except RegistrationError:
+                if share < 0.1:
+                    raise
+        measured = r.hfov_deg(focal, width)
+        correction = measured / stated
+        fields.append(FieldOfView(zoom, (zoom - limits.min_zoom) / (limits.max_zoom - limits.min_zoom), stated, measured))
+        progress(f"At {zoom:.2f}x the picture is {measured:.2f} degrees wide; stated are {stated:.2f}.")
+    return tuple(fields)
+
+
+async def _snapshot_s(camera: Camera) -> float:
+    times = []
+    for _ in range(_SHOTS):
+        started_s = monotonic()
+        await camera.frame()
+        times.append(monotonic() - started_s)
+    return statistics.median(times)
+
+
+async def _settling(camera: Camera, base: Pose) -> tuple[float, float]:
+    """Return the median seconds of a move, and from its reported arrival until the picture stands."""
+    moves, settlings = [], []
+    for run in range(_RUNS):
+        started_s = camera.clock.now_s()
+        await camera.move(Pose(base.pan_deg + (20.0 if run % 2 == 0 else 0.0), base.tilt_deg, base.zoom))
+        arrived_s = camera.clock.now_s()
+        moves.append(arrived_s - started_s)
+        still_s, before = arrived_s, (await camera.frame()).image
+        for _ in range(20):
+            frame = await camera.frame()
+            share = motion_share(before, frame.image)
+            if share is None or share < 0.5:
+                break
+            still_s, before = camera.clock.now_s(), frame.image
+        settlings.append(still_s - arrived_s)
+    return statistics.median(moves), statistics.median(settlings)
+
+
+async def _look(camera: Camera, pose: Pose) -> tuple[NDArray[np.uint8], Pose]:
+    """Move and take a picture. Return it with the pose that the camera states."""
+    arrival = await camera.move(pose)
+    return (await camera.frame()).image, arrival.pose
+
+
+async def _turned(
+    camera: Camera, base: Pose, centre: NDArray[np.uint8], here: Pose, pan_deg: float, tilt_deg: float
+) -> tuple[Matches, float]:
+    """Turn from a base along one axis. Return the matches with the base's picture, and the stated turn in degrees."""
+    image, there = await _look(camera, Pose(base.pan_deg + pan_deg, base.tilt_deg + tilt_deg, base.zoom))
+    turned = wrap_pan_deg(there.pan_deg - here.pan_deg) if pan_deg else there.tilt_deg - here.tilt_deg
+    if abs(turned) < 0.2 * abs(pan_deg or tilt_deg):
+        raise CameraError(f"{camera.info.name} was told to turn and states that it did not. Its motor may be blocked.")
+    return await to_thread.run_sync(r.match, centre, image), turned
+
+
+def _base(camera: Camera, start: Pose, turn_deg: float) -> Pose:
+    """Return a pose with room to turn around it, at the widest zoom and near the horizon."""
+    limits = camera.info.limits
+    room = min(40.0, (limits.max_pan_deg - limits.min_pan_deg) / 4)
+    pan = wrap_pan_deg(start.pan_deg + turn_deg)
+    if not limits.pan_endless:
+        pan = min(max(pan, limits.min_pan_deg + room), limits.max_pan_deg - room)
+    steep = max(-35.0, limits.min_tilt_deg), min(15.0, limits.max_tilt_deg)
+    tilt = min(max(start.tilt_deg, steep[0]), steep[1]) if steep[0] < steep[1] else start.tilt_deg
+    return Pose(pan, tilt, limits.min_zoom)
+
+
+def _vertical(camera: Camera, base: Pose, size_deg: float) -> float:
+    """Return a turn of tilt, in the direction with more room."""
+    up, down = camera.info.limits.max_tilt_deg - base.tilt_deg, base.tilt_deg - camera.info.limits.min_tilt_deg
+    return min(size_deg, up) if up > down else -min(size_deg, down)
+
+
+def _contradictions(
+    pan: AxisResponse, tilt: AxisResponse, tilt_offset_deg: float, fields: tuple[FieldOfView, ...], assumed: tuple[str, ...]
+) -> tuple[str, ...]:
+    found = []
+    for name, words, response in (("pan", ("right", "left"), pan), ("tilt", ("up", "down"), tilt)):
+        if response.inverted:
+            found.append(
+                f"The {name} is inverted: told to turn {words[0]}, the picture turns {words[1]}. "
+                f"Correct the direction in the camera's settings, and check whether it is mounted upside down."
+            )
+        elif f"{name} range" not in assumed and abs(response.scale - 1) > ANGLE_TOLERANCE:
+            found.append(f"The {name} turns {response.scale:.3f} degrees for each degree that the camera states.")
+    if "tilt range" not in assumed and not tilt.inverted and abs(tilt_offset_deg) > TILT_ZERO_TOLERANCE_DEG:
+        found.append(f"A tilt of 0 is {tilt_offset_deg:+.1f} degrees from the horizon. Level the camera or its mount.")
+    if "field of view" not in assumed:
+        worst = max(fields, key=lambda each: abs(each.measured_deg / each.stated_deg - 1))
+        if abs(worst.measured_deg / worst.stated_deg - 1) > FIELD_TOLERANCE:
+            found.append(
+                f"The zoom table is wrong: at {worst.zoom:.2f}x the picture is {worst.measured_deg:.1f} degrees wide, "
+                f"and the camera states {worst.stated_deg:.1f}."
+            )
+    return tuple(found)

@@ -1,0 +1,173 @@
+"""The profile of a camera: what was found out about it, kept as JSON in the configuration folder."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from scope_ptz.errors import OutputError, PackError
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.measuring.calibration import Calibration
+
+VERSION = 1
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class MeasuredField(_Record):
+    """A field of view: magnification and its share of the zoom range, and horizontal degrees as stated and as measured."""
+
+    zoom: float = Field(gt=0)
+    share: float = Field(ge=0, le=1)
+    stated_deg: float = Field(gt=0, lt=180)
+    measured_deg: float = Field(gt=0, lt=180)
+
+
+class CalibrationRecord(_Record):
+    """A calibration, with the ranges of pan and tilt that its scales refer to."""
+
+    measured_at: str
+    pan_scale: float
+    tilt_scale: float
+    tilt_offset_deg: float
+    pan_range_deg: tuple[float, float]
+    tilt_range_deg: tuple[float, float]
+    fields: tuple[MeasuredField, ...]
+    snapshot_s: float
+    move_s: float
+    settling_s: float
+    residual_px: float
+    replaces: tuple[str, ...] = ()
+    contradictions: tuple[str, ...] = ()
+
+    @property
+    def pan_deg(self) -> tuple[float, float] | None:
+        """Real pan in degrees at the ends of the assumed range; None if the range was not assumed."""
+        return None if "pan range" not in self.replaces else _scaled(self.pan_range_deg, self.pan_scale, 0.0)
+
+    @property
+    def tilt_deg(self) -> tuple[float, float] | None:
+        """Real tilt in degrees at the ends of the assumed range; None if the range was not assumed."""
+        return None if "tilt range" not in self.replaces else _scaled(self.tilt_range_deg, self.tilt_scale, self.tilt_offset_deg)
+
+
+class ProbeRecord(_Record):
+    """What a camera states about itself."""
+
+    probed_at: str
+    model: str
+    driver: str
+    pan_range_deg: tuple[float, float]
+    tilt_range_deg: tuple[float, float]
+    zoom_range: tuple[float, float]
+    pan_endless: bool
+    zoom_table: tuple[tuple[float, float], ...]
+    frame_width: int
+    frame_height: int
+    presets: tuple[str, ...]
+    drives: bool
+    edits_presets: bool
+    focus: bool
+    iris: bool
+    assumed: tuple[str, ...]
+    snapshot_s: float
+
+
+class CameraProfile(_Record):
+    """What was found out about a camera. It holds no password and no user name.
+
+    Attributes:
+        version: Version of the format.
+        camera: Where the camera is, such as ``onvif 10.0.0.7:80``.
+        probe: What it states.
+        calibration: What was measured.
+    """
+
+    version: int = VERSION
+    camera: str
+    probe: ProbeRecord | None = None
+    calibration: CalibrationRecord | None = None
+
+
+def record_of(
+    calibration: Calibration, pan_range_deg: tuple[float, float], tilt_range_deg: tuple[float, float], assumed: tuple[str, ...]
+) -> CalibrationRecord:
+    """Return a calibration as it is stored."""
+    return CalibrationRecord(
+        measured_at=now(),
+        pan_scale=calibration.pan.scale,
+        tilt_scale=calibration.tilt.scale,
+        tilt_offset_deg=calibration.tilt_offset_deg,
+        pan_range_deg=pan_range_deg,
+        tilt_range_deg=tilt_range_deg,
+        fields=tuple(
+            MeasuredField(zoom=each.zoom, share=each.share, stated_deg=each.stated_deg, measured_deg=each.measured_deg)
+            for each in calibration.fields
+        ),
+        snapshot_s=calibration.snapshot_s,
+        move_s=calibration.move_s,
+        settling_s=calibration.settling_s,
+        residual_px=calibration.residual_px,
+        replaces=assumed,
+        contradictions=calibration.contradictions,
+    )
+
+
+def now() -> str:
+    """Return the time in UTC as ISO 8601."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def profile_path(folder: Path, camera: str) -> Path:
+    """Return the file of a camera's profile."""
+    words = re.sub(r"[^A-Za-z0-9.-]+", "-", camera).strip("-.")[:60]
+    return folder / f"{words}-{hashlib.sha256(camera.encode()).hexdigest()[:8]}.json"
+
+
+def load_profile(folder: Path, camera: str) -> CameraProfile | None:
+    """Return the profile of a camera, None if there is none.
+
+    Raises:
+        PackError: The file is damaged.
+    """
+    path = profile_path(folder, camera)
+    try:
+        found = CameraProfile.model_validate_json(path.read_bytes())
+    except FileNotFoundError:
+        return None
+    except (OSError, ValidationError) as error:
+        raise PackError(f"The camera profile {path} cannot be read. Delete it and measure the camera again.") from error
+    if found.version != VERSION or found.camera != camera:
+        raise PackError(f"The camera profile {path} is of another version or camera. Delete it and measure the camera again.")
+    return found
+
+
+def save_profile(folder: Path, profile: CameraProfile) -> Path:
+    """Write the profile of a camera. A reader never sees half of it.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    path = profile_path(folder, profile.camera)
+    part = path.with_suffix(f".{os.getpid()}.part")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        part.write_text(profile.model_dump_json(indent=1) + "\n", encoding="utf-8")
+        part.replace(path)
+    except OSError as error:
+        raise OutputError(f"The camera profile {path} cannot be written: {error.strerror or error}.") from error
+    return path
+
+
+def _scaled(ends: tuple[float, float], scale: float, offset: float) -> tuple[float, float]:
+    middle = (ends[0] + ends[1]) / 2
+    return middle + (ends[0] - middle) * scale + offset, middle + (ends[1] - middle) * scale + offset

@@ -1,0 +1,202 @@
+"""The rotation of a camera between two overlapping pictures, from matched features.
+
+A camera that turns about its optical centre maps one picture to the other by its focal length and a rotation. Both follow from
+the pictures alone when the rotation is large enough; with a known focal length or a known angle, the other one follows.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from scope_ptz.errors import CameraError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+MIN_MATCHES = 24
+"""Matches that a registration needs; fewer may agree by chance."""
+
+_RATIO = 0.75  # Lowe's ratio test
+_RANSAC_PX = 2.0
+_MAX_FEATURES = 3000
+
+
+class RegistrationError(CameraError):
+    """Two pictures cannot be registered."""
+
+
+@dataclass(frozen=True, slots=True)
+class Matches:
+    """Points of one direction in two pictures of a camera that turned between them.
+
+    Attributes:
+        first: Array of shape ``(N, 2)``: pixels from the picture's centre, right and up positive.
+        second: The same directions in the second picture.
+        width: Width of the pictures in pixels.
+    """
+
+    first: NDArray[np.float64]
+    second: NDArray[np.float64]
+    width: int
+
+
+@dataclass(frozen=True, slots=True)
+class Rotation:
+    """How a camera turned between two pictures.
+
+    Attributes:
+        right_deg: Degrees to the right, about the camera's own upward axis.
+        up_deg: Degrees upwards, about its own axis to the right.
+        roll_deg: Degrees about its line of sight.
+        residual_px: Root mean square distance of the matches from the model, in pixels.
+    """
+
+    right_deg: float
+    up_deg: float
+    roll_deg: float
+    residual_px: float
+
+    @property
+    def angle_deg(self) -> float:
+        """The angle of the whole rotation."""
+        return math.hypot(self.right_deg, self.up_deg, self.roll_deg)
+
+
+def match(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> Matches:
+    """Match features of two pictures. Those on things that moved by themselves are left out.
+
+    Args:
+        first: A picture, ``(H, W, 3)`` uint8 RGB.
+        second: A picture of the same size.
+
+    Raises:
+        RegistrationError: There is too little in common.
+    """
+    import cv2
+
+    if first.shape != second.shape:
+        raise RegistrationError("Two pictures of a camera have different sizes.")
+    sift = cv2.SIFT_create(nfeatures=_MAX_FEATURES)  # type: ignore[attr-defined]
+    (points_1, kinds_1), (points_2, kinds_2) = (
+        sift.detectAndCompute(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), None) for image in (first, second)
+    )
+    if min(len(points_1), len(points_2)) < MIN_MATCHES:
+        raise _too_little()
+    pairs = cv2.BFMatcher().knnMatch(kinds_1, kinds_2, k=2)
+    good = [pair[0] for pair in pairs if len(pair) == 2 and pair[0].distance < _RATIO * pair[1].distance]
+    if len(good) < MIN_MATCHES:
+        raise _too_little()
+    one = np.array([points_1[m.queryIdx].pt for m in good], np.float64)
+    two = np.array([points_2[m.trainIdx].pt for m in good], np.float64)
+    _, mask = cv2.findHomography(one, two, cv2.RANSAC, _RANSAC_PX)
+    if mask is None or int(mask.sum()) < MIN_MATCHES:
+        raise _too_little()
+    kept = mask.ravel().astype(bool)
+    return Matches(_centred(one[kept], first.shape), _centred(two[kept], first.shape), int(first.shape[1]))
+
+
+def rotation(matches: Matches, focal_px: float) -> Rotation:
+    """Return the rotation that maps the matches onto each other, at a focal length in pixels."""
+    one, two = _directions(matches.first, focal_px), _directions(matches.second, focal_px)
+    u, _, vt = np.linalg.svd(two.T @ one)
+    turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt  # maps directions of the first picture to those of the second
+    predicted = one @ turn.T
+    back = predicted[:, :2] / predicted[:, 2:] * focal_px
+    residual = float(np.sqrt(np.mean(np.sum((back - matches.second) ** 2, axis=1))))
+    vector = _rotation_vector(turn)
+    # Directions turn against the camera: a camera that turns right sees the world turn left. Axes: right, up, forward.
+    right_deg, up_deg, roll_deg = np.degrees([-vector[1], vector[0], -vector[2]])
+    return Rotation(float(right_deg), float(up_deg), float(roll_deg), residual)
+
+
+def focal_from(pairs: list[Matches]) -> float:
+    """Return the focal length in pixels that explains all pairs best.
+
+    The pairs must have turned by a good part of the field of view: perspective tells the focal length, and a small turn has none.
+    """
+    width = pairs[0].width
+    fields = np.geomspace(4.0, 130.0, 48)
+
+    def misfit(log_focal: float) -> float:
+        return sum(rotation(pair, math.exp(log_focal)).residual_px ** 2 * len(pair.first) for pair in pairs)
+
+    logs = np.log(width / 2 / np.tan(np.radians(fields) / 2))
+    best = int(np.argmin([misfit(value) for value in logs]))
+    low, high = logs[min(best + 1, len(logs) - 1)], logs[max(best - 1, 0)]
+    return math.exp(_minimum(misfit, float(low), float(high)))
+
+
+def focal_for_angle(matches: Matches, angle_deg: float) -> float:
+    """Return the focal length in pixels at which the rotation has a known angle.
+
+    Raises:
+        RegistrationError: No focal length gives the angle.
+    """
+    low, high = matches.width / 2 / math.tan(math.radians(160.0) / 2), matches.width / 2 / math.tan(math.radians(0.5) / 2)
+    wanted = abs(angle_deg)
+    if not rotation(matches, low).angle_deg > wanted > rotation(matches, high).angle_deg:
+        raise RegistrationError("The picture did not turn by an angle that any lens explains.")
+    for _ in range(60):
+        middle = math.sqrt(low * high)
+        if rotation(matches, middle).angle_deg > wanted:
+            low = middle
+        else:
+            high = middle
+    return math.sqrt(low * high)
+
+
+def hfov_deg(focal_px: float, width: int) -> float:
+    """Return the horizontal field of view in degrees."""
+    return math.degrees(2 * math.atan(width / 2 / focal_px))
+
+
+def focal_px(hfov: float, width: int) -> float:
+    """Return the focal length in pixels for a horizontal field of view in degrees."""
+    return width / 2 / math.tan(math.radians(hfov) / 2)
+
+
+def _centred(points: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float64]:
+    height, width = shape[:2]
+    return (points - [(width - 1) / 2, (height - 1) / 2]) * [1.0, -1.0]
+
+
+def _directions(points: NDArray[np.float64], focal: float) -> NDArray[np.float64]:
+    rays = np.column_stack([points, np.full(len(points), focal)])
+    return np.asarray(rays / np.linalg.norm(rays, axis=1, keepdims=True))
+
+
+def _rotation_vector(turn: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return axis times angle in radians, by the right-hand rule in axes right, up, forward taken as x, y, z."""
+    axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
+    sine = float(np.linalg.norm(axis))
+    angle = math.atan2(sine, (float(np.trace(turn)) - 1) / 2)
+    return axis * (angle / sine if sine > 1e-12 else 1.0)
+
+
+def _minimum(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return where a function of one number is smallest, by golden section."""
+    share = (math.sqrt(5) - 1) / 2
+    left, right = high - share * (high - low), low + share * (high - low)
+    at_left, at_right = function(left), function(right)
+    for _ in range(40):
+        if at_left < at_right:
+            high, right, at_right = right, left, at_left
+            left = high - share * (high - low)
+            at_left = function(left)
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + share * (high - low)
+            at_right = function(right)
+    return (low + high) / 2
+
+
+def _too_little() -> RegistrationError:
+    return RegistrationError(
+        "Two pictures have too little in common to measure between them. Aim the camera at a scene with detail and good light."
+    )

@@ -1,0 +1,152 @@
+"""The ONVIF services of one device, through ``onvif-zeep-async`` on a pinned transport."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.camera.network.errors import CameraReplyError, CameraSignInError
+from scope_ptz.camera.onvif.faults import soap_errors
+from scope_ptz.camera.onvif.transport import PinnedTransport, import_onvif, pinned_path, to_bytes
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.network.address import DeviceAddress
+    from scope_ptz.camera.network.credentials import Credentials
+    from scope_ptz.camera.network.http import DeviceHttp
+
+_STOP_HEADERS = {"Content-Type": "application/soap+xml; charset=utf-8"}
+
+
+class OnvifClient:
+    """The connection to one device. ``connect`` first.
+
+    Args:
+        http: The device. It is closed with the client.
+        credentials: The account.
+
+    Raises:
+        ConfigError: ``onvif-zeep-async`` is not installed.
+    """
+
+    def __init__(self, http: DeviceHttp, credentials: Credentials) -> None:
+        self.http = http
+        self._library = import_onvif()
+        self._credentials = credentials
+        self._camera: Any = None
+        self._stop_service: Any = None
+        self._signed_in = False
+
+    def __repr__(self) -> str:
+        return f"OnvifClient({self.address})"
+
+    @property
+    def address(self) -> DeviceAddress:
+        return self.http.address
+
+    async def connect(self) -> None:
+        """Read the device's clock and the addresses of its services. Connecting again reads them anew.
+
+        Raises:
+            CameraError: The device cannot be reached, refuses the account, or has no ONVIF services.
+        """
+        await self._close_services()
+        for adjust_time in (True, False):
+            camera = self._camera = self._make_camera(adjust_time)
+            try:
+                with soap_errors(self.address, "GetServices"):
+                    await camera.update_xaddrs()
+                break
+            except CameraReplyError:
+                # A device without a readable clock: its time stamps are taken for right.
+                await self._close_services()
+                if not adjust_time:
+                    raise
+        self._stop_service = None
+
+    async def call(self, service: str, operation: str, **arguments: Any) -> Any:
+        """Call an operation and return its reply. A sign-in that was right before is tried again with a fresh clock.
+
+        Args:
+            service: ``devicemgmt``, ``media`` or ``ptz``.
+            operation: Name of the operation.
+            arguments: Its arguments.
+
+        Raises:
+            CameraError: One of the errors of ``camera.network.errors`` or ``camera.onvif.faults``.
+        """
+        try:
+            reply = await self._call(service, operation, arguments)
+        except CameraSignInError:
+            if not self._signed_in:
+                raise
+            self._signed_in = False
+            await self.connect()  # the clock of the device may have been set, as after a reboot
+            reply = await self._call(service, operation, arguments)
+        self._signed_in = True
+        return reply
+
+    async def prepare_stop(self, profile: str) -> None:
+        """Make ready what ``stop_blocking`` needs."""
+        self._stop_profile = profile
+        self._stop_service = await self.make_service("ptz")
+
+    def stop_blocking(self) -> None:
+        """Stop pan, tilt and zoom from a thread, on a connection of its own.
+
+        Raises:
+            CameraError: The stop did not arrive, or is refused.
+        """
+        service = self._stop_service  # with time stamps of its own: those of the event loop are not safe in two threads
+        with soap_errors(self.address, "Stop"):
+            message = service.zeep_client.create_message(
+                service.ws_client, "Stop", ProfileToken=self._stop_profile, PanTilt=True, Zoom=True
+            )
+            content = to_bytes(message)
+        self.http.post_blocking(pinned_path(self.http, service.xaddr), content, _STOP_HEADERS)
+
+    async def close(self) -> None:
+        """Close all connections."""
+        await self._close_services()
+        await self.http.close()
+
+    async def _call(self, service: str, operation: str, arguments: dict[str, Any]) -> Any:
+        with soap_errors(self.address, operation):
+            return await getattr(await self._camera.create_onvif_service(service), operation)(arguments)
+
+    def _make_camera(self, adjust_time: bool) -> Any:
+        address, account = self.address, self._credentials
+        scheme = "https" if address.tls else "http"
+        camera = self._library.ONVIFCamera(
+            f"{scheme}://{address.host}", address.port, account.user, account.password, no_cache=True, adjust_time=adjust_time
+        )
+        # The library's services bring transports that follow redirects and go wherever the device points.
+        camera.create_onvif_service = partial(_service_of, self, camera)
+        return camera
+
+    async def make_service(self, name: str, camera: Any = None) -> Any:
+        """Return a new service on the pinned transport."""
+        camera = camera or self._camera
+        with soap_errors(self.address, f"the {name} service"):
+            xaddr, wsdl, binding = camera.get_definition(name)
+            service = self._library.ONVIFService(
+                self.address.pin_http(xaddr), camera.user, camera.passwd, wsdl, no_cache=True, dt_diff=camera.dt_diff,
+                binding_name=binding, binding_key=(name, None),
+            )  # fmt: skip
+            await service.close()  # the transport that it brought
+            service.transport = PinnedTransport(self.http)
+            await service.setup()
+        return service
+
+    async def _close_services(self) -> None:
+        if self._camera is not None:
+            self._camera.services.clear()
+            await self._camera.close()
+            self._camera = None
+
+
+async def _service_of(client: OnvifClient, camera: Any, name: str, *_: Any, **__: Any) -> Any:
+    """Return a service of a camera, made at the first call."""
+    key = (name.lower(), None)
+    if key not in camera.services:
+        camera.services[key] = await client.make_service(key[0], camera)
+    return camera.services[key]

@@ -1,0 +1,193 @@
+"""WS-Discovery: ask the local networks which ONVIF devices are there. No password is asked for or sent."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from urllib.parse import unquote, urlsplit
+from uuid import uuid4
+
+import anyio
+
+from scope_ptz.errors import CameraError, ConfigError, InputError
+
+GROUP, PORT = "239.255.255.250", 3702
+"""The multicast address and port of WS-Discovery."""
+
+MAX_DATAGRAM_BYTES = 64 * 1024
+MAX_DEVICES = 500
+
+_DISCOVERY = "http://schemas.xmlsoap.org/ws/2005/04/discovery"
+_PROBE = (
+    '<?xml version="1.0" encoding="utf-8"?>'
+    '<e:Envelope xmlns:e="http://www.w3.org/2003/05/soap-envelope" xmlns:a="http://schemas.xmlsoap.org/ws/2004/08/addressing"'
+    ' xmlns:d="http://schemas.xmlsoap.org/ws/2005/04/discovery" xmlns:n="http://www.onvif.org/ver10/network/wsdl">'
+    "<e:Header><a:MessageID>urn:uuid:{number}</a:MessageID>"
+    "<a:To>urn:schemas-xmlsoap-org:ws:2005:04:discovery</a:To>"
+    "<a:Action>http://schemas.xmlsoap.org/ws/2005/04/discovery/Probe</a:Action></e:Header>"
+    "<e:Body><d:Probe><d:Types>n:NetworkVideoTransmitter</d:Types></d:Probe></e:Body></e:Envelope>"
+)
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class FoundDevice:
+    """A device that answered.
+
+    Attributes:
+        address: Host and port of its web interface, as in a camera spec.
+        name: Its name, by its own words.
+        model: Its model, by its own words.
+        tls: Whether the address is HTTPS.
+    """
+
+    address: str
+    name: str
+    model: str
+    tls: bool = False
+
+    @property
+    def spec(self) -> str:
+        """The camera spec, with a place for the user's name."""
+        return f"onvif://USER@{self.address}" + ("?tls=on" if self.tls else "")
+
+
+async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port: int = PORT) -> list[FoundDevice]:
+    """Return the devices that answer, ordered by address.
+
+    Args:
+        interfaces: IPv4 addresses of this machine's interfaces; by default those that are found, and loopback.
+        wait_s: How long to wait for answers, in seconds.
+        port: The UDP port of the devices.
+
+    Raises:
+        InputError: An interface is not an IPv4 address.
+        CameraError: No interface can be asked.
+        ConfigError: lxml is not installed.
+    """
+    _import_parser()
+    found: dict[str, FoundDevice] = {}
+    loop, transports = asyncio.get_running_loop(), []
+    failure = "there is none"
+    for interface in tuple(interfaces) or local_addresses():
+        try:
+            asker = _open(interface)
+        except OSError as error:
+            failure = error.strerror or str(error)
+            continue
+        transport, _ = await loop.create_datagram_endpoint(lambda: _Collector(found), sock=asker)
+        transports.append(transport)
+    if not transports:
+        raise CameraError(f"No network interface can be asked for cameras: {failure}.")
+    try:
+        for _ in range(2):  # datagrams get lost
+            for transport in transports:
+                transport.sendto(_PROBE.format(number=uuid4()).encode(), (GROUP, port))
+            await anyio.sleep(wait_s / 2)
+    finally:
+        for transport in transports:
+            transport.close()
+    return sorted(found.values())
+
+
+def local_addresses() -> tuple[str, ...]:
+    """Return IPv4 addresses of this machine: those of its name, the one of the default route, and loopback."""
+    found = {"127.0.0.1"}
+    with suppress(OSError):  # a machine that does not know its own name
+        found.update(str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET))
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asker, suppress(OSError):  # there may be no route
+        asker.connect((GROUP, PORT))  # sends nothing: it only asks the routing table
+        found.add(str(asker.getsockname()[0]))
+    return tuple(sorted(found - {"0.0.0.0"}))  # noqa: S104 - compared, not bound to
+
+
+def parse_match(data: bytes, sender: str) -> list[FoundDevice]:
+    """Return the devices of an answer; none if it is anything else.
+
+    Args:
+        data: The datagram.
+        sender: The address that it came from.
+    """
+    from lxml import etree
+
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
+    try:
+        root = etree.fromstring(data, parser)
+    except (etree.XMLSyntaxError, ValueError):
+        return []
+    if root.getroottree().docinfo.doctype:
+        return []
+    found = []
+    for each in root.iterfind(f".//{{{_DISCOVERY}}}ProbeMatch"):
+        places = [place for text in (each.findtext(f"{{{_DISCOVERY}}}XAddrs") or "").split() if (place := _place(text))]
+        if not places:
+            continue
+        # Of several addresses, the one that the answer came from can be reached from here.
+        host, port, tls = next((place for place in places if place[0] == sender), places[0])
+        scopes = (each.findtext(f"{{{_DISCOVERY}}}Scopes") or "").split()
+        standard = 443 if tls else 80
+        shown = f"[{host}]" if ":" in host else host
+        address = shown if port == standard else f"{shown}:{port}"
+        found.append(FoundDevice(address, _scope(scopes, "name"), _scope(scopes, "hardware"), tls))
+    return found
+
+
+class _Collector(asyncio.DatagramProtocol):
+    def __init__(self, found: dict[str, FoundDevice]) -> None:
+        self._found = found
+
+    def datagram_received(self, data: bytes, address: tuple[str, int]) -> None:
+        if len(data) > MAX_DATAGRAM_BYTES:
+            return
+        for device in parse_match(data, address[0]):
+            if len(self._found) < MAX_DEVICES:
+                self._found.setdefault(device.address, device)
+
+    def error_received(self, error: Exception) -> None:
+        """Ignore what a router says about a datagram: nobody has to answer."""
+
+
+def _open(interface: str) -> socket.socket:
+    try:
+        number = socket.inet_aton(interface)
+    except OSError:
+        raise InputError(f"An interface is named by its IPv4 address, for example 192.168.1.20, got '{interface[:40]}'.") from None
+    asker = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        asker.bind((interface, 0))
+        asker.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, number)
+        asker.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 1)
+        asker.setblocking(False)
+    except OSError:
+        asker.close()
+        raise
+    return asker
+
+
+def _place(text: str) -> tuple[str, int, bool] | None:
+    """Return host, port and whether it is HTTPS; None for anything but an HTTP address."""
+    try:
+        parts = urlsplit(text)
+        port = parts.port
+    except ValueError:
+        return None
+    if parts.scheme not in ("http", "https") or not parts.hostname or not all(c.isalnum() or c in ".-:_" for c in parts.hostname):
+        return None
+    tls = parts.scheme == "https"
+    return parts.hostname, port or (443 if tls else 80), tls
+
+
+def _scope(scopes: list[str], kind: str) -> str:
+    """Return what a device says of itself, on one line and without control characters."""
+    start = f"onvif://www.onvif.org/{kind}/"
+    text = next((unquote(scope[len(start) :]) for scope in scopes if scope.lower().startswith(start)), "")
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:60]
+
+
+def _import_parser() -> None:
+    try:
+        import lxml.etree  # noqa: F401 - used when answers are parsed
+    except ImportError:
+        raise ConfigError("Discovery needs lxml. Install it with: pip install 'scope-ptz[camera]'") from None

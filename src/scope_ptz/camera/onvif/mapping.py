@@ -1,0 +1,78 @@
+"""What ONVIF does not state and a driver must know: degrees of generic spaces, fields of view, and speeds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from scope_ptz.camera.capabilities import Velocity
+from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, top_speed
+from scope_ptz.geometry import AXIS_M5075_G, Optics
+
+ASSUMED_PAN_DEG = (-180.0, 180.0)
+ASSUMED_TILT_DEG = (-90.0, 90.0)
+"""The angles that most devices mean by the ends of the generic space. A driver uses them only to measure the real ones."""
+
+ASSUMED_FIELDS_DEG = (60.0, 6.0)
+ASSUMED_SPEED = Velocity(60.0, 60.0, 0.5)
+"""Top speeds of a device that nobody has measured. Wrong ones make a drive slower or faster, and stops do not depend on them."""
+
+
+@dataclass(frozen=True, slots=True)
+class OnvifMapping:
+    """Numbers that were configured or measured. None means unknown.
+
+    Attributes:
+        pan_deg: Pan in degrees at the low and the high end of the generic space.
+        tilt_deg: The same for tilt.
+        fields: Rows of (share of the zoom range from 0 to 1, horizontal field of view in degrees), widest first.
+        zoom_max: Magnification at the end of the zoom range; by default the ratio of the focal lengths.
+        top_speed: Velocities at the ends of the generic velocity spaces.
+    """
+
+    pan_deg: tuple[float, float] | None = None
+    tilt_deg: tuple[float, float] | None = None
+    fields: tuple[tuple[float, float], ...] | None = None
+    zoom_max: float | None = None
+    top_speed: Velocity | None = None
+
+    def over(self, other: OnvifMapping) -> OnvifMapping:
+        """Return this mapping, with numbers of another one where it has none."""
+        return OnvifMapping(
+            self.pan_deg or other.pan_deg,
+            self.tilt_deg or other.tilt_deg,
+            self.fields or other.fields,
+            (self.zoom_max or other.zoom_max) if not self.fields else self.zoom_max,
+            self.top_speed or other.top_speed,
+        )
+
+
+def known_mapping(model: str) -> OnvifMapping:
+    """Return what is known about a model from its data sheet; nothing for most."""
+    return _KNOWN.get(model.strip().upper().removeprefix("AXIS ").strip(), OnvifMapping())
+
+
+def zoom_rows(fields: tuple[tuple[float, float], ...], zoom_max: float | None) -> tuple[tuple[float, float, float], ...]:
+    """Return rows of (share of the zoom range, magnification, field of view).
+
+    Without a rated magnification it is the ratio of the focal lengths, so the widest zoom is 1. With it, magnification is
+    linear in the zoom range, which is how devices with a rated zoom count.
+    """
+    first = math.tan(math.radians(fields[0][1]) / 2)
+    return tuple(
+        (
+            share,
+            1.0 + share * (zoom_max - 1.0) if zoom_max is not None else first / math.tan(math.radians(hfov_deg) / 2),
+            hfov_deg,
+        )
+        for share, hfov_deg in fields
+    )
+
+
+def _of_optics(optics: Optics) -> OnvifMapping:
+    low, high = optics.min_zoom, optics.max_zoom
+    fields = tuple(((zoom - low) / (high - low), hfov_deg) for zoom, hfov_deg in optics.table)
+    return OnvifMapping(fields=fields, zoom_max=high, top_speed=top_speed(AXIS_M5075_G_HEAD))
+
+
+_KNOWN = {"M5075-G": _of_optics(AXIS_M5075_G)}

@@ -1,0 +1,109 @@
+"""The motors of an ONVIF device: moves, velocities and positions in degrees and magnification."""
+
+from __future__ import annotations
+
+import math
+from datetime import timedelta
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.camera.network.errors import CameraReplyError
+from scope_ptz.camera.onvif.faults import OnvifFaultError
+from scope_ptz.geometry import Pose, wrap_pan_deg
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.onvif.client import OnvifClient
+    from scope_ptz.camera.onvif.device import OnvifDevice
+    from scope_ptz.camera.onvif.spaces import StatedSpace
+
+
+class OnvifMotors:
+    """The motors of one profile.
+
+    Args:
+        client: The connection.
+        device: What the device is and can do.
+    """
+
+    def __init__(self, client: OnvifClient, device: OnvifDevice) -> None:
+        self._client, self._device = client, device
+        self._sends_timeout = True
+
+    async def pose(self) -> Pose:
+        """Read the position. The device's own word on whether it moves is not asked for: too many devices lie.
+
+        Raises:
+            CameraReplyError: The device does not report its position.
+        """
+        status = await self._client.call("ptz", "GetStatus", ProfileToken=self._device.ptz_profile)
+        position = getattr(status, "Position", None)
+        pan_tilt = getattr(position, "PanTilt", None)
+        if pan_tilt is None or pan_tilt.x is None or pan_tilt.y is None:
+            raise CameraReplyError(
+                f"The camera at {self._client.address} does not report its position, so no move can be checked. "
+                "A newer firmware may help."
+            )
+        space = self._device.reports_in.get(str(pan_tilt.space or "")) or self._device.reports_in[""]
+        pan_deg, tilt_deg = space.pan.to_value(float(pan_tilt.x)), space.tilt.to_value(float(pan_tilt.y))
+        zoom = getattr(position, "Zoom", None)
+        units = self._device.zoom.rows[0][0] if zoom is None or zoom.x is None else float(zoom.x)
+        if not all(map(math.isfinite, (pan_deg, tilt_deg, units))):
+            raise CameraReplyError(f"The camera at {self._client.address} reports a position that is not a number.")
+        if self._device.limits.pan_endless:
+            pan_deg = wrap_pan_deg(pan_deg)
+        return Pose(pan_deg, tilt_deg, self._device.zoom.to_zoom(units))
+
+    async def move(self, pose: Pose) -> None:
+        """Start towards a pose within the limits."""
+        space, zoom = self._device.moves_in, self._device.zoom
+        position: dict[str, Any] = {
+            "PanTilt": {"x": space.pan.to_units(pose.pan_deg), "y": space.tilt.to_units(pose.tilt_deg), "space": space.uri}
+        }
+        if zoom.moves:
+            position["Zoom"] = {"x": zoom.to_units(pose.zoom), "space": zoom.uri}
+        await self._client.call("ptz", "AbsoluteMove", ProfileToken=self._device.ptz_profile, Position=position)
+
+    async def drive(self, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
+        """Move at velocities. The device is asked to stop by itself; one that refuses timeouts is driven without."""
+        top, velocity = self._device.capabilities.top_speed, {}
+        if self._device.velocity is not None:
+            space = self._device.velocity
+            velocity["PanTilt"] = {
+                "x": _speed(pan_dps, top.pan_dps, space, self._device.moves_in.pan.values),
+                "y": _speed(tilt_dps, top.tilt_dps, space, self._device.moves_in.tilt.values, axis="y"),
+                "space": space.uri,
+            }
+        if top.zoom_rate and self._device.zoom_velocity is not None:
+            space = self._device.zoom_velocity
+            velocity["Zoom"] = {"x": _speed(zoom_rate, top.zoom_rate, space), "space": space.uri}
+        arguments: dict[str, Any] = {"ProfileToken": self._device.ptz_profile, "Velocity": velocity}
+        shortest_s, longest_s = self._device.timeout_s
+        if self._sends_timeout:
+            limit = {"Timeout": timedelta(seconds=min(max(timeout_s, shortest_s), longest_s))}
+            try:
+                await self._client.call("ptz", "ContinuousMove", **arguments, **limit)
+            except OnvifFaultError as fault:
+                if not fault.is_any("TimeoutNotSupported", "InvalidArgVal"):
+                    raise
+                self._sends_timeout = False
+            else:
+                return
+        await self._client.call("ptz", "ContinuousMove", **arguments)
+
+    async def stop(self) -> None:
+        """Stop all axes."""
+        await self._client.call("ptz", "Stop", ProfileToken=self._device.ptz_profile, PanTilt=True, Zoom=True)
+
+    async def go_home(self) -> None:
+        """Start towards the home position, without a speed, which some devices refuse."""
+        await self._client.call("ptz", "GotoHomePosition", ProfileToken=self._device.ptz_profile)
+
+
+def _speed(
+    value: float, top: float, space: StatedSpace, counts: tuple[float, float] = (0.0, 1.0), *, axis: str = "x"
+) -> float:  # fmt: skip
+    """Return a velocity in a generic space, whose ends are the top speeds. An axis that counts the other way is turned round."""
+    if not value or not top:
+        return 0.0
+    low, high = space.y if axis == "y" and space.y is not None else space.x
+    share = min(max(value / top, -1.0), 1.0) * (1.0 if counts[0] < counts[1] else -1.0)
+    return share * (high if share > 0 else -low)

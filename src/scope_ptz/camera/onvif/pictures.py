@@ -1,0 +1,238 @@
+"""Pictures of an ONVIF camera: snapshots by HTTP, or frames of its RTSP stream where it has none."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from time import monotonic
+from typing import TYPE_CHECKING, Any, Literal
+
+import anyio
+from anyio import to_thread
+
+from scope_ptz.camera.network.device_pictures import DevicePictures
+from scope_ptz.camera.network.errors import CameraReplyError, PictureError
+from scope_ptz.camera.network.pictures import decode_jpeg
+from scope_ptz.camera.network.rtsp import RtspStream
+from scope_ptz.camera.network.streams import LivePicture, LiveStream
+from scope_ptz.camera.onvif.faults import OnvifFaultError
+from scope_ptz.camera.onvif.transport import pinned_path
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from scope_ptz.camera.network.credentials import Credentials
+    from scope_ptz.camera.network.http import DeviceHttp
+    from scope_ptz.camera.onvif.client import OnvifClient
+    from scope_ptz.camera.onvif.device import OnvifDevice
+
+OnvifStream = Literal["rtsp", "snapshot"]
+"""How live frames are transported: as video, or one snapshot after the other."""
+
+_SETUP = {"Stream": "RTP-Unicast", "Transport": {"Protocol": "RTSP"}}
+
+
+class OnvifPictures(DevicePictures):
+    """The pictures of one profile.
+
+    Args:
+        http: The device.
+        credentials: The account, for RTSP.
+        snapshot_path: Path and query of a snapshot; "" if the device has none.
+        stream_url: Address of the RTSP stream without credentials; "" if the device has none.
+        native: Width and height of a snapshot (of the stream, without snapshots) in pixels.
+        stream_size: Width and height of the stream in pixels.
+        width: Width of a frame in pixels; pictures are scaled to it.
+        height: Height of a frame in pixels.
+        stream: How live frames are transported.
+        latency_s: Seconds from the exposure of a streamed frame to its arrival.
+    """
+
+    def __init__(
+        self,
+        http: DeviceHttp,
+        credentials: Credentials,
+        *,
+        snapshot_path: str,
+        stream_url: str,
+        native: tuple[int, int],
+        stream_size: tuple[int, int],
+        width: int,
+        height: int,
+        stream: OnvifStream = "rtsp",
+        latency_s: float = 0.1,
+    ) -> None:
+        super().__init__(width, height, small=(width, height), latency_s=latency_s)
+        self._http, self._credentials = http, credentials
+        self.snapshot_path, self.stream_url = snapshot_path, stream_url
+        self._native, self._stream_size, self._stream_kind = native, stream_size, stream
+        self._video: LiveStream | None = None
+
+    async def take_once(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
+        if not self.snapshot_path:
+            return await self._from_video()
+        body = (await self._http.get(self.snapshot_path)).body
+        image = await to_thread.run_sync(lambda: decode_jpeg(body, width=self._native[0], height=self._native[1]))
+        return body, _scaled(image, width, height)
+
+    def open_stream(self, rate_hz: float) -> LiveStream:  # noqa: ARG002 - the device decides
+        if self._stream_kind == "snapshot" or not self.stream_url:
+            return SnapshotStream(lambda: self.take_once(self.width, self.height))
+        return ScaledStream(self._open_video(), self.width, self.height)
+
+    async def close(self) -> None:
+        """Close the stream that stands in for snapshots."""
+        if self._video is not None:
+            await self._video.close()
+            self._video = None
+
+    async def _from_video(self) -> tuple[bytes, NDArray[np.uint8]]:
+        """Return the first frame that was exposed after now."""
+        if self._video is None:
+            self._video = self._open_video()
+        asked_s = monotonic()
+        while True:
+            try:
+                picture = await self._video.next()
+            except BaseException:
+                with anyio.CancelScope(shield=True):
+                    await self.close()
+                raise
+            if picture.arrived_s - self._latency_s >= asked_s:
+                return picture.data, _scaled(picture.image, self.width, self.height)
+
+    def _open_video(self) -> LiveStream:
+        width, height = self._stream_size
+        return RtspStream(self.stream_url, self._credentials, width=width, height=height)
+
+
+class SnapshotStream(LiveStream):
+    """One snapshot after the other.
+
+    Args:
+        take: Takes a snapshot.
+    """
+
+    def __init__(self, take: Callable[[], Awaitable[tuple[bytes, NDArray[np.uint8]]]]) -> None:
+        self._take = take
+
+    async def next(self) -> LivePicture:
+        data, image = await self._take()
+        return LivePicture(image, data, monotonic())
+
+    async def close(self) -> None:
+        """Nothing is open between two snapshots."""
+
+
+class ScaledStream(LiveStream):
+    """A stream whose pictures are scaled to the size of frames."""
+
+    def __init__(self, stream: LiveStream, width: int, height: int) -> None:
+        self._stream, self._width, self._height = stream, width, height
+
+    async def next(self) -> LivePicture:
+        picture = await self._stream.next()
+        return LivePicture(_scaled(picture.image, self._width, self._height), picture.data, picture.arrived_s)
+
+    async def close(self) -> None:
+        await self._stream.close()
+
+
+async def open_pictures(
+    client: OnvifClient,
+    credentials: Credentials,
+    device: OnvifDevice,
+    *,
+    width: int | None,
+    height: int | None,
+    stream: OnvifStream,
+    rtsp_port: int | None,
+    latency_s: float,
+) -> OnvifPictures:
+    """Ask a device where its pictures are. Addresses that point to another host are rewritten to the configured one.
+
+    Args:
+        client: The connection.
+        credentials: The account, for RTSP.
+        device: The device.
+        width: Width of a frame in pixels; None for that of the device's pictures.
+        height: Height of a frame in pixels; None for that of the device's pictures.
+        stream: How live frames are transported.
+        rtsp_port: Port of the RTSP server in place of the one that the device states.
+        latency_s: Seconds from the exposure of a streamed frame to its arrival.
+
+    Raises:
+        CameraError: The device has no pictures.
+    """
+    token, stream_size = device.picture_profile, (device.width, device.height)
+    uri = await _uri(client, "GetSnapshotUri", ProfileToken=token)
+    snapshot_path = pinned_path(client.http, uri) if uri else ""
+    stream_uri = await _uri(client, "GetStreamUri", StreamSetup=_SETUP, ProfileToken=token)
+    stream_url = _with_port(client.address.pin_rtsp(stream_uri), rtsp_port) if stream_uri else ""
+    if not snapshot_path and not stream_url:
+        raise CameraReplyError(f"The camera at {client.address} states neither a snapshot nor a stream. Check its video settings.")
+    native = stream_size
+    if snapshot_path:
+        native = await _snapshot_size(client, snapshot_path)
+    width, height = _frame_size(native, width, height)
+    return OnvifPictures(
+        client.http, credentials, snapshot_path=snapshot_path, stream_url=stream_url, native=native, stream_size=stream_size,
+        width=width, height=height, stream=stream, latency_s=latency_s,
+    )  # fmt: skip
+
+
+async def _uri(client: OnvifClient, operation: str, **arguments: Any) -> str:
+    """Return an address that the device states, "" if it has none."""
+    try:
+        reply = await client.call("media", operation, **arguments)
+    except (OnvifFaultError, CameraReplyError):
+        return ""
+    return str(getattr(reply, "Uri", None) or "")
+
+
+async def _snapshot_size(client: OnvifClient, path: str) -> tuple[int, int]:
+    for left in (1, 0):
+        try:
+            image = decode_jpeg((await client.http.get(path)).body)
+        except PictureError:
+            if not left:
+                raise
+        else:
+            return int(image.shape[1]), int(image.shape[0])
+    raise AssertionError("the last attempt returns or raises")
+
+
+def _frame_size(native: tuple[int, int], width: int | None, height: int | None) -> tuple[int, int]:
+    if width is None and height is None:
+        return native
+    width = width or round((height or 0) * native[0] / native[1])
+    height = height or round(width * native[1] / native[0])
+    if abs(width * native[1] - height * native[0]) > max(native):
+        raise PictureError(
+            f"The camera's pictures have {native[0]}x{native[1]} pixels, which is another shape than {width}x{height}. "
+            "Leave ?height=... out.",
+            "size",
+        )
+    return width, height
+
+
+def _with_port(url: str, port: int | None) -> str:
+    from urllib.parse import urlsplit, urlunsplit
+
+    parts = urlsplit(url)
+    return url if port is None else urlunsplit(parts._replace(netloc=f"{parts.netloc.rpartition(':')[0]}:{port}"))
+
+
+def _scaled(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+    import cv2
+    import numpy as np
+
+    if image.shape[1::-1] == (width, height):
+        return image
+    if abs(image.shape[1] * height - image.shape[0] * width) > max(image.shape):
+        raise PictureError(
+            f"The stream has {image.shape[1]}x{image.shape[0]} pixels, which is another shape than {width}x{height}. "
+            "Change the stream's size in the camera, or use ?stream=snapshot.",
+            "size",
+        )
+    return np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)

@@ -1,0 +1,99 @@
+"""Presets of an ONVIF device by name. The device addresses them by token, and some break the encoding of names."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+import anyio
+
+from scope_ptz.camera.capabilities import check_preset_name
+from scope_ptz.camera.onvif.faults import OnvifFaultError
+from scope_ptz.errors import CameraError, UnknownNameError
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.onvif.client import OnvifClient
+
+
+MAX_PRESETS = 512
+"""Presets that are read. Some devices list hundreds of empty ones."""
+
+SAVE_TRIES = 10
+"""How often a preset is saved again while the device says that it still moves."""
+
+
+class OnvifPresets:
+    """The presets of one profile.
+
+    Args:
+        client: The connection.
+        profile: Token of the profile.
+    """
+
+    def __init__(self, client: OnvifClient, profile: str) -> None:
+        self._client, self._profile = client, profile
+
+    async def tokens(self) -> dict[str, str]:
+        """Return tokens by name, in the order of the device. Of two presets with one name, the second gets its token appended."""
+        listed = await self._client.call("ptz", "GetPresets", ProfileToken=self._profile)
+        found: dict[str, str] = {}
+        for preset in list(listed or ())[:MAX_PRESETS]:
+            token = str(preset.token or "")
+            if not token:
+                continue
+            name = readable_name(preset.Name) or f"Preset {token}"
+            found.setdefault(name if name not in found else f"{name} ({token})", token)
+        return found
+
+    async def token(self, name: str) -> str:
+        """Return the token of a preset.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+        """
+        tokens = await self.tokens()
+        if name not in tokens:
+            raise UnknownNameError("preset", name, tokens)
+        return tokens[name]
+
+    async def save(self, name: str) -> None:
+        """Save the current position.
+
+        Raises:
+            InputError: The name is not allowed.
+            CameraError: The device does not save it.
+        """
+        check_preset_name(name)
+        arguments = {"ProfileToken": self._profile, "PresetName": name}
+        if (token := (await self.tokens()).get(name)) is not None:
+            arguments["PresetToken"] = token
+        for left in range(SAVE_TRIES, -1, -1):
+            try:
+                await self._client.call("ptz", "SetPreset", **arguments)
+                break
+            except OnvifFaultError as fault:
+                if not fault.is_any("MovingPTZ") or not left:
+                    raise
+                await anyio.sleep(0.1)
+        if name not in await self.tokens():
+            raise CameraError(f"The camera at {self._client.address} did not save the preset. Its account may lack the right.")
+
+    async def remove(self, name: str) -> None:
+        """Remove a preset.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+        """
+        await self._client.call("ptz", "RemovePreset", ProfileToken=self._profile, PresetToken=await self.token(name))
+
+    async def go_to(self, token: str) -> None:
+        """Start towards a preset. No speed is sent, since some devices refuse a preset with one."""
+        await self._client.call("ptz", "GotoPreset", ProfileToken=self._profile, PresetToken=token)
+
+
+def readable_name(name: object) -> str:
+    """Return a preset's name without what cannot be printed. UTF-8 that was read as Latin-1 is repaired."""
+    text = str(name or "")
+    with suppress(UnicodeError):  # it is right already, or beyond repair
+        text = text.encode("latin-1").decode("utf-8")
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:60]

@@ -1,0 +1,126 @@
+"""Coordinate spaces of ONVIF as linear scales and tables: numbers of the device to degrees and magnification, and back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from scope_ptz.geometry import Optics
+
+_PAN_TILT = "http://www.onvif.org/ver10/tptz/PanTiltSpaces/"
+_ZOOM = "http://www.onvif.org/ver10/tptz/ZoomSpaces/"
+
+GENERIC = _PAN_TILT + "PositionGenericSpace"
+DEGREES = _PAN_TILT + "SphericalPositionSpaceDegrees"
+VELOCITY = _PAN_TILT + "VelocityGenericSpace"
+ZOOM_GENERIC = _ZOOM + "PositionGenericSpace"
+ZOOM_VELOCITY = _ZOOM + "VelocityGenericSpace"
+
+Ends = tuple[float, float]
+"""The two ends of a range."""
+
+
+@dataclass(frozen=True, slots=True)
+class StatedSpace:
+    """A space as the device states it. A space of one dimension has no ``y``."""
+
+    uri: str
+    x: Ends
+    y: Ends | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LinearScale:
+    """A linear map between units of the device and values such as degrees.
+
+    Attributes:
+        units: The ends of the device's range, rising.
+        values: The values at these ends; they fall if the device counts the other way round.
+    """
+
+    units: Ends
+    values: Ends
+
+    def __post_init__(self) -> None:
+        if not (all(map(math.isfinite, (*self.units, *self.values))) and self.units[0] < self.units[1]):
+            raise ValueError("a scale needs finite ends that differ")
+        if self.values[0] == self.values[1]:
+            raise ValueError("the values of a scale differ at its ends")
+
+    def to_value(self, units: float) -> float:
+        """Return the value at a number of the device."""
+        return self.values[0] + (units - self.units[0]) * self._slope
+
+    def to_units(self, value: float) -> float:
+        """Return the number of the device for a value, within its range."""
+        units = self.units[0] + (value - self.values[0]) / self._slope
+        return min(max(units, self.units[0]), self.units[1])
+
+    @property
+    def _slope(self) -> float:
+        return (self.values[1] - self.values[0]) / (self.units[1] - self.units[0])
+
+
+@dataclass(frozen=True, slots=True)
+class PanTiltSpace:
+    """A space of pan and tilt positions, with its scales to degrees (right and up are positive)."""
+
+    uri: str
+    pan: LinearScale
+    tilt: LinearScale
+
+
+@dataclass(frozen=True, slots=True)
+class ZoomSpace:
+    """A space of zoom positions with a table.
+
+    Attributes:
+        uri: Its name.
+        rows: Rows of (device units, magnification, horizontal field of view in degrees). Units and magnification rise.
+        moves: Whether the device can set the zoom.
+    """
+
+    uri: str
+    rows: tuple[tuple[float, float, float], ...]
+    moves: bool = True
+
+    def __post_init__(self) -> None:
+        pairs = list(zip(self.rows, self.rows[1:], strict=False))
+        if not pairs or any(b[0] <= a[0] or b[1] <= a[1] or b[2] >= a[2] for a, b in pairs):
+            raise ValueError("a zoom space needs two or more rows, with rising magnification and falling field of view")
+
+    @property
+    def optics(self) -> Optics:
+        return Optics(tuple((zoom, hfov_deg) for _, zoom, hfov_deg in self.rows))
+
+    def to_zoom(self, units: float) -> float:
+        """Return the magnification at a number of the device."""
+        return _interpolated(units, [row[0] for row in self.rows], [row[1] for row in self.rows])
+
+    def to_units(self, zoom: float) -> float:
+        """Return the number of the device for a magnification."""
+        return _interpolated(zoom, [row[1] for row in self.rows], [row[0] for row in self.rows])
+
+
+def stated_spaces(described: Any) -> tuple[StatedSpace, ...]:
+    """Return the usable spaces of a list in a reply. A range without extent, which some devices state, is left out."""
+    found = []
+    for each in described or ():
+        x, y = _ends(each.XRange), _ends(getattr(each, "YRange", None))
+        if each.URI and x is not None and (getattr(each, "YRange", None) is None or y is not None):
+            found.append(StatedSpace(str(each.URI), x, y))
+    return tuple(found)
+
+
+def _ends(described: Any) -> Ends | None:
+    if described is None or described.Min is None or described.Max is None:
+        return None
+    low, high = float(described.Min), float(described.Max)
+    return (low, high) if math.isfinite(low) and math.isfinite(high) and low < high else None
+
+
+def _interpolated(value: float, xs: list[float], ys: list[float]) -> float:
+    import numpy as np
+
+    return float(np.interp(value, xs, ys))

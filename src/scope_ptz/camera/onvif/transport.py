@@ -1,0 +1,121 @@
+"""How SOAP messages reach the device: through the pinned HTTP client, whatever addresses the device states."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from scope_ptz.errors import ConfigError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from scope_ptz.camera.network.http import DeviceHttp
+
+FAULT_STATUSES = (400, 403, 500)
+"""Statuses of replies whose body is a SOAP fault, which says more than the status."""
+
+_ADDS_UP = ("ContinuousMove", "RelativeMove", "SetPreset", "RemovePreset")
+"""Commands that are not sent again after a lost connection."""
+
+
+@dataclass(frozen=True, slots=True)
+class SoapReply:
+    """A reply, with the attributes that zeep reads."""
+
+    status_code: int
+    content: bytes = field(repr=False)
+    headers: Mapping[str, str]
+    encoding: str = "utf-8"
+
+
+class PinnedTransport:
+    """A transport for zeep. Every message goes to the configured host and port; redirects are refused.
+
+    Args:
+        http: The device.
+    """
+
+    cache = None
+
+    def __init__(self, http: DeviceHttp) -> None:
+        self._http = http
+
+    async def post_xml(self, address: str, envelope: Any, headers: Mapping[str, str]) -> SoapReply:
+        """Send a message and return the reply.
+
+        Raises:
+            CameraError: One of the errors of ``camera.network.errors``.
+        """
+        content = to_bytes(envelope)
+        reply = await self._http.post(
+            pinned_path(self._http, address), content, headers, repeat=not _adds_up(envelope), accept=FAULT_STATUSES
+        )
+        return SoapReply(reply.status, _readable(reply.body), {"Content-Type": reply.content_type or "text/xml"})
+
+    async def aclose(self) -> None:
+        """Do nothing: the HTTP client belongs to the camera."""
+
+
+def pinned_path(http: DeviceHttp, address: str) -> str:
+    """Return path and query of an address that the device stated, rewritten to the configured host.
+
+    Raises:
+        ForeignAddressError: It is not an HTTP address.
+    """
+    parts = urlsplit(http.address.pin_http(address))
+    return f"{parts.path}?{parts.query}" if parts.query else parts.path
+
+
+def to_bytes(envelope: Any) -> bytes:
+    """Return a message as it is sent."""
+    from lxml import etree
+
+    return bytes(etree.tostring(envelope, xml_declaration=True, encoding="utf-8"))
+
+
+def import_onvif() -> Any:
+    """Import ``onvif-zeep-async``, and undo what its import does to logging.
+
+    Raises:
+        ConfigError: It is not installed.
+    """
+    try:
+        with _unchanged_logging():
+            import onvif.client
+    except ImportError:
+        raise ConfigError("ONVIF needs onvif-zeep-async. Install it with: pip install 'scope-ptz[camera]'") from None
+    return onvif.client
+
+
+@contextmanager
+def _unchanged_logging() -> Iterator[None]:
+    root = logging.getLogger()
+    level, handlers = root.level, list(root.handlers)
+    try:
+        yield
+    finally:
+        root.setLevel(level)
+        for handler in [each for each in root.handlers if each not in handlers]:
+            root.removeHandler(handler)
+
+
+def _adds_up(envelope: Any) -> bool:
+    body = envelope.find("{*}Body")
+    first = next(iter(body), None) if body is not None else None
+    return first is not None and str(first.tag).rpartition("}")[2] in _ADDS_UP
+
+
+def _readable(body: bytes) -> bytes:
+    """Return a reply in which bytes that are not UTF-8 are replaced. Some devices break the encoding of preset names."""
+    if b"encoding=" in body[:100] and b"utf-8" not in body[:100].lower():
+        return body
+    try:
+        body.decode("utf-8")
+    except UnicodeDecodeError:
+        return body.decode("utf-8", "replace").encode("utf-8")
+    return body
