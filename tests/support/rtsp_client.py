@@ -168,7 +168,7 @@ class RtspClient:
 
     async def _once(self, method: str, uri: str, body: bytes, headers: dict[str, str]) -> Answer:
         self._count += 1
-        signed = {"Authorization": self._signature(method, uri)} if self._challenge else {}
+        signed = {"Authorization": self.signature(method, uri)} if self._challenge else {}
         lines = {"CSeq": str(self._count), **signed, **headers, **({"Content-Length": str(len(body))} if body else {})}
         head = "".join(f"{name}: {value}\r\n" for name, value in lines.items())
         await self.send(f"{method} {uri} RTSP/1.0\r\n{head}\r\n".encode() + body)
@@ -176,7 +176,10 @@ class RtspClient:
         assert answer["cseq"] == str(self._count)
         return answer
 
-    def _signature(self, method: str, uri: str) -> str:
+    def signature(self, method: str, uri: str = "") -> str:
+        """Return the answer to the server's challenge for a request."""
+        uri = uri or self.url
+
         def h(text: str) -> str:
             return hashlib.md5(text.encode()).hexdigest()  # noqa: S324 - the standard's
 

@@ -158,6 +158,16 @@ async def test_passwords(served_device: VirtualDevice) -> None:
                 await client.packet(0)
 
 
+async def test_an_answer_that_was_overheard_is_worth_nothing_on_another_connection(served_device: VirtualDevice) -> None:
+    async with serving(served_device) as served:
+        async with RtspClient(served.port, user=ROOT.name, password=ROOT.password) as client:
+            assert (await client.request("DESCRIBE")).status == 200
+            overheard = client.signature("DESCRIBE")
+            assert (await client.request("DESCRIBE", Authorization=overheard)).status == 200
+        async with RtspClient(served.port) as thief:
+            assert (await thief.request("DESCRIBE", Authorization=overheard)).status == 401
+
+
 async def test_sessions_have_a_limit(open_device: VirtualDevice, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sessions, "MAX_SESSIONS", 2)
     async with serving(open_device) as served, RtspClient(served.port) as client:

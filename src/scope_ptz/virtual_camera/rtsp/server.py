@@ -7,6 +7,7 @@ import random
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from math import inf
 
 import anyio
 from anyio import to_thread
@@ -36,8 +37,7 @@ class RtspServer:
 
     def __init__(self, source: LiveSource, *, realm: str, session_timeout_s: float = SESSION_TIMEOUT_S) -> None:
         self._source = source
-        # Many RTSP clients do not know the quality of protection that HTTP clients use.
-        self._digest = DigestAuthenticator(source.device.accounts, realm, qop=False)
+        self._realm = realm
         self._sessions = Sessions(source, timeout_s=session_timeout_s)
         self._chance = random.Random(0)
         self._connections: dict[asyncio.Task[None], RtspConnection] = {}
@@ -94,7 +94,10 @@ class RtspServer:
         if len(self._connections) >= MAX_CONNECTIONS or self.device.faults.down:
             writer.transport.abort()
             return
-        connection = RtspConnection(self.device, self._source, self._sessions, self._digest, self._chance, reader, writer)
+        # Many RTSP clients do not know the quality of protection that HTTP clients use, and ignore answers to signs of life. So a nonce
+        # is good for one connection, for as long as that lasts; an answer that was overheard is worth nothing on another one.
+        digest = DigestAuthenticator(self.device.accounts, self._realm, qop=False, nonce_lifetime_s=inf)
+        connection = RtspConnection(self.device, self._source, self._sessions, digest, self._chance, reader, writer)
         task = asyncio.create_task(connection.run())
         self._connections[task] = connection
         task.add_done_callback(self._connections.pop)
