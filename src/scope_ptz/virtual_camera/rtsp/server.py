@@ -94,8 +94,8 @@ class RtspServer:
         if len(self._connections) >= MAX_CONNECTIONS or self.device.faults.down:
             writer.transport.abort()
             return
-        # Many RTSP clients do not know the quality of protection that HTTP clients use, and ignore answers to signs of life. So a nonce
-        # is good for one connection, for as long as that lasts; an answer that was overheard is worth nothing on another one.
+        # Many RTSP clients do not know the quality of protection that HTTP clients use, and ignore answers to signs of life.
+        # So a nonce is good for one connection, while that lasts; an answer that was overheard is worth nothing on others.
         digest = DigestAuthenticator(self.device.accounts, self._realm, qop=False, nonce_lifetime_s=inf)
         connection = RtspConnection(self.device, self._source, self._sessions, digest, self._chance, reader, writer)
         task = asyncio.create_task(connection.run())
