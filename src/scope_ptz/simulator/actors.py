@@ -19,7 +19,7 @@ from scope_ptz.simulator.models import ActorSheet, Extent, SceneActor, Sprite
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import Grid, step_px
 from scope_ptz.simulator.runs import measure
-from scope_ptz.simulator.tiles import Tiles
+from scope_ptz.simulator.tiles import Place, Tiles
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 TOLERANCE_M = 0.15
@@ -140,9 +140,15 @@ def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     )
 
 
+def place_of(appearance: Appearance, projection: Projection) -> Place | None:
+    """Return the rows and columns of a view in which an actor may show, None if it shows nowhere."""
+    showing = next(iter(Tiles([appearance.view]).in_view(projection)), None)
+    return None if showing is None else showing.place
+
+
 def shows(appearance: Appearance, projection: Projection) -> bool:
     """Return whether an actor may be inside a view, judged by directions alone."""
-    return bool(Tiles([appearance.view]).in_view(projection))
+    return place_of(appearance, projection) is not None
 
 
 def draw(

@@ -8,6 +8,7 @@ projection always give the same bytes.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import cv2
@@ -34,6 +35,9 @@ OVERSAMPLING = 1.2
 
 _AROUND = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
 """The eight neighbouring pixels, in the order in which they are tried."""
+
+_REACHES_TEXELS = (1.0, 2.0)
+"""How far from a pixel a distance on the right instance is searched for, in texels of the depth layer."""
 
 Floats = NDArray[np.float64]
 Map = NDArray[np.float32]
@@ -77,25 +81,47 @@ def distances_m(viewpoint: Viewpoint, directions: Floats) -> tuple[NDArray[np.fl
     return metres, viewpoint.owner_atlas.sheet[rows, columns]
 
 
-def outlined_depth_view(viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> NDArray[np.float32]:
+def outlined_depth_view(
+    viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16], places: Iterable[Place] | None = None
+) -> NDArray[np.float32]:
     """Like ``depth_view``, but with the edges of instances as sharp as in ``numbers``, the view's (H, W) instance numbers.
 
     Where a distance was measured on a different instance than the pixel shows, it is replaced by a neighbour's distance that was
     measured on the right one.
+
+    Args:
+        viewpoint: The viewpoint.
+        projection: The view.
+        numbers: Its instance numbers.
+        places: The parts of the view that are needed; the default is all of it. Other pixels are undefined.
     """
     where = atlas_map(viewpoint, viewpoint.depth_atlas, projection)
+    viewpoint.owner_atlas.need(0)
+    height, width = numbers.shape
+    texel_px = max(1.0, projection.density / (viewpoint.manifest.depth.width / (2 * math.pi)))
+    margin = math.ceil(_REACHES_TEXELS[-1] * texel_px) + 1
+    found = np.empty((height, width), np.float32)
+    for rows, columns in [(slice(0, height), slice(0, width))] if places is None else places:
+        top, left = max(0, rows.start - margin), max(0, columns.start - margin)
+        around = slice(top, rows.stop + margin), slice(left, columns.stop + margin)
+        near = _outlined_depth(viewpoint, where[around], numbers[around], texel_px)
+        found[rows, columns] = near[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+    return found
+
+
+def _outlined_depth(viewpoint: Viewpoint, where: Map, numbers: NDArray[np.uint16], texel_px: float) -> NDArray[np.float32]:
+    """Return those distances for a part of a view, given its map on the depth layer. They are exact away from the part's edges."""
     metres: NDArray[np.float32] = np.take(
         viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST)
     )
-    viewpoint.owner_atlas.need(0)
     owners = cv2.remap(viewpoint.owner_atlas.sheet, where, None, cv2.INTER_NEAREST)
     ys, xs = np.nonzero(owners != numbers)
-    texel_px = max(1.0, projection.density / (viewpoint.manifest.depth.width / (2 * math.pi)))
+    last_row, last_column = numbers.shape[0] - 1, numbers.shape[1] - 1
     refined = metres.copy()
-    for reach in (1.0, 2.0):
+    for reach in _REACHES_TEXELS:
         for dx, dy in _AROUND:
-            y = np.clip(ys + round(dy * reach * texel_px), 0, projection.height - 1)
-            x = np.clip(xs + round(dx * reach * texel_px), 0, projection.width - 1)
+            y = np.clip(ys + round(dy * reach * texel_px), 0, last_row)
+            x = np.clip(xs + round(dx * reach * texel_px), 0, last_column)
             fits = (owners[y, x] == numbers[ys, xs]) & (owners[y, x] == numbers[y, x])
             refined[ys[fits], xs[fits]] = metres[y[fits], x[fits]]
             ys, xs = ys[~fits], xs[~fits]

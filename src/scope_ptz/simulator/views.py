@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.actors import Appearance, composited, draw, shows
+from scope_ptz.simulator.actors import Appearance, composited, draw, place_of, shows
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view, outlined_depth_view
 from scope_ptz.simulator.viewpoint import Viewpoint
@@ -30,7 +30,7 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     here = scene.viewpoint(viewpoint)
     numbers = id_view(here, projection)
     if actors := _in_view(scene, here, projection, time_s):
-        depth_m = outlined_depth_view(here, projection, numbers)
+        depth_m = outlined_depth_view(here, projection, numbers, [p for a in actors if (p := place_of(a, projection)) is not None])
         for actor in actors:
             draw(here, projection, actor, depth_m, None, numbers)
     return numbers

@@ -7,7 +7,7 @@ changes no result.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from functools import cache
 from itertools import product
@@ -20,7 +20,7 @@ from lark.parsers.earley import Parser
 _END = ""
 """The token type that stands for the end of the text."""
 
-Predictions = Mapping[NonTerminal, Sequence[Rule]]
+Predictions = dict[NonTerminal, list[Rule]]
 
 
 class EarleyGrammar:
@@ -43,7 +43,8 @@ class EarleyGrammar:
             LarkError: The tokens fit no rule.
         """
         parser = copy(self._parser)  # each parse replaces the predictions, and threads share the grammar
-        return parser.parse(_Tokens(tokens, parser, self._predictions), start)
+        tree: Tree[Token] = parser.parse(_Tokens(tokens, parser, self._predictions), start)  # type: ignore[no-untyped-call]
+        return tree
 
     def _predictions_before(self, kind: str) -> Predictions:
         """Return the rules to predict for each symbol before a token of a type."""
