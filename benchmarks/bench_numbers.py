@@ -1,10 +1,10 @@
-"""Accuracy of the grammar planner by category: with ground-truth perception, noisy perception, or text read from pixels.
+"""Measure the accuracy of the grammar planner by category, with ground-truth perception, noisy perception, or OCR.
 
     python benchmarks/bench_numbers.py [--split core --split unseen ...] [--perception truth --perception noisy ...]
 
-Runs go through the agent loop, the real tools and the checks, in this process, and without pictures if perception needs none.
-With ``rapidocr`` everything but reading is done by the ground truth, and only tasks of the category ocr are run. Time and memory
-are this process's own. ``scope bench run`` measures the same through the evaluation engine.
+The tasks run in this process, with the agent loop, the real tools and the checks. Images are rendered only for ``rapidocr``, which
+runs only the tasks of the category ocr: rapidocr reads texts, and ground truth does the rest of perception. Time and memory are
+those of this process. ``scope bench run`` runs the same tasks through the evaluation engine.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.camera.simulated import SimulatedCamera
-from scope_ptz.factory.validation_perception import KnownViews
+from scope_ptz.factory.validation_perception import CachedTruth
 from scope_ptz.factory.worlds import worlds_of
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.ground_truth import GroundTruthPerception
@@ -46,34 +46,42 @@ NOISE_SEED = 1
 
 @dataclass
 class Score:
-    """Runs by category and verdict."""
+    """Counts of correct and of all runs by category, and descriptions of the runs that were not correct."""
 
-    right: Counter[str] = field(default_factory=Counter)
-    of: Counter[str] = field(default_factory=Counter)
+    correct: Counter[str] = field(default_factory=Counter)
+    total: Counter[str] = field(default_factory=Counter)
     unscored: int = 0
     failed: list[str] = field(default_factory=list)
 
     @property
     def micro(self) -> float:
-        return self.right.total() / max(1, self.of.total())
+        """The accuracy over all runs."""
+        return self.correct.total() / max(1, self.total.total())
 
     @property
     def macro(self) -> float:
-        """The unweighted mean over the categories, which the paper calls the average."""
-        return sum(self.right[name] / n for name, n in self.of.items()) / max(1, len(self.of))
+        """The unweighted mean of the accuracies of the categories, which the paper calls the average."""
+        return sum(self.correct[name] / n for name, n in self.total.items()) / max(1, len(self.total))
 
     def lines(self) -> Iterator[str]:
-        for name, n in self.of.items():
-            yield f"  {name:<22}{self.right[name]:>4} of {n:<4}{self.right[name] / n:>7.1%}"
+        """Yield the accuracy of each category and the means as lines of text."""
+        for name, n in self.total.items():
+            yield f"  {name:<22}{self.correct[name]:>4} of {n:<4}{self.correct[name] / n:>7.1%}"
         yield f"  micro {self.micro:.1%}, macro {self.macro:.1%}; unscored {self.unscored}"
 
 
 def main() -> int:
+    """Run the selected splits and perceptions, and print accuracy and cost."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--split", action="append", help="split or task file (default: core, unseen, paraphrase)")
-    parser.add_argument("--perception", action="append", choices=("truth", "noisy", "rapidocr"), help="default: truth and noisy")
-    parser.add_argument("--failures", action="store_true", help="list what failed, and why")
-    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--split", action="append", help="split or task file; repeatable (default: core, unseen, paraphrase)")
+    parser.add_argument(
+        "--perception",
+        action="append",
+        choices=("truth", "noisy", "rapidocr"),
+        help="perception to use; repeatable (default: truth and noisy)",
+    )
+    parser.add_argument("--failures", action="store_true", help="list the runs that were not correct, with the reason")
+    parser.add_argument("--json", action="store_true", help="print one JSON document at the end instead of text")
     arguments = parser.parse_args()
     results = {}
     for split in arguments.split or ("core", "unseen", "paraphrase"):
@@ -85,11 +93,11 @@ def main() -> int:
             took_s, cpu_s = time.perf_counter() - began, time.process_time() - cpu_began
             peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
             results[f"{Path(split).stem} {perception}"] = {
-                "right": dict(score.right), "of": dict(score.of), "micro": score.micro, "macro": score.macro,
+                "right": dict(score.correct), "of": dict(score.total), "micro": score.micro, "macro": score.macro,
                 "unscored": score.unscored, "seconds": took_s, "cpu_seconds": cpu_s, "peak_mb": peak_mb,
             }  # fmt: skip
             if not arguments.json:
-                cost = f"{took_s:.1f} s ({cpu_s:.1f} s of processor), peak memory so far {peak_mb:.0f} MB"
+                cost = f"{took_s:.1f} s ({cpu_s:.1f} s of processor time), peak memory so far {peak_mb:.0f} MB"
                 print(f"{split}, grammar + {perception}: {len(rows)} tasks in {cost}")
                 print("\n".join((*score.lines(), *(score.failed if arguments.failures else ()))), flush=True)
     if arguments.json:
@@ -97,19 +105,19 @@ def main() -> int:
     return 0
 
 
-async def _score(tasks: Sequence[Task], backend: str) -> Score:
+async def _score(tasks: Sequence[Task], perception_name: str) -> Score:
     worlds, score = worlds_of(tasks), Score()
-    perception = _perception(backend, worlds)
+    perception = _perception(perception_name, worlds)
     last = ""
     for task in sorted(tasks, key=lambda t: (t.scene, t.world)):
-        if last and last != task.scene:  # the pictures of one scene at a time take less memory
+        if last and last != task.scene:  # keeping the images of only one scene in memory
             for world in worlds.values():
                 world.release()
         last = task.scene
-        trace = await _run(task, worlds[task.world], perception, drawn=backend == "rapidocr")
+        trace = await _run(task, worlds[task.world], perception, render=perception_name == "rapidocr")
         verdict = score_episode(task, episode_of(trace, PresetViewpoints.of(worlds[task.world].file), keeps_files=False))
-        score.of[task.category] += 1
-        score.right[task.category] += verdict.headline == "correct"
+        score.total[task.category] += 1
+        score.correct[task.category] += verdict.headline == "correct"
         score.unscored += verdict.headline == "unscored"
         if verdict.headline != "correct":
             text = trace.ended.text if trace.ended else ""
@@ -118,7 +126,7 @@ async def _score(tasks: Sequence[Task], backend: str) -> Score:
 
 
 def _perception(name: str, worlds: Mapping[str, Scene]) -> Perception:
-    truth = GroundTruthPerception(lambda world: worlds[world], KnownViews().look)
+    truth = GroundTruthPerception(lambda world: worlds[world], CachedTruth().read)
     if name == "noisy":
         return NoisyPerception(truth, seed=NOISE_SEED)
     if name == "truth":
@@ -130,10 +138,10 @@ def _perception(name: str, worlds: Mapping[str, Scene]) -> Perception:
     return RouterPerception(reader=make_backend(BackendSpec(name="rapidocr", backend="ocr")), detector=truth, answerer=truth)
 
 
-async def _run(task: Task, world: Scene, perception: Perception, *, drawn: bool) -> Trace:
-    """A run of the grammar planner, its trace kept in memory. ``drawn``: frames show something."""
+async def _run(task: Task, world: Scene, perception: Perception, *, render: bool) -> Trace:
+    """Run a task with the grammar planner and return its trace. With ``render`` false, frames are blank."""
     clock = SceneClock(task.time_s)
-    camera = (SimulatedCamera if drawn else BlankCamera)(world, clock=clock, width=WIDTH, height=HEIGHT)
+    camera = (SimulatedCamera if render else BlankCamera)(world, clock=clock, width=WIDTH, height=HEIGHT)
     with clock.hold():
         await camera.go_to_preset(task.preset)
     records = list[Started | Decided | Called | Ended]()

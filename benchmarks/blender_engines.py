@@ -1,8 +1,8 @@
-"""Runs inside Blender: renders one view of a .blend file with each engine and prints the seconds as one line of JSON.
+"""Render one view of a .blend file with each of Blender's engines, and print the render time of each as a line of JSON.
 
     python benchmarks/blender_engines.py FILE.blend '{"position_m": [0, 0, 5], "bearing_deg": 0, "tilt_deg": -5, ...}'
 
-Needs a Python with ``bpy``; EEVEE and Workbench also need OpenGL (on Debian without a GPU: libegl1, libgl1-mesa-dri).
+It needs a Python with ``bpy``. EEVEE and Workbench also need OpenGL (on Debian without a GPU: libegl1, libgl1-mesa-dri).
 """
 
 from __future__ import annotations
@@ -18,9 +18,11 @@ import bpy
 
 ENGINES = {"Workbench": "BLENDER_WORKBENCH", "Cycles": "CYCLES", "EEVEE": "BLENDER_EEVEE"}
 WARM_UP_PERCENT = 5
+"""Resolution of the warm-up render, as a percentage of the full resolution."""
 
 
 def main() -> None:
+    """Open the file, place the camera, and time each engine."""
     blend, view = sys.argv[-2], json.loads(sys.argv[-1])
     bpy.ops.wm.open_mainfile(filepath=blend, use_scripts=False)
     scene = bpy.context.scene
@@ -34,11 +36,14 @@ def main() -> None:
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = view["width"], view["height"], 100
     scene.cycles.samples, scene.cycles.use_denoising = 16, True
     for name, engine in ENGINES.items():
-        print("seconds " + json.dumps({name: _seconds(scene, engine)}), flush=True)
+        print("seconds " + json.dumps({name: _render_seconds(scene, engine)}), flush=True)
 
 
-def _seconds(scene: bpy.types.Scene, engine: str) -> float | None:
-    """Of a render after a tiny one, which compiles shaders and loads data; None where the engine does not run."""
+def _render_seconds(scene: bpy.types.Scene, engine: str) -> float | None:
+    """Return the render time in seconds, or None if the engine does not run here.
+
+    A small render before it compiles the shaders and loads the data.
+    """
     scene.render.engine = engine
     scene.render.use_persistent_data = True
     start = 0.0

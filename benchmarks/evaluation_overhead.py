@@ -1,8 +1,8 @@
-"""What the evaluation engine costs: the same tasks through the bare agent loop and through Inspect AI, without any model.
+"""Measure the overhead of the evaluation engine: run the same tasks in a bare agent loop and through Inspect AI, without models.
 
-Processor time is compared, so that other work of the machine does not count.
+Processor times are compared, so that other load on the machine does not affect the result.
 
-python benchmarks/evaluation_overhead.py tasks.jsonl [--pictures]
+    python benchmarks/evaluation_overhead.py tasks.jsonl [--pictures]
 """
 
 from __future__ import annotations
@@ -27,42 +27,43 @@ from scope_ptz.factory.models import ResolvedPerception, ResolvedPlanner
 from scope_ptz.simulator.clock import SceneClock
 
 
-async def bare(entries: tuple[Entry, ...], lent: EvalContext, folder: Path, *, pictures: bool) -> float:
-    """Processor seconds for all runs, one after the other, without any engine."""
-    planner, perception = planner_for(ResolvedPlanner("grammar")), await lent.make_perception(ModelRequest("ground-truth"))
-    began = time.process_time()
+async def run_bare_loop(entries: tuple[Entry, ...], context: EvalContext, folder: Path, *, pictures: bool) -> float:
+    """Return the processor seconds for running all tasks one after the other in a bare agent loop."""
+    planner, perception = planner_for(ResolvedPlanner("grammar")), await context.make_perception(ModelRequest("ground-truth"))
+    start = time.process_time()
     for entry in entries:
-        clock, scene = SceneClock(entry.time_s), lent.open_scene(entry.world)
+        clock, scene = SceneClock(entry.time_s), context.open_scene(entry.world)
         camera = (SimulatedCamera if pictures else BlankCamera)(scene, clock=clock, width=1280, height=720)
         with clock.hold():
             await camera.go_to_preset(entry.facts.preset)
         images = RunFolder.create(folder, entry.facts.instruction) if pictures else NoImages()
         await Agent(planner, camera, perception, images, snapshots=pictures).run(entry.facts.instruction)
-    return time.process_time() - began
+    return time.process_time() - start
 
 
 async def main(tasks: Path, *, pictures: bool) -> None:
-    lent = eval_context(seed=1, perception=ResolvedPerception("ground-truth"))
-    entries = lent.load_tasks(str(tasks))
+    """Run the tasks in the bare loop and through the engine, and print the processor times."""
+    context = eval_context(seed=1, perception=ResolvedPerception("ground-truth"))
+    entries = context.load_tasks(str(tasks))
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        await bare(entries[:3], lent, folder, pictures=pictures)  # scenes read, grammar compiled
-        alone = await bare(entries, lent, folder, pictures=pictures)
+        await run_bare_loop(entries[:3], context, folder, pictures=pictures)  # warm-up: reads scenes, compiles the grammar
+        bare_s = await run_bare_loop(entries, context, folder, pictures=pictures)
         options = EvaluationOptions(out=folder / "logs", tasks=str(tasks), pictures=pictures, concurrency=1)
-        await evaluate(replace(options, limit=3))  # the engine imported
-        began = time.process_time()
-        made = (await evaluate(options)).evaluation
-        engine = time.process_time() - began
-        size = (await anyio.Path(made.log).stat()).st_size / 1e6
-    number = len(entries)
-    print(f"{number} runs   bare loop {alone:.1f} s ({1000 * alone / number:.0f} ms a run)")
-    print(f"{'':>{len(str(number))}}        engine    {engine:.1f} s ({1000 * engine / number:.0f} ms a run), log {size:.1f} MB")
-    print(f"ratio {engine / alone:.2f}, {1000 * (engine - alone) / number:.0f} ms more a run")
+        await evaluate(replace(options, limit=3))  # warm-up: imports the engine
+        start = time.process_time()
+        evaluation = (await evaluate(options)).evaluation
+        engine_s = time.process_time() - start
+        size = (await anyio.Path(evaluation.log).stat()).st_size / 1e6
+    count = len(entries)
+    print(f"{count} runs   bare loop  {bare_s:.1f} s ({1000 * bare_s / count:.0f} ms a run)")
+    print(f"{'':>{len(str(count))}}        engine     {engine_s:.1f} s ({1000 * engine_s / count:.0f} ms a run), log {size:.1f} MB")
+    print(f"ratio {engine_s / bare_s:.2f}, {1000 * (engine_s - bare_s) / count:.0f} ms more a run")
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("tasks", type=Path)
-    parser.add_argument("--pictures", action="store_true")
-    given = parser.parse_args()
-    anyio.run(lambda: main(given.tasks, pictures=given.pictures))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tasks", type=Path, help="task file (.jsonl)")
+    parser.add_argument("--pictures", action="store_true", help="render and store images")
+    arguments = parser.parse_args()
+    anyio.run(lambda: main(arguments.tasks, pictures=arguments.pictures))

@@ -1,9 +1,9 @@
-"""Time of a planning step of the built-in planner: median and 95th percentile over the test instructions.
+"""Measure the time of a planning step of the grammar planner: median and 95th percentile over the test instructions.
 
     python benchmarks/plan_latency.py [--limit N]
 
-Each instruction is planned twice: as the first step of a run, and once more as a later step. Times are also given as multiples of
-parsing a JSON document of the same run, because absolute times on a shared machine mean little.
+Each instruction is planned twice: as the first step of a run, and again as a later step. Times are relative to parsing a JSON
+document in the same run, because absolute times on a shared machine are not comparable.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ REFERENCE = json.dumps([{"pan_deg": n, "tilt_deg": -n, "text": "turn right"} for
 
 
 async def measure(limit: int) -> dict[str, list[float]]:
-    """Return the milliseconds of first steps, of later steps and of the reference."""
+    """Plan up to ``limit`` instructions and return the milliseconds of first steps, later steps and the reference."""
     planner = GrammarPlanner()
     times: dict[str, list[float]] = {"first step": [], "later step": [], "reference": []}
     for line in DATA.read_text(encoding="utf-8").splitlines()[:limit]:
@@ -42,9 +42,10 @@ async def measure(limit: int) -> dict[str, list[float]]:
 
 
 def main() -> None:
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--limit", type=int, default=1_000_000, help="plan at most this many instructions")
-    times = asyncio.run(measure(arguments.parse_args().limit))
+    """Measure, and print the ratios."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--limit", type=int, default=1_000_000, help="plan at most this many instructions (default: all)")
+    times = asyncio.run(measure(parser.parse_args().limit))
     reference = statistics.median(times.pop("reference"))
     print(f"reference: parsing {len(REFERENCE) / 1000:.0f} kB of JSON takes {reference:.2f} ms")
     for kind, taken in times.items():

@@ -1,13 +1,16 @@
-"""How many of the texts that are legible by definition an OCR engine (rapidocr) reads, in views drawn by seed.
+"""Measure how many of the legible texts of a scene an OCR engine (rapidocr) reads, in random views.
 
     python benchmarks/reading.py [--scene NAME ...] [--views 24] [--seed 1] [--misses]
     python benchmarks/reading.py --tasks core
 
-Every view aims near a text, from a viewpoint that can read it, at a zoom that makes it legible. All legible texts of the view
-count. A text is read when the engine's words where it stands are the same but for one character in six, case and spaces left aside.
+Each view is aimed near a text, at a zoom at which its letters are large enough to be legible. All legible texts in the view count.
+A text counts as read if the engine's output at its position contains it or has a similarity of at least
+5/6, ignoring case, spaces and punctuation.
 
-With ``--tasks`` (a split or a task file) the views are those in which the reference programs of the OCR tasks read, and the
-benchmark's own check says whether the engine's words where the answer stands are the answer. Needs the extra ``ocr``.
+With ``--tasks`` (a split or a task file), the views are those in which the reference programs of the OCR tasks read texts, and the
+benchmark's answer check decides whether the engine's output at the position of the answer is correct.
+
+It needs the extra ``ocr``.
 """
 
 from __future__ import annotations
@@ -32,22 +35,24 @@ from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt
 from scope_ptz.simulator.pack import Scene, find_scenes
 from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth
 from scope_ptz.simulator.views import picture
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
 WIDTH, HEIGHT = 1280, 720
-ALIKE = 5 / 6
+MIN_SIMILARITY = 5 / 6
+"""Similarity between a text and the engine's output from which the text counts as read."""
 MARGIN = 0.012
-"""Of the frame: how far the engine's boxes may lie beside a text's."""
+"""Distance, as a fraction of the frame, by which the middle of the engine's box may lie outside the box of a text."""
 
 
 def main() -> int:
+    """Measure the selected scenes or tasks and print the results."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scene", action="append", help="scene (default: all)")
-    parser.add_argument("--search", type=Path, action="append", default=[], help="extra folder of scenes")
-    parser.add_argument("--views", type=int, default=24, help="views a scene")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--misses", action="store_true", help="list what was not read")
-    parser.add_argument("--tasks", help="split or task file: read what its OCR tasks ask for")
+    parser.add_argument("--scene", action="append", help="scene to measure; repeatable (default: all)")
+    parser.add_argument("--search", type=Path, action="append", default=[], help="additional folder of scenes; repeatable")
+    parser.add_argument("--views", type=int, default=24, help="number of views per scene (default: 24)")
+    parser.add_argument("--seed", type=int, default=1, help="seed for the random views (default: 1)")
+    parser.add_argument("--misses", action="store_true", help="list the texts that were not read")
+    parser.add_argument("--tasks", help="split or task file: read the texts that its OCR tasks ask for")
     arguments = parser.parse_args()
     if arguments.tasks:
         _measure_tasks([task for task in load_split(arguments.tasks) if task.category == "ocr"], RapidOCR(), arguments.misses)
@@ -56,7 +61,7 @@ def main() -> int:
     engine = RapidOCR()
     for name in arguments.scene or list(folders):
         if name not in folders:
-            print(f"no scene '{name}'; known: {', '.join(folders) or 'none'}", file=sys.stderr)
+            print(f"No scene '{name}'. Known scenes: {', '.join(folders) or 'none'}.", file=sys.stderr)
             return 2
         found, missed = _measure(Scene(folders[name]), engine, arguments.views, arguments.seed)
         total = found + len(missed)
@@ -68,50 +73,52 @@ def main() -> int:
 
 
 def _measure(scene: Scene, engine: RapidOCR, views: int, seed: int) -> tuple[int, list[str]]:
+    """Read random views of a scene. Return the number of texts read, and descriptions of the texts that were not read."""
     number_read, missed = 0, []
     for viewpoint, pose, legible in _views(scene, views, random.Random(seed)):
         view = _perspective(pose)
-        words = _words(engine, picture(scene, viewpoint, view, 0.0))
+        lines_read = _read_lines(engine, picture(scene, viewpoint, view, 0.0))
         for text in legible:
-            found = _at(text, words)
-            if _alike(text.text.text, found) >= ALIKE:
+            found = _read_at(text, lines_read)
+            if _similarity(text.text.text, found) >= MIN_SIMILARITY:
                 number_read += 1
             else:
                 place = f"{viewpoint} {pose.pan_deg:.1f} {pose.tilt_deg:.1f} {pose.zoom:.2f}x"
                 size = f"capitals {text.cap_height_px:.0f} px, {text.angle_deg:.0f} deg"
-                missed.append(f"{text.text.text!r} as {found!r}, {size}, {place}")
+                missed.append(f"{text.text.text!r} read as {found!r}, {size}, {place}")
     return number_read, missed
 
 
 def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> None:
-    worlds, right, missed = worlds_of(tasks), 0, []
+    """Read the views of OCR tasks and print how many tasks are answered correctly."""
+    worlds, correct, missed = worlds_of(tasks), 0, []
     for task in tasks:
         scene, found = worlds[task.world], []
         for evidence in task.evidence:
             aim = evidence.aim
-            view, asked = _perspective(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom)), [item.instance for item in evidence.items]
-            words = _words(engine, picture(scene, aim.viewpoint, view, task.time_s))
+            view, instances = _perspective(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom)), [item.instance for item in evidence.items]
+            lines_read = _read_lines(engine, picture(scene, aim.viewpoint, view, task.time_s))
             texts = {t.text.id: t for t in view_truth(scene, aim.viewpoint, view, task.time_s).texts}
-            found += [_at(texts[name], words) for name in asked if name in texts]
-        said = " ".join(found)
-        if agrees(task.expected, parse_answer(task.expected, f'It reads "{said}".')):
-            right += 1
+            found += [_read_at(texts[name], lines_read) for name in instances if name in texts]
+        read = " ".join(found)
+        if agrees(task.expected, parse_answer(task.expected, f'It reads "{read}".')):
+            correct += 1
         else:
-            missed.append(f"{task.id} {right_answers(task.expected)[0]!r} as {said!r}: {task.instruction}")
-    print(f"{right} of {len(tasks)} OCR tasks: their texts read from pixels ({right / max(1, len(tasks)):.1%})")
+            missed.append(f"{task.id} {correct_answers(task.expected)[0]!r} read as {read!r}: {task.instruction}")
+    print(f"{correct} of {len(tasks)} OCR tasks answered correctly ({correct / max(1, len(tasks)):.1%})")
     if misses:
         print("\n".join(f"  {line}" for line in missed))
 
 
 def _views(scene: Scene, count: int, rng: random.Random) -> Iterator[tuple[str, Pose, list[TextSighting]]]:
-    """Poses with at least one legible text, and their legible texts."""
+    """Yield random poses (viewpoint and pose) that show at least one legible text, with their legible texts."""
     limits, done = Limits(), 0
     for _ in range(40 * count):
         place, text = rng.choice(scene.file.viewpoints), rng.choice(scene.file.texts)
         offset = np.array(text.centre_m) - np.array(place.position_m)
         pan, tilt = (float(v) for v in pan_tilt_deg(offset))
         caps_rad = text.cap_height_m / float(np.linalg.norm(offset))
-        for _ in range(4):  # a zoom at which this text is legible, when there is one
+        for _ in range(4):  # find a zoom at which this text is legible, if there is one
             zoom = rng.uniform(limits.min_zoom, limits.max_zoom)
             if caps_rad * _perspective(Pose(zoom=zoom)).focal_px >= MIN_CAP_HEIGHT_PX:
                 break
@@ -131,8 +138,8 @@ def _perspective(pose: Pose) -> Perspective:
     return Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), WIDTH, HEIGHT)
 
 
-def _words(engine: RapidOCR, image: NDArray[np.uint8]) -> list[tuple[float, float, str]]:
-    """Middle (normalised) and characters of each line that the engine finds."""
+def _read_lines(engine: RapidOCR, image: NDArray[np.uint8]) -> list[tuple[float, float, str]]:
+    """Return the middle (normalised x and y) and the text of each line that the engine finds."""
     result = engine(image[..., ::-1])
     if result.boxes is None or result.txts is None:
         return []
@@ -140,15 +147,16 @@ def _words(engine: RapidOCR, image: NDArray[np.uint8]) -> list[tuple[float, floa
     return [(float(x), float(y), str(text)) for (x, y), text in zip(middles, result.txts, strict=True)]
 
 
-def _at(text: TextSighting, words: Sequence[tuple[float, float, str]]) -> str:
-    """What the engine read within a text's box, in reading order."""
+def _read_at(text: TextSighting, lines: Sequence[tuple[float, float, str]]) -> str:
+    """Return what the engine read within the box of a text, in reading order."""
     x0, y0, x1, y1 = text.box
-    inside = [w for w in words if x0 - MARGIN <= w[0] <= x1 + MARGIN and y0 - MARGIN <= w[1] <= y1 + MARGIN]
-    return " ".join(w[2] for w in sorted(inside, key=lambda w: (round(w[1] * 40), w[0])))
+    in_box = [w for w in lines if x0 - MARGIN <= w[0] <= x1 + MARGIN and y0 - MARGIN <= w[1] <= y1 + MARGIN]
+    return " ".join(w[2] for w in sorted(in_box, key=lambda w: (round(w[1] * 40), w[0])))
 
 
-def _alike(wanted: str, found: str) -> float:
-    a, b = (re.sub(r"[^a-z0-9]", "", s.lower()) for s in (wanted, found))
+def _similarity(expected: str, found: str) -> float:
+    """Return the similarity of two texts in [0, 1], ignoring case, spaces and punctuation."""
+    a, b = (re.sub(r"[^a-z0-9]", "", s.lower()) for s in (expected, found))
     if a and a in b:
         return 1.0
     return SequenceMatcher(None, a, b, autojunk=False).ratio()

@@ -1,8 +1,8 @@
-"""How fast a view is, as multiples of one bare ``cv2.remap`` with ready maps of the same size, measured in the same run.
+"""Measure the time to compute a view of a pack, relative to a ``cv2.remap`` of the same size with precomputed maps.
 
     python benchmarks/reprojection.py [--scene highway-works] [--search FOLDER] [--blender-python PYTHON]
 
-With a Python that has ``bpy``, one view of each viewpoint is also rendered by Blender's engines, and the ratios to them printed.
+With ``--blender-python``, one view of each viewpoint is also rendered with Blender's engines for comparison.
 """
 
 from __future__ import annotations
@@ -34,17 +34,18 @@ ROUNDS = 40
 
 
 def main() -> int:
+    """Measure the views of all viewpoints of a scene and print the times."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scene", default="highway-works")
-    parser.add_argument("--search", type=Path, action="append", default=[], help="extra folder of scenes")
-    parser.add_argument("--blender-python", type=Path, help="a Python that has bpy")
-    parser.add_argument("--source", help="what the scene is built from, when that is not the module of its name")
-    parser.add_argument("--threads", type=int, default=cv2.getNumThreads(), help="OpenCV threads")
+    parser.add_argument("--scene", default="highway-works", help="scene to measure (default: highway-works)")
+    parser.add_argument("--search", type=Path, action="append", default=[], help="additional folder of scenes; repeatable")
+    parser.add_argument("--blender-python", type=Path, help="Python with bpy, for comparison with Blender's engines")
+    parser.add_argument("--source", help="scene module or Python file to build the scene from (default: the module with its name)")
+    parser.add_argument("--threads", type=int, default=cv2.getNumThreads(), help="number of OpenCV threads")
     arguments = parser.parse_args()
     cv2.setNumThreads(arguments.threads)
     folders = find_scenes(arguments.search)
     if arguments.scene not in folders:
-        print(f"no scene '{arguments.scene}'; known: {', '.join(folders) or 'none'}", file=sys.stderr)
+        print(f"No scene '{arguments.scene}'. Known scenes: {', '.join(folders) or 'none'}.", file=sys.stderr)
         return 2
     scene = Scene(folders[arguments.scene])
     print(
@@ -81,7 +82,7 @@ def _report(scene: Scene, viewpoint: Viewpoint, name: str, pose: Pose) -> None:
             "fixed": lambda: cv2.remap(sheet, *fixed, cv2.INTER_LINEAR),
         }
     )
-    # On its own: it reads so much else that whatever comes next would pay for cold caches.
+    # Measured separately, because it evicts data from the CPU caches and would slow down the next call.
     times |= _interleaved({"truth": lambda: view_truth(scene, viewpoint.name, view, 0.0)})
     print(
         f"{viewpoint.name:>14} {name:<14} view {_ms(times['view'])}  = {_ratio(times, 'float')} of a remap with float maps, "
@@ -98,7 +99,7 @@ def _report_engines(scene: Scene, source: str, python: Path) -> None:
         for place in scene.file.viewpoints:
             viewpoint = scene.viewpoint(place.name)
             view = Perspective(0.0, -5.0, AXIS_M5075_G.hfov_deg(1.0), WIDTH, HEIGHT)
-            ours = statistics.median(_interleaved({"view": partial(colour_view, viewpoint, view)})["view"])
+            view_s = statistics.median(_interleaved({"view": partial(colour_view, viewpoint, view)})["view"])
             request = {
                 "position_m": place.position_m,
                 "bearing_deg": place.pan0_bearing_deg,
@@ -111,30 +112,34 @@ def _report_engines(scene: Scene, source: str, python: Path) -> None:
             with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as engines:
                 for line in engines.stdout or ():
                     if line.startswith("seconds "):
-                        for engine, seconds in json.loads(line.removeprefix("seconds ")).items():
-                            took = "does not run here" if seconds is None else f"{seconds:7.2f} s = {seconds / ours:,.0f} views"
-                            print(f"{place.name:>14} {engine:<14} {took}", flush=True)
+                        for engine, engine_s in json.loads(line.removeprefix("seconds ")).items():
+                            result = (
+                                "cannot run on this machine"
+                                if engine_s is None
+                                else f"{engine_s:7.2f} s = {engine_s / view_s:,.0f} views"
+                            )
+                            print(f"{place.name:>14} {engine:<14} {result}", flush=True)
 
 
 def _interleaved(calls: dict[str, Callable[[], object]]) -> dict[str, list[float]]:
-    """Seconds of each call in each round, taken in turns so that a busy machine slows all alike.
+    """Return the seconds of each call in each round. Calls alternate, so that other load on the machine affects all equally.
 
-    Each round begins with another call: what comes second finds the pictures in the caches, and none shall always profit.
+    Each round starts with a different call, because later calls profit from images that are already in the CPU caches.
     """
     times: dict[str, list[float]] = {name: [] for name in calls}
     names = list(calls)
-    for turn in range(ROUNDS + 3):
-        first = turn % len(names)
+    for round_number in range(ROUNDS + 3):
+        first = round_number % len(names)
         for name in names[first:] + names[:first]:
             start = time.perf_counter()
             calls[name]()
-            if turn >= 3:
+            if round_number >= 3:
                 times[name].append(time.perf_counter() - start)
     return times
 
 
-def _ratio(times: dict[str, list[float]], to: str) -> str:
-    ratios = sorted(a / b for a, b in zip(times["view"], times[to], strict=True))
+def _ratio(times: dict[str, list[float]], reference: str) -> str:
+    ratios = sorted(a / b for a, b in zip(times["view"], times[reference], strict=True))
     return f"{statistics.median(ratios):.2f}x ({ratios[len(ratios) // 10]:.2f} to {ratios[-1 - len(ratios) // 10]:.2f})"
 
 

@@ -1,9 +1,9 @@
-"""Time and memory of short commands, as multiples of ``python -c "import numpy, cv2, pydantic"`` in the same run.
+"""Measure the time and memory of short commands, relative to ``python -c "import numpy, cv2, pydantic"``.
 
     python benchmarks/startup.py [--rounds N]
 
-The reference and the commands take turns, so that a busy machine slows all of them alike. Printed are medians of processor time
-and of wall time, and the largest memory.
+The reference and the commands run alternately, so that other load on the machine affects all of them equally. The output is the
+median processor time, the median wall time and the peak memory of each.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ COMMANDS = (["--help"], ["tools"], ["plan", "pan right 5"], ["ask", "pan right 5
 
 
 class Cost(NamedTuple):
-    """The cost of one process."""
+    """Time and peak memory of one process."""
 
     cpu_s: float
     wall_s: float
@@ -30,7 +30,7 @@ class Cost(NamedTuple):
 
 
 def cost(command: list[str], folder: str) -> Cost:
-    """Run a command and return its cost."""
+    """Run a command in ``folder`` and return its cost. Exits with a message if the command fails."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     start = time.perf_counter()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, cwd=folder, env=environment)
@@ -45,25 +45,28 @@ def cost(command: list[str], folder: str) -> Cost:
 
 
 def main() -> None:
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--rounds", type=int, default=7, help="runs of each command")
-    rounds = arguments.parse_args().rounds
+    """Run the reference and all commands, and print their costs."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rounds", type=int, default=7, help="number of runs of each command (default: 7)")
+    rounds = parser.parse_args().rounds
     reference = [sys.executable, "-c", REFERENCE]
     commands = {" ".join(words): [sys.executable, "-m", "scope_ptz.cli", *words] for words in COMMANDS}
     with tempfile.TemporaryDirectory() as folder:
         for command in (reference, *commands.values()):
-            cost(command, folder)  # compiles bytecode and fills the file cache
-        base: list[Cost] = []
+            cost(command, folder)  # warm-up: compiles bytecode and fills the file cache
+        references: list[Cost] = []
         costs: dict[str, list[Cost]] = {name: [] for name in commands}
         for _ in range(rounds):
-            base.append(cost(reference, folder))
+            references.append(cost(reference, folder))
             for name, command in commands.items():
                 costs[name].append(cost(command, folder))
-    cpu, wall = (statistics.median(run[n] for run in base) for n in (0, 1))
-    print(f"reference: {cpu:.2f} s of processor time, {wall:.2f} s, {max(run.memory_mb for run in base):.0f} MB")
+    cpu, wall = (statistics.median(run[n] for run in references) for n in (0, 1))
+    print(f"reference: {cpu:.2f} s of processor time, {wall:.2f} s of wall time, {max(run.memory_mb for run in references):.0f} MB")
     for name, runs in costs.items():
-        of_cpu, of_wall = statistics.median(r.cpu_s for r in runs) / cpu, statistics.median(r.wall_s for r in runs) / wall
-        print(f"scope {name}: {of_cpu:.1f} x processor time, {of_wall:.1f} x wall time, {max(r.memory_mb for r in runs):.0f} MB")
+        cpu_ratio, wall_ratio = statistics.median(r.cpu_s for r in runs) / cpu, statistics.median(r.wall_s for r in runs) / wall
+        print(
+            f"scope {name}: {cpu_ratio:.1f} x processor time, {wall_ratio:.1f} x wall time, {max(r.memory_mb for r in runs):.0f} MB"
+        )
 
 
 if __name__ == "__main__":

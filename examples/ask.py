@@ -7,16 +7,16 @@ def main() -> None:
     with scope_ptz.open("highway-works") as scope:
         run = scope.ask("Go to the highway preset, then pan right in 15 degree steps until you see at least six cones")
         print(run.answer)
-        print(f"\nIt {run.outcome} after {len(run.calls)} calls, and the camera is at {run.pose}:")
+        print(f"\nOutcome: {run.outcome} after {len(run.calls)} calls. The camera is at {run.pose}. Calls:")
         for call in run.calls:
             print(f"  {call.step}. {call}")
 
-        print("\nThe session remembers what was said, and events arrive as they happen:")
+        print("\nThe session remembers earlier instructions. Events arrive while the run is in progress:")
         for event in scope.stream("now zoom in 2x and count the workers"):
             print(f"  {event}")
 
         run.filmstrip.save("filmstrip.png")
-        print("\nThe first run in one picture: filmstrip.png")
+        print("\nSaved a picture of the first run: filmstrip.png")
 
 
 if __name__ == "__main__":

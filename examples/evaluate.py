@@ -7,7 +7,7 @@ from scope_ptz.contracts import Decision, Finish, State
 
 
 class SaysNo(scope_ptz.Planner):
-    """The baseline that never looks."""
+    """A baseline that always answers no, without any call."""
 
     name = "says-no"
 

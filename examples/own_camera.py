@@ -65,7 +65,7 @@ class Check(scope_ptz.CameraConformance):
 
 
 def main():
-    print("Broken promises of the contract:", asyncio.run(Check().findings()) or "none")
+    print("Contract violations:", asyncio.run(Check().findings()) or "none")
     with scope_ptz.open(PaintedSphere()) as scope:
         print(scope.ask("pan right 20 degrees and zoom in 2x"))
         print(scope.ask("go to the sign preset and tilt up 50 degrees"))

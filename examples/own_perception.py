@@ -1,4 +1,4 @@
-"""Use a perception backend of your own: it finds orange things by their colour. The conformance suite checks it first."""
+"""Use a perception backend of your own: it detects orange objects by their colour. The conformance suite checks it first."""
 
 import asyncio
 from contextlib import asynccontextmanager
@@ -49,7 +49,7 @@ class Check(scope_ptz.PerceptionConformance):
 
 
 def main() -> None:
-    print("Broken promises of the contract:", asyncio.run(Check().findings()) or "none")
+    print("Contract violations:", asyncio.run(Check().findings()) or "none")
     with scope_ptz.open("highway-works", perception=Orange()) as scope:
         print("By colour:    ", scope.ask("how many cones are there?"))
     with scope_ptz.open("highway-works") as scope:

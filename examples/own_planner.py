@@ -5,7 +5,7 @@ from scope_ptz.contracts import CallTools, Decision, Finish, State, ToolCall
 
 
 class Patrol(scope_ptz.Planner):
-    """Visits all presets and counts what the instruction names. It keeps no state: the history says what was done."""
+    """Visits all presets and counts what the instruction names. All earlier calls are in the history, so it keeps no state."""
 
     name = "patrol"
 

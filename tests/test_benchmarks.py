@@ -1,4 +1,4 @@
-"""Every benchmark runs, in its smallest form. Nothing here looks at a time."""
+"""Every benchmark runs with a small workload. No times are checked."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_a_benchmark_prints_ratios(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name", sorted(path.stem for path in BENCHMARKS.glob("*.py") if path.stem not in {*SMALLEST, "blender_engines"})
 )
-def test_a_benchmark_can_be_imported_and_explains_itself(name: str, tmp_path: Path) -> None:
+def test_a_benchmark_can_be_imported_and_has_help(name: str, tmp_path: Path) -> None:
     assert "usage:" in run(name, "--help", folder=tmp_path)
 
 

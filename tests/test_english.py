@@ -9,7 +9,7 @@ from scope_ptz.english.numerals import CARDINALS
 
 
 @pytest.mark.parametrize("number", range(100))
-def test_number_words_are_read_back(number: int) -> None:
+def test_number_words_are_parsed_back(number: int) -> None:
     assert english.cardinal(english.number_word(number)) == number
     assert english.cardinal(str(number)) == number
 
@@ -20,13 +20,14 @@ def test_number_words_outside_the_range_are_errors() -> None:
             english.number_word(number)
 
 
-def test_words_that_are_no_numbers() -> None:
+def test_words_that_are_not_numbers() -> None:
     assert english.cardinal("fivety") is None and english.cardinal("twenty-eleven") is None
     assert english.ordinal("car") is None and "hundred" not in CARDINALS
 
 
 @pytest.mark.parametrize(
-    ("number", "text"), [(1, "1st"), (2, "2nd"), (3, "3rd"), (4, "4th"), (11, "11th"), (13, "13th"), (22, "22nd")]
+    ("number", "text"),
+    [(1, "1st"), (2, "2nd"), (3, "3rd"), (4, "4th"), (11, "11th"), (13, "13th"), (22, "22nd"), (101, "101st"), (111, "111th")],
 )
 def test_ordinals(number: int, text: str) -> None:
     assert f"{number}{english.ordinal_suffix(number)}" == text

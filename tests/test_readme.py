@@ -1,4 +1,4 @@
-"""The README's commands and its Python example run as printed, and its transcript and links are right."""
+"""The commands and the Python example of the README run as printed, and its transcript and links are correct."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MAKE = sorted(set(re.findall(r"`(make [a-z-]+)`", README)))
 
 
 def run(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Run shell commands in a folder, with this environment's programs first in the search path."""
+    """Run shell commands in a folder, with the programs of this environment first in the search path."""
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     environment = os.environ | {"PATH": path, "COLUMNS": "84"}
     return subprocess.run(
@@ -92,10 +92,10 @@ def test_the_demo_is_the_transcript() -> None:
 
 
 @pytest.mark.parametrize("target", re.findall(r"\]\(([^)#:]+)\)", README))
-def test_links_and_pictures_are_there(target: str) -> None:
+def test_linked_files_and_pictures_exist(target: str) -> None:
     assert (ROOT / target).exists()
 
 
 def plain(text: str) -> str:
-    """Return a text with every run of white space as one space, so that line breaks make no difference."""
+    """Return a text with every run of white space replaced by one space, so that line breaks do not matter."""
     return " ".join(text.split())

@@ -1,4 +1,4 @@
-"""The pages about scenes in the documentation are their cards, word for word."""
+"""The documentation pages of scenes are identical to their generated cards."""
 
 from __future__ import annotations
 

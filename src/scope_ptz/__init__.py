@@ -1,4 +1,4 @@
-"""SCOPE: talk to a pan-tilt-zoom camera in plain language, and measure how well a model pair does it.
+"""SCOPE: control a pan-tilt-zoom camera in plain language, and benchmark the models that do it.
 
     import scope_ptz
 
@@ -6,16 +6,17 @@
         run = scope.ask("how many cones are there?")
         print(run.answer)
 
-The names in ``__all__`` are the public interface, together with ``scope_ptz.contracts``, which has the types that a camera, a
-planner or a perception backend of your own needs. Every other module is internal and may change in any release.
+The public interface consists of the names in ``__all__`` and the module ``scope_ptz.contracts``, which contains the types needed to
+implement a camera, a planner or a perception backend. Every other module is internal and may change in any release.
 
 Sessions: ``open``, ``open_async``, ``Scope``, ``AsyncScope``, ``Run``, ``CallResult``, ``Event``.
-What there is: ``scenes``, ``SceneInfo``, ``models``, ``tool_schemas``.
+Scenes, models and tools: ``scenes``, ``SceneInfo``, ``models``, ``tool_schemas``.
 Evaluations: ``load_tasks``, ``Task``, ``evaluate``, ``load_results``, ``EvaluationResults``, ``Trial``.
-Your own parts: ``Camera``, ``Frame``, ``Pose``, ``Planner``, ``Perception``, ``CameraConformance``, ``PerceptionConformance``.
-Errors: ``ScopeError`` and, below it, ``InputError``, ``CameraError``, ``PlannerError`` and ``PerceptionError``.
+Contracts and conformance suites: ``Camera``, ``Frame``, ``Pose``, ``Planner``, ``Perception``, ``CameraConformance``,
+``PerceptionConformance``.
+Errors: ``ScopeError`` and its subclasses ``InputError``, ``CameraError``, ``PlannerError`` and ``PerceptionError``.
 
-Importing the package is cheap: a name is loaded when it is first used.
+Importing the package is cheap, because each name is imported on first use.
 """
 
 from importlib import import_module

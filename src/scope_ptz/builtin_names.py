@@ -1,10 +1,10 @@
-"""Names of what is built in: they appear in options, traces, evaluation logs and reports."""
+"""Names of the built-in planners and perception backends, as used in options, traces, evaluation logs and reports."""
 
 GRAMMAR = "grammar"
 """The rule-based planner."""
 
 CHAT = "chat"
-"""A planner that is a model behind an OpenAI-compatible server."""
+"""The planner that asks a chat model on an OpenAI-compatible server."""
 
 GROUND_TRUTH = "ground-truth"
 """Perception that reads the simulator's ground truth."""
@@ -13,11 +13,11 @@ NOISY = "noisy"
 """Ground truth with simulated perception errors."""
 
 NOISY_SOURCE = "noisy-ground-truth"
-"""The source that results of noisy perception name."""
+"""The ``source`` of results from noisy perception."""
 
 BUILT_IN_PERCEPTION = (GROUND_TRUTH, NOISY)
 DETERMINISTIC = (GRAMMAR, GROUND_TRUTH, NOISY)
 """Planners and perception that need no model: the same input always gives the same output."""
 
 DEFAULT_SCENE = "highway-works"
-"""The default scene of commands."""
+"""The scene that commands use by default."""

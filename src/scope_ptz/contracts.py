@@ -1,13 +1,13 @@
-"""The types that a camera, a planner or a perception backend of your own needs. This module is public.
+"""Public types for implementing a camera, a planner or a perception backend.
 
 - A camera subclasses ``Camera`` and returns ``CameraInfo``, ``PresetInfo``, ``Arrival`` and ``Frame``. It has a ``Clock``;
   ``WallClock`` suits real cameras. ``Limits``, ``Optics``, ``Pose`` and ``Perspective`` describe its geometry. A camera that can
   be driven at a ``Velocity``, or whose presets can be edited, states so in its ``Capabilities``.
 - A planner subclasses ``Planner``. Its ``step`` receives a ``State`` and returns ``CallTools`` (of ``ToolCall``) or ``Finish``.
 - A perception backend subclasses ``Perception`` and returns ``Caption``, ``Answer``, ``Detections`` (of ``Box``) and ``Points``
-  (of ``Point``). It raises ``PerceptionError`` when it cannot read a frame.
+  (of ``Point``). It raises ``PerceptionError`` when it cannot process a frame.
 
-``CameraConformance`` and ``PerceptionConformance`` of ``scope_ptz`` check an implementation.
+The test suites ``scope_ptz.CameraConformance`` and ``scope_ptz.PerceptionConformance`` check an implementation.
 """
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo

@@ -1,4 +1,7 @@
-"""Entry points of installed packages: names, origins and loading, with one clear error for anything that is broken."""
+"""Find and load plug-ins, which installed packages declare as entry points.
+
+A plug-in that is broken in any way raises ``ConfigError``.
+"""
 
 from __future__ import annotations
 
@@ -19,13 +22,14 @@ _Product = TypeVar("_Product")
 
 @dataclass(frozen=True, slots=True)
 class InstalledEntry:
-    """An entry point of one of the groups above. Reading it imports nothing.
+    """An entry point of one of the groups above. Finding it does not import its package.
 
     Attributes:
         group: The entry-point group.
-        name: The name under which the package offers its factory, with hyphens as underscores.
+        name: The declared name of the factory, with hyphens replaced by underscores.
         package: The distribution and its version, for example ``scope-yard 1.2``.
         target: The factory as ``module:attribute``.
+        point: The entry point, which imports the factory.
     """
 
     group: str
@@ -46,15 +50,15 @@ class InstalledEntry:
             raise ConfigError(f"The plug-in '{self.name}' ({self.package}) cannot be loaded: {one_line(error)}.") from error
         if not callable(factory):
             raise ConfigError(
-                f"The plug-in '{self.name}' ({self.package}) names {self.target}, which is of type {type(factory).__name__} "
-                "and not a factory function."
+                f"The plug-in '{self.name}' ({self.package}) declares {self.target} as its factory, but that is not "
+                f"callable: it is of type {type(factory).__name__}."
             )
-        made: Callable[..., Any] = factory
-        return made
+        loaded: Callable[..., Any] = factory
+        return loaded
 
 
 def call_factory(entry: InstalledEntry, contract: type[_Product], spec: object) -> _Product:
-    """Call a plug-in's factory and check that its product keeps the contract.
+    """Call a plug-in's factory and check the type of its product.
 
     Args:
         entry: The plug-in.
@@ -75,10 +79,10 @@ def call_factory(entry: InstalledEntry, contract: type[_Product], spec: object) 
 
 
 def expect_product(entry: InstalledEntry, contract: type[_Product], product: object) -> _Product:
-    """Return a factory's product if it is of the contract's type.
+    """Return a factory's product after checking that it is an instance of the contract.
 
     Raises:
-        ConfigError: It is of another type.
+        ConfigError: The product is of another type.
     """
     if not isinstance(product, contract):
         raise ConfigError(
@@ -89,12 +93,12 @@ def expect_product(entry: InstalledEntry, contract: type[_Product], product: obj
 
 
 def normalised(name: str) -> str:
-    """Return a name in the spelling in which names are compared: hyphens and underscores are the same."""
+    """Normalise a name for comparison: hyphens become underscores."""
     return name.replace("-", "_")
 
 
 def installed(group: str) -> tuple[InstalledEntry, ...]:
-    """Return the entry points of a group by name. Nothing is imported."""
+    """Return the entry points of a group, sorted by name, without importing them."""
     found = [
         InstalledEntry(group, normalised(point.name), _package(point), point.value, point) for point in entry_points(group=group)
     ]
@@ -102,21 +106,21 @@ def installed(group: str) -> tuple[InstalledEntry, ...]:
 
 
 def find(group: str, name: str) -> InstalledEntry | None:
-    """Return the entry point of a name, or None when no package offers it.
+    """Return the entry point with a name, or None if no installed package declares it.
 
     Raises:
-        ConfigError: Several installed packages offer the name.
+        ConfigError: Several installed packages declare the name.
     """
-    wanted = normalised(name)
-    matches = [entry for entry in installed(group) if entry.name == wanted]
+    key = normalised(name)
+    matches = [entry for entry in installed(group) if entry.name == key]
     if len(matches) > 1:
         packages = " and ".join(entry.package for entry in matches)
         raise ConfigError(f"The packages {packages} both offer '{name}'. Uninstall one of them.")
     return matches[0] if matches else None
 
 
-def repeated(group: str) -> frozenset[str]:
-    """Return the names that more than one package offers."""
+def duplicated_names(group: str) -> frozenset[str]:
+    """Return the names that more than one package declares."""
     counts = Counter(entry.name for entry in installed(group))
     return frozenset(name for name, number in counts.items() if number > 1)
 

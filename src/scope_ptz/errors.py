@@ -2,16 +2,16 @@
 
 ScopeError
 ├── InputError              an instruction, option or setting is wrong (exit code 2)
-│   ├── ConfigError         a setting, an option or a URL
-│   ├── UnknownNameError    a scene, viewpoint, preset, planner or tool that does not exist
-│   └── OutputError         a folder or file that cannot be written
+│   ├── ConfigError         a setting, an option or a URL is wrong
+│   ├── UnknownNameError    a scene, viewpoint, preset, planner or tool does not exist
+│   └── OutputError         a folder or file cannot be written
 ├── PackError               a pack is missing, damaged or has an unsupported version (exit code 2)
 ├── CameraError             the camera fails or does not answer
 ├── PerceptionError         perception cannot interpret a frame (an empty result is not an error)
 ├── PlannerError            the planner fails, or its reply is not a decision
-├── ServerFailure           a model server gives no usable reply (endpoints.failures); raised to callers as one of the two above
-├── ToolCallError           a tool call with a wrong name or wrong arguments
-├── TraceError              a trace that cannot be read or replayed
+├── ServerFailure           a model server gives no usable reply (endpoints.failures); callers get one of the two errors above
+├── ToolCallError           a tool call has an unknown name or invalid arguments
+├── TraceError              a trace cannot be read or replayed
 └── BlenderError            the Blender worker is missing or fails
 """
 
@@ -30,16 +30,16 @@ __all__ = [
     "PackError",
     "PerceptionError",
     "PlannerError",
+    "RequestRecord",
     "ScopeError",
     "ToolCallError",
     "TraceError",
-    "Tried",
     "UnknownNameError",
 ]
 
 
-class Tried(Protocol):
-    """A request to a model server. ``kind`` is the kind of failure, None for a success."""
+class RequestRecord(Protocol):
+    """A recorded request to a model server. ``kind`` is the kind of failure; None if the request succeeded."""
 
     @property
     def kind(self) -> str | None: ...
@@ -81,14 +81,14 @@ class CameraError(ScopeError):
 
 
 class _ModelError(ScopeError):
-    """An error of a planner or perception, which may run on a model server.
+    """An error of a planner or a perception backend, which may use a model server.
 
     Attributes:
-        kind: How the server failed (``endpoints.FailureKind``); None if no server failed.
-        attempts: The requests that were made (``endpoints.Attempt``).
+        kind: How the server failed (a value of ``endpoints.failures.FailureKind``); None if no server failed.
+        attempts: The requests that were sent to the server (``endpoints.failures.Attempt``).
     """
 
-    def __init__(self, *message: object, kind: str | None = None, attempts: Sequence[Tried] = ()) -> None:
+    def __init__(self, *message: object, kind: str | None = None, attempts: Sequence[RequestRecord] = ()) -> None:
         super().__init__(*message)
         self.kind, self.attempts = kind, tuple(attempts)
 
@@ -102,7 +102,7 @@ class PlannerError(_ModelError):
 
 
 class ToolCallError(ScopeError):
-    """A tool call with a wrong name or wrong arguments."""
+    """A tool call has an unknown name or invalid arguments."""
 
 
 class TraceError(ScopeError):

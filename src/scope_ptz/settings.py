@@ -19,7 +19,7 @@ class ScopeSettings(BaseSettings):
 
     model_config = SettingsConfigDict(env_prefix="SCOPE_", extra="ignore")
 
-    runs_dir: Path = Field(default=Path("runs"), description="Folder for run folders.")
+    runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
     scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
@@ -39,22 +39,22 @@ class ScopeSettings(BaseSettings):
         """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""
         if self.models is not None:
             return self.models
-        usual = user_config_path("scope-ptz") / "models.yaml"
-        return usual if usual.is_file() else None
+        default = user_config_path("scope-ptz") / "models.yaml"
+        return default if default.is_file() else None
 
 
 def load_settings() -> ScopeSettings:
     """Read the settings.
 
     Raises:
-        ConfigError: A variable has a wrong value. The message names it.
+        ConfigError: A variable has an invalid value. The message names the variable.
     """
     try:
         return ScopeSettings()
     except ValidationError as error:
         first = error.errors()[0]
         name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()
-        raise ConfigError(f"The environment variable {name} is wrong: {first['msg']}.") from error
+        raise ConfigError(f"The environment variable {name} has an invalid value: {first['msg']}.") from error
 
 
 def has_desktop() -> bool:
@@ -62,12 +62,12 @@ def has_desktop() -> bool:
     return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-Inline = Literal["iterm", "kitty"]
-"""Protocols for pictures in a terminal."""
+InlineProtocol = Literal["iterm", "kitty"]
+"""Protocols for showing pictures in a terminal."""
 
 
-def inline_pictures() -> Inline | None:
-    """Return the protocol by which the current terminal shows pictures, None if it announces none."""
+def inline_pictures() -> InlineProtocol | None:
+    """Return the protocol with which the current terminal can show pictures; None if no support is detected."""
     if os.environ.get("TERM_PROGRAM") in ("iTerm.app", "WezTerm"):
         return "iterm"
     return "kitty" if os.environ.get("KITTY_WINDOW_ID") or os.environ.get("TERM") == "xterm-kitty" else None

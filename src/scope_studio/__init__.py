@@ -1,4 +1,4 @@
-"""Procedural modelling inside Blender: object kit, scenes, render worker.
+"""Procedural modelling inside Blender: an object kit, the built-in scenes, and the render worker.
 
-The main program finds this package by its location and starts its worker; it never imports it.
+The main program never imports this package. It starts the worker as a process, by the path of ``worker.py``.
 """

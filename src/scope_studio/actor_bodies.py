@@ -12,18 +12,18 @@ import numpy as np
 from scope_studio.kit.core.stage import INSTANCE_PROP, ActorPath, Built, Stage
 
 GAIT_PHASES = 8
-"""Number of bodies of a walking actor, one for each phase of its gait."""
+"""Number of bodies that are built for a walking actor, one for each phase of its gait."""
 
 
 class ActorBodies:
-    """The bodies of all actors of a stage. A body is hidden in renders except while it is shown."""
+    """The bodies of all actors of a stage. A body is hidden from renders unless ``place`` or ``shown_at`` shows it."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
         self._bodies: dict[tuple[str, int], Built] = {}
 
     def body(self, actor: ActorPath, phase: float) -> Built:
-        """Return the body for a gait phase in [0, 1), rounded to one of ``GAIT_PHASES``. Build it on first use."""
+        """Return the actor's body for a gait phase in [0, 1), rounded to one of ``GAIT_PHASES``. Build it on first use."""
         index = round(phase * GAIT_PHASES) % GAIT_PHASES if actor.stride_m else 0
         key = (actor.id, index)
         if key not in self._bodies:
@@ -37,8 +37,8 @@ class ActorBodies:
             self._bodies[key] = built
         return self._bodies[key]
 
-    def stand(self, actor: ActorPath, time_s: float, phase: float | None = None) -> Built | None:
-        """Place the actor at its position for a scene time, and show it.
+    def place(self, actor: ActorPath, time_s: float, phase: float | None = None) -> Built | None:
+        """Move the actor's body to its position at a scene time and show it.
 
         Returns:
             The body, or None when the actor is not in the scene at that time.
@@ -56,13 +56,13 @@ class ActorBodies:
 
     @contextmanager
     def shown_at(self, time_s: float) -> Iterator[None]:
-        """Context manager: show every actor that is in the scene at that time, until the block ends."""
-        standing = [built for actor in self._stage.actors if (built := self.stand(actor, time_s)) is not None]
+        """Show every actor that is in the scene at that time while the context is active."""
+        shown = [built for actor in self._stage.actors if (built := self.place(actor, time_s)) is not None]
         bpy.context.view_layer.update()
         try:
             yield
         finally:
-            for built in standing:
+            for built in shown:
                 show(built, False)
 
     def size_m(self, actor: ActorPath) -> tuple[float, float, float]:
@@ -86,11 +86,11 @@ def along(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float
             x, y, z = (a[i] + (b[i] - a[i]) * share for i in (1, 2, 3))
             return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), walked + length * share
         walked += length
-    raise ValueError("a path needs two waypoints")
+    raise ValueError(f"the path of {actor.id} needs at least two waypoints")
 
 
 def show(built: Built, on: bool) -> None:
-    """Show or hide an object in renders.
+    """Show or hide the objects of ``built`` in renders.
 
     The viewport's own visibility flag must stay on: Cycles does not export objects that are hidden there.
     """

@@ -1,4 +1,4 @@
-"""A user's .blend file, opened without running anything that it contains, and its cameras."""
+"""Open a user's .blend file without running scripts that it contains, and read its cameras."""
 
 from __future__ import annotations
 
@@ -14,30 +14,33 @@ from scope_ptz.geometry.sphere import pan_tilt_deg
 from scope_studio.kit.core.stage import Viewpoint
 
 STRAIGHT_UP_DEG = 89.9
-"""Beyond this tilt a camera's bearing is read from the top of its picture, because its axis has none."""
+"""Tilt in degrees beyond which a camera's bearing is taken from its up vector, because its axis is almost vertical."""
 
 OTHER_PROJECTION_HFOV_DEG = 60.0
-"""Field of view for orthographic and panoramic cameras, which are shown in perspective."""
+"""Horizontal field of view in degrees for orthographic and panoramic cameras, which are rendered in perspective."""
 
 
 def open_file(path: str) -> tuple[dict[str, Any], tuple[Viewpoint, ...]]:
-    """Open a file with its scripts and script drivers off.
+    """Open a .blend file with its scripts and script drivers disabled.
 
     Returns:
-        The description of the file and its cameras as plain data, and the cameras as viewpoints. Names are in kebab case; titles
-        are the file's own.
+        A description of the file and its cameras as plain data, and the cameras as viewpoints. Names are in kebab case; titles
+        are the names in the file.
+
+    Raises:
+        ValueError: The scene of the file has no camera.
     """
     preferences = bpy.context.preferences.filepaths
     preferences.use_scripts_auto_execute = False
     bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
     bpy.context.preferences.filepaths.use_scripts_auto_execute = False
     scene = bpy.context.scene
-    scene.render.use_multiview = False  # a second eye would change the names of picture files
-    scene.cycles.shading_system = False  # shader scripts
+    scene.render.use_multiview = False  # stereo rendering would change the names of image files
+    scene.cycles.shading_system = False  # no OSL shader scripts
     bpy.context.view_layer.update()
     objects = sorted((o for o in scene.objects if o.type == "CAMERA"), key=lambda o: o.name)
     if not objects:
-        raise ValueError(f"{path} has no camera. Add one to its scene in Blender and save the file")
+        raise ValueError(f"{path} has no camera. Add a camera to its scene in Blender and save the file")
     active = scene.camera if scene.camera in objects else objects[0]
     cameras = [_camera(o, name, scene) for o, name in zip(objects, _kebab_names([o.name for o in objects]), strict=True)]
     description = {
@@ -51,13 +54,14 @@ def open_file(path: str) -> tuple[dict[str, Any], tuple[Viewpoint, ...]]:
 
 
 def set_time(time_s: float) -> None:
-    """Show the file's animation at a time in seconds after its first frame."""
+    """Set the file's animation to a time in seconds after its first frame."""
     scene = bpy.context.scene
     frame = scene.frame_start + time_s * scene.render.fps / scene.render.fps_base
     scene.frame_set(math.floor(frame), subframe=frame - math.floor(frame))
 
 
 def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict[str, Any]:
+    """Describe a camera of the file."""
     matrix = camera.matrix_world
     axes = matrix.to_3x3().normalized()
     bearing, tilt = _pan_tilt(axes @ Vector((0.0, 0.0, -1.0)))
@@ -74,11 +78,12 @@ def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict
 
 
 def _kebab(text: str) -> str:
+    """Convert a text to kebab case."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "camera"
 
 
 def _kebab_names(texts: list[str]) -> list[str]:
-    """Return a kebab-case name for each text; names that coincide get numbers."""
+    """Return a kebab-case name for each text. Duplicate names get a number."""
     names: list[str] = []
     for text in texts:
         name, number = _kebab(text), 2
@@ -89,12 +94,13 @@ def _kebab_names(texts: list[str]) -> list[str]:
 
 
 def _pan_tilt(direction: Vector) -> tuple[float, float]:
+    """Return the bearing and tilt of a direction in degrees."""
     pan, tilt = pan_tilt_deg(tuple(direction))
     return float(pan), float(tilt)
 
 
 def _hfov_deg(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> float:
-    """Horizontal field of view of a camera in the file's own picture format."""
+    """Return the horizontal field of view of a camera at the aspect ratio of the file's render settings."""
     if data.type != "PERSP":
         return OTHER_PROJECTION_HFOV_DEG
     width, height = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y

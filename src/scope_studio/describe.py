@@ -13,7 +13,7 @@ from scope_studio.kit.core.stage import Instance, Stage
 
 
 def scene(stage: Stage, actor_bodies: ActorBodies) -> dict[str, Any]:
-    """Describe a scene: instances with world boxes, texts in world coordinates, viewpoints, presets, actors, absent things."""
+    """Return a scene's viewpoints, presets, instances with world boxes, texts in world coordinates, actors and absent objects."""
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
     corners: dict[str, np.ndarray] = {}
@@ -65,6 +65,7 @@ def scene(stage: Stage, actor_bodies: ActorBodies) -> dict[str, Any]:
 
 
 def _instance(instance: Instance, depsgraph: bpy.types.Depsgraph, cache: dict[str, np.ndarray]) -> dict[str, Any]:
+    """Describe an instance with its bounding box in world coordinates."""
     points = np.concatenate([_world_points(o, depsgraph, cache) for o in instance.built.objects])
     if len(points) == 0:
         raise ValueError(f"instance {instance.id} has no mesh")
@@ -81,6 +82,7 @@ def _instance(instance: Instance, depsgraph: bpy.types.Depsgraph, cache: dict[st
 
 
 def _world_points(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, cache: dict[str, np.ndarray]) -> np.ndarray:
+    """Return the vertices (n, 3) of an object in world coordinates. ``cache`` has the vertices of meshes seen so far."""
     if obj.type not in {"MESH", "CURVE", "FONT", "SURFACE"}:
         return np.empty((0, 3))
     evaluated = obj.evaluated_get(depsgraph)
@@ -96,6 +98,7 @@ def _world_points(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, cache: 
 
 
 def _texts(instance: Instance) -> list[dict[str, Any]]:
+    """Describe the texts of an instance in world coordinates."""
     matrix = instance.built.root.matrix_world
     scale = matrix.to_scale()[0]
     turn = matrix.to_quaternion()
@@ -116,7 +119,7 @@ def _texts(instance: Instance) -> list[dict[str, Any]]:
 
 
 def _sun() -> list[float] | None:
-    """Return the unit vector towards the sun, or None when the scene has no sun. Shadow lengths depend on it."""
+    """Return the unit vector towards the sun, which determines the shadows, or None if the scene has no sun."""
     for obj in bpy.data.objects:
         if obj.type == "LIGHT" and obj.data.type == "SUN":
             return _rounded(obj.matrix_world.to_quaternion() @ Vector((0, 0, 1)), 6)
@@ -124,4 +127,5 @@ def _sun() -> list[float] | None:
 
 
 def _rounded(values: Any, digits: int = 4) -> list[float]:
+    """Return the values as rounded floats, without negative zeros."""
     return [round(float(v), digits) + 0.0 for v in values]

@@ -1,4 +1,4 @@
-"""Export of the triangles of every annotated instance, from which complete silhouettes are computed, hidden parts included."""
+"""Export the triangles of all annotated instances, so that their complete silhouettes, including hidden parts, can be computed."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from scope_studio.kit.core.stage import Stage
 def write(stage: Stage, out: Path) -> None:
     """Write the distinct meshes and their placements as an .npz file.
 
-    Arrays: ``vertices-K`` (n, 3) float32 and ``triangles-K`` (m, 3) int32 for each mesh K; ``uses`` (k, 2) int32 with instance
-    number and mesh number; ``matrices`` (k, 4, 4) float64 with the world transform of each use.
+    The file contains ``vertices-K`` (n, 3) float32 and ``triangles-K`` (m, 3) int32 for each mesh K, ``uses`` (k, 2) int32 with the
+    instance number and mesh number of each placement, and ``matrices`` (k, 4, 4) float64 with its world transform.
     """
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -38,6 +38,7 @@ def write(stage: Stage, out: Path) -> None:
 
 
 def _triangles(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    """Return the vertices (n, 3) and triangles (m, 3) of an evaluated object."""
     mesh = evaluated.to_mesh()
     mesh.calc_loop_triangles()
     vertices = np.empty(len(mesh.vertices) * 3, dtype=np.float32)

@@ -1,4 +1,4 @@
-"""Operations that the worker offers. Each takes and returns plain JSON values; images go to files."""
+"""Operations of the worker. Each takes and returns plain JSON values; images are written to files."""
 
 from __future__ import annotations
 
@@ -30,30 +30,31 @@ class Studio:
 
     @property
     def stage(self) -> Stage:
-        """The stage of the loaded scene. Raises RuntimeError when no scene is loaded."""
+        """The stage of the loaded scene. Raises RuntimeError if no scene is loaded."""
         if self._stage is None:
-            raise RuntimeError("no scene is loaded")
+            raise RuntimeError("no scene is loaded; request load_scene first")
         return self._stage
 
     @property
     def actor_bodies(self) -> ActorBodies:
-        """The bodies of the scene's actors."""
+        """The bodies of the scene's moving actors."""
         if self._actor_bodies is None:
             self._actor_bodies = ActorBodies(self.stage)
         return self._actor_bodies
 
     def viewpoint(self, name: str) -> Viewpoint:
-        """Return the viewpoint with this name."""
+        """Return the viewpoint with this name, from the loaded scene or the opened .blend file."""
         for candidate in self._file_cameras or self.stage.viewpoints:
             if candidate.name == name:
                 return candidate
         raise ValueError(f"the scene has no viewpoint '{name}'")
 
     def load_scene(self, source: str) -> dict[str, Any]:
-        """Build a scene.
+        """Build a scene in an empty Blender file and return its name, title, number of instances and render device.
 
         Args:
-            source: Name of a module in ``scope_studio.scenes`` (kebab-case), or path of a Python file.
+            source: Name of a module in ``scope_studio.scenes`` (kebab-case), or path of a Python file with
+                ``build(stage)``.
         """
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False
@@ -68,7 +69,7 @@ class Studio:
         return {"name": stage.name, "title": stage.title, "instances": len(stage.instances), "device": render.use_gpu() or "CPU"}
 
     def open_file(self, path: str) -> dict[str, Any]:
-        """Open a .blend file with its embedded scripts off, and describe its cameras."""
+        """Open a .blend file without running its embedded scripts, and return a description of its cameras."""
         description, self._file_cameras = blend_files.open_file(path)
         self._stage = self._actor_bodies = None
         render.use_gpu()
@@ -94,7 +95,7 @@ class Studio:
             render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
 
     def truth(self, viewpoint: str, projection: dict[str, float], out: str, time_s: float | None = None) -> None:
-        """Write instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same view as one .npz file."""
+        """Write the instance numbers (uint16) and distances in metres (float32, 0 = sky) of a view to an .npz file."""
         with self._actors_shown(time_s):
             render.truth(self.viewpoint(viewpoint), projection, Path(out))
 
@@ -105,26 +106,26 @@ class Studio:
         )
 
     def _actors_shown(self, time_s: float | None) -> AbstractContextManager[None]:
-        """Place the moving actors for a scene time. Without a time do nothing, so that they are not built needlessly."""
+        """Show the moving actors at a scene time while the context is active. Without a time, no actor is built."""
         if self._file_cameras and time_s is not None:
             blend_files.set_time(time_s)
         return nullcontext() if self._file_cameras or time_s is None else self.actor_bodies.shown_at(time_s)
 
 
 def _module(source: str) -> ModuleType:
-    """Import a scene's module. It has ``build(stage)`` and, optionally, ``NAME`` (kebab-case) and ``TITLE``."""
+    """Import a scene's module, which defines ``build(stage)`` and, optionally, ``NAME`` (kebab-case) and ``TITLE``."""
     if not source.endswith(".py"):
         return importlib.import_module(f"scope_studio.scenes.{source.replace('-', '_')}")
     spec = importlib.util.spec_from_file_location("scope_user_scene", source)
     if spec is None or spec.loader is None:
-        raise ValueError(f"cannot load {source}")
+        raise ValueError(f"cannot load {source} as a Python module")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 
 
 def operations(progress: Progress) -> dict[str, Callable[..., Any]]:
-    """Return the operations by name."""
+    """Return the worker's operations by name."""
     studio = Studio(progress)
     return {
         name: getattr(studio, name)

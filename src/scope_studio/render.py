@@ -18,7 +18,7 @@ GPU_INTERFACES = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
 """Compute interfaces in order of preference."""
 
 SKY_M = 1e9
-"""Depths from this value on are sky: Cycles reports 1e10 where a ray hits nothing."""
+"""Depths in metres above this value count as sky. Cycles reports 1e10 where a ray hits nothing."""
 
 
 def colour(viewpoint: Viewpoint, projection: dict[str, float], samples: int, seed: int, out: Path, *, alpha: bool = False) -> None:
@@ -40,14 +40,14 @@ def colour(viewpoint: Viewpoint, projection: dict[str, float], samples: int, see
 
 
 def truth(viewpoint: Viewpoint, projection: dict[str, float], out: Path) -> None:
-    """Render one sample at the centre of each pixel and write ``ids`` (uint16) and ``depth`` (float32, metres, 0 = sky) as .npz."""
+    """Render one sample per pixel and write the arrays of ``truth_arrays`` to an .npz file, as ``ids`` and ``depth``."""
     ids, depth = truth_arrays(viewpoint, projection)
     with out.open("wb") as file:
         np.savez(file, ids=ids, depth=depth)
 
 
 def truth_arrays(viewpoint: Viewpoint, projection: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return instance numbers (H, W) uint16 and distances (H, W) float32 in metres, 0 = sky."""
+    """Return instance numbers (H, W) uint16 and distances (H, W) float32 in metres (0 = sky) at the pixel centres."""
     scene = _prepare(viewpoint, projection, 1, 0)
     scene.cycles.use_denoising = False
     scene.cycles.pixel_filter_type = "BOX"
@@ -86,7 +86,7 @@ def _ray_lengths(projection: dict[str, float]) -> np.ndarray:
 
 
 def use_gpu() -> str | None:
-    """Let Cycles render on the graphics cards that Blender finds.
+    """Make Cycles render on the GPUs that Blender finds.
 
     Returns:
         The name of the compute interface, or None when rendering stays on the CPU.
@@ -108,6 +108,7 @@ def use_gpu() -> str | None:
 
 
 def _prepare(viewpoint: Viewpoint, projection: dict[str, float], samples: int, seed: int) -> bpy.types.Scene:
+    """Set up the camera and the common render settings, and return the scene."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.render.use_persistent_data = True
@@ -144,6 +145,7 @@ def _prepare(viewpoint: Viewpoint, projection: dict[str, float], samples: int, s
 
 
 def _camera(scene: bpy.types.Scene) -> bpy.types.Object:
+    """Return the object that is used as the camera, and create it on first use."""
     name = "scope camera"
     found = bpy.data.objects.get(name)
     if found is None:
@@ -153,6 +155,7 @@ def _camera(scene: bpy.types.Scene) -> bpy.types.Object:
 
 
 def _passes(on: bool) -> None:
+    """Turn the passes for instance numbers and depth on or off."""
     layer = bpy.context.view_layer
     layer.use_pass_object_index = on
     layer.use_pass_z = on
@@ -160,17 +163,18 @@ def _passes(on: bool) -> None:
 
 
 def _render(scene: bpy.types.Scene, out: Path) -> None:
+    """Render a still image to ``out``. Raises RuntimeError if Blender writes no file."""
     scene.render.use_file_extension = False
     scene.render.filepath = str(out)
     bpy.ops.render.render(write_still=True)
     if not out.exists():
-        raise RuntimeError(f"Blender wrote no picture to {out}")
+        raise RuntimeError(f"Blender rendered no image to {out}; see its output for the cause")
 
 
 def _read_exr(path: Path) -> dict[str, Any]:
-    """Read an EXR file as channel name -> (H, W) float array.
+    """Read an EXR file and return a float array (H, W) for each channel name.
 
-    Blender programs ship OpenImageIO; the environment of the bpy wheel has OpenEXR instead.
+    The Blender program includes OpenImageIO. The environment of the ``bpy`` wheel has OpenEXR instead.
     """
     try:
         import OpenEXR

@@ -1,4 +1,4 @@
-"""Sprites of a moving actor: images of its body alone, with the shadow that it casts on flat ground."""
+"""Render sprites of a moving actor: images of its body alone, with the shadow that it casts on flat ground."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_studio.actor_bodies import ActorBodies, show
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
 GROUND_M = 60.0
-"""Side length of the plane that catches the shadow."""
+"""Side length in metres of the plane that receives the shadow."""
 
 
 def render_frames(
@@ -38,7 +38,7 @@ def render_frames(
         for k, frame in enumerate(frames):
             picture = out_dir / f"{k:03d}.png"
             if not picture.with_suffix(".npz").exists():
-                built = actor_bodies.stand(actor, frame["time_s"], frame["phase"])
+                built = actor_bodies.place(actor, frame["time_s"], frame["phase"])
                 if built is None:
                     raise ValueError(f"{actor_id} is not in the scene at {frame['time_s']} s")
                 ground.location = frame["position_m"]
@@ -58,7 +58,7 @@ def render_frames(
 
 @contextmanager
 def _only_shadows() -> Iterator[bpy.types.Object]:
-    """Hide every visible object and yield a plane that only catches shadows."""
+    """Hide every visible object while the context is active, and yield a shadow-catcher plane."""
     hidden = [o for o in bpy.data.objects if o.type not in {"LIGHT", "CAMERA"} and not o.hide_render]
     for obj in hidden:
         obj.hide_render = True

@@ -1,7 +1,7 @@
-"""The Blender side of the pipe: reads requests as JSON lines, executes them, and replies in JSON lines.
+"""Worker process inside Blender: reads requests as JSON lines from stdin, executes them, and writes replies as JSON lines.
 
-It is run by its path, with Blender's own Python or as ``blender --background --python worker.py``. Every reply starts with
-``MARK``, which distinguishes replies from Blender's own output. That output goes to stderr.
+Run this file by its path, either with a Python that has ``bpy`` or as ``blender --background --python worker.py``. Every reply
+starts with ``MARK``, which distinguishes it from Blender's own output. Blender's output goes to stderr.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from typing import Any
 MARK = "@scope "
 
 
-def adopt_packages() -> None:
-    """Make ``scope_studio`` and ``scope_ptz`` importable by their location.
+def register_packages() -> None:
+    """Make ``scope_studio`` and ``scope_ptz`` importable without adding their parent folder to ``sys.path``.
 
-    The folder that contains them is not put on the path, because it may hold another NumPy, for example. Their ``__init__``
-    modules are not run: ``scope_ptz`` imports packages there that Blender's Python does not have, and only its pure
-    ``geometry`` package is needed here.
+    The parent folder is not added because it may contain packages that conflict with Blender's own, such as another version of
+    NumPy. The packages' ``__init__`` modules are not executed: that of ``scope_ptz`` imports packages that Blender's Python does
+    not have, and only the ``geometry`` package is needed here.
     """
     for name in ("scope_studio", "scope_ptz"):
         home = Path(__file__).resolve().parents[1] / name
@@ -35,7 +35,7 @@ def adopt_packages() -> None:
 
 
 class Channel:
-    """The worker's end of the pipe."""
+    """The worker's end of the pipe to the main program."""
 
     def __init__(self) -> None:
         self._out = os.fdopen(os.dup(1), "w", encoding="utf-8")
@@ -49,7 +49,7 @@ class Channel:
         self._out.flush()
 
     def serve(self, operations: dict[str, Callable[..., Any]]) -> None:
-        """Answer requests until the pipe closes or a "quit" request arrives."""
+        """Execute requests and send their results, until the pipe closes or a "quit" request arrives."""
         for line in self._in:
             request = json.loads(line)
             if request["op"] == "quit":
@@ -64,7 +64,7 @@ class Channel:
                 self.send({"id": self._number, "result": result})
 
     def progress(self, done: int, total: int) -> None:
-        """Report how many steps of the current operation are done."""
+        """Send how many steps of the current operation are done."""
         self.send({"id": self._number, "progress": [done, total]})
 
 
@@ -82,8 +82,8 @@ def main() -> None:
 if __name__ == "__main__":
     folder = str(Path(__file__).resolve().parent)
     sys.path[:] = [p for p in sys.path if p != folder]
-    adopt_packages()
-    from scope_studio.worker import main as adopted_main
+    register_packages()
+    from scope_studio.worker import main as package_main
 
-    adopted_main()
+    package_main()
     os._exit(0)  # Blender's teardown can hang or crash, and nothing is left to save

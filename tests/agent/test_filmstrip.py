@@ -1,4 +1,4 @@
-"""Filmstrips: what the panels say, and that any run can be drawn."""
+"""Filmstrips: the text of the panels, and drawing of runs of any length and content."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def captions(trace: Trace) -> list[tuple[int, str, str]]:
     return [(p.number, p.action, p.finding) for p in panels_of(trace)]
 
 
-def test_a_move_and_the_look_after_it_are_one_panel(tmp_path: Path) -> None:
+def test_a_move_and_the_next_perception_call_share_a_panel(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(PRESET), calls(COUNT), calls(MOVE), calls(COUNT), answer(), counts=(1, 4))
     assert captions(trace) == [(1, "go to highway", "1 cone"), (2, "pan right 15°, tilt down 2.5°", "4 cones")]
     panels = panels_of(trace)
@@ -71,7 +71,7 @@ def test_other_steps_have_their_own_panels(tmp_path: Path) -> None:
     assert panels[3].file == panels[2].file  # Nothing happened, so the view before it still stands.
 
 
-def test_a_run_without_steps_shows_what_the_camera_saw(tmp_path: Path) -> None:
+def test_a_run_without_steps_shows_the_camera_view(tmp_path: Path) -> None:
     trace = record(tmp_path, Finish(kind="clarification", text="What do you mean?"))
     assert captions(trace) == [(0, "start", "")]
     assert write_filmstrip(trace) == trace.folder / "filmstrip.png"
@@ -86,7 +86,7 @@ def test_runs_of_any_length_can_be_drawn(tmp_path: Path, steps: int) -> None:
     assert 300 < image.height < 2400
 
 
-def test_counted_things_are_marked(tmp_path: Path) -> None:
+def test_counted_objects_are_marked(tmp_path: Path) -> None:
     plain, marked = (
         draw_filmstrip(record(tmp_path, calls(("query_answer", {"question": "x"})), answer(), counts=(1,))),
         draw_filmstrip(record(tmp_path, calls(COUNT), answer(), counts=(6,))),
@@ -97,13 +97,13 @@ def test_counted_things_are_marked(tmp_path: Path) -> None:
     assert amber[1] > amber[0] + 1000
 
 
-def test_text_from_outside_cannot_break_the_picture(tmp_path: Path) -> None:
+def test_untrusted_text_cannot_break_the_picture(tmp_path: Path) -> None:
     wild = "\x1b[31m看 " + "very" * 200 + " long\n\n" + "words " * 300
     trace = record(tmp_path, calls(("query_answer", {"question": "x" * 400})), answer(wild))
     assert draw_filmstrip(trace) is not None
 
 
-def test_a_trace_cannot_name_pictures_elsewhere(tmp_path: Path) -> None:
+def test_a_trace_cannot_refer_to_pictures_outside_its_folder(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(MOVE), answer())
     outside = tmp_path / "secret.jpg"
     Image.new("RGB", (8, 8)).save(outside)
@@ -113,7 +113,7 @@ def test_a_trace_cannot_name_pictures_elsewhere(tmp_path: Path) -> None:
         draw_filmstrip(read_trace(trace.folder))
 
 
-def test_a_missing_picture_is_told(tmp_path: Path) -> None:
+def test_a_missing_picture_is_reported(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(MOVE), answer())
     (trace.folder / "frames/002-view.jpg").unlink()
     with pytest.raises(TraceError, match="missing"):

@@ -1,4 +1,4 @@
-"""The loop: every outcome, what counts as whose fault, budgets, and what the planner gets to see."""
+"""The agent loop: outcomes, attribution of failures, budgets, and the state that the planner gets."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_bad_calls_go_back_to_the_planner_and_are_counted(bad: tuple[str, dict[s
     assert [r.fault for r in records if isinstance(r, Called)] == ["bad_call"]
 
 
-def test_calls_after_a_failed_one_are_not_done() -> None:
+def test_calls_after_a_failed_call_are_not_made() -> None:
     done, _ = run(calls(("go_to_preset", {"name": "nowhere"}), MOVE), answer())
     first, second = done.exchanges[0].outcomes
     assert first.error is not None
@@ -119,7 +119,7 @@ def test_calls_after_a_failed_one_are_not_done() -> None:
     assert done.ended.bad_calls == 1
 
 
-def test_a_failed_look_is_an_error_and_never_a_count() -> None:
+def test_a_failed_perception_call_is_an_error_and_not_a_count() -> None:
     done, _ = run(calls(COUNT), answer(), counts=[PerceptionError("the model timed out")])
     outcome = done.exchanges[0].outcomes[0]
     assert (outcome.result, outcome.error) == (None, "the model timed out")
@@ -143,7 +143,7 @@ def test_a_planner_that_fails_ends_the_run(failure: Exception) -> None:
     assert str(failure) in done.ended.text
 
 
-def test_a_planner_that_says_something_that_is_no_decision() -> None:
+def test_an_invalid_decision_is_a_planner_error() -> None:
     done, _ = run(lambda _: "42")
     assert done.ended.outcome == "planner_error"
 
@@ -163,7 +163,7 @@ def test_damaged_packs_are_recorded_and_raised() -> None:
     assert records[-1].outcome == "camera_error"
 
 
-def test_cancelling_stops_the_camera_and_closes_the_record() -> None:
+def test_cancelling_stops_the_camera_and_completes_the_trace() -> None:
     records: list[Any] = []
     camera = ScriptedCamera()
 
@@ -185,12 +185,12 @@ def test_cancelling_stops_the_camera_and_closes_the_record() -> None:
 
 
 @pytest.mark.parametrize("instruction", ["", "  \n\t", "x" * 5000])
-def test_instructions_that_cannot_be_meant(instruction: str) -> None:
+def test_invalid_instructions_are_rejected(instruction: str) -> None:
     with pytest.raises(InputError):
         anyio.run(make_agent(answer()).run, instruction)
 
 
-def test_timings_are_split_and_add_up() -> None:
+def test_times_of_the_stages_add_up() -> None:
     done, records = run(calls(MOVE), calls(COUNT), answer(), counts=[2])
     timings = done.ended.timings
     parts = timings.planner_s + timings.perception_s + timings.camera_s + timings.render_s
@@ -204,14 +204,14 @@ def test_timings_are_split_and_add_up() -> None:
     assert header.labels.seed == 7
 
 
-def test_nothing_is_kept_between_runs() -> None:
+def test_runs_share_no_state() -> None:
     agent = make_agent(calls(MOVE), answer())
     first, second = anyio.run(agent.run, "one"), anyio.run(agent.run, "two")
     assert len(first.exchanges) == len(second.exchanges) == 1
     assert second.ended.pose.pan_deg == 30.0  # The camera is where the first run left it; the loop remembers nothing.
 
 
-def test_a_call_that_is_broken_off_is_recorded() -> None:
+def test_an_interrupted_call_is_recorded() -> None:
     class Slow(ScriptedCamera):
         async def move(self, pose: Pose) -> Arrival:
             await anyio.sleep(30)

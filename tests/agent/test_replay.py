@@ -1,4 +1,4 @@
-"""Replays: a run comes out the same without its models, and a changed world is noticed."""
+"""Replays: a run is reproduced without its models, and a changed scene is detected."""
 
 from __future__ import annotations
 
@@ -62,17 +62,17 @@ def test_a_replay_gives_the_same_results(tmp_path: Path, script: tuple[Step, ...
     assert len(found.comparisons) == len(trace.calls)
 
 
-def test_perception_failures_come_again(tmp_path: Path) -> None:
+def test_perception_failures_are_replayed(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(COUNT), calls(COUNT), answer("x"), counts=(PerceptionError("timeout"), 2))
     assert trace.calls[0].outcome.error == "timeout"
     assert again(trace).equal
 
 
-def test_a_step_limit_is_reached_again(tmp_path: Path) -> None:
+def test_a_step_limit_is_replayed(tmp_path: Path) -> None:
     assert again(record(tmp_path, calls(MOVE), budgets=Budgets(max_steps=2))).equal
 
 
-def test_a_run_that_was_cut_off_is_repeated_as_far_as_it_went(tmp_path: Path) -> None:
+def test_an_interrupted_run_is_replayed_up_to_its_end(tmp_path: Path) -> None:
     whole = record(tmp_path, calls(MOVE, MOVE), calls(COUNT), answer("x"), counts=(4,))
     cut = replace(whole, calls=whole.calls[:1], ended=None)
     found = again(cut)
@@ -80,7 +80,7 @@ def test_a_run_that_was_cut_off_is_repeated_as_far_as_it_went(tmp_path: Path) ->
     assert len(found.comparisons) == 1
 
 
-def test_a_run_whose_camera_failed_is_repeated_as_far_as_it_went(tmp_path: Path) -> None:
+def test_a_run_whose_camera_failed_is_replayed_up_to_its_end(tmp_path: Path) -> None:
     def fail(state: State) -> Decision:
         camera.failures["move"] = CameraError("stuck")
         return calls(MOVE)
@@ -94,21 +94,21 @@ def test_a_run_whose_camera_failed_is_repeated_as_far_as_it_went(tmp_path: Path)
     assert len(found.comparisons) == 1
 
 
-def test_another_world_is_noticed(tmp_path: Path) -> None:
+def test_a_different_scene_is_detected(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(("go_to_preset", {"name": "gate"})), calls(MOVE), answer("x"))
     found = again(trace, ScriptedCamera(presets=("yard", "gate")))
     assert not found.equal
     assert "pose was" in found.comparisons[0].difference
 
 
-def test_another_start_is_noticed(tmp_path: Path) -> None:
+def test_a_different_start_pose_is_detected(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(MOVE), answer("x"))
     camera = ScriptedCamera()
     anyio.run(camera.move, Pose(1.0, 0.0, 1.0))
     assert not again(trace, camera).equal
 
 
-def test_runs_of_real_cameras_cannot_be_repeated(tmp_path: Path) -> None:
+def test_runs_of_real_cameras_cannot_be_replayed(tmp_path: Path) -> None:
     trace = record(tmp_path, answer("x"))
     real = replace(trace, started=trace.started.model_copy(update={"simulated": False}))
     with pytest.raises(TraceError, match="real camera"):

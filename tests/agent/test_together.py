@@ -1,4 +1,4 @@
-"""Looks that do not depend on each other run at the same time; failures of servers are counted; planners that see get frames."""
+"""Independent perception calls run concurrently, server failures are counted, and planners with vision get frames."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PAUSE_S = 0.15
 
 
 class SlowEyes(ScriptedPerception):
-    """Takes its time, and tells how many looked at once and at which frames. Counts the letters of what it is asked for."""
+    """Slow perception that records concurrent calls and their frames. Counts are the number of letters of the description."""
 
     def __init__(self) -> None:
         super().__init__(1)
@@ -69,7 +69,7 @@ def named(*wanted: tuple[str, dict[str, Any]]) -> list[list[int]]:
     return list(batches(calls(*wanted).calls))
 
 
-def test_only_neighbours_that_look_at_the_view_of_now_go_together() -> None:
+def test_only_adjacent_calls_on_the_current_view_run_concurrently() -> None:
     assert named(CONES, CARS, COLOUR) == [[0, 1, 2]]
     assert named(CONES, MOVE, CARS, COLOUR) == [[0], [1], [2, 3]]
     assert named(CONES, SWEEP, CARS) == [[0], [1], [2]]
@@ -82,7 +82,7 @@ def test_only_neighbours_that_look_at_the_view_of_now_go_together() -> None:
     assert list(batches([broken, *calls(CARS).calls])) == [[0], [1]]
 
 
-def test_looks_run_together_at_one_frame_and_come_back_in_order() -> None:
+def test_concurrent_calls_share_a_frame_and_return_in_order() -> None:
     eyes, camera = SlowEyes(), ScriptedCamera()
     done, records = run(calls(CONES, CARS, COLOUR), answer(), eyes=eyes, camera=camera)
     assert eyes.most_at_once == 3
@@ -100,7 +100,7 @@ def test_looks_run_together_at_one_frame_and_come_back_in_order() -> None:
     assert all(r.timings.perception_s >= PAUSE_S * 0.9 for r in made)
 
 
-def test_one_that_fails_does_not_spoil_the_others_but_what_follows() -> None:
+def test_a_failed_call_skips_later_calls_but_not_concurrent_ones() -> None:
     nothing = ("count_objects", {"description": "nothing"})
     done, records = run(calls(nothing, CARS, MOVE), answer())
     first, second, third = done.exchanges[0].outcomes
@@ -120,7 +120,7 @@ def test_a_camera_that_fails_ends_the_run_once() -> None:
     assert (done.ended.outcome, done.ended.text) == ("camera_error", "no picture")
 
 
-def test_looks_that_are_broken_off_are_recorded() -> None:
+def test_interrupted_perception_calls_are_recorded() -> None:
     done, records = run(calls(CONES, CARS), budgets=Budgets(time_s=PAUSE_S * 1.2))
     assert done.ended.outcome == "budget"
     made = [r for r in records if isinstance(r, Called)]
@@ -128,7 +128,7 @@ def test_looks_that_are_broken_off_are_recorded() -> None:
     assert [o.call.arguments["description"] for o in done.exchanges[0].outcomes] == ["cars"]
 
 
-def test_runs_with_looks_at_the_same_time_can_be_replayed(tmp_path: Path) -> None:
+def test_runs_with_concurrent_perception_calls_can_be_replayed(tmp_path: Path) -> None:
     agent = make_agent(calls(COLOUR, CONES, CARS), calls(MOVE), calls(CONES, COLOUR), answer())
     agent.perception = SlowEyes()
     folder = RunFolder.create(tmp_path, "look")
@@ -144,7 +144,7 @@ def test_runs_with_looks_at_the_same_time_can_be_replayed(tmp_path: Path) -> Non
     assert len(again.comparisons) == 6
 
 
-def test_a_planners_failed_requests_are_counted_and_its_end_has_a_kind() -> None:
+def test_failed_requests_of_a_planner_are_counted_and_its_error_has_a_kind() -> None:
     attempts = (Attempt(kind=FailureKind.SERVER_ERROR), Attempt(kind=FailureKind.CONTEXT_OVERFLOW))
     done, _ = run(PlannerError("too long", kind="context-overflow", attempts=attempts))
     assert (done.ended.outcome, done.ended.kind) == ("planner_error", "context-overflow")
@@ -154,7 +154,7 @@ def test_a_planners_failed_requests_are_counted_and_its_end_has_a_kind() -> None
 
 
 @pytest.mark.parametrize("sees", [True, False])
-def test_planners_that_see_get_the_newest_view_and_the_pictures(sees: bool) -> None:
+def test_planners_with_vision_get_the_newest_view_and_the_pictures(sees: bool) -> None:
     agent = make_agent(calls(("take_image", {}), MOVE), calls(CONES), answer(), counts=[1], images=NoImages())
     planner = agent.planner
     assert isinstance(planner, ScriptedPlanner)
@@ -177,7 +177,7 @@ def test_planners_that_see_get_the_newest_view_and_the_pictures(sees: bool) -> N
     assert "base64" not in "".join(r.model_dump_json() for r in records)
 
 
-def test_a_camera_that_fails_while_a_planner_wants_to_see_ends_the_run() -> None:
+def test_a_camera_that_fails_to_provide_a_view_for_the_planner_ends_the_run() -> None:
     camera = ScriptedCamera()
     agent = make_agent(
         lambda _: camera.failures.update(frame=CameraError("no picture")) or calls(("get_presets", {})), camera=camera

@@ -1,4 +1,4 @@
-"""Traces and run folders: what is written can be read again, damage is told, names never collide."""
+"""Traces and run folders: written data can be read back, damage is reported, and names never collide."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def recorded(root: Path, *script: Step, counts: tuple[int, ...] = (2,), instruct
     return folder
 
 
-def test_a_run_comes_back_as_it_was(tmp_path: Path) -> None:
+def test_a_run_survives_writing_and_reading(tmp_path: Path) -> None:
     folder = recorded(tmp_path, calls(MOVE), calls(COUNT, ("take_image", {})), answer("Two."))
     trace = read_trace(folder.path)
     assert trace == read_trace(folder.trace)
@@ -47,12 +47,12 @@ def test_a_run_comes_back_as_it_was(tmp_path: Path) -> None:
     assert (trace.ended.outcome, trace.ended.text) == ("answered", "Two.")
 
 
-def test_an_instruction_that_is_no_text_can_be_kept(tmp_path: Path) -> None:
+def test_an_instruction_that_is_not_valid_unicode_can_be_stored(tmp_path: Path) -> None:
     folder = recorded(tmp_path, answer(), instruction="count the cones \udcff")
     assert read_trace(folder.path).started.instruction == "count the cones ?"
 
 
-def test_every_picture_that_the_trace_names_is_there(tmp_path: Path) -> None:
+def test_every_picture_in_the_trace_exists(tmp_path: Path) -> None:
     folder = recorded(tmp_path, calls(MOVE), calls(COUNT, ("take_image", {})), answer())
     trace = read_trace(folder.path)
     names = [trace.started.frame, trace.calls[0].frame]
@@ -67,12 +67,12 @@ def test_every_picture_that_the_trace_names_is_there(tmp_path: Path) -> None:
         assert np.unique(np.asarray(image)).tolist() == [15]
 
 
-def test_scene_time_is_kept_with_each_call(tmp_path: Path) -> None:
+def test_scene_time_is_recorded_with_each_call(tmp_path: Path) -> None:
     trace = read_trace(recorded(tmp_path, calls(MOVE, MOVE), calls(MOVE), answer()).path)
     assert [c.scene_time_s for c in trace.calls] == [0.0, 0.5, 1.0]
 
 
-def test_the_trace_is_on_disk_while_the_run_goes_on(tmp_path: Path) -> None:
+def test_the_trace_is_written_during_the_run(tmp_path: Path) -> None:
     folder = RunFolder.create(tmp_path, "x")
     lines: list[int] = []
 
@@ -89,7 +89,7 @@ def test_the_trace_is_on_disk_while_the_run_goes_on(tmp_path: Path) -> None:
     assert lines == [1, 2, 3, 4, 5]
 
 
-def test_a_last_line_that_was_cut_off_is_left_out(tmp_path: Path) -> None:
+def test_an_incomplete_last_line_is_ignored(tmp_path: Path) -> None:
     folder = recorded(tmp_path, calls(MOVE), answer())
     whole = folder.trace.read_bytes()
     folder.trace.write_bytes(whole[:-20])
@@ -114,7 +114,7 @@ DAMAGES: dict[str, Change] = {
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_damage_is_told(tmp_path: Path, damage: str) -> None:
+def test_damage_is_reported(tmp_path: Path, damage: str) -> None:
     folder = recorded(tmp_path, calls(MOVE), answer())
     lines = DAMAGES[damage](folder.trace.read_text().splitlines())
     folder.trace.write_text("".join(f"{line}\n" for line in lines), encoding="latin-1")
@@ -122,7 +122,7 @@ def test_damage_is_told(tmp_path: Path, damage: str) -> None:
         read_trace(folder.path)
 
 
-def test_missing_traces_are_told(tmp_path: Path) -> None:
+def test_missing_traces_are_reported(tmp_path: Path) -> None:
     for path in (tmp_path, tmp_path / "nowhere"):
         with pytest.raises(TraceError, match="no trace"):
             read_trace(path)
@@ -140,7 +140,7 @@ def test_a_trace_never_overwrites_another(tmp_path: Path) -> None:
         TraceWriter(folder.trace)
 
 
-def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_writable_is_reported(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(OutputError, match="runs-dir"):
         RunFolder.create(tmp_path / "file" / "runs", "x")

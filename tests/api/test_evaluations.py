@@ -41,7 +41,7 @@ def test_tasks_are_selected(tasks: tuple[scope_ptz.Task, ...]) -> None:
     assert tasks == scope_ptz.load_tasks("core", categories=["counting", "single_call"], scenes=["highway-works"], limit=4)
 
 
-def test_scores_are_those_of_the_trials(results: scope_ptz.EvaluationResults) -> None:
+def test_scores_match_the_trials(results: scope_ptz.EvaluationResults) -> None:
     assert len(results) == len(list(results)) == len(results.trials) == 4
     assert results.finished
     correct = [trial.headline == "correct" for trial in results.trials]
@@ -64,7 +64,7 @@ def test_results_as_a_data_frame(results: scope_ptz.EvaluationResults) -> None:
     assert table["correct"].mean() == results.micro
 
 
-def test_the_same_call_reads_a_complete_evaluation(results: scope_ptz.EvaluationResults, tasks: tuple[scope_ptz.Task, ...]) -> None:
+def test_repeating_a_call_reads_a_complete_log(results: scope_ptz.EvaluationResults, tasks: tuple[scope_ptz.Task, ...]) -> None:
     assert scope_ptz.evaluate(tasks=tasks, out=results.log.parent, pictures=False).log == results.log
 
 
@@ -80,7 +80,7 @@ def test_objects_of_the_caller_are_evaluated_and_stay_open(tasks: tuple[scope_pt
     assert not planner.closed
 
 
-def test_an_own_planner_scores_as_the_named_one(
+def test_a_planner_object_scores_like_the_named_planner(
     results: scope_ptz.EvaluationResults, tasks: tuple[scope_ptz.Task, ...], tmp_path: Path
 ) -> None:
     own = scope_ptz.evaluate(GrammarPlanner(), tasks=tasks, out=tmp_path, pictures=False)

@@ -1,4 +1,4 @@
-"""The programs of ``examples/`` and the notebook run and print something worth reading."""
+"""The programs in ``examples/`` and the notebook run and print the expected output."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ EXPECTED = {
     "ask.py": "I can see 7 cones now, after two pans of 15 degrees to the right.",
     "batch_over_views.py": "Most workers are in view at 'overview'.",
     "evaluate.py": "Why runs of the grammar failed:",
-    "own_camera.py": "Broken promises of the contract: none",
-    "own_perception.py": "Broken promises of the contract: none",
+    "own_camera.py": "Contract violations: none",
+    "own_perception.py": "Contract violations: none",
     "own_planner.py": "Most cars are at bridge-south: 8.",
 }
 

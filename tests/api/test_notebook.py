@@ -1,4 +1,4 @@
-"""What runs, frames, scenes and results show in a notebook."""
+"""Notebook representations of runs, frames, scenes and results."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.api.sessions import opened
 
 
 def pictures_in(html: str) -> list[Image.Image]:
-    """Return the pictures that HTML embeds."""
+    """Return the pictures that are embedded in HTML."""
     return [Image.open(io.BytesIO(base64.b64decode(data))) for data in re.findall(r"data:image/jpeg;base64,([^\"]+)", html)]
 
 

@@ -1,4 +1,4 @@
-"""The public names of the package: which there are, their signatures and documentation, and that importing them is cheap."""
+"""Public names of the package: the list, signatures and documentation, and the cost of importing them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ERRORS = [name for name in CLASSES if issubclass(getattr(scope_ptz, name), Excep
 
 
 def public_interface() -> dict[str, Any]:
-    """Return names and signatures; of classes those of their public members."""
+    """Return the names and signatures of the public interface, including the public members of classes."""
     names: dict[str, Any] = {}
     for name in sorted(scope_ptz.__all__):
         value = getattr(scope_ptz, name)
@@ -88,7 +88,7 @@ def test_members_of_classes_are_documented(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [*OURS, *ERRORS])
-def test_classes_say_what_they_are(name: str) -> None:
+def test_classes_have_a_description(name: str) -> None:
     assert (inspect.getdoc(getattr(scope_ptz, name)) or "").split("\n")[0].strip().endswith(".")
 
 

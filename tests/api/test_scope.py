@@ -38,7 +38,7 @@ def test_a_run_is_typed(analytic_scene: Scene) -> None:
     assert run.picture(run.pictures[0]).size == run.filmstrip.resize(run.picture(run.pictures[0]).size).size
 
 
-def test_a_failed_call_says_why(analytic_scene: Scene) -> None:
+def test_a_failed_call_has_a_reason(analytic_scene: Scene) -> None:
     planner = ScriptedPlanner(calls(("fly", {})), answer("I cannot fly."))
     with opened(analytic_scene, planner) as scope:
         (call,) = scope.ask("fly").calls
@@ -49,7 +49,7 @@ def test_a_failed_call_says_why(analytic_scene: Scene) -> None:
     assert "There is no tool 'fly'" in str(call)
 
 
-def test_the_planner_is_told_of_earlier_runs_until_they_are_forgotten(analytic_scene: Scene) -> None:
+def test_the_planner_gets_earlier_runs_until_they_are_cleared(analytic_scene: Scene) -> None:
     planner = counting()
     with opened(analytic_scene, planner) as scope:
         scope.ask("first")
@@ -84,7 +84,7 @@ def test_errors_of_a_stream_reach_the_caller(analytic_scene: Scene) -> None:
         list(scope.stream("  "))
 
 
-def test_frames_can_be_taken_during_a_run_but_no_second_run_begins(analytic_scene: Scene) -> None:
+def test_frames_can_be_taken_during_a_run_but_a_second_run_is_refused(analytic_scene: Scene) -> None:
     with opened(analytic_scene) as scope:
         for event in scope.stream("count"):
             if event.kind == "started":
@@ -122,7 +122,7 @@ def test_cancel_without_a_run_changes_nothing(analytic_scene: Scene) -> None:
         assert scope.ask("count").ok
 
 
-def test_ctrl_c_cancels_the_run_and_leaves_a_whole_trace(analytic_scene: Scene, tmp_path: Path) -> None:
+def test_ctrl_c_cancels_the_run_and_leaves_a_complete_trace(analytic_scene: Scene, tmp_path: Path) -> None:
     planner = WaitingPlanner()
     main = threading.main_thread().ident
     assert main is not None
@@ -141,7 +141,7 @@ def test_ctrl_c_cancels_the_run_and_leaves_a_whole_trace(analytic_scene: Scene, 
     assert scope_ptz.Run.load(folder).outcome == "cancelled"
 
 
-def test_a_closed_session_says_so(analytic_scene: Scene) -> None:
+def test_using_a_closed_session_is_an_error(analytic_scene: Scene) -> None:
     scope = opened(analytic_scene)
     scope.close()
     scope.close()
@@ -228,13 +228,13 @@ def test_a_missing_picture_is_an_error(analytic_scene: Scene) -> None:
                 scope.picture(name)
 
 
-def test_a_trace_without_an_end_is_no_run(analytic_scene: Scene, tmp_path: Path) -> None:
+def test_a_trace_without_an_end_is_an_error(analytic_scene: Scene, tmp_path: Path) -> None:
     with opened(analytic_scene, runs_dir=tmp_path) as scope:
         folder = scope.ask("count").folder
     assert folder is not None
     trace = folder / "trace.jsonl"
     trace.write_text("\n".join(trace.read_text().splitlines()[:-1]) + "\n")
-    with pytest.raises(TraceError, match="never ended"):
+    with pytest.raises(TraceError, match="is incomplete"):
         scope_ptz.Run.load(folder)
 
 
@@ -253,7 +253,7 @@ def test_tools_are_methods(analytic_scene: Scene) -> None:
             scope.move(zoom_factor=2, zoom_percent=50)
         with pytest.raises(InputError, match="no preset"):
             scope.go_to_preset("nowhere")
-        with pytest.raises(InputError, match="not a pose"):
+        with pytest.raises(InputError, match="The pose is invalid"):
             scope.move_to(zoom=-1)
         with pytest.raises(AttributeError, match="fly"):
             scope.fly()
@@ -271,14 +271,14 @@ def test_every_tool_has_a_method_with_its_arguments(name: str) -> None:
         assert all(parameters[key].default == field.default for key, field in fields.items() if key not in required)
 
 
-def test_a_tool_without_a_method_is_a_method_all_the_same(analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tool_without_a_declared_method_can_be_called_as_one(analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(TOOLS._tools, "look_home", TOOLS["go_home"])
     with opened(analytic_scene) as scope:
         assert "look_home" in dir(scope)
         assert scope.look_home().message
 
 
-def test_the_async_twin_has_the_same_names() -> None:
+def test_the_async_session_has_the_same_names() -> None:
     def public(kind: type) -> set[str]:
         return {name for name in vars(kind) if not name.startswith("_")}
 
@@ -290,7 +290,7 @@ def test_the_async_twin_has_the_same_names() -> None:
     assert inspect.signature(scope_ptz.open).parameters == inspect.signature(scope_ptz.open_async).parameters
 
 
-def test_the_async_twin(analytic_scene: Scene) -> None:
+def test_the_async_session(analytic_scene: Scene) -> None:
     async def work() -> None:
         async with scope_ptz.open_async(**options(analytic_scene)) as scope:
             assert (await scope.ask("count")).ok
@@ -381,19 +381,19 @@ def test_a_camera_without_truth_has_no_perception_unless_one_is_named(analytic_s
         ({"planner": ScriptedPlanner}, "not the class itself"),
         ({"planner": 3}, "takes a name or"),
         ({"camera": 3}, "takes a name or"),
-        ({"planner": ScriptedPlanner(), "planner_url": "http://127.0.0.1:1"}, "planner_url has no effect"),
-        ({"perception": ScriptedPerception(), "pair": "grammar+noisy"}, "pair has no effect"),
-        ({"max_steps": 0}, "max_steps is wrong"),
-        ({"time_budget_s": -1}, "time_budget_s is wrong"),
+        ({"planner": ScriptedPlanner(), "planner_url": "http://127.0.0.1:1"}, "cannot be combined with planner_url"),
+        ({"perception": ScriptedPerception(), "pair": "grammar+noisy"}, "cannot be combined with pair"),
+        ({"max_steps": 0}, "max_steps is invalid"),
+        ({"time_budget_s": -1}, "time_budget_s is invalid"),
         ({"planner_options": {"temperature": 0}}, "grammar"),
     ],
 )
-def test_wrong_options_are_named(wrong: dict[str, Any], message: str) -> None:
+def test_wrong_options_are_reported(wrong: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         scope_ptz.open(**({"camera": "highway-works"} | wrong))
 
 
-def test_options_of_places_do_not_apply_to_an_own_camera(analytic_scene: Scene) -> None:
+def test_scene_options_do_not_apply_to_a_camera_object(analytic_scene: Scene) -> None:
     with pytest.raises(InputError, match="viewpoint"):
         opened(analytic_scene, viewpoint="mast")
 

@@ -27,7 +27,7 @@ from scope_ptz.bench.tasks.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, wrong_answer
 
 DATA = Path(__file__).parent / "data"
 ADAPTER: TypeAdapter[AnyExpected] = TypeAdapter(Expected)
@@ -54,7 +54,7 @@ def verdict(expected: AnyExpected, answer: str) -> str:
 
 
 @pytest.mark.parametrize("case", ANSWERS, ids=[f"{c['expected']}-{i}" for i, c in enumerate(ANSWERS)])
-def test_an_answer_is_parsed_as_a_person_understands_it(case: dict[str, str]) -> None:
+def test_answers_are_parsed_as_people_understand_them(case: dict[str, str]) -> None:
     expected = EXPECTATIONS[case["expected"]]
     assert verdict(expected, case["answer"]) == case["verdict"], (case["answer"], parse_answer(expected, case["answer"]))
 
@@ -65,14 +65,14 @@ def test_a_source_note_changes_nothing(note: str) -> None:
     assert changed == []
 
 
-def test_lettering_in_capitals_is_an_answer_however_long() -> None:
+def test_text_in_capitals_is_an_answer_of_any_length() -> None:
     board = Text(accepted=("ALDERMERE POST / TRAM FARES / TO RISE / IN MAY",), ocr=True)
     assert verdict(board, board.accepted[0]) == "right"
     assert verdict(board, board.accepted[0].replace("MAY", "JUNE")) == "wrong"
     assert verdict(board, "it is a board of a newspaper with several lines about trams") == "unscored"
 
 
-def test_lettering_with_a_verb_is_parsed_as_a_whole() -> None:
+def test_text_with_a_verb_is_parsed_as_a_whole() -> None:
     board = Text(accepted=("DAILY COURIER MARKET IS 300 YEARS OLD",), ocr=True)
     for answer in ("DAILY COURIER MARKET IS 300 YEARS OLD", "The board says DAILY COURIER MARKET IS 300 YEARS OLD."):
         assert agrees(board, parse_answer(board, answer)) is True
@@ -90,7 +90,7 @@ def test_there_are_many_answers_of_every_type() -> None:
 
 
 def test_held_out_answers() -> None:
-    """An answer that is not parsed exactly is at worst unscored: no wrong answer passes and no right one fails."""
+    """Answers that are not parsed exactly are unscored: no wrong answer passes, and no right one fails."""
     taken = [(c["verdict"], verdict(EXPECTATIONS[c["expected"]], c["answer"]), c["answer"]) for c in HELD_OUT]
     assert [row for row in taken if row[1] == "right" != row[0]] == []
     assert [row for row in taken if row[0] == "right" != row[1]] == []
@@ -100,7 +100,7 @@ def test_held_out_answers() -> None:
 @pytest.mark.parametrize("name", ANSWERED)
 def test_right_and_wrong_answers_of_validation(name: str) -> None:
     expected = EXPECTATIONS[name]
-    wordings = right_answers(expected)
+    wordings = correct_answers(expected)
     assert len(set(wordings)) >= 5
     assert [w for w in wordings if verdict(expected, w) != "right"] == []
     wrong = [wrong_answer(expected, random.Random(seed)) for seed in range(20)]
@@ -113,7 +113,7 @@ def test_right_and_wrong_answers_of_validation(name: str) -> None:
 )
 def test_any_number_in_any_of_its_wordings(value: int, tolerance: int, unit: str, seed: int) -> None:
     expected = Number(value=value, tolerance=tolerance, unit=(unit,) if unit else ())
-    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    assert {verdict(expected, answer) for answer in correct_answers(expected)} == {"right"}
     wrong = wrong_answer(expected, random.Random(seed))
     assert wrong is not None
     assert verdict(expected, wrong) == "wrong"
@@ -123,7 +123,7 @@ def test_any_number_in_any_of_its_wordings(value: int, tolerance: int, unit: str
 @given(st.permutations(["cone", "van", "sign", "bus"]), st.integers())
 def test_any_order(order: list[str], seed: int) -> None:
     expected = Ordering(value=tuple(order), options=dict.fromkeys(sorted(order), ()))
-    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    assert {verdict(expected, answer) for answer in correct_answers(expected)} == {"right"}
     wrong = wrong_answer(expected, random.Random(seed))
     assert wrong is not None
     assert verdict(expected, wrong) == "wrong"
@@ -133,7 +133,7 @@ def test_any_order(order: list[str], seed: int) -> None:
 @given(st.sets(st.sampled_from(["car", "van", "bus", "lorry", "crane"])), st.integers())
 def test_any_set(names: set[str], seed: int) -> None:
     expected = NameSet(value=tuple(sorted(names)), options=dict.fromkeys(("car", "van", "bus", "lorry", "crane"), ()))
-    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    assert {verdict(expected, answer) for answer in correct_answers(expected)} == {"right"}
     wrong = wrong_answer(expected, random.Random(seed))
     assert wrong is not None
     assert verdict(expected, wrong) == "wrong"
@@ -143,7 +143,7 @@ def test_any_set(names: set[str], seed: int) -> None:
 @given(st.from_regex(r"[A-Z]{2}[0-9]{2} [A-Z]{3}", fullmatch=True), st.integers())
 def test_any_number_plate(plate: str, seed: int) -> None:
     expected = Text(accepted=(plate,), ocr=True)
-    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    assert {verdict(expected, answer) for answer in correct_answers(expected)} == {"right"}
     wrong = wrong_answer(expected, random.Random(seed))
     assert wrong is not None
     assert verdict(expected, wrong) == "wrong"
@@ -254,7 +254,7 @@ JOINTS = (
 
 
 @pytest.mark.parametrize("denial", DENIALS)
-def test_no_text_is_right_for_both_an_absence_and_a_presence(denial: str) -> None:
+def test_no_text_is_correct_for_both_an_absence_and_a_presence(denial: str) -> None:
     texts = [f"{one}{joint}{two}." for claim, joint in product(CLAIMS, JOINTS) for one, two in ((denial, claim), (claim, denial))]
     for text in texts:
         if verdict(NO_KITE, text) == "right":
@@ -263,7 +263,7 @@ def test_no_text_is_right_for_both_an_absence_and_a_presence(denial: str) -> Non
 
 @settings(deadline=None, max_examples=400)
 @given(st.lists(st.tuples(st.sampled_from(DENIALS + CLAIMS), st.sampled_from(JOINTS)), min_size=2, max_size=4))
-def test_no_longer_text_is_right_for_both(pieces: list[tuple[str, str]]) -> None:
+def test_no_longer_text_is_correct_for_both_an_absence_and_a_presence(pieces: list[tuple[str, str]]) -> None:
     text = "".join(piece + joint for piece, joint in pieces)
     assert not (verdict(NO_KITE, text) == "right" and any(verdict(twin, text) == "right" for twin in TWINS)), text
 

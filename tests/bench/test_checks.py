@@ -1,4 +1,4 @@
-"""Every check, passing and failing, and what a verdict makes of them."""
+"""Every check, passing and failing, and the resulting verdict."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def action(behaviour: Behaviour, **further: Any) -> Task:
 
 
 @pytest.mark.parametrize(("of", "episode"), SAMPLES, ids=[t.id for t, _ in SAMPLES])
-def test_every_sample_passes_and_doing_nothing_never_does(of: Task, episode: Episode) -> None:
+def test_every_sample_passes_and_an_empty_run_fails(of: Task, episode: Episode) -> None:
     assert score_episode(of, episode).headline == "correct"
     idle = play([], episode.answer)
     assert score_episode(of, idle).headline == "incorrect"
@@ -42,7 +42,7 @@ def test_every_sample_passes_and_doing_nothing_never_does(of: Task, episode: Epi
 
 @pytest.mark.parametrize("text", ["none", "0", "yes", "no", "5", "red"])
 @pytest.mark.parametrize("of", [t for t, _ in SAMPLES], ids=[t.id for t, _ in SAMPLES])
-def test_no_answer_passes_without_looking(of: Task, text: str) -> None:
+def test_no_answer_passes_without_an_observation(of: Task, text: str) -> None:
     assert score_episode(of, play([], text)).headline != "correct"
 
 
@@ -50,14 +50,14 @@ def test_no_answer_passes_without_looking(of: Task, text: str) -> None:
     ("text", "passed"),
     [("5 cones", True), ("four cones", False), ("several cones", None), ("I cannot tell.", False), ("", None)],
 )
-def test_the_answer(text: str, passed: bool | None) -> None:
+def test_the_answer_check(text: str, passed: bool | None) -> None:
     episode = replace(COUNT_RUN, answer=text)
     assert outcome_of("answer", COUNT_TASK, episode) is passed
     headline = {True: "correct", False: "incorrect", None: "unscored"}[passed]
     assert score_episode(COUNT_TASK, episode).headline == headline
 
 
-def test_an_answer_that_was_never_given_is_wrong() -> None:
+def test_a_missing_answer_is_incorrect() -> None:
     for outcome in ("step_limit", "budget"):
         assert score_episode(COUNT_TASK, replace(COUNT_RUN, outcome=outcome)).headline == "incorrect"
     assert score_episode(COUNT_TASK, replace(COUNT_RUN, outcome="clarification", answer="Which cones?")).headline == "incorrect"
@@ -75,7 +75,7 @@ def test_an_answer_that_was_never_given_is_wrong() -> None:
         ([GO_HIGHWAY, ("adjust_ptz", {"zoom_factor": 2.0}), counted(5), ("adjust_ptz", {"zoom_factor": 0.5})], False),
     ],
 )
-def test_coverage(steps: list[Step], passed: bool) -> None:
+def test_the_coverage_check(steps: list[Step], passed: bool) -> None:
     assert outcome_of("coverage", COUNT_TASK, play(steps, "5")) is passed
 
 
@@ -92,7 +92,7 @@ def test_coverage(steps: list[Step], passed: bool) -> None:
         (0.0, 0.0, 1.0, "bridge", False),
     ],
 )
-def test_the_final_pose(pan: float, tilt: float, zoom: float, viewpoint: str, passed: bool) -> None:
+def test_the_pose_check(pan: float, tilt: float, zoom: float, viewpoint: str, passed: bool) -> None:
     wanted = action(Behaviour(final=final(AT_HIGHWAY)))
     pose = AT_HIGHWAY.pose
     ends = CameraPosition(viewpoint, Pose(pose.pan_deg + pan, pose.tilt_deg + tilt, pose.zoom * zoom))
@@ -148,7 +148,7 @@ def test_a_zoom_by_percent_is_a_zoom_by_its_factor_and_calls_are_matched_best_in
     assert missing_in_any_order([some, cones], play([counted(1, "cones"), counted(2, "cars")], "").calls) is None
 
 
-def test_what_must_not_happen() -> None:
+def test_forbidden_calls() -> None:
     still = action(Behaviour(forbidden=Forbidden(tools=("adjust_ptz",), changes=("zoom", "pan"))))
     assert outcome_of("forbidden", still, play([counted(2)], "")) is True
     assert outcome_of("forbidden", still, play([("adjust_ptz", {"pan_deg": 1.0}), ("adjust_ptz", {"pan_deg": -1.0})], "")) is False
@@ -160,7 +160,7 @@ def test_what_must_not_happen() -> None:
     assert outcome_of("forbidden", still, play([failed], "")) is True
 
 
-def test_pictures_must_be_as_many_and_exist() -> None:
+def test_the_expected_number_of_pictures_must_exist() -> None:
     two = action(Behaviour(pictures=2))
     assert outcome_of("pictures", two, play([TAKE, TAKE], "")) is True
     assert outcome_of("pictures", two, play([TAKE], "")) is False
@@ -208,11 +208,11 @@ def test_the_right_calls_with_a_wrong_answer_and_the_right_answer_at_a_wrong_pos
         ({"outcome": "budget"}, "incorrect"),
     ],
 )
-def test_infrastructure_is_its_own_outcome(changes: dict[str, Any], headline: str) -> None:
+def test_infrastructure_failures_are_a_separate_outcome(changes: dict[str, Any], headline: str) -> None:
     assert score_episode(COUNT_TASK, replace(COUNT_RUN, **changes)).headline == headline
 
 
-def test_failed_eyes_are_infrastructure_unless_the_agent_claims_to_have_seen() -> None:
+def test_failed_perception_is_infrastructure_unless_the_agent_claims_an_observation() -> None:
     blind: list[Step] = [GO_HIGHWAY, ("count_objects", {"description": "cones"}, {"error": "timeout", "fault": "perception"})]
     assert score_episode(COUNT_TASK, play(blind, "I could not see: perception failed.")).headline == "infrastructure"
     assert score_episode(COUNT_TASK, play(blind, "There are 5 cones.")).headline == "incorrect"
@@ -228,13 +228,13 @@ def test_a_reaction_is_judged_by_how_the_run_ends() -> None:
     assert score_episode(refusal, play([GO_HIGHWAY], "No.", outcome="refused")).headline == "incorrect"
 
 
-def test_a_task_without_a_check_is_an_error() -> None:
+def test_a_task_without_checks_is_an_error() -> None:
     empty = COUNT_TASK.model_copy(update={"expected": ActionOnly(), "behaviour": Behaviour(), "evidence": ()})
     with pytest.raises(ScopeError, match="no check"):
         score_episode(empty, COUNT_RUN)
 
 
-def test_collateral_change_is_told_but_decides_nothing() -> None:
+def test_collateral_changes_are_reported_but_do_not_affect_the_verdict() -> None:
     here = task(901, "counting", Number(value=2, unit=("cone",)), [counted(2)], evidence=[view(START)])
     assert not score_episode(here, play([counted(2)], "2")).collateral
     wandered = score_episode(here, play([counted(2), ("adjust_ptz", {"pan_deg": 30.0})], "2"))

@@ -1,4 +1,4 @@
-"""Coverage: what a frame holds, at which size, from where, when, and about what."""
+"""Coverage: which objects a frame contains, at which size, from where, when, and for which question."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ def evidence(pose: Pose, **further: Any) -> EvidenceView:
 
 
 @given(POSES)
-def test_a_frame_covers_the_view_that_it_is(pose: Pose) -> None:
+def test_a_frame_covers_its_own_view(pose: Pose) -> None:
     assert uncovered_part(evidence(pose), [look(pose)]) is None
     assert uncovered_part(evidence(pose), [look(pose, "bridge")]) is not None
     assert uncovered_part(evidence(pose), []) is not None
 
 
 @given(POSES, st.floats(0.06, 1.0), st.sampled_from([1, -1]))
-def test_a_frame_turned_away_by_more_than_the_inset_does_not(pose: Pose, share: float, side: int) -> None:
+def test_a_frame_turned_by_more_than_the_inset_does_not_cover_the_view(pose: Pose, share: float, side: int) -> None:
     fov = EYES.optics.hfov_deg(pose.zoom)
     turned = Pose(pose.pan_deg + side * share * fov / math.cos(math.radians(pose.tilt_deg)), pose.tilt_deg, pose.zoom)
     assert uncovered_part(evidence(pose), [look(turned)]) is not None
@@ -53,7 +53,7 @@ def test_within_half_a_degree_and_three_percent_of_zoom_a_view_at_the_wide_end_i
 
 
 @given(POSES)
-def test_zooming_in_loses_the_border_and_zooming_out_the_detail(pose: Pose) -> None:
+def test_zooming_in_loses_the_border_and_zooming_out_loses_detail(pose: Pose) -> None:
     assume(1.5 <= pose.zoom <= 3.5)
     closer, wider = Pose(pose.pan_deg, pose.tilt_deg, pose.zoom * 1.2), Pose(pose.pan_deg, pose.tilt_deg, pose.zoom / 1.4)
     assert uncovered_part(evidence(pose), [look(closer)]) is not None
@@ -74,7 +74,7 @@ def test_two_halves_cover_a_view_together(pose: Pose) -> None:
 
 
 @given(POSES)
-def test_a_sweep_covers_its_band_and_nothing_else_does(pose: Pose) -> None:
+def test_only_a_sweep_covers_the_band_of_a_sweep(pose: Pose) -> None:
     sweep = EYES.sweep()
     band = (sweep.bottom_tilt_deg + 1, sweep.top_tilt_deg - 1)
     around = evidence(pose, scope="full", band_deg=band)
@@ -82,14 +82,14 @@ def test_a_sweep_covers_its_band_and_nothing_else_does(pose: Pose) -> None:
     assert uncovered_part(around, [look(pose)]) is not None
 
 
-def test_a_ring_of_frames_covers_what_a_sweep_covers() -> None:
+def test_a_ring_of_frames_covers_the_same_as_a_sweep() -> None:
     around = evidence(Pose(), scope="full", band_deg=(-12.0, 12.0))
     assert uncovered_part(around, [look(Pose(pan, 0.0, 1.0)) for pan in range(-180, 180, 30)]) is None
     assert uncovered_part(around, [look(Pose(pan, 0.0, 1.0)) for pan in range(-180, 120, 30)]) is not None
 
 
 @given(POSES, st.floats(0.5, 4.0), st.sampled_from([(1.0, 0.5), (0.0, 0.5), (0.5, 0.0), (0.5, 1.0), (1.0, 1.0)]))
-def test_an_item_counts_where_its_whole_box_is_in_the_frame(pose: Pose, size: float, edge: tuple[float, float]) -> None:
+def test_an_item_counts_if_its_whole_box_is_in_the_frame(pose: Pose, size: float, edge: tuple[float, float]) -> None:
     frame = look(pose)
     assert shows(around(pose.pan_deg, pose.tilt_deg, size), frame)
     pan, tilt = pan_tilt_deg(frame.projection.directions(np.array(edge)))
@@ -97,13 +97,13 @@ def test_an_item_counts_where_its_whole_box_is_in_the_frame(pose: Pose, size: fl
 
 
 def around(pan: float, tilt: float, size: float) -> Item:
-    """An item with its middle in a direction; a box of pans and tilts may go across 180 degrees."""
+    """Return an item centred on a direction. Its box of pans and tilts may cross 180 degrees."""
     low, high = pan - size / 2, pan + size / 2
     return Item(instance="x", box_deg=(low, tilt - size / 2, high if high <= 180 else high - 360, tilt + size / 2))
 
 
 @given(PANS, st.floats(-30, 10), ZOOMS)
-def test_small_things_must_be_large_enough(pan: float, tilt: float, zoom: float) -> None:
+def test_objects_must_be_large_enough(pan: float, tilt: float, zoom: float) -> None:
     frame = look(Pose(pan, tilt, zoom))
     pixels = density_px_deg(frame) * 1.0
     box = (pan - 0.25, tilt - 0.5, pan + 0.25, tilt + 0.5)
@@ -117,7 +117,7 @@ def test_capitals_must_be_fourteen_pixels_high(zoom: float, legible: bool) -> No
     assert shows(text, look(Pose(1.0, 0.1, zoom))) == legible
 
 
-def test_only_looks_about_the_thing_at_the_time_count() -> None:
+def test_only_perception_calls_about_the_object_at_that_time_count() -> None:
     pose = Pose(10, -10, 1)
     about = evidence(pose, about=("cone", "traffic cone"))
     assert uncovered_part(about, [look(pose, asked="orange traffic cones")]) is None
@@ -130,7 +130,7 @@ def test_only_looks_about_the_thing_at_the_time_count() -> None:
 
 
 @given(st.floats(-180, 180), st.floats(-40, 20), st.floats(0.1, 30), st.floats(0.1, 20))
-def test_a_box_across_the_back_is_as_wide_as_any_other(left: float, bottom: float, width: float, height: float) -> None:
+def test_a_box_across_180_degrees_has_the_right_width(left: float, bottom: float, width: float, height: float) -> None:
     right = left + width
     outline = box_directions((left, bottom, right if right <= 180 else right - 360, bottom + height))
     pans, tilts = pan_tilt_deg(outline)
@@ -141,12 +141,12 @@ def test_a_box_across_the_back_is_as_wide_as_any_other(left: float, bottom: floa
 
 
 @given(POSES)
-def test_reference_directions_lie_in_the_reference_frame(pose: Pose) -> None:
+def test_reference_directions_are_in_the_reference_frame(pose: Pose) -> None:
     assert inside(look(pose), reference_directions(evidence(pose))).all()
     assert not inside(look(pose), direction([pose.pan_deg + 180.0], [-pose.tilt_deg])).any()
 
 
-def test_a_look_that_brought_no_answer_covers_nothing() -> None:
+def test_a_perception_call_without_an_answer_covers_nothing() -> None:
     pose = Pose(10.0, -10.0, 1.0)
     assert uncovered_part(evidence(pose), [look(pose, how="query", known=True)]) is None
     assert uncovered_part(evidence(pose), [look(pose, how="query", known=False)]) is not None

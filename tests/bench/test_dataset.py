@@ -1,4 +1,4 @@
-"""The whole dataset in one command, on the synthetic scene: every file is there, the same each time, and read by every command."""
+"""Building the dataset of the synthetic scene in one command: all files exist, are reproducible, and can be read."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FILES = {
 
 
 @pytest.mark.full
-def test_one_command_makes_everything(scope: Scope, tmp_path: Path) -> None:
+def test_one_command_builds_all_files(scope: Scope, tmp_path: Path) -> None:
     folder, page = tmp_path / "data", tmp_path / "dataset.md"
     done = scope(
         "bench", "build", "--all", "--scene", "analytic-yard", "--share", "0.02", "--seeds", "2", "--out", str(folder),
@@ -45,23 +45,23 @@ def test_one_command_makes_everything(scope: Scope, tmp_path: Path) -> None:
     assert one.out == scope("bench", "browse", "--random", "--seed", "1", "--tasks", str(folder / "tasks.jsonl")).out
 
 
-def test_numbers_of_worlds_may_follow_one_another() -> None:
+def test_world_numbers_may_be_consecutive() -> None:
     assert variation_numbers([7], [8, 9, 8]) == (7, 8, 9)
     assert variation_numbers(None, None) == ()
     with pytest.raises(InputError, match="belongs to no option"):
         variation_numbers(None, [8])
 
 
-def test_what_does_not_go_together_is_told(scope: Scope, tmp_path: Path) -> None:
+def test_incompatible_options_are_reported(scope: Scope, tmp_path: Path) -> None:
     out = str(tmp_path / "tasks.jsonl")
-    assert "follow --seeds" in scope("bench", "build", "--out", out, "7").err
+    assert "after --seeds" in scope("bench", "build", "--out", out, "7").err
     assert "--all" in scope("bench", "build", "--out", out, "--card", out).err
-    assert "no whole dataset" in scope("bench", "card", "--data", str(tmp_path)).err
+    assert "no complete dataset" in scope("bench", "card", "--data", str(tmp_path)).err
     assert scope("bench", "build", "--out", out, "--seeds", "0").code == 2
 
 
 @pytest.mark.full
-def test_an_audit_gives_readers_pictures_and_no_truth(scope: Scope, tmp_path: Path) -> None:
+def test_an_audit_contains_pictures_and_no_ground_truth(scope: Scope, tmp_path: Path) -> None:
     tasks = tmp_path / "tasks.jsonl"
     made = scope("bench", "build", "--scene", "analytic-yard", "--share", "0.02", "--out", str(tasks))
     assert tasks.is_file(), made.err

@@ -1,4 +1,4 @@
-"""Runs from recorded traces: poses, viewpoints, looks, pictures and ends, as a real loop writes them."""
+"""Episodes from recorded traces: poses, viewpoints, perception calls, pictures and outcomes."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_poses_and_viewpoints_follow_the_calls(tmp_path: Path) -> None:
     assert (episode.outcome, episode.answer, episode.final.viewpoint) == ("answered", "Two.", "mast")
 
 
-def test_a_failed_look_is_no_look_and_a_wrong_preset_moves_nothing(tmp_path: Path) -> None:
+def test_a_failed_perception_call_is_no_observation_and_a_wrong_preset_moves_nothing(tmp_path: Path) -> None:
     episode = run(
         tmp_path,
         calls(("go_to_preset", {"name": "nowhere"})),
@@ -67,14 +67,14 @@ def test_a_failed_look_is_no_look_and_a_wrong_preset_moves_nothing(tmp_path: Pat
     assert {c.after.pose for c in episode.calls} == {Pose()}
 
 
-def test_pictures_exist_in_the_run_folder_or_were_not_kept_on_purpose(tmp_path: Path) -> None:
+def test_pictures_exist_in_the_run_folder_or_were_deliberately_not_stored(tmp_path: Path) -> None:
     kept = run(tmp_path, calls(("take_image", {}), ("take_image", {})), answer())
     assert [(p.file, p.exists) for p in kept.pictures] == [("pictures/001.png", True), ("pictures/002.png", True)]
     unkept = run(tmp_path, calls(("take_image", {})), answer(), keeps_files=False)
     assert [p.exists for p in unkept.pictures] == [None]
 
 
-def test_what_a_seeing_planner_was_shown_counts_as_looks(tmp_path: Path) -> None:
+def test_views_shown_to_a_planner_with_vision_count_as_observations(tmp_path: Path) -> None:
     blind = run(tmp_path, calls(("adjust_ptz", {"pan_deg": 15.0})), answer("Five."))
     assert blind.observations == ()
     seeing = run(tmp_path, calls(("adjust_ptz", {"pan_deg": 15.0})), answer("Five."), planner_sees=True)
@@ -84,7 +84,7 @@ def test_what_a_seeing_planner_was_shown_counts_as_looks(tmp_path: Path) -> None
     ]
 
 
-def test_a_zoom_looks_first_from_where_it_began_and_a_track_all_along(tmp_path: Path) -> None:
+def test_zooming_observes_from_its_start_and_tracking_throughout(tmp_path: Path) -> None:
     zoomed = run(tmp_path, calls(("zoom_to_object", {"description": "van"})), answer(), counts=[1])
     assert zoomed.observations[0].how == "locate"
     assert isinstance(zoomed.observations[0].projection, Perspective)
@@ -94,7 +94,7 @@ def test_a_zoom_looks_first_from_where_it_began_and_a_track_all_along(tmp_path: 
     assert tracked.observations[-1].time_s > tracked.observations[0].time_s
 
 
-def test_a_run_that_was_cut_off_has_no_outcome(tmp_path: Path) -> None:
+def test_an_incomplete_run_has_no_outcome(tmp_path: Path) -> None:
     folder = RunFolder.create(tmp_path, "go")
 
     async def work() -> None:
@@ -111,7 +111,7 @@ def test_a_run_that_was_cut_off_has_no_outcome(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (640, 480)])
-def test_the_sweep_of_an_episode_is_the_sweep_that_the_tool_takes(size: tuple[int, int]) -> None:
+def test_the_sweep_of_an_episode_matches_that_of_the_tool(size: tuple[int, int]) -> None:
     camera = ScriptedCamera()
     taken = anyio.run(sweep, camera).projection
     assert isinstance(taken, Equirectangular)

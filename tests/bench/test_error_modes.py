@@ -1,4 +1,4 @@
-"""Error modes: known faults are named as what they are, and cases that a person would decide at a glance."""
+"""Error modes: known faults get the expected mode, and so do cases that are obvious to a person."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def gold() -> list[GoldRun]:
     return [one for one in made if one is not None]
 
 
-def test_every_known_fault_is_named_and_none_is_let_through() -> None:
+def test_every_known_fault_has_its_mode_and_none_passes() -> None:
     runs = gold()
     matrix = confusion(runs)
     assert len(runs) >= 200
@@ -177,12 +177,12 @@ ZOOM_HOME: list[Step] = [("zoom_to_object", {"description": "the sign"}, TO_SIGN
         ),
     ],
 )
-def test_what_a_person_would_say(name: str, steps: list[Step], text: str, mode: ErrorMode) -> None:
+def test_obvious_cases(name: str, steps: list[Step], text: str, mode: ErrorMode) -> None:
     assert error_mode(BY_NAME[name], play(steps, text)) is mode
 
 
-def test_the_truth_of_the_very_view_goes_before_the_evidence() -> None:
-    """A count at another place is compared with what shows there, which the evidence cannot know."""
+def test_ground_truth_of_the_observed_view_takes_precedence_over_evidence() -> None:
+    """A count in another view is compared with the ground truth of that view, which the evidence does not include."""
     of: Task = BY_NAME["comparative-007"]
     extra = play([counted(5, "cars"), GO_BRIDGE, counted(9, "cars"), GO_HIGHWAY, counted(3, "cars")], "The highway has more.")
     assert error_mode(of, extra) is ErrorMode.REASONING
@@ -194,7 +194,7 @@ def test_the_truth_of_the_very_view_goes_before_the_evidence() -> None:
     assert error_mode(of, extra, lambda look: 9 if look.viewpoint == "bridge" else None) is ErrorMode.REASONING
 
 
-def test_a_right_answer_about_one_of_two_things_is_no_wrong_one_about_both() -> None:
+def test_a_correct_perception_reply_about_one_of_two_objects_is_not_an_error_about_both() -> None:
     which = Choice(value="van", options={"van": (), "sign": ()}, picks=("nearer",))
     of = task(
         98, "comparative", which, [told("6 m", "How far is the van?")],
@@ -206,14 +206,14 @@ def test_a_right_answer_about_one_of_two_things_is_no_wrong_one_about_both() -> 
     assert error_mode(of, play([far, denied], "The sign is nearer.")) is ErrorMode.VLM_QUERY
 
 
-def test_words_of_several_texts_are_grounded_wherever_each_was_read() -> None:
+def test_words_of_several_texts_are_grounded_in_different_perception_calls() -> None:
     both = Text(accepted=("A482 / Harrowfield",), ocr=True)
     of = task(97, "ocr", both, [told("A482", "What does it say?")], evidence=[view(START, shows=both)])
     read = [told("It says A483.", "What does the upper line say?"), told("It says HARROWFIELD.", "And the lower one?")]
     assert error_mode(of, play(read, 'It says "A483" and "HARROWFIELD".')) is ErrorMode.VLM_QUERY
 
 
-def test_a_target_that_perception_does_not_find_is_its_fault_and_one_that_was_never_asked_for_the_agents() -> None:
+def test_an_unfound_target_is_a_perception_error_and_an_unrequested_one_is_an_agent_error() -> None:
     van = Argument(mentions=("van",))
     calls = (RequiredCall(tool="track_object", arguments={"description": van}),)
     track = task(
@@ -252,9 +252,7 @@ ENDS = st.sampled_from(["answered", "clarification", "refused", "step_limit", "b
 
 
 @given(st.sampled_from(SAMPLES), st.lists(STEPS, max_size=6), TEXTS, ENDS)
-def test_any_run_that_is_judged_incorrect_has_exactly_one_mode_and_no_other_run_has_any(
-    sample: tuple[Task, Episode], steps: list[Step], text: str, end: str
-) -> None:
+def test_exactly_the_incorrect_runs_have_one_mode(sample: tuple[Task, Episode], steps: list[Step], text: str, end: str) -> None:
     of, _ = sample
     episode = play(steps, text, outcome=end)
     verdict = score_episode(of, episode)

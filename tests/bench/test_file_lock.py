@@ -21,7 +21,7 @@ def test_a_file_is_locked_once(tmp_path: Path) -> None:
         assert file_lock.lock_file(third)
 
 
-def test_where_fcntl_is_missing_the_lock_of_windows_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_fcntl_the_windows_lock_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[int, int]] = []
     windows = SimpleNamespace(LK_NBLCK=2, locking=lambda _, mode, size: asked.append((mode, size)))
     monkeypatch.setitem(sys.modules, "fcntl", None)

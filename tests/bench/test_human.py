@@ -1,4 +1,4 @@
-"""A person does tasks through a pipe: the same tools, the same checks, and nothing lost when they stop."""
+"""A human does tasks through a pipe: same tools, same checks, and no loss of results on interruption."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def type_in(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
 
 
-def test_a_person_is_judged_by_the_checks_and_can_go_on_later(
+def test_a_human_run_is_scored_by_the_checks_and_can_be_resumed(
     scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / "human"
@@ -71,7 +71,7 @@ def test_a_person_is_judged_by_the_checks_and_can_go_on_later(
 
     type_in(monkeypatch, "preset board", "count drums", "three", "3", "answer There are 3 drums.", "answer There are 3 drums.")
     second = scope("bench", "human", "--split", str(tasks), "--out", str(out), "--by", "ann")
-    assert "2 of 3 tasks to do" in second.out and "A whole number, in digits." in second.out
+    assert "2 of 3 tasks to do" in second.out and "Enter a whole number below 1000 in digits." in second.out
     result = read_result(out / "evaluation.json")
     assert [(t.task.id[-3:], t.headline) for t in result.trials] == [("001", "correct"), ("002", "correct"), ("003", "incorrect")]
     assert result.trials[1].tool_calls == {"go_to_preset": 1, "count_objects": 1}
@@ -82,7 +82,7 @@ def test_a_person_is_judged_by_the_checks_and_can_go_on_later(
     assert len(shown) == 4 and np.asarray(cv2.imread(str(shown[0]))).shape == (720, 1280, 3)
 
 
-def test_a_report_shows_what_the_person_saw_in_a_failed_task(
+def test_a_report_shows_the_pictures_of_a_failed_task(
     scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out, report = tmp_path / "human", tmp_path / "report"
@@ -96,7 +96,7 @@ def test_a_report_shows_what_the_person_saw_in_a_failed_task(
 
 
 @pytest.mark.parametrize("name", ["../other", "/etc", "a/b", ".."])
-def test_a_result_names_no_run_outside_its_folder(tmp_path: Path, name: str) -> None:
+def test_a_result_cannot_refer_to_a_run_outside_its_folder(tmp_path: Path, name: str) -> None:
     with pytest.raises(TraceError, match="outside"):
         open_run(tmp_path / "evaluation.json", name)
 
@@ -110,19 +110,17 @@ def test_the_end_of_the_input_loses_nothing(scope: Scope, tasks: Path, tmp_path:
     assert list((tmp_path / "human").iterdir()) == []
 
 
-def test_a_person_frames_what_they_are_asked_for(
-    scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_human_can_frame_an_object(scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     place = "40 40 60 60"
     type_in(monkeypatch, "zoomto the board", "9 9", place, "30 30 70 70", "", "answer Done.")
     done = scope("bench", "human", "--split", str(tasks), "--out", str(tmp_path / "human"), "--limit", "1")
     assert done.code == 0, done.err
-    assert "Four numbers from 0 to 100" in done.out
+    assert "Enter four numbers from 0 to 100" in done.out
     (call,) = read_trace(tmp_path / "human" / "scope1-analytic-yard-counting-001").calls
     assert call.outcome.result is not None and call.outcome.result["found"] is True
 
 
-def test_what_is_no_split_or_category_is_told(scope: Scope, tasks: Path) -> None:
+def test_unknown_splits_and_categories_are_reported(scope: Scope, tasks: Path) -> None:
     assert "There is no split or task file 'little'" in scope("bench", "human", "--split", "little").err
     assert "no category 'sums'" in scope("bench", "human", "--split", str(tasks), "--category", "sums").err
 
@@ -150,24 +148,24 @@ def test_every_tool_can_be_typed(line: str, name: str, arguments: dict[str, obje
     assert (meant.name, meant.arguments) == (name, arguments)
 
 
-def test_the_end_can_be_typed() -> None:
+def test_finishing_can_be_typed() -> None:
     assert parse("refuse I may not.") == Finish(kind="refused", text="I may not.")
     assert parse("question Which one?") == Finish(kind="clarification", text="Which one?")
     assert parse("help") is None
     with pytest.raises(TaskLeftError) as left:
         parse("quit")
-    assert left.value.for_good
+    assert left.value.ends_session
 
 
 @pytest.mark.parametrize(
     "line", ["answer", "pan", "pan x", "pan 3 roll 4", "fly", "home now", "call x 3", "call x {", "count", "track van"]
 )
-def test_what_is_no_command_is_told(line: str) -> None:
+def test_unknown_commands_are_reported(line: str) -> None:
     with pytest.raises(InputError):
         parse(line)
 
 
-def test_terminals_that_show_pictures_get_them(tmp_path: Path) -> None:
+def test_terminals_that_support_pictures_get_them(tmp_path: Path) -> None:
     image = np.full((72, 128, 3), 90, np.uint8)
     frame = Frame(image=image, pose=Pose(), hfov_deg=60.0, time_s=0.0, projection=Perspective(0, 0, 60.0, 128, 72))
     assert escape(frame, "iterm").startswith("\x1b]1337;File=inline=1") and escape(frame, "iterm").endswith("\x07\n")

@@ -1,4 +1,4 @@
-"""The published dataset: whole, of the scenes that are shipped, and as many tasks of each category as the paper's."""
+"""The published dataset: complete, from the shipped scenes, and with the paper's number of tasks per category."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CORE = load_split("core")
 EVERYTHING = load_split("all")
 
 
-def test_every_file_is_what_was_published() -> None:
+def test_every_file_is_unchanged() -> None:
     files = read_manifest(FOLDER)["files"]
     assert {"tasks.jsonl", "paraphrase.jsonl", "reaction.jsonl", "unseen.jsonl", "lite.txt", "gold.jsonl.gz", "proof.json"} <= set(
         files
@@ -29,14 +29,14 @@ def test_every_file_is_what_was_published() -> None:
     assert {name: hashlib.sha256((FOLDER / name).read_bytes()).hexdigest() for name in files} == files
 
 
-def test_it_was_made_of_the_scenes_that_are_shipped() -> None:
+def test_it_was_built_from_the_shipped_scenes() -> None:
     shipped = scenes_named(None)
     made_of = read_manifest(FOLDER)["scenes"]
     assert made_of.keys() <= shipped.keys()
     assert {name: scene["version"] for name, scene in made_of.items()} == {name: shipped[name].file.version for name in made_of}
 
 
-def test_the_numbers_are_the_papers() -> None:
+def test_numbers_of_tasks_match_the_paper() -> None:
     assert Counter(task.category for task in CORE) == QUOTAS
     assert len(CORE) == 536
     assert sum(isinstance(task.expected, NoneThere) for task in CORE) >= 60
@@ -45,14 +45,14 @@ def test_the_numbers_are_the_papers() -> None:
     assert 50 <= len(load_split("lite")) <= 60
 
 
-def test_each_absence_has_a_twin_that_is_there() -> None:
+def test_each_absence_has_a_presence_as_its_twin() -> None:
     by_id = {task.id: task for task in CORE}
     for task in CORE:
         if isinstance(task.expected, NoneThere):
             assert task.pair is not None and not isinstance(by_id[task.pair].expected, NoneThere)
 
 
-def test_no_task_and_no_wording_comes_twice() -> None:
+def test_tasks_and_wordings_are_unique() -> None:
     assert len({task.id for task in EVERYTHING}) == len(EVERYTHING)
     assert len({(task.scene, task.variation, task.preset, task.instruction) for task in EVERYTHING}) == len(EVERYTHING)
 
@@ -65,13 +65,13 @@ def test_every_scene_and_viewpoint_is_used() -> None:
     assert used == {(name, viewpoint.name) for name, scene in here.items() for viewpoint in scene.file.viewpoints}
 
 
-def test_it_was_proved_and_by_these_very_tasks() -> None:
+def test_the_stored_validation_covers_these_tasks() -> None:
     proof = json.loads((FOLDER / "proof.json").read_text("utf-8"))
     assert proof["published"]["sound"] and proof["unseen"]["sound"]
 
 
 @pytest.mark.full
-def test_it_is_still_proved(scope: Scope) -> None:
+def test_the_dataset_passes_validation(scope: Scope) -> None:
     done = scope("bench", "validate")
     assert done.code == 0, done.out
     assert "reference               " in done.out and done.out.rstrip().endswith("sound")

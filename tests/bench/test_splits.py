@@ -1,4 +1,4 @@
-"""Splits: who belongs where, a small one that stands for all, files that cannot be changed unnoticed."""
+"""Splits: their tasks, the representative lite split, and detection of changed files."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SAMPLES = [task for task, _ in samples()]
 
 
 def many(number: int = 536) -> list[Task]:
-    """Core tasks of several scenes and difficulties."""
+    """Return core tasks of several scenes and difficulties."""
     tasks = []
     for n in range(number):
         of = SAMPLES[n * 7 % len(SAMPLES)]
@@ -36,7 +36,7 @@ def test_lite_is_a_tenth_of_every_category_scene_and_difficulty() -> None:
         assert all(abs(part[name] - number / 10) <= 1 for name, number in whole.items()), key
 
 
-def test_lite_is_the_same_whatever_the_order_and_another_for_another_seed() -> None:
+def test_lite_depends_on_the_seed_and_not_on_the_order() -> None:
     tasks = many()
     ids = {task.id for task in lite(tasks, 1)}
     assert ids == {task.id for task in lite(tasks[::-1], 1)}
@@ -64,16 +64,16 @@ def test_every_split_is_read_back(dataset: Path) -> None:
     assert load_split(dataset / "tasks.jsonl") == load_split("core", dataset)
 
 
-def test_a_dataset_that_was_changed_is_told(dataset: Path) -> None:
+def test_a_changed_dataset_is_reported(dataset: Path) -> None:
     assert read_manifest(dataset)["made_with"] == {"seed": 1}
     (dataset / "lite.txt").write_text("scope1-nowhere-001\n")
-    with pytest.raises(InputError, match=r"lite\.txt is not as it was built"):
+    with pytest.raises(InputError, match=r"lite\.txt has changed since it was built"):
         read_manifest(dataset)
     with pytest.raises(InputError, match="scope1-nowhere-001"):
         load_split("lite", dataset)
 
 
-def test_what_is_no_split_is_told(tmp_path: Path) -> None:
+def test_unknown_splits_are_reported(tmp_path: Path) -> None:
     with pytest.raises(UnknownNameError, match="paraphrase"):
         load_split("paraphrases", tmp_path)
     with pytest.raises(InputError, match="scope bench build"):

@@ -1,4 +1,4 @@
-"""Task data: what is refused, what survives a file, and that the published schema is the one in force."""
+"""Task data: refused tasks, writing and reading, and the published schema."""
 
 from __future__ import annotations
 
@@ -32,22 +32,22 @@ def content(**changes: Any) -> dict[str, Any]:
     [
         ({"id": "counting-1"}, "pattern"),
         ({"id": "scope2-test-counting-001"}, "dataset version"),
-        ({"stratum": "paraphrase"}, "paraphrase of"),
-        ({"paraphrase_of": "scope1-test-counting-002"}, "paraphrase of"),
-        ({"expected": {"kind": "action_only"}, "behaviour": {}}, "nothing would be checked"),
-        ({"evidence": []}, "rests on nothing"),
+        ({"stratum": "paraphrase"}, "paraphrase_of must be set"),
+        ({"paraphrase_of": "scope1-test-counting-002"}, "paraphrase_of must be set"),
+        ({"expected": {"kind": "action_only"}, "behaviour": {}}, "nothing is checked"),
+        ({"evidence": []}, "needs an evidence view"),
         ({"answer": "five"}, "Extra inputs"),
         ({"expected": {"kind": "number", "value": float("nan")}}, "finite"),
         ({"canary": "another"}, "Input should be"),
         ({"category": "juggling"}, "Input should be"),
     ],
 )
-def test_a_task_that_is_not_sound_is_refused(changes: dict[str, Any], message: str) -> None:
+def test_an_invalid_task_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ValidationError, match=message):
         TASK.validate_python(content(**changes))
 
 
-def test_an_action_needs_a_check_and_an_answer_needs_evidence_but_a_reaction_neither() -> None:
+def test_actions_need_checks_answers_need_evidence_and_reactions_need_neither() -> None:
     reaction = content(
         stratum="reaction", expected=ActionOnly().model_dump(), evidence=[], behaviour={"outcomes": ["refused", "clarification"]}
     )
@@ -66,7 +66,7 @@ def test_expected_values_must_be_among_their_options() -> None:
 
 
 @pytest.mark.parametrize("suffix", [".jsonl", ".yaml"])
-def test_tasks_come_back_from_a_file_as_they_were(tmp_path: Path, suffix: str) -> None:
+def test_tasks_survive_writing_and_reading(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"tasks{suffix}"
     if suffix == ".jsonl":
         dump_tasks(TASKS, path)
@@ -78,7 +78,7 @@ def test_tasks_come_back_from_a_file_as_they_were(tmp_path: Path, suffix: str) -
     assert load_tasks(path) == TASKS
 
 
-def test_a_damaged_file_is_told_with_file_and_task(tmp_path: Path) -> None:
+def test_a_damaged_file_is_reported_with_file_and_task(tmp_path: Path) -> None:
     path = tmp_path / "tasks.jsonl"
     with pytest.raises(InputError, match="cannot be read"):
         load_tasks(path)
@@ -93,7 +93,7 @@ def test_a_damaged_file_is_told_with_file_and_task(tmp_path: Path) -> None:
         load_tasks(path)
 
 
-def test_the_published_schema_is_the_one_in_force() -> None:
+def test_the_published_schema_is_current() -> None:
     """`scope bench schema` writes it."""
     assert json.loads(PUBLISHED.read_text("utf-8")) == schema()
     printed = CliRunner().invoke(app, ["bench", "schema"])

@@ -1,4 +1,4 @@
-"""The pipe to the worker: answers, failures, crashes, time-outs."""
+"""The client of the Blender worker: replies, failures, crashes and timeouts."""
 
 import sys
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ def worker(tmp_path: Path) -> Iterator[BlenderWorker]:
         yield started
 
 
-def test_answers_are_told_from_chatter(worker: BlenderWorker) -> None:
+def test_replies_are_distinguished_from_other_output(worker: BlenderWorker) -> None:
     seen: list[tuple[int, int]] = []
     assert worker.version == "5.0.1"
     assert worker.request("echo", {"a": 1}, progress=lambda done, total: seen.append((done, total))) == {"a": 1}
@@ -40,7 +40,7 @@ def test_a_crash_shows_the_end_of_the_log(worker: BlenderWorker) -> None:
         worker.request("echo")
 
 
-def test_a_worker_that_takes_too_long_is_ended(worker: BlenderWorker) -> None:
+def test_a_worker_that_takes_too_long_is_terminated(worker: BlenderWorker) -> None:
     with pytest.raises(BlenderError, match="in time"):
         worker.request("sleep", timeout_s=0.2)
     assert not worker.running
@@ -56,7 +56,7 @@ def test_the_command_names_a_missing_program(tmp_path: Path) -> None:
         worker_command(tmp_path, tmp_path / "blender")
 
 
-def test_blender_itself_is_started_in_the_background(tmp_path: Path) -> None:
+def test_the_blender_program_is_started_in_background_mode(tmp_path: Path) -> None:
     program = tmp_path / "blender"
     program.write_text("#!/bin/sh\n")
     program.chmod(0o755)

@@ -1,4 +1,4 @@
-"""Silhouettes against closed forms."""
+"""Solid angles of silhouettes, compared with closed-form solutions."""
 
 import math
 from pathlib import Path
@@ -13,13 +13,13 @@ QUAD: Ints = np.array([[0, 1, 2], [1, 3, 2]])
 
 
 def rectangle(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Body:
-    """In a plane of constant y (upright) or constant z (level)."""
+    """Return a rectangle in a plane of constant y (vertical) or constant z (horizontal)."""
     corners = [(a, y[0], b) for b in z for a in x] if y[0] == y[1] else [(a, b, z[0]) for b in y for a in x]
     return Body(7, np.array(corners, dtype=float), QUAD)
 
 
 def solid_angle_of_rectangle(a: float, b: float, distance: float) -> float:
-    """Centred on the axis, sides 2a and 2b."""
+    """Return the solid angle of a rectangle with sides 2a and 2b that is centred on the axis."""
     return 4 * math.asin(a * b / math.sqrt((a * a + distance**2) * (b * b + distance**2)))
 
 

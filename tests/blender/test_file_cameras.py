@@ -1,4 +1,4 @@
-"""The cameras of a .blend file as one camera, from the worker's description."""
+"""The cameras of a .blend file as the viewpoints of one camera, from the worker's description."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DESCRIPTION: dict[str, Any] = {
 }
 
 
-def test_each_camera_is_a_viewpoint_with_a_preset_that_shows_its_picture() -> None:
+def test_each_camera_is_a_viewpoint_with_a_preset_of_its_view() -> None:
     made = file_cameras(DESCRIPTION)
     assert [viewpoint.name for viewpoint in made.scene.viewpoints] == ["wide", "tele"]
     assert made.scene.home_preset == "tele"
@@ -29,14 +29,14 @@ def test_each_camera_is_a_viewpoint_with_a_preset_that_shows_its_picture() -> No
         assert preset.tilt_deg == camera["tilt_deg"]
 
 
-def test_zoom_and_tilt_reach_every_camera() -> None:
+def test_zoom_and_tilt_limits_include_every_camera() -> None:
     made = file_cameras(DESCRIPTION)
     assert made.limits.max_zoom == pytest.approx(made.scene.presets[1].zoom) == pytest.approx(9.59, abs=0.01)
     assert made.limits.min_tilt_deg == -90.0
     assert made.limits.pan_endless
 
 
-def test_cameras_alike_still_zoom() -> None:
+def test_a_single_camera_can_zoom() -> None:
     made = file_cameras({**DESCRIPTION, "active": "wide", "cameras": DESCRIPTION["cameras"][:1]})
     assert made.limits.max_zoom == 5.0
     assert made.optics.hfov_deg(1.0) == 80.0

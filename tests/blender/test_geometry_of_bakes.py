@@ -1,4 +1,4 @@
-"""Bands, strips, tiles and keyframes: where the bake points its camera."""
+"""Bands, strips, tiles and keyframes: the views that the bake renders."""
 
 import math
 
@@ -41,7 +41,7 @@ def test_a_smaller_camera_gets_a_smaller_band() -> None:
     assert -51 < band.bottom_tilt_deg < -48
 
 
-def test_strips_join_to_what_was_cut() -> None:
+def test_strips_join_to_the_complete_image() -> None:
     panorama = Panorama.of(720, BAND)
     x, y = np.meshgrid(np.arange(720), np.arange(panorama.height))
     whole = np.stack([128 + 100 * np.sin(x / 720 * 4 * math.pi), 60 + y / 4, np.full(x.shape, 90)], axis=-1).astype(np.uint8)
@@ -55,7 +55,7 @@ def test_strips_join_to_what_was_cut() -> None:
     assert np.abs(error).mean() < 1.0
 
 
-def test_rows_near_the_pole_lose_what_no_view_can_show() -> None:
+def test_rows_near_the_pole_are_reduced_to_the_visible_resolution() -> None:
     panorama = Panorama.of(360, BAND)
     stripes = np.zeros((panorama.height, 360, 3), dtype=np.uint8)
     stripes[:, ::2] = 200
@@ -65,7 +65,7 @@ def test_rows_near_the_pole_lose_what_no_view_can_show() -> None:
     assert np.ptp(result[-2].astype(int)) < 30
 
 
-def test_a_tile_shows_its_cell_at_the_density_asked_for() -> None:
+def test_a_tile_shows_its_cell_at_the_requested_density() -> None:
     cell = Cell(-170.0, -35.0, 9.0, 5.0)
     view = cell.view(96.0)
     edge = np.linspace(-0.5, 0.5, 9)
@@ -102,7 +102,7 @@ def test_neighbours_in_a_row_are_rendered_as_one() -> None:
         assert covers([c.view(48.0) for c in found], spots)
 
 
-def test_small_things_are_targets_and_large_ones_are_not() -> None:
+def test_small_objects_are_targets_and_large_ones_are_not() -> None:
     panorama = Panorama.of(4096, BAND)
     ids = np.zeros((panorama.height, 4096), dtype=np.uint16)
     ids[700:720, 1000:1016] = 1
@@ -136,7 +136,7 @@ def actor(stride: bool = False) -> SceneActor:
     )  # fmt: skip
 
 
-def test_a_passing_car_is_taken_from_every_side_it_shows() -> None:
+def test_a_passing_car_is_rendered_from_every_visible_side() -> None:
     frames = keyframes(actor(), None, HERE, BAND, np.array([0.5, 0.5, 0.7]), 60)
     assert 25 < len(frames) <= 60
     assert [f.time_s for f in frames] == sorted(f.time_s for f in frames)
@@ -148,17 +148,17 @@ def test_a_passing_car_is_taken_from_every_side_it_shows() -> None:
         assert 0 < shown[0] < 1 and 0 < shown[1] < 1
 
 
-def test_fewer_pictures_are_taken_when_fewer_are_allowed() -> None:
+def test_the_number_of_pictures_is_limited() -> None:
     assert len(keyframes(actor(), None, HERE, BAND, None, 12)) <= 12
 
 
-def test_a_walker_has_all_phases_at_each_place() -> None:
+def test_a_walker_has_all_gait_phases_at_each_position() -> None:
     frames = keyframes(actor(stride=True), 1.4, HERE, BAND, None, 40)
     assert len(frames) % 8 == 0
     assert {f.phase for f in frames} == {k / 8 for k in range(8)}
 
 
-def test_every_leg_of_a_path_has_pictures_of_its_own_up_to_its_corners() -> None:
+def test_every_leg_of_a_path_has_its_own_pictures_up_to_its_corners() -> None:
     corners = [(0.0, -5.0, 20.0, 0.0), (9.0, -5.0, 40.0, 0.0), (10.0, -3.0, 40.0, 0.0), (20.0, -3.0, 20.0, 0.0)]
     walker = actor(stride=True).model_copy(update={"waypoints": corners})
     frames = keyframes(walker, 1.4, HERE, BAND, None, 24)
@@ -168,12 +168,12 @@ def test_every_leg_of_a_path_has_pictures_of_its_own_up_to_its_corners() -> None
         assert taken[min(taken, key=lambda t: abs(t - time))] == leg
 
 
-def test_what_passes_out_of_the_band_is_left_out() -> None:
+def test_positions_outside_the_band_are_left_out() -> None:
     assert keyframes(actor(), None, HERE, Band(top_tilt_deg=59, bottom_tilt_deg=30), None, 40) == []
 
 
 @pytest.mark.full
-def test_wider_tiles_go_where_most_outlines_are() -> None:
+def test_wider_tiles_cover_the_most_outlines() -> None:
     panorama = Panorama.of(1440, BAND)
     ids = np.zeros((panorama.height, 1440), dtype=np.uint16)
     row = round((59.0 + 12.0) / 149.0 * panorama.height)  # tilt -12

@@ -1,4 +1,4 @@
-"""From rendered parts to files: the workshop, layer codings, sheets of sprites, and a pack within its weight."""
+"""From rendered parts to files: the part cache, layer encodings, sprite sheets, and the size limit of a pack."""
 
 import sys
 from pathlib import Path
@@ -11,10 +11,10 @@ from scope_ptz.blender import sources
 from scope_ptz.blender.band import Panorama
 from scope_ptz.blender.keyframes import Keyframe
 from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
+from scope_ptz.blender.part_cache import PartCache
 from scope_ptz.blender.quality import FAR_M, NEAR_M, QUALITIES
 from scope_ptz.blender.sheets import make_sheet
 from scope_ptz.blender.sources import scene_key
-from scope_ptz.blender.workshop import Workshop
 from scope_ptz.errors import BlenderError, PackError
 from scope_ptz.geometry import Perspective
 from scope_ptz.simulator.layers import decode_depth, encode_depth, read_colour, read_ids, write_colour, write_ids
@@ -29,7 +29,7 @@ SCENE = SceneFile(
 
 
 def silent(part: str, done: int, total: int, seconds: float) -> None:
-    """No progress."""
+    """A progress callback that does nothing."""
 
 
 def smooth_noise(height: int, width: int) -> NDArray[np.uint8]:
@@ -38,7 +38,7 @@ def smooth_noise(height: int, width: int) -> NDArray[np.uint8]:
 
 
 @pytest.mark.parametrize("suffix", [".png", ".webp"])
-def test_numbers_come_back_exactly(tmp_path: Path, suffix: str) -> None:
+def test_instance_numbers_are_stored_exactly(tmp_path: Path, suffix: str) -> None:
     numbers = np.random.default_rng(1).integers(0, 65536, (40, 60)).astype(np.uint16)
     path = tmp_path / f"ids{suffix}"
     write_ids(path, numbers)
@@ -48,7 +48,7 @@ def test_numbers_come_back_exactly(tmp_path: Path, suffix: str) -> None:
 
 @pytest.mark.parametrize("suffix", [".png", ".webp", ".avif"])
 @pytest.mark.parametrize("channels", [3, 4])
-def test_colour_comes_back_nearly(tmp_path: Path, suffix: str, channels: int) -> None:
+def test_colours_are_stored_approximately(tmp_path: Path, suffix: str, channels: int) -> None:
     picture = smooth_noise(64, 80)
     if channels == 4:
         picture = np.dstack([picture, np.full((64, 80), 130, dtype=np.uint8)])
@@ -61,7 +61,7 @@ def test_colour_comes_back_nearly(tmp_path: Path, suffix: str, channels: int) ->
     assert np.abs(back[8:].astype(int) - shown).mean() < 6
 
 
-def test_distances_keep_their_share_and_the_sky_stays_apart() -> None:
+def test_distances_have_a_bounded_relative_error_and_sky_is_kept() -> None:
     metres = np.array([[0.0, np.inf, 0.31, 7.0, 500.0, 19999.0]])
     for step in (1, 48):
         codes = encode_depth(metres, NEAR_M, FAR_M, step)
@@ -70,7 +70,7 @@ def test_distances_keep_their_share_and_the_sky_stays_apart() -> None:
         assert np.abs(back[0, 2:] / metres[0, 2:] - 1).max() < 1e-4 * step
 
 
-def test_what_is_no_picture_is_a_pack_error(tmp_path: Path) -> None:
+def test_an_invalid_picture_is_a_pack_error(tmp_path: Path) -> None:
     (tmp_path / "base.webp").write_bytes(b"not at all")
     with pytest.raises(PackError, match="decoded"):
         read_colour(tmp_path / "base.webp")
@@ -80,7 +80,7 @@ def test_what_is_no_picture_is_a_pack_error(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("suffix", [".png", ".webp"])
 @pytest.mark.parametrize("share", [0.0, 0.02, 0.5])
-def test_numbers_cut_short_are_a_pack_error(tmp_path: Path, suffix: str, share: float) -> None:
+def test_truncated_instance_numbers_are_a_pack_error(tmp_path: Path, suffix: str, share: float) -> None:
     numbers = np.random.default_rng(1).integers(0, 65536, (40, 60)).astype(np.uint16)
     path = tmp_path / f"ids{suffix}"
     write_ids(path, numbers)
@@ -90,13 +90,13 @@ def test_numbers_cut_short_are_a_pack_error(tmp_path: Path, suffix: str, share: 
         read_ids(path)
 
 
-def test_numbers_that_are_not_there_are_a_pack_error(tmp_path: Path) -> None:
+def test_missing_instance_numbers_are_a_pack_error(tmp_path: Path) -> None:
     for name in ("ids.png", "ids.webp"):
         with pytest.raises(PackError, match="cannot be decoded"):
             read_ids(tmp_path / name)
 
 
-def test_a_finished_part_is_not_made_again(tmp_path: Path) -> None:
+def test_a_finished_part_is_not_rendered_again(tmp_path: Path) -> None:
     made: list[Path] = []
 
     def produce(path: Path) -> None:
@@ -104,26 +104,26 @@ def test_a_finished_part_is_not_made_again(tmp_path: Path) -> None:
         path.write_text("x")
 
     for parameters in ({"n": 1}, {"n": 1}, {"n": 2}):
-        assert Workshop(tmp_path, "yard-1", silent).part("mast/base", ".txt", parameters, produce).read_text() == "x"
+        assert PartCache(tmp_path, "yard-1", silent).part("mast/base", ".txt", parameters, produce).read_text() == "x"
     assert len(made) == 2
 
 
-def test_a_part_that_was_cut_off_does_not_count(tmp_path: Path) -> None:
+def test_an_incomplete_part_does_not_count(tmp_path: Path) -> None:
     def cut_off(path: Path) -> None:
         path.write_text("half")
         raise KeyboardInterrupt
 
-    shop = Workshop(tmp_path, "yard-1", silent)
+    cache = PartCache(tmp_path, "yard-1", silent)
     with pytest.raises(KeyboardInterrupt):
-        shop.part("base", ".txt", {}, cut_off)
+        cache.part("base", ".txt", {}, cut_off)
 
     def finish(path: Path) -> None:
         path.write_text("whole")
 
-    assert shop.part("base", ".txt", {}, finish).read_text() == "whole"
+    assert cache.part("base", ".txt", {}, finish).read_text() == "whole"
 
 
-def test_the_key_follows_the_code_of_the_scene(tmp_path: Path) -> None:
+def test_the_key_depends_on_the_code_of_the_scene(tmp_path: Path) -> None:
     source = tmp_path / "my_yard.py"
     source.write_text("a = 1\n")
     before = scene_key(str(source))
@@ -132,7 +132,7 @@ def test_the_key_follows_the_code_of_the_scene(tmp_path: Path) -> None:
     assert scene_key(str(source)) != before
 
 
-def test_the_key_follows_what_the_scene_imports_and_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_key_depends_only_on_modules_that_the_scene_imports(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     studio = tmp_path / "studio"
     (studio / "kit").mkdir(parents=True)
     (studio / "scenes").mkdir()
@@ -174,7 +174,7 @@ def sprite_frames(folder: Path) -> list[Keyframe]:
     return frames
 
 
-def test_sprites_lie_side_by_side_with_body_and_shadow(tmp_path: Path) -> None:
+def test_a_sprite_sheet_has_bodies_and_shadows_side_by_side(tmp_path: Path) -> None:
     sheet = make_sheet(sprite_frames(tmp_path), tmp_path)
     assert sheet.colour.shape == (40, 240, 4) and sheet.depth.shape == (40, 240)
     for sprite in sheet.sprites:
@@ -201,7 +201,7 @@ def rendered(tmp_path: Path, tiles: int) -> Rendered:
     )
 
 
-def test_a_pack_is_written_that_the_world_can_read(tmp_path: Path) -> None:
+def test_a_written_pack_can_be_read(tmp_path: Path) -> None:
     folder = tmp_path / "yard" / "mast"
     folder.parent.mkdir()
     manifest = write_pack(folder, SCENE, HERE, rendered(tmp_path, 2), QUALITIES["draft"], 2_000_000, lambda: None)
@@ -214,7 +214,7 @@ def test_a_pack_is_written_that_the_world_can_read(tmp_path: Path) -> None:
     assert not list(folder.parent.glob(".*"))
 
 
-def test_tiles_are_coded_until_the_pack_fits_and_no_further(tmp_path: Path) -> None:
+def test_tiles_are_encoded_at_lower_quality_only_until_the_pack_fits(tmp_path: Path) -> None:
     parts = rendered(tmp_path, 6)
     weights = []
     for k, limit in enumerate((2_000_000, 290_000)):
@@ -222,6 +222,6 @@ def test_tiles_are_coded_until_the_pack_fits_and_no_further(tmp_path: Path) -> N
         write_pack(folder, SCENE, HERE, parts, QUALITIES["standard"], limit, lambda: None)
         weights.append(weight_bytes(folder))
     assert weights[1] < weights[0]
-    with pytest.raises(BlenderError, match="weighs"):
+    with pytest.raises(BlenderError, match="lowest quality"):
         write_pack(tmp_path / "pack-3", SCENE, HERE, parts, QUALITIES["standard"], 20_000, lambda: None)
     assert not (tmp_path / "pack-3").exists()

@@ -1,4 +1,4 @@
-"""The measures of likeness."""
+"""Measures of similarity between images."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ def noise(seed: int, strength: float = 40.0) -> NDArray[np.uint8]:
     return np.asarray(np.clip(grain, 0, 255), dtype=np.uint8)
 
 
-def test_a_picture_is_like_itself_and_unlike_other_noise() -> None:
+def test_an_image_is_similar_to_itself_and_not_to_other_noise() -> None:
     assert ssim(noise(1), noise(1)) == pytest.approx(1.0)
     assert ssim(noise(1), noise(2)) < 0.2
 
@@ -37,7 +37,7 @@ def test_a_mask_restricts_both_measures() -> None:
     assert sharpness(noise(1, 5), mask) < sharpness(noise(1, 40), mask)
 
 
-def test_boxes_of_the_reference_decide() -> None:
+def test_boxes_are_compared_for_the_objects_of_the_reference() -> None:
     reference, other = np.zeros((50, 50), dtype=np.uint16), np.zeros((50, 50), dtype=np.uint16)
     reference[10:30, 10:30], other[10:30, 10:40] = 4, 4
     reference[0:5, 0:5] = 5

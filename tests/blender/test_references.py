@@ -1,4 +1,4 @@
-"""The frozen packs against live Cycles renders of the same poses, kept as files: no Blender is needed to check them."""
+"""The shipped packs match stored Cycles renders of the same poses. Blender is not needed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def reports(request: pytest.FixtureRequest) -> list[PoseReport]:
     return [compare(scene, *reference) for reference in references(FOLDER / scene.name)]
 
 
-def test_the_packs_look_as_rendered(reports: list[PoseReport]) -> None:
+def test_the_packs_match_the_renders(reports: list[PoseReport]) -> None:
     assert sum(r.pose.zoom == 1.0 for r in reports) >= 4
     assert sum(r.pose.zoom > 1.0 and r.tile_share > 0 for r in reports) >= 4
     assert shortcomings(reports) == []

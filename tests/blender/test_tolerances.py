@@ -1,4 +1,4 @@
-"""The verdict on a comparison: each tolerance is named when it is missed, and only then."""
+"""Tolerances of a comparison: each is reported if it is exceeded, and only then."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ WIDE = PoseReport("mast", Pose(10.0, -5.0, 1.0), ssim=0.95, sharpness_ratio=0.4,
 TELE = PoseReport("mast", Pose(10.0, -5.0, 4.0), ssim=0.92, sharpness_ratio=0.7, box_iou=0.94, tile_share=0.6)
 
 
-def test_nothing_is_said_of_packs_that_are_good_enough() -> None:
+def test_packs_within_all_tolerances_have_no_shortcomings() -> None:
     assert shortcomings([WIDE, TELE, replace(WIDE, box_iou=None)]) == []
 
 
 @pytest.mark.parametrize(
     ("report", "words"),
     [
-        (replace(WIDE, ssim=0.87), "SSIM 0.870, 0.88 is wanted"),
+        (replace(WIDE, ssim=0.87), "SSIM 0.870, 0.88 is required"),
         (replace(WIDE, ssim=0.90), "mean SSIM at 1x is 0.900"),
         (replace(WIDE, box_iou=0.96), "mean box IoU at 1x is 0.960"),
-        (replace(TELE, ssim=0.89), "SSIM 0.890, 0.9 is wanted in tiles"),
+        (replace(TELE, ssim=0.89), "SSIM 0.890, 0.9 is required in tiles"),
         (replace(TELE, sharpness_ratio=0.5), "0.50 of the live sharpness"),
         (replace(TELE, box_iou=0.9), "mean box IoU at 2x to 5x is 0.900"),
     ],
 )
-def test_every_tolerance_is_held(report: PoseReport, words: str) -> None:
+def test_every_tolerance_is_enforced(report: PoseReport, words: str) -> None:
     assert words in " / ".join(shortcomings([report]))
 
 
-def test_what_lies_outside_of_tiles_is_not_judged_when_zoomed() -> None:
+def test_zoomed_views_outside_tiles_are_not_compared() -> None:
     assert shortcomings([replace(TELE, tile_share=0.0, ssim=0.5, sharpness_ratio=0.1)]) == []

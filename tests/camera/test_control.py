@@ -38,7 +38,7 @@ def _end(process: subprocess.Popen[str]) -> None:
     process.communicate()
 
 
-def test_another_process_is_told_who_has_control(other: subprocess.Popen[str], tmp_path: Path) -> None:
+def test_an_error_names_the_process_that_has_control(other: subprocess.Popen[str], tmp_path: Path) -> None:
     try:
         with pytest.raises(ControlHeldError, match="yard camera is controlled by console: anna") as caught:
             ControlLock("yard camera", "10.0.0.7/1", tmp_path).acquire("bob")
@@ -70,7 +70,7 @@ def test_a_lock_can_be_taken_again_after_its_release(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("note", ["", "{", "[]", '{"name": 3}', '{"name": "x"}'])
-def test_a_damaged_note_still_gives_the_typed_error(tmp_path: Path, note: str) -> None:
+def test_a_damaged_lock_file_still_gives_the_typed_error(tmp_path: Path, note: str) -> None:
     held = ControlLock("camera", "key", tmp_path)
     held.acquire("a")
     next(tmp_path.glob("*.json")).write_text(note)

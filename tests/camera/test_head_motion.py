@@ -1,4 +1,4 @@
-"""A driven head: no jumps, no more than top speed, never beyond a limit, and it stops by itself."""
+"""A driven head: no jumps, a limited speed, no pose beyond a limit, and a timeout."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_the_distance_is_the_integral_of_the_speed() -> None:
     assert steps[-1][1] == 0.0
 
 
-def test_a_head_at_its_stop_turns_back_at_once() -> None:
+def test_a_head_at_its_stop_turns_back_immediately() -> None:
     motion = _motion(Pose(170.0, 0.0, 1.0))
     motion.drive(Velocity(pan_dps=100.0), 0.0, 10.0)
     assert motion.pose(2.0).pan_deg == 179.0
@@ -86,7 +86,7 @@ def test_an_endless_pan_wraps() -> None:
     assert motion.pose(0.5).pan_deg == pytest.approx(170.0 + 12.5 + 25.0 - 360.0)
 
 
-def test_braking_takes_the_way_that_the_motor_needs() -> None:
+def test_braking_takes_the_braking_distance_of_the_motor() -> None:
     motion = _motion(Pose())
     motion.drive(Velocity(pan_dps=100.0), 0.0, 10.0)
     before = motion.pose(1.0).pan_deg

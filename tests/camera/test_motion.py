@@ -1,4 +1,4 @@
-"""Motors: no jumps, no overshoot, no more than top speed."""
+"""Camera motors: no jumps, no overshoot, and a limited speed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ poses = st.builds(Pose, st.floats(-179, 179), st.floats(-60, 30), st.floats(1, 5
 
 
 @given(motors, st.floats(-360, 360), st.floats(0, 1), st.floats(0, 1))
-def test_a_motor_goes_steadily_from_rest_to_rest(motor: Motor, distance: float, a: float, b: float) -> None:
+def test_a_motor_moves_monotonically_from_rest_to_rest(motor: Motor, distance: float, a: float, b: float) -> None:
     total = motor.duration_s(distance)
     early, late = sorted((a * total, b * total))
     gone = abs(motor.travelled(distance, late)) - abs(motor.travelled(distance, early))
@@ -25,7 +25,7 @@ def test_a_motor_goes_steadily_from_rest_to_rest(motor: Motor, distance: float, 
 
 
 @given(st.floats(1, 300))
-def test_a_long_way_takes_its_length_at_top_speed_and_one_ramp(distance: float) -> None:
+def test_a_long_move_takes_its_length_at_top_speed_and_one_ramp(distance: float) -> None:
     motor = Motor(100.0, 400.0)
     assume(distance > 25)
     assert motor.duration_s(distance) == pytest.approx(distance / 100 + 0.25)
@@ -45,5 +45,5 @@ def test_nothing_to_do_takes_no_time() -> None:
     assert AXIS_M5075_G_HEAD.duration_s(Pose(3, 4, 2), Pose(3, 4, 2)) == 0.0
 
 
-def test_a_turn_takes_about_as_long_as_the_data_sheet_says() -> None:
+def test_the_duration_of_a_turn_matches_the_data_sheet() -> None:
     assert AXIS_M5075_G_HEAD.duration_s(Pose(-179, 0, 1), Pose(179, 0, 1)) == pytest.approx(3.93, abs=0.1)

@@ -1,4 +1,4 @@
-"""The simulated camera keeps the contract, moves like a motorised head, and shows what is there."""
+"""The simulated camera fulfils the contract, moves like a motorised head, and shows the scene."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class TestConformance(CameraConformance):
 
 
 class InvertedPan(SimulatedCamera):
-    """The classic fault of the field: told to go right, it goes left, and says that it went right."""
+    """A camera with an inverted pan: it moves left instead of right, and reports a move to the right."""
 
     async def move(self, pose: Pose) -> Arrival:
         arrival = await super().move(Pose(-pose.pan_deg, pose.tilt_deg, pose.zoom))
@@ -64,7 +64,7 @@ async def test_starts_at_home(analytic_scene: Scene) -> None:
     assert camera.viewpoint == "mast"
 
 
-async def test_preset_elsewhere_changes_the_viewpoint_and_home_brings_it_back(analytic_scene: Scene) -> None:
+async def test_presets_can_change_the_viewpoint_and_home_restores_it(analytic_scene: Scene) -> None:
     camera = _camera(analytic_scene)
     before = await camera.frame()
     arrival = await camera.go_to_preset("from-the-roof")
@@ -86,7 +86,7 @@ async def test_moves_never_change_the_viewpoint(analytic_scene: Scene) -> None:
         assert camera.viewpoint == "roof"
 
 
-async def test_camera_put_elsewhere_has_its_home_there(analytic_scene: Scene) -> None:
+async def test_a_camera_at_another_viewpoint_has_its_home_there(analytic_scene: Scene) -> None:
     camera = _camera(analytic_scene, viewpoint="roof")
     await camera.move(Pose(100.0, 0.0, 2.0))
     assert (await camera.go_home()).pose == Pose(10.0, -20.0, 1.5)
@@ -115,7 +115,7 @@ async def test_relative_move_beyond_the_stop_is_not_turned_the_long_way(analytic
     assert arrival.clamped == ("pan",)
 
 
-async def test_a_frame_taken_while_moving_shows_the_way(analytic_scene: Scene) -> None:
+async def test_a_frame_taken_during_a_move_shows_an_intermediate_pose(analytic_scene: Scene) -> None:
     camera = _camera(analytic_scene)
     frames: list[Frame] = []
 
@@ -151,7 +151,7 @@ async def test_a_cancelled_move_stops_where_it_is(analytic_scene: Scene) -> None
     assert await camera.pose() == stopped
 
 
-async def test_held_time_stops_the_world_and_not_the_camera(analytic_scene: Scene) -> None:
+async def test_holding_time_stops_the_scene_but_not_the_camera(analytic_scene: Scene) -> None:
     camera = _camera(analytic_scene)
     await camera.clock.sleep(WAYPOINTS[0][0] + 1.0)
     now_s = camera.clock.now_s()
@@ -162,7 +162,7 @@ async def test_held_time_stops_the_world_and_not_the_camera(analytic_scene: Scen
     assert frame.time_s == camera.clock.now_s() == now_s
 
 
-async def test_same_pose_and_time_give_the_same_bytes_whatever_ran_before(analytic_folder: object, analytic_scene: Scene) -> None:
+async def test_same_pose_and_time_give_the_same_bytes_regardless_of_history(analytic_folder: object, analytic_scene: Scene) -> None:
     fresh = Scene(analytic_scene.folder)
     straight, wandering = _camera(fresh), _camera(analytic_scene)
     for pan, zoom in ((-120.0, 5.0), (18.0, 4.0), (179.0, 1.0)):

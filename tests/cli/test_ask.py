@@ -24,11 +24,11 @@ def runs(root: Path) -> list[Path]:
 
 
 def follow(monkeypatch: pytest.MonkeyPatch, *script: Step) -> None:
-    """Let a script plan instead of the built-in planner."""
+    """Replace the grammar planner with a scripted one."""
     monkeypatch.setattr("scope_ptz.cli.ask.make_planner", lambda _: ScriptedPlanner(*script))
 
 
-def test_json_is_one_object_with_the_promised_fields(scope: Scope, tmp_path: Path) -> None:
+def test_json_is_one_object_with_the_documented_fields(scope: Scope, tmp_path: Path) -> None:
     done = scope("ask", COUNT, "--scene", SCENE, "--json")
     assert (done.code, done.err) == (0, "")
     said = done.json
@@ -45,7 +45,7 @@ def test_json_is_one_object_with_the_promised_fields(scope: Scope, tmp_path: Pat
     assert [Path(said["run_dir"])] == runs(tmp_path)
 
 
-def test_a_person_sees_steps_answer_truth_note_and_folder(scope: Scope, tmp_path: Path) -> None:
+def test_text_output_has_steps_answer_source_note_and_folder(scope: Scope, tmp_path: Path) -> None:
     done = scope("ask", "go to board, then go home", "--scene", SCENE)
     assert done.code == 0
     (folder,) = runs(tmp_path)
@@ -126,7 +126,7 @@ def test_a_runs_folder_that_cannot_be_written(scope: Scope, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("damaged", ["scene.json", "manifest.json", "base.*"])
 @pytest.mark.parametrize("how", ["changed", "missing"])
-def test_damaged_packs_are_told(
+def test_damaged_packs_are_reported(
     scope: Scope, scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damaged: str, how: str
 ) -> None:
     copy = tmp_path / "scenes"
@@ -150,7 +150,7 @@ def test_damaged_packs_are_told(
         ((answer("Fine."),), (), "answered", 0),
     ],
 )
-def test_exit_codes_tell_outcomes(
+def test_exit_codes_depend_on_the_outcome(
     scope: Scope, monkeypatch: pytest.MonkeyPatch, script: tuple[Step, ...], options: tuple[str, ...], outcome: str, code: int
 ) -> None:
     follow(monkeypatch, *script)
@@ -158,7 +158,7 @@ def test_exit_codes_tell_outcomes(
     assert (done.code, done.json["outcome"]) == (code, outcome)
 
 
-def test_what_was_not_understood_has_its_own_exit_code_and_no_filmstrip(scope: Scope, tmp_path: Path) -> None:
+def test_a_clarification_has_its_own_exit_code_and_no_filmstrip(scope: Scope, tmp_path: Path) -> None:
     done = scope("ask", "florp the wibble sideways", "--scene", SCENE, "--json")
     assert (done.code, done.json["outcome"], done.json["tool_calls"]) == (3, "clarification", [])
     assert {p.name for p in runs(tmp_path)[0].iterdir()} == {"trace.jsonl", "frames"}

@@ -1,4 +1,4 @@
-"""When the truth may say that there is none: only of what it surely understands."""
+"""Ground truth reports an absence only for descriptions that it certainly understands."""
 
 from __future__ import annotations
 
@@ -19,5 +19,5 @@ def test_colours_and_a_known_noun_are_plain(asked: str) -> None:
 @pytest.mark.parametrize(
     "asked", ["flibbertigibbets", "things on wheels", "objects like cars", "total number of cars", "workers with blue helmets"]
 )
-def test_unknown_nouns_further_words_and_conditions_are_not(asked: str) -> None:
+def test_unknown_nouns_additional_words_and_conditions_are_not_plain(asked: str) -> None:
     assert not is_plain_noun(VIEW, asked)

@@ -1,4 +1,4 @@
-"""``scope chat``: its commands, its history, and what it leaves out."""
+"""``scope chat``: commands, history, and omitted output."""
 
 from __future__ import annotations
 
@@ -29,9 +29,7 @@ def test_the_note_about_perception_appears_once(scope: Scope, monkeypatch: pytes
     assert done.out.count("not a model") == 1
 
 
-def test_what_was_not_understood_gets_a_question_and_no_filmstrip(
-    scope: Scope, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_clarification_has_a_question_and_no_filmstrip(scope: Scope, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     done = say(scope, monkeypatch, "florp the wibble")
     assert "Question: " in done.out
     assert "Filmstrip" not in done.out and "not a model" not in done.out

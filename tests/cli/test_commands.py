@@ -1,4 +1,4 @@
-"""plan, tools, replay, chat, scene and doctor."""
+"""The commands plan, tools, replay, chat, scene and doctor."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from PIL import Image
 from tests.cli.conftest import SCENE, Scope
 
 
-def test_plan_prints_what_would_be_done(scope: Scope) -> None:
+def test_plan_prints_the_steps(scope: Scope) -> None:
     done = scope("plan", "pan right 20, then tilt down 10", "--json")
     assert (done.code, done.json) == (
         0,
@@ -35,14 +35,14 @@ def test_plan_knows_the_presets_given(scope: Scope) -> None:
     assert done.json["calls"] == [{"name": "go_to_preset", "arguments": {"name": "gate"}}]
 
 
-def test_what_is_not_understood_is_asked_back(scope: Scope) -> None:
+def test_plan_asks_back_if_it_does_not_understand(scope: Scope) -> None:
     done = scope("plan", "florp the wibble sideways", "--json")
     assert done.code == 0
     assert (done.json["understood"], done.json["calls"]) == (False, [])
     assert done.json["clarification"]
 
 
-def test_plan_of_a_file_gives_a_line_for_a_line(scope: Scope, tmp_path: Path) -> None:
+def test_plan_of_a_file_prints_one_line_per_line(scope: Scope, tmp_path: Path) -> None:
     file = tmp_path / "instructions.jsonl"
     lines = [{"instruction": "go to gate", "presets": ["gate"]}, {"instruction": "go home", "expected": "ignored"}]
     file.write_text("\n".join(map(json.dumps, lines)) + "\n\n")
@@ -56,7 +56,7 @@ def test_plan_of_a_file_gives_a_line_for_a_line(scope: Scope, tmp_path: Path) ->
 @pytest.mark.parametrize(
     "bad", ["{", "[]", '{"presets": []}', '{"instruction": 3}', '{"instruction": ""}', '{"instruction": "x", "presets": "gate"}']
 )
-def test_a_bad_line_is_told_by_its_number_and_the_others_are_planned(scope: Scope, tmp_path: Path, bad: str) -> None:
+def test_a_bad_line_is_reported_by_its_number_and_the_others_are_planned(scope: Scope, tmp_path: Path, bad: str) -> None:
     file = tmp_path / "instructions.jsonl"
     file.write_text(f'{{"instruction": "go home"}}\n{bad}\n{{"instruction": "take a picture"}}\n')
     done = scope("plan", "--from", str(file), "--json")
@@ -93,7 +93,7 @@ def test_replay_repeats_a_run(scope: Scope, tmp_path: Path) -> None:
     assert said["recorded"]["tool_calls"] == made["tool_calls"]
 
 
-def test_replay_notices_a_trace_that_was_changed(scope: Scope) -> None:
+def test_replay_detects_a_changed_trace(scope: Scope) -> None:
     made = scope("ask", "pan right 15", "--scene", SCENE, "--json").json
     trace = Path(made["run_dir"]) / "trace.jsonl"
     records = [json.loads(line) for line in trace.read_text().splitlines()]
@@ -116,14 +116,14 @@ def test_replay_without_the_scene_shows_the_trace_and_says_so(
 
 
 @pytest.mark.parametrize("content", [None, "", "not json\n", '{"event":"end"}\n'])
-def test_replay_of_no_trace(scope: Scope, tmp_path: Path, content: str | None) -> None:
+def test_replay_without_a_trace(scope: Scope, tmp_path: Path, content: str | None) -> None:
     if content is not None:
         (tmp_path / "trace.jsonl").write_text(content)
     done = scope("replay", str(tmp_path))
     assert (done.code, len(done.err.splitlines())) == (2, 1)
 
 
-def test_chat_keeps_the_camera_and_obeys_small_commands(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_chat_keeps_the_camera_and_accepts_slash_commands(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", StringIO("pan right 15\n/pose\n/save\n/dance\n\npan right 15\n/pose\n/quit\nnever reached\n"))
     done = scope("chat", "--scene", SCENE)
     assert done.code == 0
@@ -138,7 +138,7 @@ def test_chat_keeps_the_camera_and_obeys_small_commands(scope: Scope, tmp_path: 
     assert [turn["instruction"] for turn in header["conversation"]] == ["pan right 15"]
 
 
-def test_chat_ends_with_its_input(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_chat_ends_at_the_end_of_its_input(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", StringIO(""))
     assert scope("chat", "--scene", SCENE).code == 0
 
@@ -161,7 +161,7 @@ def test_scene_show(scope: Scope, tmp_path: Path) -> None:
         assert image.width == 1600
 
 
-def test_scene_show_opens_its_sheet_on_wish(scope: Scope, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_scene_show_opens_its_contact_sheet_on_request(scope: Scope, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     shown: list[str] = []
     monkeypatch.setattr("typer.launch", shown.append)
     monkeypatch.setenv("SCOPE_CACHE_DIR", str(tmp_path / "cache"))
@@ -218,7 +218,7 @@ def test_bad_scene_commands(scope: Scope, arguments: tuple[str, ...]) -> None:
     assert (done.code, len(done.err.splitlines())) == (2, 1)
 
 
-def test_doctor_names_what_is_there_and_how_to_get_the_rest(scope: Scope) -> None:
+def test_doctor_lists_what_is_installed_and_how_to_install_the_rest(scope: Scope) -> None:
     findings = {f["what"]: f for f in scope("doctor", "--json").json}
     assert findings[f"scene {SCENE}"]["verdict"] == "ok"
     assert findings["Python"]["verdict"] == "ok"

@@ -1,4 +1,4 @@
-"""``scope ask`` and model servers that fail: what a user sees, what is kept, and that a key is in neither."""
+"""``scope ask`` with failing model servers: messages and stored data, neither of which contains the key."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def keys(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def shown(done: Done, folder: Path) -> str:
-    """Everything that a user can see, in which the key must not be."""
+    """Return all output, after checking that it does not contain the key."""
     kept = "".join(
         path.read_text(errors="replace") for path in folder.rglob("*") if path.suffix in (".jsonl", ".json", ".txt", ".md")
     )
@@ -33,7 +33,7 @@ def shown(done: Done, folder: Path) -> str:
 
 
 @pytest.mark.parametrize("output", ["text", "json"])
-def test_a_refused_key_is_told_and_not_shown(scope: Scope, tmp_path: Path, output: str) -> None:
+def test_a_refused_key_is_reported_and_not_shown(scope: Scope, tmp_path: Path, output: str) -> None:
     with Misbehaving(then=echo_key()) as server:
         done = scope(*ASK, "--planner-url", server.url, "--planner-model", "m", *(["--json"] if output == "json" else []))
         assert all(request.headers["authorization"] == f"Bearer {KEY}" for request in server.requests)
@@ -50,7 +50,7 @@ def test_a_server_that_is_gone(scope: Scope, tmp_path: Path) -> None:
     assert "cannot be reached" in shown(done, tmp_path)
 
 
-def test_eyes_that_fail_are_an_error_to_the_planner_and_counted(scope: Scope, tmp_path: Path) -> None:
+def test_perception_failures_are_errors_for_the_planner_and_counted(scope: Scope, tmp_path: Path) -> None:
     with (
         Misbehaving([say("", COUNT)], then=say("I could not see.")) as planner,
         Misbehaving(then=status(500, f"bad {KEY}")) as eyes,
@@ -71,14 +71,14 @@ def test_eyes_that_fail_are_an_error_to_the_planner_and_counted(scope: Scope, tm
     told = shown(done, tmp_path)
     assert "I could not see." in told
     assert last["role"] == "tool"
-    assert "failed inside" in last["content"]
+    assert "had an internal error" in last["content"]
     assert KEY not in json.dumps(last)
     ended = json.loads(next(tmp_path.rglob("trace.jsonl")).read_text().splitlines()[-1])
     assert ended["perception_failures"] == 1
     assert ended["server_events"] == {"server-error": 3}
 
 
-def test_a_count_of_places_that_were_partly_lost_is_a_lower_bound(scope: Scope, tmp_path: Path) -> None:
+def test_a_count_of_incomplete_detections_is_a_lower_bound(scope: Scope, tmp_path: Path) -> None:
     box = {"x_min": 0.1, "y_min": 0.1, "x_max": 0.2, "y_max": 0.2}
     with Misbehaving(then=good(moondream={"detect": {"objects": [box, {**box, "x_min": "left"}]}})) as eyes:
         done = scope(*ASK, "--perception", "moondream", "--perception-url", eyes.url, "--json")
@@ -92,7 +92,7 @@ def test_an_address_with_a_key_in_it_is_refused(scope: Scope, tmp_path: Path) ->
     shown(done, tmp_path)
 
 
-def test_doctor_tells_what_is_wrong(scope: Scope, tmp_path: Path) -> None:
+def test_doctor_reports_what_is_wrong(scope: Scope, tmp_path: Path) -> None:
     with Misbehaving(then=echo_key()) as server:
         done = scope("doctor", "--planner-url", server.url, "--planner-model", "m", "--json")
     assert done.code != 0

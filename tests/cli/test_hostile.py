@@ -1,4 +1,4 @@
-"""The program as a process, under bad conditions: interrupts, broken streams, other encodings, damaged folders."""
+"""The program as a process under adverse conditions: interrupts, broken streams, encodings, damaged folders."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def run(environment: dict[str, str], *command: str, **options: Any) -> subproces
 
 
 def shell(environment: dict[str, str], line: str) -> subprocess.CompletedProcess[str]:
-    """Run a line of shell with ``$SCOPE`` as the program."""
+    """Run a shell command line in which ``$SCOPE`` is the program."""
     return run({**environment, "SCOPE": " ".join(SCOPE)}, "sh", "-c", line)
 
 
@@ -73,7 +73,9 @@ main()
         "scope_ptz.agent.filmstrip:draw_filmstrip",
     ],
 )
-def test_ctrl_c_at_any_time_leaves_no_dead_folder(environment: dict[str, str], tmp_path: Path, place: str, presses: int) -> None:
+def test_ctrl_c_at_any_time_leaves_no_incomplete_run_folder(
+    environment: dict[str, str], tmp_path: Path, place: str, presses: int
+) -> None:
     done = run(environment, sys.executable, "-c", PRESS, place, str(presses), "ask", "pan right 5", "--scene", SCENE)
     ended = [json.loads(trace.read_text().splitlines()[-1]) for trace in tmp_path.glob("runs/*/trace.jsonl")]
     assert len(ended) == len(list(tmp_path.glob("runs/*"))), "a folder without a trace"
@@ -139,7 +141,7 @@ def test_output_is_readable_in_every_encoding(environment: dict[str, str], encod
 # Folders of scenes -----------------------------------------------------------------------------------------------------
 @pytest.fixture
 def copied(scenes: Path, tmp_path: Path, environment: dict[str, str]) -> Path:
-    """A copy of the scenes' folder to damage."""
+    """Return a copy of the scenes folder that the test may damage."""
     copy = tmp_path / "scenes"
     shutil.copytree(scenes, copy)
     environment["SCOPE_SCENES_DIR"] = str(copy)
@@ -147,7 +149,7 @@ def copied(scenes: Path, tmp_path: Path, environment: dict[str, str]) -> Path:
 
 
 @pytest.mark.parametrize("file", ["scene.json", "mast/manifest.json", "mast/base.png"])
-def test_a_pipe_in_place_of_a_file_is_an_error_and_not_waited_for(environment: dict[str, str], copied: Path, file: str) -> None:
+def test_a_pipe_instead_of_a_file_is_an_immediate_error(environment: dict[str, str], copied: Path, file: str) -> None:
     (path,) = (copied / SCENE).glob(file.replace(".png", ".*"))
     path.unlink()
     os.mkfifo(path)
@@ -192,7 +194,7 @@ def test_a_replay_that_repeats_nothing_does_not_succeed(scope: Scope, tmp_path: 
     assert scope("replay", made["run_dir"]).code == 2
 
 
-def test_a_long_instruction_is_not_repeated(scope: Scope) -> None:
+def test_a_long_instruction_is_not_printed_in_full(scope: Scope) -> None:
     for words in ("pan right 5 and " * 200, "florp wibble " * 300):
         done = scope("plan", words)
         assert len(done.out) < 1000

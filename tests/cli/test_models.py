@@ -1,4 +1,4 @@
-"""scope models, and models as planner and eyes of scope ask."""
+"""``scope models``, and models as planner and perception of ``scope ask``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ KEY = "sk-very-secret-key-0123456789"
 
 
 def follow_script(request: Request) -> Say:
-    """Count the balls, then answer with what the tool said."""
+    """Count the balls, then answer with the result of the tool."""
     results = [m for m in request.data["messages"] if m["role"] == "tool"]
     if not results:
         return Say(text="", tool_calls=(("count_objects", {"description": "balls", "view": "current"}),))
@@ -43,7 +43,7 @@ def test_a_model_is_shown_with_its_commands(scope: Scope) -> None:
     assert scope("models", "show", "qwen3-32b", "--json").code == 0
 
 
-def test_the_serve_command_is_all_that_is_printed(scope: Scope) -> None:
+def test_only_the_serve_command_is_printed(scope: Scope) -> None:
     assert scope("models", "serve-command", "qwen3-4b", "--server", "ollama").out.splitlines() == [
         "OLLAMA_CONTEXT_LENGTH=16384 ollama serve &",
         "ollama pull qwen3:4b-instruct-2507-q4_K_M",
@@ -73,14 +73,14 @@ def test_a_pair_by_name_on_two_servers(scope: Scope) -> None:
 
 
 @pytest.mark.parametrize("cut", ["", "/v1"])
-def test_any_server_does_without_a_name(scope: Scope, cut: str) -> None:
+def test_a_server_works_without_a_model_name(scope: Scope, cut: str) -> None:
     with Misbehaving(then=good(follow_script)) as server:
         done = ask(scope, "--planner-url", server.root + cut)
         assert (done.code, done.err, done.json["outcome"]) == (0, "", "answered")
         assert server.requests[-1].data["model"] == MODEL
 
 
-def test_one_model_is_planner_and_eyes(scope: Scope) -> None:
+def test_one_model_can_be_planner_and_perception(scope: Scope) -> None:
     box = '[{"bbox_2d": [100, 100, 200, 300], "label": "ball"}]'
 
     def both(request: Request) -> Say:
@@ -96,7 +96,7 @@ def test_one_model_is_planner_and_eyes(scope: Scope) -> None:
         assert looking.data["chat_template_kwargs"] == {"enable_thinking": False}
 
 
-def test_users_models_and_their_addresses(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_models_of_the_user_and_their_urls(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "mine.yaml"
     monkeypatch.setenv("SCOPE_MODELS", str(file))
     with Misbehaving(then=good(follow_script)) as server:
@@ -118,7 +118,7 @@ def test_users_models_and_their_addresses(scope: Scope, tmp_path: Path, monkeypa
             assert not any("authorization" in r.headers for r in stranger.requests)
 
 
-def test_keys_come_from_the_environment_and_stay_there(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_keys_are_read_from_the_environment_and_not_stored(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SCOPE_PLANNER_KEY", KEY)
     with Misbehaving(then=good(follow_script)) as brain, Misbehaving() as eyes:
         done = ask(scope, "--planner-url", brain.url, "--perception", "moondream2", "--perception-url", eyes.url)
@@ -129,7 +129,7 @@ def test_keys_come_from_the_environment_and_stay_there(scope: Scope, tmp_path: P
     assert KEY not in written + done.out + done.err
 
 
-def test_addresses_come_from_the_environment_for_models_only(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_urls_from_the_environment_apply_to_models_only(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
     with Misbehaving(then=good(follow_script)) as server:
         monkeypatch.setenv("SCOPE_PLANNER_URL", server.url)
         assert ask(scope).json["answer"] != "I looked."  # The built-in planner stays the default
@@ -146,7 +146,7 @@ def make(spec):
 """
 
 
-def test_a_backend_of_ones_own_gets_the_address_of_its_model_or_of_the_environment(
+def test_a_custom_backend_gets_the_url_of_its_model_or_of_the_environment(
     scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import scope_ptz.perception.backends as backends
@@ -168,7 +168,7 @@ def test_a_backend_of_ones_own_gets_the_address_of_its_model_or_of_the_environme
         assert len(server.requests) == 2
 
 
-def test_a_server_with_several_models_wants_a_name(scope: Scope) -> None:
+def test_a_server_with_several_models_requires_a_name(scope: Scope) -> None:
     from tests.support.misbehaving import body
 
     listing = body(json.dumps({"data": [{"id": "a"}, {"id": "b"}]}))
@@ -198,7 +198,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_what_cannot_be_is_one_line_and_exit_code_2(scope: Scope, case: str) -> None:
+def test_invalid_options_give_one_line_and_exit_code_2(scope: Scope, case: str) -> None:
     done = ask(scope, *WRONG[case])
     assert (done.code, done.err.count("\n")) == (2, 1)
     assert "secret" not in done.err
@@ -210,7 +210,7 @@ def test_a_dead_server_is_a_planner_error(scope: Scope) -> None:
     assert "cannot be reached" in done.json["answer"]
 
 
-def test_eyes_are_composed(scope: Scope) -> None:
+def test_perception_can_be_composed(scope: Scope) -> None:
     pytest.importorskip("rapidocr")
     with Misbehaving() as eyes:
         done = scope(

@@ -1,4 +1,4 @@
-"""Options that are declared once: groups in a command's signature, their defaults, exit codes."""
+"""Option groups in the signatures of commands, their defaults, and exit codes."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_a_group_arrives_as_one_object() -> None:
     assert run(show, "a", "--width", "wide")[0] == 2
 
 
-def test_a_command_can_have_defaults_of_its_own() -> None:
+def test_a_command_can_override_defaults() -> None:
     def show(sizes: Sizes = SMALL) -> None:
         typer.echo(str(sizes.width))
 
@@ -63,7 +63,7 @@ def test_errors_are_exit_codes(error: BaseException, code: int, monkeypatch: pyt
     assert run(fail)[0] == code
 
 
-def test_every_flag_about_models_ends_in_the_options() -> None:
+def test_every_model_flag_reaches_the_options() -> None:
     given = PairFlags(
         planner="a", perception="b", pair="c", planner_url="d", perception_url="e", planner_model="f", perception_model="g",
         planner_option=["h=1"], perception_option=["i=2"], reader="j", detector="k", timeout=1.5,

@@ -22,8 +22,8 @@ LIGHT = {"typer", "click", "shellingham", "rich", "pygments", "markdown_it", "li
 LIGHT |= {"annotated_doc", "typing_extensions", "scope_ptz"}
 
 
-def test_help_loads_only_what_draws_help() -> None:
-    """This is what makes it instant; how long it takes depends on the machine, and is not for a test."""
+def test_help_loads_only_the_modules_that_it_needs() -> None:
+    """Help is fast because few modules are loaded. Its duration depends on the machine and is not tested."""
     loaded = "import sys; from scope_ptz.cli import main\ntry: main()\nfinally: print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", loaded, "--help"], capture_output=True, text=True, check=True)
     assert "ask" in done.stdout
@@ -55,7 +55,7 @@ def test_ctrl_c_ends_a_run_cleanly(scenes: Path, tmp_path: Path) -> None:
     command = [*SCOPE, "ask", "count the zebras in the whole scene", "--scene", SCENE, "--realtime", "--json"]
 
     def hear() -> None:
-        """A test run in the background ignores Ctrl-C, and children inherit that."""
+        """Enable Ctrl-C in the child process: background processes ignore it, and their children inherit that."""
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
     with subprocess.Popen(
@@ -85,7 +85,7 @@ def test_ctrl_c_ends_a_run_cleanly(scenes: Path, tmp_path: Path) -> None:
         (["bench", "submission", "validate", "missing.jsonl", "--json"], 2),
     ],
 )
-def test_a_reader_that_goes_away_changes_no_exit_code(command: list[str], code: int, tmp_path: Path) -> None:
+def test_a_closed_output_pipe_changes_no_exit_code(command: list[str], code: int, tmp_path: Path) -> None:
     (tmp_path / "spoiled.jsonl").write_text("no JSON\n" * 2000)
     reader, writer = os.pipe()
     os.close(reader)

@@ -1,4 +1,4 @@
-"""scope doctor and scope profile against servers, good ones and others."""
+"""``scope doctor`` and ``scope profile`` with good and faulty servers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.planner.chat.planning_checks import PICTURE, TURN
+from scope_ptz.planner.chat.planning_checks import PICTURE_INSTRUCTION, TURN_INSTRUCTION
 from tests.cli.conftest import SCENE, Scope
 from tests.support.misbehaving import (
     MODEL,
@@ -32,22 +32,22 @@ MOONDREAM: dict[str, dict[str, Any]] = {
 
 
 def able(request: Request) -> Say:
-    """A model that does what the checks ask."""
+    """A model that passes the checks."""
     messages = request.data["messages"]
     if not request.data.get("tools"):
         return Say(text="Hello.")
     if messages[-1]["role"] == "tool":
         return Say(text="The picture is saved.")
     asked = str(messages[-1]["content"])
-    if PICTURE in asked:
+    if PICTURE_INSTRUCTION in asked:
         return Say(text="", tool_calls=(("take_image", {}),))
-    if TURN in asked or "pan right 20" in asked:
+    if TURN_INSTRUCTION in asked or "pan right 20" in asked:
         return Say(text="", tool_calls=(("adjust_ptz", {"pan_deg": 20}),))
     return Say(text="", tool_calls=(("adjust_ptz", {"pan_deg": "far"}),))
 
 
 def in_text(request: Request) -> Say:
-    """The same, on a server that does not parse the model's calls."""
+    """A model that passes the checks, on a server that leaves its calls in the text."""
     said = able(request)
     if not said.tool_calls:
         return said
@@ -61,7 +61,7 @@ def checks(scope: Scope, *options: str) -> tuple[int, dict[str, str]]:
 
 
 def strict(mind: Behaviour) -> Behaviour:
-    """A server that knows its model's name and no other."""
+    """A server that accepts only the name of its model."""
 
     async def behave(x: Exchange) -> None:
         wrong = x.request.chat and x.request.data["model"] != MODEL
@@ -78,7 +78,7 @@ def test_a_good_server_passes_every_check(scope: Scope) -> None:
     assert len(verdicts) == 11
 
 
-def test_calls_in_the_text_are_a_weakness_and_no_failure(scope: Scope) -> None:
+def test_calls_in_the_text_are_a_warning_and_not_a_failure(scope: Scope) -> None:
     with Misbehaving(then=good(in_text)) as server:
         code, verdicts = checks(scope, "--planner-url", server.url)
     assert code == 0
@@ -94,7 +94,7 @@ def test_a_model_without_tools_fails(scope: Scope) -> None:
     assert verdicts["a tool call"] == "failed"
 
 
-def test_nobody_there_is_told_once_and_at_once(scope: Scope) -> None:
+def test_an_unreachable_server_is_reported_once_and_immediately(scope: Scope) -> None:
     with nobody_listens() as url:
         code, verdicts = checks(scope, "--planner-url", url, "--planner-model", "x")
     assert code == 1
@@ -109,12 +109,12 @@ def test_bad_servers_fail_checks_and_break_nothing(scope: Scope, behaviour: Beha
     assert verdicts["a tool call"] == "failed"
 
 
-def test_what_has_no_server_cannot_be_checked(scope: Scope) -> None:
+def test_models_without_a_server_cannot_be_checked(scope: Scope) -> None:
     done = scope("doctor", "--planner", "grammar")
     assert (done.code, done.err.count("\n")) == (2, 1)
 
 
-def test_eyes_are_checked_on_a_frame(scope: Scope) -> None:
+def test_perception_is_checked_on_a_frame(scope: Scope) -> None:
     with Misbehaving(then=good(moondream=MOONDREAM)) as server:
         code, verdicts = checks(scope, "--perception", "moondream2", "--perception-url", server.url)
     assert code == 0
@@ -129,7 +129,7 @@ def profiled(scope: Scope, *options: str, code: int = 0) -> Any:
     return done.json
 
 
-def test_a_profile_tells_speed_validity_and_the_verdict(scope: Scope, tmp_path: Path) -> None:
+def test_a_profile_reports_speed_validity_and_the_verdict(scope: Scope, tmp_path: Path) -> None:
     file = tmp_path / "instructions.jsonl"
     lines = [
         {"instruction": "pan right 20 degrees", "calls": [{"name": "adjust_ptz", "arguments": {"pan_deg": 20}}]},
@@ -152,7 +152,7 @@ def test_a_profile_tells_speed_validity_and_the_verdict(scope: Scope, tmp_path: 
     assert planner["serving"]["/v1/models id"] == MODEL
     assert set(perception["perception"]["by_skill"]) == {"query", "caption", "detect", "point"}
     assert report["real_time"] == "met"
-    assert "Real-time bar" in text
+    assert "Real-time criterion" in text
     assert "tools changed by prompt edits" in text
 
 
@@ -163,7 +163,7 @@ def test_failures_are_counted_and_no_verdict_is_invented(scope: Scope) -> None:
     assert report["real_time"] == "unknown"
 
 
-def test_eyes_that_fail_at_one_thing_do_not_meet_the_bar(scope: Scope) -> None:
+def test_perception_that_fails_at_one_request_does_not_pass(scope: Scope) -> None:
     with Misbehaving(then=good(moondream={**MOONDREAM, "detect": {"error": "out of memory"}})) as server:
         report = profiled(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
     eyes = report["perception"]["perception"]
@@ -172,7 +172,7 @@ def test_eyes_that_fail_at_one_thing_do_not_meet_the_bar(scope: Scope) -> None:
     assert report["real_time"] == "unknown"
 
 
-def test_a_planner_whose_server_fails_is_not_said_to_choose_wrongly(scope: Scope) -> None:
+def test_server_failures_do_not_count_as_wrong_choices(scope: Scope) -> None:
     with Misbehaving(then=status(503, "loading")) as server:
         report = profiled(scope, "--planner-url", server.url, "--prompts", "--limit", "3", code=1)
     planner = report["planner"]["planner"]
@@ -185,6 +185,6 @@ def test_a_planner_whose_server_fails_is_not_said_to_choose_wrongly(scope: Scope
 @pytest.mark.parametrize(
     "options", [(), ("grammar+moondream2",), ("--planner-url", "http://127.0.0.1:9/v1", "--instructions", "/none")]
 )
-def test_what_cannot_be_profiled(scope: Scope, options: tuple[str, ...]) -> None:
+def test_models_that_cannot_be_profiled(scope: Scope, options: tuple[str, ...]) -> None:
     done = scope("profile", *options)
     assert (done.code, done.err.count("\n")) == (2, 1)

@@ -53,7 +53,7 @@ def eyes_at(url: str, backend: str, patience: Timeouts = PATIENT) -> Perception:
 
 
 class Told:
-    """A finished run, all that was recorded of it, and the trace that was written."""
+    """A finished run, its records, and its trace."""
 
     def __init__(self, run: RunResult, records: list[Any], trace: str) -> None:
         self.run, self.ended, self.trace = run, run.ended, trace
@@ -61,7 +61,7 @@ class Told:
 
 
 async def run(planner: Planner, eyes: Perception, folder: Path) -> Told:
-    """A run with its trace, in which the key must not be."""
+    """Run an agent and return the result, after checking that the trace does not contain the key."""
     records: list[Any] = []
     path = folder / "trace.jsonl"
     agent = Agent(planner, camera := ScriptedCamera(), eyes, NoImages())
@@ -142,7 +142,7 @@ ODD_CALLS: list[tuple[str, tuple[str, Any]]] = [
 
 @pytest.mark.parametrize("stream", [False, True], ids=["whole", "streaming"])
 @pytest.mark.parametrize("call", [call for _, call in ODD_CALLS], ids=[name for name, _ in ODD_CALLS])
-async def test_odd_calls_come_back_to_the_planner_as_errors(call: tuple[str, Any], stream: bool, tmp_path: Path) -> None:
+async def test_invalid_calls_are_returned_to_the_planner_as_errors(call: tuple[str, Any], stream: bool, tmp_path: Path) -> None:
     with Misbehaving([say("", call), say("I give up.")]) as server:
         told = await run(planner_at(server.url, stream=stream), ScriptedPerception(3), tmp_path)
     assert (told.ended.outcome, told.ended.text, told.ended.bad_calls) == ("answered", "I give up.", 1)
@@ -235,7 +235,7 @@ ODD_PLACES: list[tuple[str, Behaviour, int | None]] = [
 
 
 @pytest.mark.parametrize(("name", "behaviour", "count"), ODD_PLACES, ids=[name for name, _, _ in ODD_PLACES])
-async def test_odd_places(name: str, behaviour: Behaviour, count: int | None, tmp_path: Path) -> None:
+async def test_unusual_places(name: str, behaviour: Behaviour, count: int | None, tmp_path: Path) -> None:
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=behaviour) as server:
         told = await run(planner, eyes_at(server.url, "moondream"), tmp_path)
@@ -259,7 +259,7 @@ NOT_FINITE = [
 @pytest.mark.parametrize("text", NOT_FINITE, ids=["NaN", "infinity"])
 @pytest.mark.parametrize("backend", ["moondream", "openai_vision"])
 async def test_places_that_are_no_numbers_are_errors(text: str, backend: str, tmp_path: Path) -> None:
-    """A box that cannot be read is no proof that nothing is there: the look as a whole fails."""
+    """An unreadable box does not mean that nothing was found, so the perception call fails."""
     reply = body(text) if backend == "moondream" else say(text)
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=reply) as server:
@@ -284,7 +284,7 @@ ODD_WORDS = [
 
 
 @pytest.mark.parametrize(("text", "count"), [odd[1:] for odd in ODD_WORDS], ids=[odd[0] for odd in ODD_WORDS])
-async def test_odd_words_for_places(text: str, count: int | None, tmp_path: Path) -> None:
+async def test_unusual_names_for_places(text: str, count: int | None, tmp_path: Path) -> None:
     eyes = BackendSpec(name="eyes", backend="openai_vision", model="m", coordinates="qwen3-vl")
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=good(Say(text))) as server:

@@ -14,7 +14,7 @@ from tests.support.misbehaving import MODEL, Behaviour, Exchange, Misbehaving, b
 
 
 def only_under_v1(refusal: Behaviour) -> Behaviour:
-    """A server whose API begins at /v1 and at no other place."""
+    """A server whose API is only under /v1."""
 
     async def behave(x: Exchange) -> None:
         if x.request.path == "/v1/models":
@@ -42,7 +42,7 @@ def test_the_api_is_found_under_v1(refusal: Behaviour, path: str) -> None:
         (body("[]"), FailureKind.MALFORMED),
     ],
 )
-def test_no_list_is_a_failure_of_its_kind(behaviour: Behaviour, kind: FailureKind) -> None:
+def test_a_missing_model_list_is_a_failure_with_its_kind(behaviour: Behaviour, kind: FailureKind) -> None:
     with Misbehaving(then=behaviour) as server, pytest.raises(ServerFailure) as failure:
         anyio.run(find_api, Endpoint(url=server.root))
     assert failure.value.kind is kind
@@ -58,7 +58,7 @@ def test_the_list_of_models_has_a_short_timeout(monkeypatch: pytest.MonkeyPatch)
     from scope_ptz.endpoints import catalogue
     from scope_ptz.endpoints.endpoint import Timeouts
 
-    monkeypatch.setattr(catalogue, "PATIENCE", Timeouts(connect_s=0.2, first_byte_s=0.2, total_s=0.3))
+    monkeypatch.setattr(catalogue, "QUICK_TIMEOUTS", Timeouts(connect_s=0.2, first_byte_s=0.2, total_s=0.3))
     with Misbehaving(then=slow_first_byte()) as server, pytest.raises(ServerFailure) as failure:
         anyio.run(served_models, Endpoint(url=server.url))
     assert failure.value.kind in (FailureKind.FIRST_BYTE_TIMEOUT, FailureKind.TOTAL_TIMEOUT)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.endpoints.bodies import load_object, safe_text
-from scope_ptz.endpoints.chat_replies import ChatReply, Gathering
+from scope_ptz.endpoints.chat_replies import ChatReply, ReplyAssembler
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from tests.support.misbehaving import Say, completion, pieces
@@ -19,7 +19,7 @@ AT = Endpoint(url="http://127.0.0.1:1/v1")
 
 
 def gather(*parts: dict[str, Any]) -> ChatReply:
-    gathering = Gathering(AT)
+    gathering = ReplyAssembler(AT)
     for part in parts:
         gathering.add(part)
     return gathering.reply()
@@ -146,7 +146,7 @@ def test_pieces_that_repeat_their_name_are_one_call(marks: dict[str, Any]) -> No
 
 
 @pytest.mark.parametrize("marks", [{"id": "a"}, {"id": "a", "index": 0}, {}])
-def test_streamed_calls_that_share_their_marks_are_told_apart_by_being_complete(marks: dict[str, Any]) -> None:
+def test_complete_streamed_calls_with_the_same_index_are_separate(marks: dict[str, Any]) -> None:
     reply = gather(*(delta(tool_calls=[call(given, **marks)]) for given in ('{"a":', "1}", "{}")))
     assert [call.arguments_text for call in reply.tool_calls] == ['{"a":1}', "{}"]
 

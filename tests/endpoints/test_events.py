@@ -1,4 +1,4 @@
-"""Server-sent events: the standard's forms, what servers make of them, and any cut."""
+"""Server-sent events: the formats of the standard and of servers, split at any byte."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def read(stream: bytes, cuts: list[int]) -> list[object]:
 
 @pytest.mark.parametrize("form", FORMS)
 @given(line_end=st.sampled_from(["\n", "\r\n", "\r"]), mark=st.booleans(), data=st.data())
-def test_every_form_in_any_cut(form: str, line_end: str, mark: bool, data: st.DataObject) -> None:
+def test_every_format_split_at_any_byte(form: str, line_end: str, mark: bool, data: st.DataObject) -> None:
     stream = (("\ufeff" if mark else "") + FORMS[form].replace("\n", line_end)).encode()
     cuts = data.draw(st.lists(st.integers(0, len(stream)), max_size=12))
     assert read(stream, cuts) == WANTED

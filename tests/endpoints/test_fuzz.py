@@ -47,7 +47,7 @@ PLACES = Say(json.dumps([{"bbox_2d": [10, 10, 20, 30], "label": "cone"}, {"bbox_
 
 
 def damaged(value: Any, rng: random.Random) -> Any:
-    """The same JSON with something in it replaced, left out or doubled."""
+    """Return the JSON with one value replaced, removed or duplicated."""
     if not isinstance(value, dict | list) or not value or rng.random() < 0.15:
         return rng.choice(ODD)
     spots: list[Any] = list(value) if isinstance(value, dict) else list(range(len(value)))
@@ -63,7 +63,7 @@ def damaged(value: Any, rng: random.Random) -> Any:
 
 
 def damaged_bytes(data: bytes, rng: random.Random) -> bytes:
-    """The same bytes, cut or with some of them changed."""
+    """Return the bytes truncated or with some of them changed."""
     if rng.random() < 0.4:
         return data[: rng.randrange(len(data))]
     changed = bytearray(data)
@@ -79,7 +79,7 @@ def ruined(data: Any, rng: random.Random) -> bytes:
 
 
 def ruined_chat(say: Say, rng: random.Random) -> Behaviour:
-    """A ruined completion, or a stream with one ruined chunk."""
+    """A damaged completion, or a stream with one damaged chunk."""
 
     async def behave(x: Exchange) -> None:
         if not x.request.streaming:

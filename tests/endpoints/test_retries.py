@@ -19,7 +19,7 @@ URL = "http://127.0.0.1:1/v1"
 
 
 def failing(*kinds: FailureKind, status: int | None = None, retry_after_s: float | None = None) -> Callable[[], Awaitable[str]]:
-    """Fails in these ways, one after the other, then works."""
+    """Return a function that raises these failures one after the other, then succeeds."""
     left = list(kinds)
 
     async def attempt() -> str:
@@ -32,7 +32,7 @@ def failing(*kinds: FailureKind, status: int | None = None, retry_after_s: float
 
 
 class Naps:
-    """Sleeps that only note how long they would be."""
+    """A replacement for sleep that only records the durations."""
 
     def __init__(self) -> None:
         self.slept: list[float] = []

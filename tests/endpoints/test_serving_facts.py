@@ -1,4 +1,4 @@
-"""What servers report about themselves, each at its own path."""
+"""Facts that servers report about themselves, each at its own path."""
 
 from __future__ import annotations
 
@@ -64,5 +64,5 @@ def test_a_silent_server_gives_no_facts(monkeypatch: pytest.MonkeyPatch) -> None
     from scope_ptz.endpoints import serving_facts as module
     from scope_ptz.endpoints.endpoint import Timeouts
 
-    monkeypatch.setattr(module, "PATIENCE", Timeouts(connect_s=0.1, first_byte_s=0.05, total_s=0.1))
+    monkeypatch.setattr(module, "QUICK_TIMEOUTS", Timeouts(connect_s=0.1, first_byte_s=0.05, total_s=0.1))
     assert facts(slow_first_byte()) == {}

@@ -1,4 +1,4 @@
-"""Server errors in words that a user can act on."""
+"""Translation of server errors into messages that a user can act on."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_retry_after_as_a_date() -> None:
         ("[]", "[]"),
     ],
 )
-def test_the_servers_own_words(body: str, words: str) -> None:
+def test_the_message_of_the_server(body: str, words: str) -> None:
     failure = status_failure(404, {}, body, AT)
     assert failure.detail == words
     assert words in str(failure)
@@ -88,7 +88,7 @@ def test_errors_with_a_success_status(body: dict[str, Any], kind: FailureKind | 
 
 
 @pytest.mark.parametrize("text", ["Bearer abcdef123456", "key sk-proj-abc_DEF-12345 is wrong", "sk-abcdefgh"])
-def test_whatever_looks_like_a_key_is_hidden(text: str) -> None:
+def test_text_that_looks_like_a_key_is_hidden(text: str) -> None:
     assert "***" in in_brief(text, "")
     assert not any(part in in_brief(text, "") for part in ("abcdef", "abc_DEF"))
 
@@ -97,7 +97,7 @@ def test_a_placeholder_key_does_not_hide_words() -> None:
     assert in_brief("none of the models is loaded", "none") == "none of the models is loaded"
 
 
-def test_a_bug_is_no_failure_of_the_server() -> None:
+def test_a_bug_is_not_a_server_failure() -> None:
     assert as_failure(KeyError("x"), AT) is None
     assert as_failure(OSError("disk full"), AT) is None
 

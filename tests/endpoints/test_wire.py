@@ -32,7 +32,7 @@ async def test_chat_connections_are_reused(stream: bool) -> None:
     assert (len(server.requests), server.connections) == (5, 1)
 
 
-async def test_json_connections_are_reused_and_calls_run_together() -> None:
+async def test_json_connections_are_reused_and_calls_run_concurrently() -> None:
     with Misbehaving() as server:
         client = JsonClient(Endpoint(url=server.url))
         for _ in range(5):
@@ -85,7 +85,7 @@ async def test_unusable_settings_of_the_environment(name: str, value: str, monke
         assert KEY not in str(caught.value)
 
 
-async def test_the_request_is_what_was_asked_for() -> None:
+async def test_the_request_has_the_given_content() -> None:
     tools = [{"type": "function", "function": {"name": "go_home", "parameters": {"type": "object"}}}]
     with Misbehaving() as server:
         client = ChatClient(Endpoint(url=server.url, model="m"))
@@ -141,7 +141,7 @@ async def test_a_server_that_ignores_streaming_or_compresses() -> None:
         await client.close()
 
 
-async def test_a_key_that_a_server_repeats_in_its_answer_is_hidden() -> None:
+async def test_a_key_that_a_server_repeats_is_hidden() -> None:
     with Misbehaving(then=good(Say(f"Your key is {KEY}.", tool_calls=(("query_answer", {"question": KEY}),)))) as server:
         client = ChatClient(Endpoint(url=server.url, key=SecretStr(KEY)))
         for stream in (False, True):

@@ -1,4 +1,4 @@
-"""Camera specs: what they mean, what is refused, and what opens."""
+"""Camera specs: parsing, invalid specs, and opening cameras."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_a_bare_name_is_a_simulated_scene() -> None:
     assert parse_camera(f" {SCENE} ") == parse_camera(f"sim:{SCENE}") == CameraSpec("sim", SCENE)
 
 
-def test_schemes_are_read_without_regard_to_case_and_options_follow_a_question_mark() -> None:
+def test_schemes_are_case_insensitive_and_options_follow_a_question_mark() -> None:
     spec = parse_camera("SIM:yard?width=640&height=360")
     assert (spec.scheme, spec.address, spec.options) == ("sim", "yard", {"width": "640", "height": "360"})
     assert parse_camera(str(spec)) == spec
@@ -33,19 +33,19 @@ def test_schemes_are_read_without_regard_to_case_and_options_follow_a_question_m
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "The camera is empty"),
-        ("sim:", "The camera is empty"),
+        ("", "The camera spec names no scene"),
+        ("sim:", "The camera spec names no scene"),
         ("axis://10.0.0.7", "There is no camera scheme 'axis'. Known: blender, sim"),
         ("yard.blend", "write blender:yard.blend"),
         ("C:\\yard.blend", r"write blender:C:\\yard.blend"),
-        ("blender:missing.blend", "There is no file missing.blend"),
+        ("blender:missing.blend", "The file missing.blend does not exist"),
         ("blender:no-such-scene", "There is no scene that Blender can build 'no-such-scene'"),
         ("sim:yard?samples=3", "There is no camera option 'samples'"),
-        ("sim:yard?width=wide", "The camera option width is a whole number from 1 to 10000, got 'wide'"),
+        ("sim:yard?width=wide", "The camera option width must be a whole number from 1 to 10000, got 'wide'"),
         ("sim:yard?width=0", "whole number from 1"),
     ],
 )
-def test_wrong_specs_say_what_is_wrong(text: str, message: str) -> None:
+def test_errors_of_wrong_specs(text: str, message: str) -> None:
     with pytest.raises(InputError, match=message):
         parse_camera(text)
 
@@ -72,7 +72,7 @@ def test_a_mistyped_scheme_does_not_repeat_its_address() -> None:
     assert "hunter2" not in str(refused.value)
 
 
-def test_what_can_be_opened_is_listed() -> None:
+def test_available_cameras_are_listed() -> None:
     names = camera_names()
     assert SCENE in names
     assert "blender:highway-works" in names
@@ -109,7 +109,7 @@ async def test_it_starts_at_a_preset() -> None:
 
 
 @pytest.mark.anyio
-async def test_wrong_starts() -> None:
+async def test_invalid_start_presets() -> None:
     with pytest.raises(InputError, match="--viewpoint or --preset, not both"):
         await open_camera(SCENE, viewpoint="mast", preset="home")
     with pytest.raises(UnknownNameError, match="preset"):

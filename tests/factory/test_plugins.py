@@ -18,7 +18,7 @@ EXAMPLES = ("scope-still-camera", "scope-nudge-planner", "scope-bright-perceptio
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the three example packages, built and installed without a network. uv carries its own build backend."""
+    """A folder with the three example packages, built and installed offline with the build backend of uv."""
     uv = shutil.which("uv") or shutil.which("uv", path=str(Path(sys.executable).parent))
     assert uv is not None, "uv is missing; `make test` installs it"
     sources = tmp_path_factory.mktemp("sources") / "plugins"
@@ -31,7 +31,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def scope(site: Path, folder: Path, *arguments: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
-    """Run a command in a process of its own that sees the packages in ``site``."""
+    """Run a command in a separate process that can import the packages in ``site``."""
     paths = [str(site), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "SCOPE_RUNS_DIR": str(folder), "COLUMNS": "200"}
     command = [sys.executable, "-m", "scope_ptz.cli", *arguments]
@@ -39,7 +39,7 @@ def scope(site: Path, folder: Path, *arguments: str, stdin: str = "") -> subproc
 
 
 def write_package(site: Path, module: str, code: str, group: str, name: str, target: str | None = None) -> None:
-    """Put an installed package of one module into a folder, as an installer leaves it."""
+    """Write a package with one module to a folder, as an installer would."""
     (site / f"{module}.py").write_text(code)
     info = site / f"{module}-1.0.dist-info"
     info.mkdir()
@@ -115,7 +115,7 @@ def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(installed: Pa
 def test_ground_truth_is_refused_for_a_camera_without_it(installed: Path, tmp_path: Path) -> None:
     done = scope(installed, tmp_path, "ask", "pan right 10", "--camera", "still:lamp")
     assert done.returncode == 2
-    assert "this camera has none. Name a model that looks at pictures with --perception" in done.stderr
+    assert "this camera has none. Name a vision model with --perception" in done.stderr
 
 
 def test_a_camera_that_does_not_open_ends_in_one_line(installed: Path, tmp_path: Path) -> None:
@@ -127,7 +127,7 @@ def test_a_camera_that_does_not_open_ends_in_one_line(installed: Path, tmp_path:
 BROKEN = {
     "import error": ("import no_such_package", "cannot be loaded: ModuleNotFoundError"),
     "syntax error": ("def make(:", "cannot be loaded: SyntaxError"),
-    "no factory": ("make = 3", "which is of type int and not a factory function"),
+    "no factory": ("make = 3", "but that is not callable: it is of type int"),
     "wrong product": (
         "def make(spec):\n    return 'camera'",
         "returned an object of type str; a Camera of scope_ptz.camera.base is needed",
@@ -169,7 +169,7 @@ def test_doctor_reports_broken_plugins(tmp_path: Path) -> None:
     assert all("\n" not in finding["detail"] for finding in found.values())
 
 
-def test_a_plugin_cannot_replace_what_is_built_in(tmp_path: Path) -> None:
+def test_a_plugin_cannot_replace_a_built_in_name(tmp_path: Path) -> None:
     site = tmp_path / "site"
     site.mkdir()
     write_package(site, "someones_grammar", "import no_such_package\n", "planners", "grammar")
@@ -178,7 +178,7 @@ def test_a_plugin_cannot_replace_what_is_built_in(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
-def test_two_packages_that_offer_one_name(tmp_path: Path) -> None:
+def test_two_packages_with_the_same_plugin_name(tmp_path: Path) -> None:
     site = tmp_path / "site"
     site.mkdir()
     write_package(site, "first_camera", "make = print\n", "cameras", "odd")

@@ -1,7 +1,7 @@
-"""The only module of these tests that knows names of the program: its commands, options, modules and places of files.
+"""Interface of these tests to the program: the only module that uses its commands, options, modules and file locations.
 
-When a command, an option or a module gets another name, change it here and nowhere else. The stored data and the comparisons stay.
-The command line is preferred; modules are imported only where no command shows what is compared.
+When a command, an option or a module is renamed, change only this module, not the stored data or the comparisons. It uses the
+command line where possible, and imports modules only for results that no command prints.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from zipfile import ZipFile
 ROOT = Path(__file__).parents[2]
 PACKAGE = "scope_ptz"
 MODEL_PROVIDER = "scope_ptz/scope_ptz"
-"""How Inspect's registry calls the provider of models whose names begin with ``scope_ptz/``."""
+"""Name in Inspect's registry of the provider of models whose names begin with ``scope_ptz/``."""
 PROMPTS = {
     "planner": "planner/chat/prompts",
     "judge": "bench/judging/prompts",
@@ -38,12 +38,12 @@ SCENES = "data/scenes"
 SCHEMAS = ("data/tasks.schema.json", "data/submission.schema.json")
 DATASET_FILES = ("tasks", "unseen", "paraphrase", "reaction")
 LANGUAGE_FILES = ("planner/grammar/lexing", "planner/grammar/parsing", "perception/ground_truth/language")
-"""Folders with the grammars and word lists of instructions and of perception's questions."""
+"""Folders with the grammars and word lists for instructions and for perception questions."""
 
 
 @dataclass(frozen=True)
-class Done:
-    """How a command ended and what it printed."""
+class CommandResult:
+    """Exit code and output of a command."""
 
     code: int
     out: str
@@ -51,11 +51,11 @@ class Done:
 
     @property
     def json(self) -> Any:
-        """Its output as one JSON document."""
+        """The standard output, parsed as one JSON document."""
         return json.loads(self.out)
 
 
-def run(*arguments: str, stdin: str = "") -> Done:
+def run(*arguments: str, stdin: str = "") -> CommandResult:
     """Run ``scope`` in this process with a clean environment."""
     from scope_ptz.cli import main
 
@@ -72,35 +72,36 @@ def run(*arguments: str, stdin: str = "") -> Done:
             main()
         except SystemExit as ended:
             code = ended.code if isinstance(ended.code, int) else 0
-    return Done(code, out.getvalue(), err.getvalue())
+    return CommandResult(code, out.getvalue(), err.getvalue())
 
 
 # Runs
 
 
 def replay(folder: Path) -> tuple[int, dict[str, Any]]:
-    """The exit code of a replay, and what it found: fields that are data, without sentences for people."""
-    done = run("replay", str(folder), "--json")
-    said = done.json
-    if "error" in said:
-        return done.code, {"error": True}
-    recorded = said["recorded"]
+    """Replay a run and return the exit code and the result, without fields that contain sentences for users."""
+    command = run("replay", str(folder), "--json")
+    result = command.json
+    if "error" in result:
+        return command.code, {"error": True}
+    recorded = result["recorded"]
     if recorded is not None:
         recorded = {key: value for key, value in recorded.items() if key != "run_dir"}
-    return done.code, {
+    return command.code, {
         "recorded": recorded,
-        "repeated": said["repeated"],
-        "equal": said["equal"],
-        "differs": [bool(difference) for difference in said["differences"]],
-        "outcome_differs": bool(said["outcome_difference"]),
+        "repeated": result["repeated"],
+        "equal": result["equal"],
+        "differs": [bool(difference) for difference in result["differences"]],
+        "outcome_differs": bool(result["outcome_difference"]),
     }
 
 
-def ask(instruction: str, runs: Path, *, planner: Mapping[str, str] | None = None, eyes: str = "") -> list[dict[str, Any]]:
+def ask(instruction: str, runs: Path, *, planner: Mapping[str, str] | None = None, perception: str = "") -> list[dict[str, Any]]:
     """Carry out an instruction and return the records of its trace.
 
-    ``planner``: the address of a chat model ("url") and its options; the built-in planner without. ``eyes``: the address of a chat
-    model that sees; ground truth without.
+    Args:
+        planner: URL ("url") and options of a chat model. Without it, the grammar planner is used.
+        perception: URL of a vision model. Without it, ground truth is used.
     """
     options = ["--fast", "--json", "--runs-dir", str(runs)]
     if planner:
@@ -108,25 +109,25 @@ def ask(instruction: str, runs: Path, *, planner: Mapping[str, str] | None = Non
         for name, value in planner.items():
             if name != "url":
                 options += ["--planner-option", f"{name}={value}"]
-    if eyes:
-        options += ["--perception", "openai_vision", "--perception-url", eyes]
-    done = run("ask", instruction, *options)
+    if perception:
+        options += ["--perception", "openai_vision", "--perception-url", perception]
+    result = run("ask", instruction, *options)
     (trace,) = runs.glob("*/trace.jsonl")
-    assert done.json["outcome"], done.err
+    assert result.json["outcome"], result.err
     return [json.loads(line) for line in trace.read_text("utf-8").splitlines()]
 
 
 def plan(instructions: Iterable[tuple[str, Sequence[str]]], scratch: Path) -> list[dict[str, Any]]:
-    """The plan of each instruction with its presets. Keys: instruction, understood, calls, clarification."""
+    """Return the plan of each instruction, given with its presets. Keys: instruction, understood, calls, clarification."""
     lines = (json.dumps({"instruction": words, "presets": list(presets)}) for words, presets in instructions)
     scratch.write_text("\n".join(lines) + "\n", "utf-8")
-    done = run("plan", "--from", str(scratch), "--json")
-    assert done.code == 0, done.err
-    return [json.loads(line) for line in done.out.splitlines()]
+    result = run("plan", "--from", str(scratch), "--json")
+    assert result.code == 0, result.err
+    return [json.loads(line) for line in result.out.splitlines()]
 
 
 def tool_schemas() -> Any:
-    """The tools' schemas with their descriptions."""
+    """Return the schemas of the tools."""
     return run("tools", "--json").json
 
 
@@ -134,7 +135,7 @@ def tool_schemas() -> Any:
 
 
 def read_log(log: Path) -> dict[str, Any]:
-    """A log as the program reads it: the card, and every trial with its headline, error mode, checks and judgements."""
+    """Read a log and return its card, and all trials with headline, error mode, checks and judgements."""
     from scope_ptz.bench.engine.logs import read_evaluation
 
     content = read_evaluation(log).model_dump(mode="json", by_alias=True)
@@ -142,57 +143,57 @@ def read_log(log: Path) -> dict[str, Any]:
     return content
 
 
-def rescore_checks(log: Path) -> Done:
-    """Add the scores of today's checks to a log."""
+def rescore_checks(log: Path) -> CommandResult:
+    """Run the current checks on a log and add their scores."""
     return run("bench", "rescore", str(log), "--checks")
 
 
-def rescore_judge(log: Path, url: str) -> Done:
-    """Add the judgements of a judge to a log, one run at a time."""
+def rescore_judge(log: Path, url: str) -> CommandResult:
+    """Run a judge on a log, one run at a time, and add its judgements."""
     return run("bench", "rescore", str(log), "--judge-url", url, "--concurrency", "1")
 
 
 def report_tables(logs: Sequence[Path], out: Path) -> dict[str, str]:
-    """The tables that a report of logs writes, as CSV by name."""
-    done = run("bench", "report", *map(str, logs), "--out", str(out), "--no-pages")
-    assert done.code == 0, done.err
+    """Write a report of logs and return its tables as CSV, by file name."""
+    result = run("bench", "report", *map(str, logs), "--out", str(out), "--no-pages")
+    assert result.code == 0, result.err
     return {table.name: table.read_text("utf-8") for table in sorted((out / "tables").glob("*.csv"))}
 
 
 def make_submission(log: Path, out: Path) -> list[dict[str, Any]]:
-    """The lines of the submission that is made of a log."""
-    done = run("bench", "submission", "make", str(log), "--out", str(out))
-    assert done.code == 0, done.err
+    """Make a submission from a log and return its lines."""
+    result = run("bench", "submission", "make", str(log), "--out", str(out))
+    assert result.code == 0, result.err
     return [json.loads(line) for line in out.read_text("utf-8").splitlines()]
 
 
 def validate_submission(file: Path) -> tuple[int, dict[str, Any]]:
-    """The exit code, and what the check of a submission found: whether it is valid, how many faults, what was counted."""
-    done = run("bench", "submission", "validate", str(file), "--json")
-    said = done.json
-    return done.code, {"valid": said["valid"], "faults": len(said["faults"]), "counts": said["counts"]}
+    """Validate a submission and return the exit code, whether it is valid, the number of faults, and the counts."""
+    command = run("bench", "submission", "validate", str(file), "--json")
+    result = command.json
+    return command.code, {"valid": result["valid"], "faults": len(result["faults"]), "counts": result["counts"]}
 
 
 # The dataset
 
 
 def validate_tasks() -> tuple[int, dict[str, Any]]:
-    """The exit code and the report of the proof of the published tasks."""
-    done = run("bench", "validate", "--json")
-    return done.code, done.json
+    """Validate the published tasks and return the exit code and the report."""
+    result = run("bench", "validate", "--json")
+    return result.code, result.json
 
 
 def check_gold() -> tuple[int, dict[str, Any]]:
-    """The exit code and the matrix of the gold runs."""
-    done = run("bench", "gold", "check", "--json")
-    return done.code, done.json
+    """Check the gold runs and return the exit code and the report."""
+    result = run("bench", "gold", "check", "--json")
+    return result.code, result.json
 
 
 # Files
 
 
 def sha256(path: Path) -> str:
-    """Digest of a file."""
+    """Return the SHA-256 digest of a file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
@@ -201,7 +202,7 @@ def _package() -> Path:
 
 
 def digests() -> dict[str, dict[str, str]]:
-    """SHA-256 of files whose bytes are part of the program's promises, by group and by a name that no move of files changes."""
+    """Return the SHA-256 digests of files that must not change, by group and by a name that does not depend on their location."""
     package = _package()
 
     def group(folder: str, pattern: str) -> dict[str, str]:
@@ -223,7 +224,7 @@ def digests() -> dict[str, dict[str, str]]:
 
 
 def published_tasks() -> list[dict[str, Any]]:
-    """Every task of the published dataset, wordings and reactions included, in the order of the files."""
+    """Return all tasks of the published dataset, including paraphrases and reaction tasks, in the order of the files."""
     folder = _package() / DATASET
     return [json.loads(line) for name in DATASET_FILES for line in (folder / f"{name}.jsonl").read_text("utf-8").splitlines()]
 
@@ -232,25 +233,25 @@ def published_tasks() -> list[dict[str, Any]]:
 
 
 def load_registered_names() -> None:
-    """Import what Inspect imports of this package through the entry point that ``pyproject.toml`` names."""
+    """Import the module that Inspect loads through the entry point in ``pyproject.toml``."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     import_module(project["entry-points"]["inspect_ai"][PACKAGE])
 
 
 def resolves(kind: str, name: str) -> bool:
-    """Whether Inspect finds what is registered under a name of a log. ``kind``: task, solver, scorer, metric or modelapi."""
+    """Return whether Inspect's registry has this name. ``kind`` is task, solver, scorer, metric or modelapi."""
     from inspect_ai._util.registry import registry_lookup
 
     load_registered_names()
     return registry_lookup(kind, name) is not None  # type: ignore[arg-type]
 
 
-# Logs as files; nothing of the program
+# Logs as files, without code of the program
 
 
 def samples_of(log: Path) -> dict[str, dict[str, Any]]:
-    """The samples of a log as plain data, by task and epoch."""
-    import inspect_ai.log  # teaches zipfile the compression of logs
+    """Return the samples of a log as plain data, by task and epoch."""
+    import inspect_ai.log  # adds the compression of logs to zipfile
 
     assert inspect_ai.log
     found = {}
@@ -262,7 +263,7 @@ def samples_of(log: Path) -> dict[str, dict[str, Any]]:
 
 
 def header_of(log: Path) -> dict[str, Any]:
-    """The header of a log as plain data."""
+    """Return the header of a log as plain data."""
     import inspect_ai.log
 
     assert inspect_ai.log
@@ -272,7 +273,7 @@ def header_of(log: Path) -> dict[str, Any]:
 
 
 def scores_of(log: Path) -> dict[str, dict[str, Any]]:
-    """Value, answer, headline and error mode of every score of every sample."""
+    """Return the value, answer, headline and error mode of every score of every sample."""
     return {
         name: {
             score: {
@@ -293,6 +294,6 @@ def _is_nan(value: Any) -> bool:
 
 @contextmanager
 def copied(log: Path, folder: Path) -> Iterator[Path]:
-    """A copy of a log that may be written to."""
+    """Yield a copy of a log in ``folder``, which the test may modify."""
     folder.mkdir(parents=True, exist_ok=True)
     yield Path(shutil.copy2(log, folder / log.name))

@@ -1,4 +1,4 @@
-"""What is compared: each function returns what today's code gives, as JSON-like data."""
+"""Results to compare with the stored data: each function returns a result of the current code as JSON-like data."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
 from tests.frozen import adapter
-from tests.frozen.server import Reply, Scripted, calls_message, text_message
+from tests.frozen.server import Reply, ScriptedServer, calls_message, text_message
 
 DATA = Path(__file__).parent / "v0_1_0"
 RUNS, LOGS = DATA / "traces", DATA / "logs"
@@ -22,18 +22,18 @@ RUN_NAMES = sorted(path.name for path in RUNS.iterdir())
 LOG_NAMES = sorted(path.stem for path in LOGS.glob("*.eval"))
 REPORTED = ("truth", "noisy", "repeats", "judged", "served", "agent")
 RANKED = {"judged": ("qwen3-4b", "moondream2"), "truth": ("qwen3-30b-a3b", "moondream2"), "noisy": ("qwen3-4b", "qwen2.5-vl-7b")}
-"""Logs that are shown in reports a second time, as if these models had planned and looked."""
-JUDGED_HERE = "truth"
-"""The log whose runs are put before a scripted judge: all eight categories are in it."""
+"""Logs that are also reported as copies under the names of these models (planner, perception), so that they are ranked."""
+JUDGED_LOG = "truth"
+"""The log whose runs a scripted judge evaluates. It has runs of all eight categories."""
 
 
 def stored(name: str) -> Any:
-    """An expected result."""
+    """Return an expected result from the stored data."""
     return json.loads((DATA / name).read_text("utf-8"))
 
 
 def call(tool: str, /, **arguments: Any) -> dict[str, Any]:
-    """A call of a tool."""
+    """Return a tool call as the model would send it."""
     return {"name": tool, "arguments": arguments}
 
 
@@ -68,7 +68,7 @@ EVERY_TOOL = [
     [call("track_object", description="car", duration_s=-1.0)],
     [call("adjust_ptz", pan_deg=1.0), call("go_to_preset", name="moon"), call("go_home")],
 ]
-"""Every tool with a success, and what can be clamped, not found or wrong."""
+"""Steps that call every tool successfully, and with clamped values, missing objects and wrong arguments."""
 
 SWEEPS = [
     [call("count_objects", description="workers", view="full")],
@@ -76,20 +76,25 @@ SWEEPS = [
     [call("go_to_preset", name="highway")],
     [call("track_object", description="car", duration_s=6.0)],
 ]
-"""What takes longer: looks at the full scene, and tracking."""
+"""Steps that take longer: perception of the full scene, and tracking."""
 
-FEW = [[call("get_presets")], [call("adjust_ptz", zoom_factor=50.0)], [call("dance")], [call("count_objects", description="cones")]]
+FEW_CALLS = [
+    [call("get_presets")],
+    [call("adjust_ptz", zoom_factor=50.0)],
+    [call("dance")],
+    [call("count_objects", description="cones")],
+]
 
 CONVERSATIONS: dict[str, tuple[dict[str, str], list[list[dict[str, Any]]]]] = {
     "every-tool": ({"stream": "false"}, EVERY_TOOL),
     "sweeps": ({"stream": "false"}, SWEEPS),
-    "written": ({"stream": "false", "tools": "text", "prompt": "short-1"}, FEW),
-    "examples": ({"stream": "false", "prompt": "examples-1", "thinking": "off", "temperature": "0.5", "seed": "3"}, FEW),
+    "written": ({"stream": "false", "tools": "text", "prompt": "short-1"}, FEW_CALLS),
+    "examples": ({"stream": "false", "prompt": "examples-1", "thinking": "off", "temperature": "0.5", "seed": "3"}, FEW_CALLS),
 }
 
 
 def conversation(name: str, scratch: Path) -> dict[str, Any]:
-    """What a chat model is sent in a run: the last request, which holds all before it, and the results of the calls."""
+    """Run a scripted chat model and return its last request, which contains all earlier messages, and the results of its calls."""
     options, steps = CONVERSATIONS[name]
     written = options.get("tools") == "text"
 
@@ -100,10 +105,10 @@ def conversation(name: str, scratch: Path) -> dict[str, Any]:
         if done >= len(steps):
             return text_message("All done.")
         if written:
-            return text_message("\n".join(f"<tool_call>\n{json.dumps(made)}\n</tool_call>" for made in steps[done]))
+            return text_message("\n".join(f"<tool_call>\n{json.dumps(tool_call)}\n</tool_call>" for tool_call in steps[done]))
         return calls_message(steps[done])
 
-    with Scripted(script) as server:
+    with ScriptedServer(script) as server:
         trace = adapter.ask("use every tool", scratch, planner={"url": server.url, **options})
     calls = [record["outcome"] | {"fault": record["fault"]} for record in trace if record["event"] == "call"]
     return {
@@ -115,7 +120,7 @@ def conversation(name: str, scratch: Path) -> dict[str, Any]:
     }
 
 
-LOOKS = {
+VISION_INSTRUCTIONS = {
     "detect": "count the cones",
     "query": "what colour is the excavator?",
     "point": "zoom in on the excavator",
@@ -123,10 +128,10 @@ LOOKS = {
 }
 
 
-def looks(name: str, scratch: Path) -> list[Any]:
-    """What a chat model that sees is asked, without the pictures; each request once."""
-    with Scripted(lambda _: text_message("[]")) as server:
-        adapter.ask(LOOKS[name], scratch, eyes=server.url)
+def vision_requests(name: str, scratch: Path) -> list[Any]:
+    """Return the requests to a vision model for an instruction, without images and duplicates."""
+    with ScriptedServer(lambda _: text_message("[]")) as server:
+        adapter.ask(VISION_INSTRUCTIONS[name], scratch, perception=server.url)
     found = {json.dumps(_without_pictures(request), sort_keys=True) for request in server.requests}
     return [json.loads(request) for request in sorted(found)]
 
@@ -140,68 +145,68 @@ def _without_pictures(value: Any) -> Any:
 
 
 def verdict(body: dict[str, Any]) -> dict[str, Any] | Reply:
-    """A judge that decides by a digest of the run that it is told of; of some it never gives a verdict."""
-    told = json.dumps(body["messages"][1], sort_keys=True)
-    kind = int(hashlib.sha256(told.encode()).hexdigest(), 16) % 6
-    if kind == 0:
+    """Return the reply of a scripted judge. It depends on a digest of the request; for some requests it has no verdict."""
+    request = json.dumps(body["messages"][1], sort_keys=True)
+    remainder = int(hashlib.sha256(request.encode()).hexdigest(), 16) % 6
+    if remainder == 0:
         return text_message("I think it went well.")
     good = {"reason": "All as asked.", "verdict": "correct", "error_mode": None}
     bad = {"reason": "It counted wrongly.", "verdict": "incorrect", "error_mode": "vlm_counting"}
-    return text_message(json.dumps(bad if kind < 3 else good))
+    return text_message(json.dumps(bad if remainder < 3 else good))
 
 
 def judging(scratch: Path) -> dict[str, Any]:
-    """What a judge is sent about each run of a log, and the scores of that log afterwards."""
-    with adapter.copied(LOGS / f"{JUDGED_HERE}.eval", scratch) as log, Scripted(verdict, "the-judge") as server:
-        done = adapter.rescore_judge(log, server.url)
-        assert done.code == 0, done.err
+    """Rescore a log with a scripted judge, and return the requests, the judgements and the scores."""
+    with adapter.copied(LOGS / f"{JUDGED_LOG}.eval", scratch) as log, ScriptedServer(verdict, "the-judge") as server:
+        result = adapter.rescore_judge(log, server.url)
+        assert result.code == 0, result.err
         systems = dict[str, str]()
-        asked = []
+        requests = []
         for request in server.requests:
             system, *rest = request["messages"]
             key = hashlib.sha256(system["content"].encode()).hexdigest()[:12]
             systems[key] = system["content"]
-            asked.append({**request, "messages": [f"system {key}", *rest]})
-        asked.sort(key=lambda request: json.dumps(request, sort_keys=True))
+            requests.append({**request, "messages": [f"system {key}", *rest]})
+        requests.sort(key=lambda request: json.dumps(request, sort_keys=True))
         judgements = {
-            trial["sample"]: [{k: v for k, v in made.items() if k != "latency_s"} for made in trial["judgements"]]
+            trial["sample"]: [{k: v for k, v in judgement.items() if k != "latency_s"} for judgement in trial["judgements"]]
             for trial in adapter.read_log(log)["trials"]
         }
-        return {"systems": systems, "requests": asked, "scores": adapter.scores_of(log), "judgements": judgements}
+        return {"systems": systems, "requests": requests, "scores": adapter.scores_of(log), "judgements": judgements}
 
 
 def replays(names: Iterable[str]) -> dict[str, Any]:
-    """Exit code and findings of the replay of each run folder."""
+    """Replay run folders and return the exit code and result of each."""
     return {name: dict(zip(("code", "found"), adapter.replay(RUNS / name), strict=True)) for name in names}
 
 
 def log_read(name: str) -> dict[str, Any]:
-    """A log as it is read, and its scores."""
+    """Return the content of a log and its scores."""
     return {"evaluation": adapter.read_log(LOGS / f"{name}.eval"), "scores": adapter.scores_of(LOGS / f"{name}.eval")}
 
 
 def log_rescored(name: str, scratch: Path) -> dict[str, Any]:
-    """The same of a log whose checks were made again: it has one score more."""
+    """Rescore the checks of a copy of a log, and return its content and its scores, which include the new one."""
     with adapter.copied(LOGS / f"{name}.eval", scratch) as log:
-        done = adapter.rescore_checks(log)
-        assert done.code == 0, done.err
+        result = adapter.rescore_checks(log)
+        assert result.code == 0, result.err
         return {"evaluation": adapter.read_log(log), "scores": adapter.scores_of(log)}
 
 
 def tables(scratch: Path) -> dict[str, str]:
-    """The tables of a report of the stored logs, and of copies of some under names of models, which are ranked."""
+    """Return the tables of a report of stored logs and of the copies in ``RANKED``."""
     logs = [LOGS / f"{name}.eval" for name in REPORTED]
     for name, pair in RANKED.items():
         logs.append(as_models(LOGS / f"{name}.eval", scratch / f"{name}.eval", *pair))
     return adapter.report_tables(logs, scratch / "report")
 
 
-def as_models(log: Path, copy: Path, planner: str, eyes: str) -> Path:
-    """A copy of a log whose card says that these models planned and looked."""
+def as_models(log: Path, copy: Path, planner: str, perception: str) -> Path:
+    """Copy a log and change its card, so that it names these models as planner and perception."""
     header = adapter.header_of(log)
     card = header["eval"]["metadata"]["card"]
-    card["run_id"] = f"{planner}-{eyes}"
-    for role, name in (("planner", planner), ("perception", eyes)):
+    card["run_id"] = f"{planner}-{perception}"
+    for role, name in (("planner", planner), ("perception", perception)):
         card[role] |= {"name": name, "registry": name, "provider": "http", "deterministic": False}
     copy.parent.mkdir(parents=True, exist_ok=True)
     with ZipFile(log) as old, ZipFile(copy, "w", ZIP_DEFLATED) as new:
@@ -211,22 +216,22 @@ def as_models(log: Path, copy: Path, planner: str, eyes: str) -> Path:
 
 
 def submission(scratch: Path) -> list[dict[str, Any]]:
-    """The lines of a submission made of a log."""
+    """Make a submission from a log and return its lines."""
     return adapter.make_submission(SUBMITTED, scratch)
 
 
 def submission_checks(scratch: Path) -> dict[str, Any]:
-    """The checks of the stored submission as it is, without its last line, and with another verdict."""
+    """Validate the stored submission unchanged, without its last line, and with a changed verdict."""
     lines = SUBMISSION.read_text("utf-8").splitlines()
     shorter, other = scratch / "shorter.jsonl", scratch / "other.jsonl"
     shorter.write_text("\n".join(lines[:-1]) + "\n", "utf-8")
     other.write_text("\n".join([lines[0], lines[1].replace('"correct"', '"perfect"', 1), *lines[2:]]) + "\n", "utf-8")
-    made = {"whole": SUBMISSION, "shorter": shorter, "other": other}
-    return {name: dict(zip(("code", "found"), adapter.validate_submission(path), strict=True)) for name, path in made.items()}
+    files = {"whole": SUBMISSION, "shorter": shorter, "other": other}
+    return {name: dict(zip(("code", "found"), adapter.validate_submission(path), strict=True)) for name, path in files.items()}
 
 
 def plan_inputs() -> list[dict[str, Any]]:
-    """Every task's name, instruction and presets, with the plan of 0.1.0."""
+    """Return the name, instruction and presets of every task, with its plan by version 0.1.0."""
     presets = stored("presets.json")
     with gzip.open(DATA / "plans.jsonl.gz", "rt", encoding="utf-8") as file:
         rows = [json.loads(line) for line in file]
@@ -234,30 +239,30 @@ def plan_inputs() -> list[dict[str, Any]]:
 
 
 def plans(rows: list[dict[str, Any]], scratch: Path) -> list[dict[str, Any]]:
-    """Today's plans of such rows."""
+    """Return the current plans for rows of ``plan_inputs``."""
     return adapter.plan(((row["plan"]["instruction"], row["presets"]) for row in rows), scratch)
 
 
 def names() -> dict[str, list[str]]:
-    """What the stored logs say that Inspect registered: tasks, solvers, scorers, metrics and models."""
+    """Return the names of tasks, solvers, scorers, metrics, models and model roles in the stored logs."""
     found: dict[str, set[str]] = {kind: set() for kind in ("task", "solver", "scorer", "metric", "model", "role")}
     for name in LOG_NAMES:
         header = adapter.header_of(LOGS / f"{name}.eval")
-        about = header["eval"]
-        found["task"].add(about["task_registry_name"])
+        evaluation = header["eval"]
+        found["task"].add(evaluation["task_registry_name"])
         found["solver"] |= {step["solver"] for step in header["plan"]["steps"]}
-        for scorer in about["scorers"]:
+        for scorer in evaluation["scorers"]:
             found["scorer"].add(scorer["name"])
             found["metric"] |= {metric["name"] for metric in scorer["metrics"]}
-        found["model"].add(about["model"])
-        for role, model in about["model_roles"].items():
+        found["model"].add(evaluation["model"])
+        for role, model in evaluation["model_roles"].items():
             found["role"].add(role)
             found["model"].add(model["model"])
-    return {kind: sorted(some) for kind, some in found.items()}
+    return {kind: sorted(values) for kind, values in found.items()}
 
 
 def outcomes() -> list[str]:
-    """Every outcome that the stored runs have."""
+    """Return all outcomes of the stored runs."""
     ends = (
         json.loads((RUNS / name / "trace.jsonl").read_text("utf-8").splitlines()[-1] or "{}")
         for name in RUN_NAMES
@@ -272,4 +277,4 @@ SIMPLE: dict[str, Callable[[], Any]] = {
     "names.json": names,
     "replays.json": partial(replays, RUN_NAMES),
 }
-"""Stored files that need no scratch folder."""
+"""Results that need no scratch folder, by name of the stored file."""

@@ -1,4 +1,4 @@
-"""Warnings of the evaluation engine are let pass: it leaves streams of its own to the garbage collector."""
+"""Ignore warnings of the evaluation engine, which leaves some of its streams to the garbage collector."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from pathlib import Path
 import pytest
 
 HERE = Path(__file__).parent
-ENGINES_OWN = ("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning", "ignore::DeprecationWarning")
+ENGINE_WARNINGS = ("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning", "ignore::DeprecationWarning")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if HERE in item.path.parents:
-            for warning in ENGINES_OWN:
+            for warning in ENGINE_WARNINGS:
                 item.add_marker(pytest.mark.filterwarnings(warning))
 
 
 @pytest.fixture(autouse=True, scope="module")
-def nothing_left_behind() -> Iterator[None]:
-    """What the engine left is collected here, and not in the middle of somebody else's test."""
+def garbage_collection() -> Iterator[None]:
+    """Collect objects that the engine left after each module, so that this does not happen during another test."""
     yield
     gc.collect()

@@ -1,4 +1,4 @@
-"""A chat server on loopback that answers by a script and keeps every request. It imports nothing of the program under test."""
+"""A scripted chat server on loopback that keeps every request. It does not import the program under test."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing import Any
 MODEL = "scripted-model"
 Reply = tuple[int, dict[str, Any]]
 Script = Callable[[dict[str, Any]], "dict[str, Any] | Reply"]
-"""From a request's body to the assistant's message, or to a status and a body."""
+"""Function that maps the body of a request to the assistant's message, or to an HTTP status and a body."""
 
 
 def calls_message(calls: list[dict[str, Any]]) -> dict[str, Any]:
-    """An assistant's message that calls tools."""
-    made = [
+    """Return an assistant message with tool calls."""
+    tool_calls = [
         {
             "id": f"call-{number}",
             "type": "function",
@@ -28,16 +28,16 @@ def calls_message(calls: list[dict[str, Any]]) -> dict[str, Any]:
         }
         for number, call in enumerate(calls)
     ]
-    return {"role": "assistant", "content": None, "tool_calls": made}
+    return {"role": "assistant", "content": None, "tool_calls": tool_calls}
 
 
 def text_message(text: str) -> dict[str, Any]:
-    """An assistant's message that only says something."""
+    """Return an assistant message with text only."""
     return {"role": "assistant", "content": text}
 
 
-class Scripted:
-    """The server. ``requests`` holds the body of every chat request, in the order in which they came."""
+class ScriptedServer:
+    """The scripted server. ``requests`` contains the bodies of all chat requests in the order of arrival."""
 
     def __init__(self, script: Script, model: str = MODEL) -> None:
         requests: list[dict[str, Any]] = []
@@ -59,8 +59,8 @@ class Scripted:
                     return
                 with lock:
                     requests.append(body)
-                    said = script(body)
-                self._send(*(said if isinstance(said, tuple) else (200, completion(said, model))))
+                    reply = script(body)
+                self._send(*(reply if isinstance(reply, tuple) else (200, completion(reply, model))))
 
             def _send(self, status: int, content: dict[str, Any]) -> None:
                 data = json.dumps(content).encode()
@@ -79,10 +79,10 @@ class Scripted:
 
     @property
     def url(self) -> str:
-        """The server's address, with its /v1."""
+        """The base URL of the server, ending in /v1."""
         return f"http://127.0.0.1:{self._server.server_address[1]}/v1"
 
-    def __enter__(self) -> Scripted:
+    def __enter__(self) -> ScriptedServer:
         self._thread.start()
         return self
 
@@ -93,7 +93,7 @@ class Scripted:
 
 
 def completion(message: dict[str, Any], model: str) -> dict[str, Any]:
-    """A chat completion with this message."""
+    """Return a chat completion with this message."""
     return {
         "id": "chatcmpl-1",
         "object": "chat.completion",

@@ -1,4 +1,4 @@
-"""Evaluation logs of 0.1.0: read, scored again, reported and submitted with the results that 0.1.0 gave."""
+"""Reading, rescoring, reporting and submitting the evaluation logs of version 0.1.0 gives the results of version 0.1.0."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import pytest
 
 from tests.frozen import adapter, cases
 
-RESCORED_IN_THE_FAST_TIER = ("agent",)
+FAST_RESCORED_LOGS = ("agent",)
 
 
 @pytest.mark.parametrize("name", cases.LOG_NAMES)
-def test_a_log_is_read_as_before(name: str) -> None:
+def test_reading_a_log_gives_the_stored_content(name: str) -> None:
     expected = cases.stored(f"logs/{name}.json")
     read = cases.log_read(name)
     assert read["evaluation"] == expected["evaluation"]
@@ -24,16 +24,16 @@ def test_a_log_is_read_as_before(name: str) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    [name if name in RESCORED_IN_THE_FAST_TIER else pytest.param(name, marks=pytest.mark.full) for name in cases.LOG_NAMES],
+    [name if name in FAST_RESCORED_LOGS else pytest.param(name, marks=pytest.mark.full) for name in cases.LOG_NAMES],
 )
-def test_checks_give_the_scores_of_before(name: str, tmp_path: Path) -> None:
+def test_rescoring_checks_gives_the_stored_scores(name: str, tmp_path: Path) -> None:
     expected = cases.stored(f"logs/{name}.json")
     rescored = cases.log_rescored(name, tmp_path)
     assert rescored["scores"] == expected["rescored"]
     assert rescored["evaluation"] == expected["evaluation"]
 
 
-def test_a_judge_is_told_what_it_was_told_before(tmp_path: Path) -> None:
+def test_a_judge_gets_the_stored_requests(tmp_path: Path) -> None:
     expected, found = cases.stored("judging.json"), cases.judging(tmp_path)
     assert found["systems"] == expected["systems"]
     assert found["requests"] == expected["requests"]
@@ -41,7 +41,7 @@ def test_a_judge_is_told_what_it_was_told_before(tmp_path: Path) -> None:
     assert found["scores"] == expected["scores"]
 
 
-def test_tables_hold_the_cells_of_before(tmp_path: Path) -> None:
+def test_report_tables_have_the_stored_cells(tmp_path: Path) -> None:
     found = cases.tables(tmp_path)
     stored = {path.name: path.read_text("utf-8") for path in (cases.DATA / "tables").glob("*.csv")}
     assert sorted(found) == sorted(stored)
@@ -49,17 +49,17 @@ def test_tables_hold_the_cells_of_before(tmp_path: Path) -> None:
         assert list(csv.reader(io.StringIO(found[name]))) == list(csv.reader(io.StringIO(text))), name
 
 
-def test_a_submission_is_made_as_before(tmp_path: Path) -> None:
+def test_making_a_submission_gives_the_stored_lines(tmp_path: Path) -> None:
     expected = [json.loads(line) for line in cases.SUBMISSION.read_text("utf-8").splitlines()]
     assert cases.submission(tmp_path / "submission.jsonl") == expected
     assert (tmp_path / "submission.jsonl").read_bytes() == cases.SUBMISSION.read_bytes()
 
 
-def test_a_submission_is_checked_as_before(tmp_path: Path) -> None:
+def test_validating_a_submission_gives_the_stored_result(tmp_path: Path) -> None:
     assert cases.submission_checks(tmp_path) == cases.stored("submission.json")
 
 
-def test_names_in_logs_are_still_registered() -> None:
+def test_names_in_logs_are_registered() -> None:
     names = cases.names()
     assert names == cases.stored("names.json")
     for kind in ("task", "solver", "scorer", "metric"):

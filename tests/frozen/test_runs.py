@@ -1,4 +1,4 @@
-"""Run folders of 0.1.0, of every outcome: replayed as 0.1.0 replayed them."""
+"""Replaying run folders of version 0.1.0, one or more for each outcome, gives the results of version 0.1.0."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ SLOW = sorted(set(cases.RUN_NAMES) - set(FAST))
 
 
 @pytest.mark.parametrize("name", [*FAST, *(pytest.param(name, marks=pytest.mark.full) for name in SLOW)])
-def test_a_run_is_replayed_as_before(name: str) -> None:
+def test_replaying_a_run_gives_the_stored_result(name: str) -> None:
     assert cases.replays([name])[name] == cases.stored("replays.json")[name]
 
 
-def test_every_outcome_is_there() -> None:
+def test_stored_runs_have_every_outcome() -> None:
     assert cases.outcomes() == [
         "answered", "budget", "camera_error", "cancelled", "clarification", "planner_error", "refused", "step_limit",
     ]  # fmt: skip
 
 
-def test_pictures_of_a_run_are_named_in_its_trace() -> None:
+def test_images_of_a_run_are_named_in_its_trace() -> None:
     folder = cases.RUNS / "answered"
     trace = (folder / "trace.jsonl").read_text("utf-8")
     pictures = sorted((folder / "frames").iterdir())

@@ -1,4 +1,4 @@
-"""What models and people are given: prompts, schemas, results in words, plans and files of data, byte for byte those of 0.1.0."""
+"""Texts for models and users (prompts, schemas, tool results, plans, data files) are identical to those of version 0.1.0."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import pytest
 
 from tests.frozen import adapter, cases
 
-EVERY = 20
-"""Of so many instructions one is planned in the fast tier."""
+SAMPLING_STEP = 20
+"""The fast tier plans every n-th instruction."""
 
 
 def tiers(names: Iterable[str], fast: str) -> list[Any]:
-    """Parameters of which only one belongs to the fast tier."""
+    """Return ``names`` as parameters, of which only ``fast`` belongs to the fast tier."""
     return [name if name == fast else pytest.param(name, marks=pytest.mark.full) for name in names]
 
 
 @pytest.mark.parametrize("name", tiers(cases.CONVERSATIONS, "every-tool"))
-def test_a_chat_model_is_told_what_it_was_told_before(name: str, tmp_path: Path) -> None:
+def test_a_chat_model_gets_the_stored_messages(name: str, tmp_path: Path) -> None:
     expected, found = cases.stored(f"conversations/{name}.json"), cases.conversation(name, tmp_path)
     assert sorted(found) == sorted(expected)
     assert found["calls"] == expected["calls"]
@@ -28,45 +28,45 @@ def test_a_chat_model_is_told_what_it_was_told_before(name: str, tmp_path: Path)
         assert found[key] == value, key
 
 
-@pytest.mark.parametrize("name", tiers(cases.LOOKS, "detect"))
-def test_a_vision_model_is_asked_what_it_was_asked_before(name: str, tmp_path: Path) -> None:
-    assert cases.looks(name, tmp_path) == cases.stored("looks.json")[name]
+@pytest.mark.parametrize("name", tiers(cases.VISION_INSTRUCTIONS, "detect"))
+def test_a_vision_model_gets_the_stored_requests(name: str, tmp_path: Path) -> None:
+    assert cases.vision_requests(name, tmp_path) == cases.stored("looks.json")[name]
 
 
-def test_schemas_of_tools() -> None:
+def test_tool_schemas_are_unchanged() -> None:
     assert adapter.tool_schemas() == cases.stored("tools.json")
 
 
 @pytest.mark.parametrize("group", cases.stored("digests.json"))
-def test_bytes_of_files(group: str) -> None:
+def test_files_are_unchanged(group: str) -> None:
     expected, found = cases.stored("digests.json")[group], adapter.digests()[group]
-    # A further file, such as the next version of a prompt, changes nothing that was released.
+    # Additional files, such as a new version of a prompt, are allowed.
     assert {name: found.get(name) for name in expected} == expected
 
 
-def test_plans_of_some_instructions(tmp_path: Path) -> None:
-    rows = cases.plan_inputs()[::EVERY]
+def test_some_instructions_have_the_stored_plans(tmp_path: Path) -> None:
+    rows = cases.plan_inputs()[::SAMPLING_STEP]
     assert cases.plans(rows, tmp_path / "instructions.jsonl") == [row["plan"] for row in rows]
 
 
-def test_every_task_has_a_plan() -> None:
+def test_every_published_task_has_a_stored_plan() -> None:
     published = [(task["id"], task["instruction"]) for task in adapter.published_tasks()]
     assert [(row["task"], row["plan"]["instruction"]) for row in cases.plan_inputs()] == published
 
 
 @pytest.mark.full
-def test_plans_of_all_instructions(tmp_path: Path) -> None:
+def test_all_instructions_have_the_stored_plans(tmp_path: Path) -> None:
     rows = cases.plan_inputs()
     assert cases.plans(rows, tmp_path / "instructions.jsonl") == [row["plan"] for row in rows]
 
 
 @pytest.mark.full
-def test_the_tasks_are_proved_as_before() -> None:
+def test_validating_tasks_gives_the_stored_report() -> None:
     code, report = adapter.validate_tasks()
     assert {"code": code, "report": report} == cases.stored("validate.json")
 
 
 @pytest.mark.full
-def test_the_gold_runs_are_named_as_before() -> None:
+def test_checking_gold_runs_gives_the_stored_report() -> None:
     code, report = adapter.check_gold()
     assert {"code": code, "report": report} == cases.stored("gold.json")

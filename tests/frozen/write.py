@@ -1,4 +1,4 @@
-"""Write what today's code gives into a folder laid out as the stored data, so that the two can be compared with diff.
+"""Write the results of the current code to a folder with the layout of the stored data, to compare the two with diff.
 
 python -m tests.frozen.write /tmp/today && diff -r /tmp/today tests/frozen/v0_1_0
 """
@@ -16,18 +16,18 @@ from tests.frozen import adapter, cases
 
 
 def put(path: Path, content: Any) -> None:
-    """Write JSON in a form that diffs well."""
+    """Write JSON with sorted keys, one value per line, so that diffs are small."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(content, indent=1, ensure_ascii=False, sort_keys=True) + "\n", "utf-8")
 
 
 def write(out: Path, scratch: Path, *, slow: bool) -> None:
-    """Write all expected results; the slow ones (minutes) only when asked for."""
-    for name, made in cases.SIMPLE.items():
-        put(out / name, made())
+    """Write all results. ``slow`` includes those that take minutes."""
+    for name, function in cases.SIMPLE.items():
+        put(out / name, function())
     for name in cases.CONVERSATIONS:
         put(out / "conversations" / f"{name}.json", cases.conversation(name, scratch / name))
-    put(out / "looks.json", {name: cases.looks(name, scratch / f"look-{name}") for name in cases.LOOKS})
+    put(out / "looks.json", {name: cases.vision_requests(name, scratch / f"look-{name}") for name in cases.VISION_INSTRUCTIONS})
     for name in cases.LOG_NAMES:
         read, rescored = cases.log_read(name), cases.log_rescored(name, scratch / "logs")
         assert read["evaluation"] == rescored["evaluation"]
@@ -44,12 +44,12 @@ def write(out: Path, scratch: Path, *, slow: bool) -> None:
         put(out / "gold.json", dict(zip(("code", "report"), adapter.check_gold(), strict=True)))
         rows = cases.plan_inputs()
         plans = cases.plans(rows, scratch / "instructions.jsonl")
-        lines_out = [
+        plan_lines = [
             json.dumps({"task": row["task"], "world": row["world"], "plan": plan}, ensure_ascii=False)
             for row, plan in zip(rows, plans, strict=True)
         ]
         with (out / "plans.jsonl.gz").open("wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=0) as packed:
-            packed.write(("\n".join(lines_out) + "\n").encode())
+            packed.write(("\n".join(plan_lines) + "\n").encode())
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Cameras named ``blender:...``: scenes and .blend files that live Blender renders."""
+"""Cameras with ``blender:`` specs: scenes and .blend files rendered by live Blender."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ async def test_nothing_inside_a_file_runs(python: str, blend_file: Path, marker:
 
 
 def check_markers(python: str, blend_file: Path, marker: Path) -> None:
-    """Nothing has run so far, and all of it runs when scripts are on."""
+    """Check that no embedded script has run, and that all run when scripts are enabled."""
     assert not marker.exists()
     subprocess.run([python, "-c", OPEN_WITH_SCRIPTS, str(blend_file)], check=True, capture_output=True)
     assert "script" in marker.read_text()
@@ -139,7 +139,7 @@ def check_markers(python: str, blend_file: Path, marker: Path) -> None:
 
 
 @pytest.mark.anyio
-async def test_a_file_that_is_no_blend_file(tmp_path: Path) -> None:
+async def test_a_file_that_is_not_a_blend_file(tmp_path: Path) -> None:
     (tmp_path / "text.blend").write_text("hello")
     with pytest.raises(BlenderError, match=r"text\.blend"):
         await open_camera(f"blender:{tmp_path / 'text.blend'}")

@@ -1,4 +1,4 @@
-"""The whole machinery against real serving code: planners, eyes and a judge as tiny checkpoints behind `transformers serve`. A
+"""End-to-end evaluation with tiny checkpoints as planners, perception and judge behind `transformers serve`. A
 sweep of two pairs is killed and goes on, is judged twice and reported; another one has a server that misbehaves as scripted."""
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ pytestmark = [
 ]
 
 
-def test_a_killed_sweep_goes_on_and_keeps_what_was_finished(swept: Swept) -> None:
+def test_a_killed_sweep_resumes_and_keeps_finished_runs(swept: Swept) -> None:
     assert FINISHED_BEFORE_THE_KILL <= len(swept.finished) < len(TASKS)
     assert swept.again.code == 0, swept.again.err
     assert f"{len(swept.finished)} of {len(TASKS)} runs are done" in swept.again.out
@@ -71,7 +71,7 @@ def test_a_killed_sweep_goes_on_and_keeps_what_was_finished(swept: Swept) -> Non
     assert kept == [now[trial.sample] for trial in kept]
 
 
-def test_the_pairs_do_what_they_have_learned(swept: Swept) -> None:
+def test_the_pairs_act_as_trained(swept: Swept) -> None:
     for pair, learned in ((NOVICE, (TURNING,)), (ADEPT, (TURNING, *SHORT))):
         trials = read_evaluation(swept.logs[pair]).trials
         assert {t.task.id for t in trials if t.headline == "correct"} - {COUNTING.id} == {task.id for task in learned}
@@ -142,7 +142,7 @@ def test_the_figures_of_the_report_are_those_of_the_logs(swept: Swept, judged: J
 
 
 def assert_judged(tables: dict[str, dict[str, dict[str, str]]], pair: str, rows: Sequence[Marks]) -> None:
-    """The judge's figures: its verdicts beside the checks', and the modes that it named."""
+    """Check the judge's results in a report: its verdicts and its error modes."""
     told = tables["judge"][pair]
     assert [int(told[name]) for name in ("judged", "unparseable", "failed")] == [len(TASKS), 0, 0]
     believed = by_category(rows, [row.judge[0] == "correct" for row in rows])

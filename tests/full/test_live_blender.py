@@ -1,4 +1,4 @@
-"""Live Blender against the packs baked from it: the same pose gives the same picture, boxes and actors."""
+"""Live Blender and the packs baked from it show the same picture, boxes and actors at the same pose."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ TINY = Quality("tiny", 2048, 6, 2048, 1024, 6, 24.0, 3, 6, 10, 90, 90, check_sam
 
 
 def silent(part: str, done: int, total: int, seconds: float) -> None:
-    """No progress."""
+    """A progress callback that does nothing."""
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Eyes on tiny checkpoints, through the real loading and serving code of transformers: in process, and over HTTP."""
+"""Perception with tiny checkpoints through the loading and serving code of transformers, in process and over HTTP."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ async def opened(spec: BackendSpec) -> AsyncIterator[Perception]:
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("corner", ["top left", "bottom right"])
-async def test_a_vision_model_sees_where_a_thing_is(spec: BackendSpec, corner: str) -> None:
+async def test_a_vision_model_locates_an_object(spec: BackendSpec, corner: str) -> None:
     frame = vision.frame(corner)
     async with opened(spec) as eyes:
         (box,) = (await eyes.detect(frame, "square")).boxes
@@ -73,7 +73,7 @@ async def test_a_vision_model_sees_where_a_thing_is(spec: BackendSpec, corner: s
 
 
 @pytest.mark.anyio
-async def test_a_vision_model_says_when_there_is_nothing(spec: BackendSpec) -> None:
+async def test_a_vision_model_reports_an_absence(spec: BackendSpec) -> None:
     async with opened(spec) as eyes:
         assert (await eyes.detect(vision.frame("nowhere"), "square")).boxes == ()
         assert (await eyes.query(vision.frame("nowhere"), vision.QUESTION)).text == "No."
@@ -93,8 +93,8 @@ class TestConformance(PerceptionConformance):
     def frame(self) -> Frame:
         return vision.frame("bottom right")
 
-    async def test_absent_things_are_an_empty_list(self) -> None:
-        """The tiny model knows one thing only, so it is shown a picture without it."""
+    async def test_absent_objects_give_an_empty_list(self) -> None:
+        """The tiny model knows only one object, so the picture does not contain it."""
         async with opened(self.spec) as eyes:
             assert (await eyes.detect(vision.frame("nowhere"), self.absent)).boxes == ()
 
@@ -120,13 +120,13 @@ async def test_detections_are_in_the_frame_and_best_first(maker: str, tmp_path: 
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("maker", ["tiny_owlv2", "tiny_grounding_dino"])
-async def test_nothing_above_the_threshold_is_nothing(maker: str, tmp_path: Path) -> None:
+async def test_scores_below_the_threshold_give_no_detections(maker: str, tmp_path: Path) -> None:
     assert (await detector(maker, tmp_path, threshold=1.0).detect(vision.frame("top left"), "cone")).boxes == ()
 
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("backend", ["zero_shot", "transformers_local"])
-async def test_a_model_that_is_not_there_is_an_error(backend: str, tmp_path: Path) -> None:
+async def test_a_missing_model_is_an_error(backend: str, tmp_path: Path) -> None:
     eyes = make_backend(BackendSpec(name="eyes", backend=backend, model=str(tmp_path / "nowhere")))
     with pytest.raises(PerceptionError):
         await eyes.detect(vision.frame("top left"), "square")

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.planner.chat.planning_checks import PICTURE, TURN
+from scope_ptz.planner.chat.planning_checks import PICTURE_INSTRUCTION, TURN_INSTRUCTION
 from tests.cli.conftest import SCENE, Scope
 from tests.full.serving import transformers_serve
 from tests.support.misbehaving import Misbehaving, Request, Say, good
@@ -26,21 +26,21 @@ GREETING = "Say hello."
 COUNT = "how many balls are visible?"
 SQUARE = "Is there a square?"
 TOOL_CALLS: dict[str, tuple[str, dict[str, Any]]] = {
-    PICTURE: ("take_image", {}),
-    TURN: ("adjust_ptz", {"pan_deg": 20}),
+    PICTURE_INSTRUCTION: ("take_image", {}),
+    TURN_INSTRUCTION: ("adjust_ptz", {"pan_deg": 20}),
     COUNT: ("count_objects", {"description": "balls", "view": "current"}),
     SQUARE: ("query_answer", {"question": SQUARE, "view": "current"}),
 }
 ANSWERS = {
-    PICTURE: "The picture is saved.",
-    TURN: "The camera has turned.",
+    PICTURE_INSTRUCTION: "The picture is saved.",
+    TURN_INSTRUCTION: "The camera has turned.",
     COUNT: "I counted the balls.",
     SQUARE: "I looked for it.",
 }
 
 
 def teacher(request: Request) -> Say:
-    """What the tiny planner shall learn to say."""
+    """Return the reply that the tiny planner is trained to give."""
     messages = request.data["messages"]
     asked = next(q for q in (*TOOL_CALLS, GREETING) if any(q in str(m["content"]) for m in messages if m["role"] == "user"))
     if asked == GREETING:
@@ -52,7 +52,7 @@ def teacher(request: Request) -> Say:
 
 @dataclass(frozen=True)
 class Served:
-    """A checkpoint behind `transformers serve`: the server is pinned to it and knows it by its folder."""
+    """A checkpoint behind `transformers serve`, which serves only this model under the name of its folder."""
 
     url: str
     model: str
@@ -60,7 +60,7 @@ class Served:
 
 @pytest.fixture(scope="session")
 def planner_server(tmp_path_factory: pytest.TempPathFactory, scenes: Path) -> Iterator[Served]:
-    """A Qwen3 that has learned the very prompts that the program sends."""
+    """A server with a Qwen3 model that is trained on the prompts of the program."""
     from tests.full.tiny_models import tiny_planner
 
     folder = tmp_path_factory.mktemp("tiny")
@@ -70,7 +70,7 @@ def planner_server(tmp_path_factory: pytest.TempPathFactory, scenes: Path) -> It
 
 
 def _lessons(folder: Path, scenes: Path) -> Sequence[Any]:
-    """A rehearsal against a stand-in: what the program sends, and what was answered."""
+    """Run the program with a scripted server and return its requests with the replies."""
     import os
     import subprocess
     import sys
@@ -85,7 +85,7 @@ def _lessons(folder: Path, scenes: Path) -> Sequence[Any]:
 
 
 def lesson_of(request: Request, said: Say) -> Any:
-    """A request of a rehearsal and what a model shall learn to answer."""
+    """Return a recorded request and the reply to train, as a lesson."""
     from tests.full.tiny_models import Lesson
 
     calls = (f"<tool_call>\n{json.dumps({'name': n, 'arguments': a})}\n</tool_call>" for n, a in said.tool_calls)
@@ -118,7 +118,7 @@ def test_the_server_passes_the_checks_of_doctor(scope: Scope, planner_server: Se
     assert set(verdicts.values()) == {"ok"}
 
 
-def test_a_wrong_name_is_told_by_the_real_server(scope: Scope, planner_server: Served) -> None:
+def test_a_wrong_model_name_is_reported_by_the_real_server(scope: Scope, planner_server: Served) -> None:
     done = scope("ask", COUNT, "--scene", SCENE, "--json", "--planner-url", planner_server.url, "--planner-model", "another")
     assert (done.code, done.json["outcome"]) == (1, "planner_error")
     assert "pinned" in done.json["answer"]
@@ -126,7 +126,7 @@ def test_a_wrong_name_is_told_by_the_real_server(scope: Scope, planner_server: S
 
 def test_the_profile_of_a_served_checkpoint(scope: Scope, planner_server: Served, tmp_path: Path) -> None:
     file = tmp_path / "one.jsonl"
-    file.write_text(json.dumps({"instruction": TURN, "calls": [{"name": "adjust_ptz", "arguments": {"pan_deg": 20}}]}))
+    file.write_text(json.dumps({"instruction": TURN_INSTRUCTION, "calls": [{"name": "adjust_ptz", "arguments": {"pan_deg": 20}}]}))
     done = scope(
         "profile", "--json", "--planner-url", planner_server.url, "--planner-model", planner_server.model,
         "--instructions", str(file),
@@ -138,7 +138,7 @@ def test_the_profile_of_a_served_checkpoint(scope: Scope, planner_server: Served
 
 @pytest.fixture(scope="session")
 def eyes_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A vision model that has learned the very prompts that the eyes send."""
+    """A server with a vision model that is trained on the prompts of perception."""
     from tests.full import vision
 
     folder = tmp_path_factory.mktemp("eyes")
@@ -158,7 +158,7 @@ models:
 """
 
 
-def test_planner_eyes_and_detector_are_all_checkpoints(
+def test_planner_perception_and_detector_are_checkpoints(
     scope: Scope, planner_server: Served, eyes_server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from tests.full.tiny_eyes import tiny_owlv2

@@ -1,4 +1,4 @@
-"""Pixels to directions and back, for any pose: exact, and with the signs that operators expect."""
+"""Conversion between pixels and directions for any pose, with the sign conventions of operators."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_right_is_right_and_up_is_up(pan: float, tilt: float, by_deg: float) -> 
 
 
 @given(views)
-def test_what_is_behind_has_no_pixel(view: Perspective) -> None:
+def test_points_behind_the_camera_have_no_pixel(view: Perspective) -> None:
     assert np.isnan(view.points(-view.directions((0.5, 0.5)))).all()
 
 
@@ -89,13 +89,13 @@ def test_panorama_pixel_to_direction_and_back(left: float, span: float, x: float
     assert (px - x) * span == pytest.approx(0, abs=1e-6) or abs((px - x) * span) == pytest.approx(360, abs=1e-6)
 
 
-def test_panorama_reads_clockwise_from_its_left_edge() -> None:
+def test_panorama_columns_run_clockwise_from_the_left_edge() -> None:
     panorama = Equirectangular(-180.0, 360.0, 90.0, -90.0, 360, 180)
     np.testing.assert_allclose(panorama.points(direction([-90.0, 0.0, 90.0], 0.0))[:, 0], [0.25, 0.5, 0.75])
 
 
 @given(zooms, zooms)
-def test_more_zoom_is_a_narrower_field(a: float, b: float) -> None:
+def test_more_zoom_is_a_narrower_field_of_view(a: float, b: float) -> None:
     if a < b:
         assert AXIS_M5075_G.hfov_deg(a) > AXIS_M5075_G.hfov_deg(b) or b - a < 1e-9
 
@@ -105,7 +105,7 @@ def test_zoom_to_field_and_back(zoom: float) -> None:
     assert AXIS_M5075_G.zoom_for_hfov(AXIS_M5075_G.hfov_deg(zoom)) == pytest.approx(zoom, abs=1e-6)
 
 
-def test_the_zoom_table_has_the_data_sheets_ends() -> None:
+def test_the_zoom_table_ends_at_the_values_of_the_data_sheet() -> None:
     assert AXIS_M5075_G.hfov_deg(1.0) == pytest.approx(71.0)
     assert AXIS_M5075_G.hfov_deg(5.0) == pytest.approx(14.0)
     assert AXIS_M5075_G.hfov_deg(0.1) == pytest.approx(71.0)
@@ -121,7 +121,7 @@ def test_a_zoom_table_out_of_order_is_refused(table: tuple[tuple[float, float], 
 
 
 @given(st.floats(-1000, 1000), st.floats(-1000, 1000), st.floats(0.01, 100), st.booleans())
-def test_clamping_ends_within_limits_and_names_what_it_cut(pan: float, tilt: float, zoom: float, endless: bool) -> None:
+def test_clamping_respects_limits_and_names_the_clamped_axes(pan: float, tilt: float, zoom: float, endless: bool) -> None:
     limits = Limits(pan_endless=endless)
     wanted = Pose(pan, tilt, zoom)
     got, cut = limits.clamp(wanted)
@@ -143,6 +143,6 @@ def test_aiming_takes_the_turn_that_the_stops_allow(pan: float) -> None:
 
 
 @pytest.mark.parametrize("bad", [(math.nan, 0, 1), (0, math.inf, 1), (0, 0, 0), (0, 0, -2)])
-def test_a_pose_that_is_none_is_refused(bad: tuple[float, float, float]) -> None:
+def test_an_invalid_pose_is_refused(bad: tuple[float, float, float]) -> None:
     with pytest.raises(ValueError, match=r"finite|positive"):
         Pose(*bad)

@@ -117,7 +117,7 @@ async def test_noise_depends_on_the_seed_and_nothing_else() -> None:
 
 
 @pytest.mark.anyio
-async def test_small_things_are_missed_more_often() -> None:
+async def test_small_objects_are_missed_more_often() -> None:
     async def found(description: str) -> int:
         return sum([len((await NoisyPerception(ground_truth(), n).detect(yard.frame(), description)).boxes) for n in range(60)])
 
@@ -126,7 +126,7 @@ async def test_small_things_are_missed_more_often() -> None:
 
 
 @pytest.mark.anyio
-async def test_noise_duplicates_things_and_misreads_texts() -> None:
+async def test_noise_duplicates_objects_and_misreads_texts() -> None:
     bad = Noise(miss=0.0, duplicate=1.0, misread=1.0)
     eyes = NoisyPerception(ground_truth(), seed=1, noise=bad)
     assert len((await eyes.detect(yard.frame(), "excavator")).boxes) == 2

@@ -132,7 +132,7 @@ def test_invalid_places_are_dropped_and_counted() -> None:
         assert what in found.notes[0]
 
 
-def test_a_thing_without_a_place_makes_the_result_incomplete() -> None:
+def test_an_object_without_a_place_makes_the_result_incomplete() -> None:
     cone, lost = RawThing((10, 10, 500, 500)), RawThing((math.nan, 0, 5, 5))
     assert not located([cone, lost], convention("thousand"), SENT).complete
     assert not located([cone, RawThing(())], convention("thousand"), SENT).complete
@@ -147,7 +147,7 @@ def test_a_reply_without_any_valid_place_is_an_error(numbers: tuple[float, ...])
     assert caught.value.kind == "malformed"
 
 
-def test_too_many_things_are_truncated_and_incomplete() -> None:
+def test_too_many_objects_are_truncated_and_incomplete() -> None:
     found = located([RawThing((x, y)) for x in range(0, 1000, 40) for y in range(0, 1000, 50)], convention("thousand"), SENT)
     assert len(found.points) == MAX_THINGS and not found.complete
     assert "500 things" in found.notes[-1]

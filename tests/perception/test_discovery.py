@@ -1,4 +1,4 @@
-"""A backend is one file, in the package or in anybody's own."""
+"""A backend is one file, in the package or in an installed plug-in."""
 
 from __future__ import annotations
 

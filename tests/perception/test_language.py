@@ -1,4 +1,4 @@
-"""Descriptions and questions about the yard: the things found, and the answers."""
+"""Descriptions and questions about the synthetic yard: the objects found, and the answers."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_question(question: str, expected: str) -> None:
         ("golden van on a lead", "golden van on a lead"),
     ],
 )
-def test_things_are_found_by_their_full_name(name: str, asked: str) -> None:
+def test_objects_are_found_by_their_full_name(name: str, asked: str) -> None:
     truth = yard.truth()
     named = [
         replace(s, instance=s.instance.model_copy(update={"name": name})) if s.instance.id == "van-01" else s
@@ -53,7 +53,7 @@ def test_things_are_found_by_their_full_name(name: str, asked: str) -> None:
 
 
 @pytest.mark.parametrize("absent", yard.ABSENT)
-def test_things_that_the_scene_lists_as_absent_are_not_found(absent: str) -> None:
+def test_objects_that_the_scene_lists_as_absent_are_not_found(absent: str) -> None:
     assert find(VIEW, parse_description(absent)) == []
     assert answer(VIEW, parse_question(f"is there a {absent}?")) == (f"No, there is no {absent} in view.", True)
     assert answer(VIEW, parse_question(f"how many {absent}s are there?"))[0].startswith("There are 0 ")

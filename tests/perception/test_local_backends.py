@@ -26,7 +26,7 @@ def found(score: float, *box: float, label: str = "thing") -> dict[str, Any]:
 
 
 def detector(image: Image, phrase: str) -> zero_shot.Found:
-    """Sees the same thing three times, once beyond the border, once barely."""
+    """A detector that finds the same object three times, once beyond the border and once with a low score."""
     if "unicorn" in phrase:
         return []
     return [
@@ -68,7 +68,7 @@ async def test_a_failing_detector_is_an_error(error: Exception) -> None:
 
 
 class Moondream:
-    """What Moondream's own code gives a loaded model."""
+    """The methods of a loaded Moondream model."""
 
     def caption(self, image: Any, length: str) -> dict[str, str]:
         return {"caption": f"A {length} look at {image.size[0]} pixels."}
@@ -94,7 +94,7 @@ class TestMoondreamInProcess(PerceptionConformance):
 
 
 def chat(image: Image, prompt: str) -> tuple[str, bool]:
-    """A Qwen2.5-VL: pixels of the picture that it was given."""
+    """A Qwen2.5-VL model, which answers in pixels of the resized picture."""
     height, width = image.shape[:2]
     if "unicorn" in prompt:
         return "[]", False

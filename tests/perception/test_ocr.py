@@ -68,7 +68,7 @@ async def test_a_wall_without_text_gives_no_texts_and_no_answer(eyes: Perception
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("description", ["traffic cone", "cars", "sign"])
-async def test_descriptions_of_other_things_are_errors(eyes: Perception, description: str) -> None:
+async def test_descriptions_of_other_objects_are_errors(eyes: Perception, description: str) -> None:
     for look in (eyes.detect, eyes.point):
         with pytest.raises(PerceptionError, match="only finds text"):
             await look(BOARD, description)
@@ -99,7 +99,7 @@ async def test_a_frame_is_read_once() -> None:
 
 @pytest.mark.anyio
 async def test_panoramas_are_read_in_parts_without_duplicates() -> None:
-    """A reader that reads one bright column where there is one."""
+    """A reader that finds one text where a column is bright."""
 
     def reader(image: Image) -> list[ocr.Line]:
         columns = np.flatnonzero(image[:, :, 0].max(axis=0) > 200)

@@ -1,4 +1,4 @@
-"""What models write when they are asked for places or answers, and what becomes of it."""
+"""Parsing of model replies to requests for places and answers."""
 
 from __future__ import annotations
 

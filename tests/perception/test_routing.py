@@ -1,4 +1,4 @@
-"""Which backend is asked, which one replaces a failed one, and how far two agree."""
+"""Routing between backends, replacement of failed backends, and agreement of two backends."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.perception import pictures
 
 
 class Stand(Perception):
-    """Eyes that give what they were told to, and remember what they were asked."""
+    """Perception with fixed results that records its requests."""
 
     def __init__(
         self,
@@ -158,7 +158,7 @@ async def test_the_model_answers_when_the_reader_finds_no_text() -> None:
 
 
 @pytest.mark.anyio
-async def test_only_text_on_the_named_thing_is_read() -> None:
+async def test_only_text_on_the_named_object_is_read() -> None:
     ocr = Stand("ocr", text="everything", boxes=(box(0.15, 0.1, "EXIT"), box(0.6, 0.6, "CAFE")))
     owl = Stand("owl", FINDS, boxes=(Box(x_min=0.1, y_min=0.0, x_max=0.4, y_max=0.4),))
     eyes = RouterPerception(reader=ocr, detector=owl, answerer=Stand("vlm", text="The sign says exit."))

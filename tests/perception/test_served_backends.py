@@ -1,4 +1,4 @@
-"""Moondream and OpenAI-compatible vision models behind a real HTTP server, well and badly behaved."""
+"""Moondream and OpenAI-compatible vision models behind HTTP servers, including misbehaving ones."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ async def opened(url: str, backend: str, **more: Any) -> AsyncIterator[Perceptio
 
 
 def reply(backend: str, things: Any) -> Behaviour:
-    """Both servers naming the same things, on detect and on point."""
+    """Return replies in both formats with the same objects, for detect and point."""
     if backend == "moondream":
         return bad.good(moondream={"detect": {"objects": things}, "point": {"points": things}})
     return bad.say(json.dumps(things))
@@ -66,7 +66,7 @@ def sent_image(request: Request) -> Any:
 
 
 def chat_mind(style: str) -> Any:
-    """A model that sees an orange square in the second eighth of any picture, and writes in a convention."""
+    """A model that finds an orange square in the second eighth of any picture and replies in one coordinate convention."""
     box = (0.25, 0.25, 0.5, 0.5)
     there = convention(style)
 
@@ -222,7 +222,7 @@ async def test_a_wrong_model_name_does_not_drop_the_schema() -> None:
 
 @pytest.mark.anyio
 async def test_fields_that_a_server_names_are_left_out() -> None:
-    """A hosted model that wants another token limit and no temperature, and a server that knows no template arguments."""
+    """A hosted model with another token limit field and no temperature, and a server without template arguments."""
     refusals = [
         bad.status(400, "Unsupported parameter: 'max_tokens'. Use 'max_completion_tokens' instead."),
         bad.status(400, "'temperature' does not support 0.0 with this model."),

@@ -1,10 +1,10 @@
-"""Which questions are answered by reading, and what of."""
+"""Which questions are answered by reading text, and from which objects."""
 
 from __future__ import annotations
 
 import pytest
 
-from scope_ptz.perception.models.text_requests import is_reading, likeness, reading_target, text_fits, wanted_texts
+from scope_ptz.perception.models.text_requests import is_reading, reading_target, requested_texts, similarity, text_fits
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def test_questions_that_are_not_only_about_reading(question: str) -> None:
     ],
 )
 def test_texts_that_a_description_names(description: str, wanted: tuple[str, ...] | None) -> None:
-    assert wanted_texts(description) == wanted
+    assert requested_texts(description) == wanted
 
 
 @pytest.mark.parametrize(
@@ -87,6 +87,6 @@ def test_texts_match_despite_ocr_mistakes(wanted: str, line: str, fits: bool) ->
     assert text_fits(wanted, line) is fits
 
 
-def test_likeness_is_between_zero_and_one() -> None:
-    assert likeness("EXIT 14", "exit-14") == 1.0
-    assert likeness("", "") == 0.0
+def test_similarity_is_between_zero_and_one() -> None:
+    assert similarity("EXIT 14", "exit-14") == 1.0
+    assert similarity("", "") == 0.0

@@ -1,4 +1,4 @@
-"""Panoramas in parts: everything is found once, small things at the resolution of a frame."""
+"""Tiled panoramas: every object is found once, at the resolution of a frame."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HEIGHT, WIDTH = 200, 1600
 
 
 class Blobs(Perception):
-    """Finds white blobs in whatever it is shown, as boxes cut where the picture ends."""
+    """Perception that finds white blobs as boxes clipped at the edges of the picture."""
 
     name = "blobs"
 
@@ -99,7 +99,7 @@ def test_tiles_cover_the_picture_and_overlap(width: int, height: int) -> None:
     ],
     ids=["apart", "in an overlap", "across a border", "across all", "at the end", "neighbours", "none"],
 )
-async def test_things_in_a_panorama_are_found_once_at_their_place(spans: list[tuple[int, int]]) -> None:
+async def test_objects_in_a_panorama_are_found_once_at_their_place(spans: list[tuple[int, int]]) -> None:
     eyes = TiledPerception(Blobs())
     found = await eyes.detect(panorama(*spans), "blob")
     seen = sorted((b.x_min * WIDTH, b.x_max * WIDTH) for b in found.boxes)
@@ -130,7 +130,7 @@ async def test_a_failing_part_fails_the_call() -> None:
 
 
 @pytest.mark.anyio
-async def test_a_thing_at_the_seam_of_a_full_turn_is_one_thing() -> None:
+async def test_an_object_at_the_seam_of_a_full_turn_is_one_object() -> None:
     spans = [(0, 30), (1580, WIDTH), (700, 720)]
     around = await TiledPerception(Blobs()).detect(panorama(*spans, full_turn=True), "blob")
     assert len(around.boxes) == 2

@@ -1,4 +1,4 @@
-"""From replies to decisions: several calls, broken calls, endings, cut replies; families and what servers refuse."""
+"""From replies to decisions: several calls, invalid calls, final answers, truncated replies, model families, and refused fields."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.planner.base import CallTools, Finish
 from scope_ptz.planner.chat import ChatOptions, prompt_names
 from scope_ptz.planner.chat.dialect import Dialect
 from scope_ptz.planner.chat.families import family_of, likely_server, switch_for, temperature_for
-from scope_ptz.planner.chat.interpret import MOST_CALLS, decide
+from scope_ptz.planner.chat.interpret import MAX_CALLS, decide
 from scope_ptz.planner.chat.schemas import plain_schemas
 from scope_ptz.tools.registry import schemas
 from tests.planner.test_chat_messages import exchanges, state
@@ -31,7 +31,7 @@ def finish(text: str, steps: int = 0, **fields: Any) -> tuple[str, str]:
     return decision.kind, decision.text
 
 
-def test_several_native_calls_with_words_beside_them() -> None:
+def test_several_native_calls_with_text() -> None:
     given = reply(
         "I turn.", ("a", "adjust_ptz", '{"pan_deg": 20}'), ("b", "go_home", ""), input_tokens=9, cached_tokens=4, reasoning="hm"
     )
@@ -86,7 +86,7 @@ def test_the_number_of_calls_is_limited() -> None:
     many = [(f"c{n}", "go_home", "{}") for n in range(500)]
     decision = decide(reply("", *many), state())
     assert isinstance(decision, CallTools)
-    assert len(decision.calls) == MOST_CALLS + 1
+    assert len(decision.calls) == MAX_CALLS + 1
     assert [c.problem is None for c in decision.calls[-2:]] == [True, False]
 
 
@@ -189,21 +189,21 @@ def test_refused_fields_are_not_sent_again() -> None:
     wanted = {"temperature": 0.0, "seed": None, "max_tokens": 9, "chat_template_kwargs": {"enable_thinking": False}}
     sent = dialect.fields(wanted)
     assert "seed" not in sent
-    assert dialect.learn(refusal("Unexpected keys in the request: {'chat_template_kwargs'}"), sent, with_tools=True)
-    assert dialect.learn(refusal("'max_tokens' is not supported; use 'max_completion_tokens'"), sent, with_tools=True)
+    assert dialect.adapt(refusal("Unexpected keys in the request: {'chat_template_kwargs'}"), sent, with_tools=True)
+    assert dialect.adapt(refusal("'max_tokens' is not supported; use 'max_completion_tokens'"), sent, with_tools=True)
     assert dialect.fields(wanted) == {"temperature": 0.0, "max_completion_tokens": 9}
-    assert dialect.learn(refusal("Unsupported value: 'temperature'"), sent, with_tools=True)
-    assert dialect.learn(refusal('"auto" tool choice requires --enable-auto-tool-choice'), sent, with_tools=True)
+    assert dialect.adapt(refusal("Unsupported value: 'temperature'"), sent, with_tools=True)
+    assert dialect.adapt(refusal('"auto" tool choice requires --enable-auto-tool-choice'), sent, with_tools=True)
     assert dialect.notation == "text"
-    assert Dialect("native", fixed=False).learn(refusal("Conversation roles must alternate user/assistant"), {}, with_tools=True)
-    assert dialect.learn(refusal("System role not supported"), sent, with_tools=False)
+    assert Dialect("native", fixed=False).adapt(refusal("Conversation roles must alternate user/assistant"), {}, with_tools=True)
+    assert dialect.adapt(refusal("System role not supported"), sent, with_tools=False)
     assert [m["role"] for m in dialect.messages([{"role": "system", "content": "a"}, {"role": "user", "content": "b"}])] == ["user"]
-    assert not dialect.learn(refusal("something else"), {}, with_tools=False)
-    assert not dialect.learn(refusal("tools", FailureKind.REFUSED), {}, with_tools=True)
+    assert not dialect.adapt(refusal("something else"), {}, with_tools=False)
+    assert not dialect.adapt(refusal("tools", FailureKind.REFUSED), {}, with_tools=True)
 
 
 def test_a_chosen_notation_is_kept() -> None:
-    assert not Dialect("native", fixed=True).learn(refusal("tools are not supported"), {}, with_tools=True)
+    assert not Dialect("native", fixed=True).adapt(refusal("tools are not supported"), {}, with_tools=True)
 
 
 def test_every_option_is_documented() -> None:

@@ -1,4 +1,4 @@
-"""The whole agent with a chat planner, over HTTP: streaming and not, against a server that answers well or as it should not."""
+"""The agent with a chat planner over HTTP, streaming and not, with valid and invalid replies."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ async def ask(
 
 
 def by_steps(*says: Say) -> Behaviour:
-    """A mind that goes by how often the model has spoken, so that it does not matter how often it is asked."""
+    """A scripted model that depends on the number of its earlier messages, so that retries do not matter."""
 
     def mind(request: Request) -> Say:
         spoken = [message["role"] for message in request.data["messages"]].count("assistant")
@@ -183,7 +183,7 @@ OVERFLOW = status(400, "This model's maximum context length is 4096 tokens. Plea
 
 
 def small_window(chars: int, behaviour: Behaviour) -> Behaviour:
-    """A server whose model holds so many characters of messages."""
+    """A server whose model accepts this many characters of messages."""
 
     async def behave(x: Any) -> None:
         await (OVERFLOW if len(json.dumps(x.request.data["messages"])) > chars else behaviour)(x)
@@ -224,7 +224,7 @@ async def test_a_known_context_size_avoids_failing_requests(monkeypatch: pytest.
 
 
 @pytest.mark.parametrize("stream", [True, False])
-async def test_a_planner_that_sees(stream: bool) -> None:
+async def test_a_planner_with_vision(stream: bool) -> None:
     records: list[Any] = []
     mind = by_steps(Say(tool_calls=(("take_image", {}),)), Say(tool_calls=(TURN,)), Say("A grey wall."))
     with Misbehaving(then=mind) as server:
@@ -249,7 +249,7 @@ async def test_a_planner_that_sees(stream: bool) -> None:
         (Say("Es sind vier Kegel."), "answered"),
     ],
 )
-async def test_endings_are_outcomes(reply: Say, outcome: str) -> None:
+async def test_final_replies_are_outcomes(reply: Say, outcome: str) -> None:
     with Misbehaving(then=good(reply)) as server:
         run = await ask(server.url)
     assert run.ended.outcome == outcome

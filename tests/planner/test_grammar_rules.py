@@ -11,4 +11,4 @@ def test_the_compiled_rules_are_up_to_date() -> None:
 
 def test_rules_survive_being_written() -> None:
     for rule in load_rules():
-        assert Rule.read(str(rule)) == rule
+        assert Rule.from_line(str(rule)) == rule

@@ -1,4 +1,4 @@
-"""Instructions as operators say them, written apart from the grammar. The held-out tenth is reported on its own."""
+"""Instructions of operators, written independently of the grammar. The held-out tenth is reported separately."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _plain(text: str) -> str:
 
 
 def same_value(wanted: Any, got: Any) -> bool:
-    """Numbers within a hundredth or so; texts by their words; ``{"contains": [...]}`` by all of its words."""
+    """Compare numbers within about 0.01, texts by their words, and ``{"contains": [...]}`` by all of its words."""
     if isinstance(wanted, dict):
         return isinstance(got, str) and all(_plain(part) in _plain(got) for part in wanted["contains"])
     if isinstance(wanted, str):

@@ -1,4 +1,4 @@
-"""What operators, guards and newcomers say to the camera of ``highway-works``, call by call: typed, spoken, polite, impossible."""
+"""Instructions for ``highway-works`` (typed, spoken, polite, impossible) and the expected calls."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outlines of plans: what repeats, until when, at most how often, and what depends on a condition."""
+"""Outlines of plans: loops with their ends and limits, and conditions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scope_ptz.planner.plan import plan
 
 
 def lines(block: OutlineBlock, depth: int = 0) -> list[str]:
-    """The outline as indented text."""
+    """Return the outline as indented lines."""
     found = []
     for line in block.lines:
         if isinstance(line, OutlineCall):
@@ -61,6 +61,6 @@ def test_what_is_not_understood_has_no_outline() -> None:
     assert plan("florp the wibble").outline.lines == []
 
 
-def test_an_outline_is_cut_off() -> None:
+def test_a_long_outline_is_truncated() -> None:
     repeated = plan(" and ".join(["take 2 photos"] * 10)).outline
     assert 0 < len(lines(repeated)) < 50

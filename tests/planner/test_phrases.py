@@ -1,4 +1,4 @@
-"""Phrasings that once went wrong, and wishes that must never become a move."""
+"""Phrasings that were once misunderstood, and instructions that must never cause a move."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How steadily planners choose: the measurement itself, on planners whose faults are known."""
+"""Prompt sensitivity of planners: the measurement, applied to planners with known faults."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TURN = InstructionRow(instruction="pan left 20", kind="move", calls=(FirstCall(n
 
 
 class Altered(Planner):
-    """The grammar, with its calls changed in some way."""
+    """The grammar planner with modified calls."""
 
     name = "altered"
 

@@ -1,10 +1,10 @@
-"""Reasoning is parted from answers in every form in which servers leave it."""
+"""Reasoning is separated from answers in all formats of servers."""
 
 from __future__ import annotations
 
 import pytest
 
-from scope_ptz.planner.chat.reasoning_text import part
+from scope_ptz.planner.chat.reasoning_text import separate_reasoning
 
 CALL = '<tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
 
@@ -33,10 +33,10 @@ CALL = '<tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
     ],
 )
 def test_reasoning_is_separated_from_text(text: str, answer: str, reasoning: str) -> None:
-    parted = part(text)
+    parted = separate_reasoning(text)
     assert (parted.text, parted.reasoning) == (answer, reasoning)
 
 
-def test_the_servers_own_field_comes_first() -> None:
-    parted = part("<think>b</think>Yes.", "a")
+def test_the_reasoning_field_of_the_server_takes_precedence() -> None:
+    parted = separate_reasoning("<think>b</think>Yes.", "a")
     assert (parted.text, parted.reasoning) == ("Yes.", "a\n\nb")

@@ -1,4 +1,4 @@
-"""Phrasings of many registers (terse, radio, polite, written reports, slips, speech without punctuation), call by call."""
+"""Phrasings in many registers (terse, radio, polite, reports, typing errors, speech) and the expected calls."""
 
 from __future__ import annotations
 

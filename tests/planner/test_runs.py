@@ -1,4 +1,4 @@
-"""What the planner does with results: loops, conditions, failures, and answers that say only what was seen."""
+"""How the planner uses results: loops, conditions, failures, and answers based only on observations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def test_the_demo_counts_pans_and_answers() -> None:
     assert "ground truth" in finish.text
 
 
-def test_a_loop_that_is_never_met_ends_honestly() -> None:
+def test_a_loop_whose_condition_is_never_met_reports_that() -> None:
     stage = Stage([1, 3, 2])
     finish = stage.run("pan right in 20 degree steps until you see six cones, at most 4 times")
     assert names(stage).count("adjust_ptz") == 4
@@ -35,7 +35,7 @@ def test_a_loop_stops_at_the_limit() -> None:
     assert names(stage).count("adjust_ptz") == 2
 
 
-def test_a_loop_covers_the_range_once_when_nothing_is_said() -> None:
+def test_a_loop_without_a_limit_covers_the_range_once() -> None:
     stage = Stage([0], pose=Pose(pan_deg=-179))
     stage.run("keep panning right 30 degrees until you see a bus")
     assert names(stage).count("adjust_ptz") == 12
@@ -70,7 +70,7 @@ def test_if_so_follows_the_answer() -> None:
     assert names(no) == ["query_answer"]
 
 
-def test_an_unknown_answer_is_no_yes() -> None:
+def test_an_unknown_answer_does_not_count_as_yes() -> None:
     stage = Stage([{"answer": "It is hidden.", "known": False}])
     finish = stage.run("if the door is open, take a picture")
     assert names(stage) == ["query_answer"]
@@ -126,7 +126,7 @@ def test_coming_back_undoes_the_moves() -> None:
     assert stage.calls[-1] == ("adjust_ptz", {"pan_deg": -40, "zoom_factor": 0.5})
 
 
-def test_going_back_from_a_thing_uses_the_difference_of_the_poses() -> None:
+def test_going_back_from_an_object_uses_the_difference_of_the_poses() -> None:
     stage = Stage([True], pose=Pose(10, 0, 1), lands=Pose(42, -6, 4))
     stage.run("find the blue van and then go back to where you were")
     assert stage.calls[-1] == ("adjust_ptz", {"pan_deg": -32, "tilt_deg": 6, "zoom_factor": 0.25})

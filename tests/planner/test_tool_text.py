@@ -1,4 +1,4 @@
-"""Calls that servers return as text, in the notations of model families, and texts that only look like calls."""
+"""Tool calls in text, in the notations of model families, and texts that only look like calls."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scope_ptz.planner.chat.reasoning_text import part
+from scope_ptz.planner.chat.reasoning_text import separate_reasoning
 from scope_ptz.planner.chat.tool_text import find_calls
-from scope_ptz.planner.chat.written import Signatures, WrittenCall, read_arguments
+from scope_ptz.planner.chat.written_calls import Signatures, WrittenCall, read_arguments
 from scope_ptz.tools.registry import schemas
 
 TOOLS = Signatures.of(schemas())
@@ -183,7 +183,7 @@ def test_arguments_of_any_text_are_an_object(text: str) -> None:
 )
 def test_megabytes_of_marks_are_read(mark: str) -> None:
     """Quadratic parsing would not finish."""
-    parted = part("<tool_call>" + mark * 50_000)
+    parted = separate_reasoning("<tool_call>" + mark * 50_000)
     find_calls(parted.text, TOOLS)
     find_calls(mark * 50_000, TOOLS)
-    part(mark * 50_000)
+    separate_reasoning(mark * 50_000)

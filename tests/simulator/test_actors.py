@@ -1,4 +1,4 @@
-"""Moving things, set into the still world, against exact ray-casts with the thing in place."""
+"""Moving actors in rendered views, compared with exact ray casts."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_actor_is_in_the_truth_while_it_is_in_the_scene(analytic_scene: Scene) -
     assert "roller-50" not in visible(8.0)
 
 
-def test_whereabouts_follow_the_waypoints() -> None:
+def test_positions_follow_the_waypoints() -> None:
     actor = SceneActor(
         id="a",
         number=1,
@@ -111,7 +111,7 @@ def test_a_walker_shows_the_phase_of_its_stride(analytic_scene: Scene) -> None:
     assert phases == [0.0, 0.25, 0.5, 0.75, 0.0, 0.0]
 
 
-def test_a_soft_shadow_darkens_the_ground_and_is_no_part_of_the_actor(analytic_scene: Scene) -> None:
+def test_a_soft_shadow_darkens_the_ground_and_is_not_part_of_the_actor(analytic_scene: Scene) -> None:
     scene = Scene(analytic_scene.folder)
     viewpoint = scene.viewpoint("mast")
     view = _view(0.0, -8.0, 1.0)

@@ -1,4 +1,4 @@
-"""Scene time: instant in evaluation, the wall clock's while watched, standing still while held."""
+"""Scene time: no waiting in evaluation, wall-clock time while watched, and no progress while held."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_ptz.simulator.clock import SceneClock
 pytestmark = pytest.mark.anyio
 
 
-async def test_in_evaluation_time_is_what_was_slept() -> None:
+async def test_in_evaluation_time_advances_by_the_slept_durations() -> None:
     clock = SceneClock(5.0)
     began = time.monotonic()
     await clock.sleep(1000.0)
@@ -21,14 +21,14 @@ async def test_in_evaluation_time_is_what_was_slept() -> None:
     assert time.monotonic() - began < 1.0
 
 
-async def test_watched_it_follows_the_wall_clock() -> None:
+async def test_while_watched_time_follows_the_wall_clock() -> None:
     clock = SceneClock(5.0, realtime=True)
     await clock.sleep(0.1)
     assert 5.1 <= clock.now_s() < 6.0
 
 
 @pytest.mark.parametrize("realtime", [False, True])
-async def test_held_time_stands_still_and_goes_on_from_there(realtime: bool) -> None:
+async def test_held_time_stops_and_continues_from_there(realtime: bool) -> None:
     clock = SceneClock(2.0, realtime=realtime)
     await clock.sleep(0.05)
     with clock.hold():

@@ -1,4 +1,4 @@
-"""Many scenes in use: each opened once, and only so many viewpoints kept."""
+"""The scene library: each scene is opened once, and the number of loaded viewpoints is limited."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_a_scene_is_opened_once_and_its_variations_share_its_viewpoints(root: Pa
     assert varied.viewpoint(name) is scene.viewpoint(name)
 
 
-def test_the_least_recently_used_viewpoint_is_let_go_of(root: Path) -> None:
+def test_the_least_recently_used_viewpoint_is_released(root: Path) -> None:
     library = Library([root], open_viewpoints=1)
     scene = library("analytic-yard")
     first, second = (viewpoint.name for viewpoint in scene.file.viewpoints[:2])
@@ -41,7 +41,7 @@ def test_the_least_recently_used_viewpoint_is_let_go_of(root: Path) -> None:
     assert again.manifest == held.manifest
 
 
-def test_what_is_let_go_of_is_gone_at_once(root: Path) -> None:
+def test_released_memory_is_freed_immediately(root: Path) -> None:
     scene = Library([root], open_viewpoints=1)("analytic-yard")
     first, second = (viewpoint.name for viewpoint in scene.file.viewpoints[:2])
     picture(scene, first, Perspective(0.0, -8.0, 71.0, 64, 36), 0.0)
@@ -54,7 +54,7 @@ def test_what_is_let_go_of_is_gone_at_once(root: Path) -> None:
         gc.enable()
 
 
-def test_no_such_scene(root: Path) -> None:
+def test_an_unknown_scene(root: Path) -> None:
     for name in ("analytic-yrad", "analytic-yrad-v3"):
         with pytest.raises(UnknownNameError, match="analytic-yard"):
             Library([root])(name)

@@ -1,4 +1,4 @@
-"""Finding scenes; every kind of damage ends in one clear message."""
+"""Finding scenes, and clear errors for every kind of damage."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ VIEW = Perspective(0.0, -8.0, 71.0, 64, 36)
 
 @pytest.fixture
 def copy(analytic_folder: Path, tmp_path: Path) -> Path:
-    """A scene folder that a test may damage: its files are links to the originals, to be replaced and never written into."""
+    """A scene folder that a test may damage. Its files are links to the originals: replace them, never write to them."""
     return Path(shutil.copytree(analytic_folder, tmp_path / analytic_folder.name, copy_function=os.link))
 
 
@@ -46,7 +46,7 @@ def test_scenes_are_found_by_name(analytic_folder: Path) -> None:
     assert load_scene("analytic-yard", [analytic_folder.parent]).name == "analytic-yard"
 
 
-def test_folders_that_are_no_scenes_are_passed_over(tmp_path: Path) -> None:
+def test_other_folders_are_ignored(tmp_path: Path) -> None:
     (tmp_path / "notes").mkdir()
     (tmp_path / "file.txt").write_text("x")
     assert "notes" not in list_scenes([tmp_path, tmp_path / "nowhere"])
@@ -92,7 +92,7 @@ def test_a_damaged_layer(copy: Path) -> None:
         colour_view(Scene(copy).viewpoint("mast"), VIEW)
 
 
-def test_a_layer_that_is_no_picture(copy: Path) -> None:
+def test_a_layer_that_is_not_an_image(copy: Path) -> None:
     path = copy / "mast" / "base.png"
     _replace(path, b"this is no picture")
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
@@ -101,7 +101,7 @@ def test_a_layer_that_is_no_picture(copy: Path) -> None:
         colour_view(Scene(copy).viewpoint("mast"), VIEW)
 
 
-def test_a_layer_of_another_size(copy: Path) -> None:
+def test_a_layer_of_the_wrong_size(copy: Path) -> None:
     path = copy / "mast" / "base.png"
     path.unlink()
     Image.fromarray(np.zeros((10, 20, 3), dtype=np.uint8)).save(path)
@@ -120,7 +120,7 @@ def test_a_path_out_of_the_folder(copy: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["../base.png", "/etc/passwd", "..", "C:\\x"])
-def test_a_name_that_is_no_file_name(copy: Path, name: str) -> None:
+def test_a_name_that_is_not_a_file_name(copy: Path, name: str) -> None:
     _edit(copy / "mast" / "manifest.json", lambda m: m["base"].update(file=name))
     with pytest.raises(PackError, match=r"manifest.json is not as it should be: base.file"):
         Scene(copy).viewpoint("mast")
@@ -158,7 +158,7 @@ def test_a_damaged_scene_file(copy: Path, change: Callable[[Any], None], message
 
 
 @pytest.mark.parametrize("content", ["", "{", "[]", "null", "\x00\xff"])
-def test_a_scene_file_that_is_no_scene(copy: Path, content: str) -> None:
+def test_a_scene_file_with_other_content(copy: Path, content: str) -> None:
     _replace(copy / "scene.json", content.encode())
     with pytest.raises(PackError, match=r"scene.json is (no valid JSON|not as it should be)"):
         Scene(copy)
@@ -194,7 +194,7 @@ def test_layers_are_read_only(analytic_scene: Scene) -> None:
         layer[0, 0] = 0
 
 
-def test_families_hang_together(copy: Path) -> None:
+def test_objects_with_a_common_parent_are_one_family(copy: Path) -> None:
     def parents(scene: Any) -> None:
         scene["instances"][0]["parent"] = "ball-02"
         scene["instances"][1]["parent"] = "block-03"

@@ -1,4 +1,4 @@
-"""Views from the stored sphere against exact ray-casts of the same world."""
+"""Views from a pack, compared with exact ray casts of the same world."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _view(pan: float, tilt: float, zoom: float, width: int = WIDTH, height: int 
 
 
 def ssim(a: NDArray[np.uint8], b: NDArray[np.uint8]) -> float:
-    """Mean structural similarity on grey, 7x7 window (Wang et al. 2004)."""
+    """Return the mean structural similarity of grey images with a 7x7 window (Wang et al. 2004)."""
     x, y = (cv2.cvtColor(p, cv2.COLOR_RGB2GRAY).astype(np.float64) for p in (a, b))
 
     def mean(v: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -90,8 +90,8 @@ def test_depth_is_what_a_perfect_camera_measures(analytic_scene: Scene, pose: tu
     assert not both.any() or np.median(np.abs(got[both] / perfect[both] - 1)) < 0.03
 
 
-def test_a_tile_makes_a_distant_thing_sharp(analytic_scene: Scene) -> None:
-    """Also where a wider tile fills the whole view: the sharper one lies over it."""
+def test_a_tile_makes_a_distant_object_sharp(analytic_scene: Scene) -> None:
+    """This also holds where a wider tile fills the view: the sharper tile is drawn over it."""
     view = _view(18.5, -3.0, 5.0)
     viewpoint = analytic_scene.viewpoint("mast")
     perfect, _, _ = perfect_view("mast", view, smooth=4)
@@ -122,10 +122,8 @@ def test_the_interpolated_map_is_exact_to_a_fraction_of_a_pixel(
 
 @given(st.floats(-40, 40), st.floats(-25, 15), st.floats(1, 5), st.booleans())
 @settings(max_examples=60, deadline=None)
-def test_no_view_reads_beyond_the_pictures_that_it_uses(
-    analytic_scene: Scene, pan: float, tilt: float, zoom: float, colour: bool
-) -> None:
-    """Memory that no picture was written to must never show: it would differ from run to run."""
+def test_no_view_reads_outside_its_pictures(analytic_scene: Scene, pan: float, tilt: float, zoom: float, colour: bool) -> None:
+    """Uninitialised memory must never be visible, because it differs between runs."""
     viewpoint = analytic_scene.viewpoint("mast")
     atlas = viewpoint.colour_atlas if colour else viewpoint.id_atlas
     where = atlas_map(viewpoint, atlas, _view(pan, tilt, zoom))
@@ -138,7 +136,7 @@ def test_no_view_reads_beyond_the_pictures_that_it_uses(
 
 
 @pytest.mark.parametrize("step", [2, 4, 8, 16, 32])
-def test_grid_values_are_met_at_the_middle_of_pixels(step: int) -> None:
+def test_grid_interpolation_is_exact_at_pixel_centres(step: int) -> None:
     view = _view(0, 0, 1, 200, 120)
     grid = Grid(view, step, (slice(13, 101), slice(7, 190)))
     fine = grid.to_pixels(np.stack(np.meshgrid(grid.x, grid.y), axis=-1))
@@ -152,7 +150,7 @@ def test_views_over_the_pole_are_exact() -> None:
 
 
 @pytest.mark.parametrize("pan", [-180.0, 180.0, 179.99, 540.0])
-def test_no_crack_at_the_seam(analytic_scene: Scene, pan: float) -> None:
+def test_no_gap_at_the_seam(analytic_scene: Scene, pan: float) -> None:
     view = Perspective(pan, -10.0, 71.0, WIDTH, HEIGHT)
     got = colour_view(analytic_scene.viewpoint("mast"), view).astype(int)
     perfect = perfect_view("mast", view, smooth=2)[0].astype(int)

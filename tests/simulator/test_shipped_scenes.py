@@ -1,4 +1,4 @@
-"""What every scene in the package must offer, checked on the frozen packs themselves."""
+"""Requirements for every shipped scene, checked on the packs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def test_the_first_scene_is_shipped() -> None:
     assert "highway-works" in list_scenes()
 
 
-def test_a_world_rich_enough_to_ask_about(scene: Scene) -> None:
+def test_scenes_have_enough_objects(scene: Scene) -> None:
     file = scene.file
     assert len(file.instances) >= 150
     assert len({i.category for i in file.instances}) >= 20
@@ -39,7 +39,7 @@ def test_a_world_rich_enough_to_ask_about(scene: Scene) -> None:
 
 
 @pytest.mark.full
-def test_packs_are_lean_and_undamaged(scene: Scene) -> None:
+def test_packs_are_small_and_undamaged(scene: Scene) -> None:
     for place in scene.file.viewpoints:
         viewpoint = scene.viewpoint(place.name)
         assert sum(f.stat().st_size for f in viewpoint.folder.rglob("*") if f.is_file()) <= PACK_BYTES
@@ -54,14 +54,14 @@ def test_packs_are_lean_and_undamaged(scene: Scene) -> None:
             viewpoint.sprite_colour(sheet, sheet.sprites[0])
 
 
-def test_presets_are_within_the_cameras_reach(scene: Scene) -> None:
+def test_presets_are_within_the_limits_of_the_camera(scene: Scene) -> None:
     limits = Limits()
     for preset in scene.file.presets:
         assert limits.clamp(Pose(preset.pan_deg, preset.tilt_deg, preset.zoom))[1] == ()
 
 
 @pytest.mark.full
-def test_texts_and_small_things_lie_in_tiles(scene: Scene) -> None:
+def test_texts_and_small_objects_are_in_tiles(scene: Scene) -> None:
     for place in scene.file.viewpoints:
         viewpoint = scene.viewpoint(place.name)
         layer, band = viewpoint.manifest.ids, viewpoint.manifest.band
@@ -73,7 +73,7 @@ def test_texts_and_small_things_lie_in_tiles(scene: Scene) -> None:
 
 
 def legible_at(scene: Scene, zoom: float) -> set[str]:
-    """Texts that can be read when the camera points at each of them in turn."""
+    """Return the texts that are legible when the camera points at them."""
     found = set()
     for place in scene.file.viewpoints:
         viewpoint = scene.viewpoint(place.name)
@@ -88,7 +88,7 @@ def legible_at(scene: Scene, zoom: float) -> set[str]:
 
 
 @pytest.mark.full
-def test_texts_to_read_some_of_them_only_from_close(scene: Scene) -> None:
+def test_some_texts_are_legible_only_when_zoomed_in(scene: Scene) -> None:
     close, wide = legible_at(scene, 5.0), legible_at(scene, 2.5)
     assert len(close) >= 12
     assert len(close - wide) >= 3

@@ -1,4 +1,4 @@
-"""What is visible, how much of it, and what can be read, against the analytic world."""
+"""Ground truth of visibility and legibility, compared with the analytic world."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_distances_and_directions(analytic_scene: Scene) -> None:
     assert ball.tilt_deg == pytest.approx(np.degrees(np.arctan2(-2.8, np.hypot(3, 14))), abs=0.2)
 
 
-def test_what_stands_free_is_wholly_visible(analytic_scene: Scene) -> None:
+def test_unobstructed_objects_are_fully_visible(analytic_scene: Scene) -> None:
     seen = _seen(analytic_scene, _view(0.0, -8.0, 1.0))
     for number in (1, 2, 3, 7):
         assert seen[number].share == pytest.approx(1.0, abs=0.02)
@@ -55,7 +55,7 @@ def test_what_stands_free_is_wholly_visible(analytic_scene: Scene) -> None:
         assert not seen[number].occluded
 
 
-def test_cut_by_the_frame_is_not_occluded(analytic_scene: Scene) -> None:
+def test_objects_cut_off_by_the_frame_are_not_occluded(analytic_scene: Scene) -> None:
     # The left edge of the frame goes through the middle of ball 1.
     middle = np.degrees(np.arctan2(3, 14))
     view = _view(float(middle) + 35.5, -10.0, 1.0)
@@ -79,7 +79,7 @@ def test_the_actor_hides_what_is_behind_it(analytic_scene: Scene) -> None:
     assert not block.cut
 
 
-def test_too_small_is_a_sighting_and_not_visible(analytic_scene: Scene) -> None:
+def test_small_objects_are_sightings_but_not_visible(analytic_scene: Scene) -> None:
     far = _seen(analytic_scene, _view(18.5, -3.0, 1.0))[8]
     assert 0 < far.pixels < MIN_VISIBLE_PX
     assert far.share > 0.9
@@ -97,7 +97,7 @@ def test_a_full_turn_sees_everything_once(analytic_scene: Scene) -> None:
         assert not sighting.cut
 
 
-def test_across_the_seam_of_a_panorama_the_larger_part_gives_the_box(analytic_scene: Scene) -> None:
+def test_at_the_seam_of_a_panorama_the_larger_part_defines_the_box(analytic_scene: Scene) -> None:
     # Ball 5 is behind, where a panorama from -180 to 180 closes.
     closed = _seen(analytic_scene, Equirectangular(-180.0, 360.0, 35.0, -75.0, 2400, 733))[5]
     open_ = _seen(analytic_scene, Equirectangular(0.0, 360.0, 35.0, -75.0, 2400, 733))[5]
@@ -145,7 +145,7 @@ def test_text_cut_by_the_frame_is_not_legible(analytic_scene: Scene) -> None:
     assert not sighting.legible
 
 
-def test_text_on_the_far_side_is_none(analytic_scene: Scene) -> None:
+def test_text_on_the_far_side_is_not_legible(analytic_scene: Scene) -> None:
     # Turn the board: its back faces the mast.
     text = TEXT.model_copy(update={"right": (-1.0, 0.0, 0.0)})
     scene = Scene(analytic_scene.folder)
@@ -153,7 +153,7 @@ def test_text_on_the_far_side_is_none(analytic_scene: Scene) -> None:
     assert view_truth(scene, "mast", _view(-16.5, -3.0, 3.0), OUT_OF_SCENE_S).texts == ()
 
 
-def test_a_text_behind_the_thing_that_bears_it_cannot_be_read(analytic_scene: Scene) -> None:
+def test_a_text_hidden_by_its_own_object_is_not_legible(analytic_scene: Scene) -> None:
     # Like the name on a door behind the awning of the same shop: what hides it hangs together with it.
     eye, centre = np.array(VIEWPOINTS["mast"][0]), np.array(TEXT.centre_m)
     behind = TEXT.model_copy(update={"centre_m": tuple(eye + 1.15 * (centre - eye))})

@@ -1,4 +1,4 @@
-"""Varied worlds: exact, different from their scene, and with pixels and truth that agree."""
+"""Variations of scenes: reproducible, different from their scene, and with consistent images and ground truth."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ def state_of(scene: Scene) -> str:
     return f"{scene.file.model_dump_json()}{[(h.actor.id, h.time_s) for h in scene.held]}"
 
 
-def test_the_same_number_is_the_same_world_and_another_is_another(analytic_folder: Path, analytic_scene: Scene) -> None:
+def test_a_number_defines_a_world(analytic_folder: Path, analytic_scene: Scene) -> None:
     told = [state_of(analytic_scene.varied(n)) for n in NUMBERS]
     assert told == [state_of(load_scene(f"analytic-yard-v{n}", [analytic_folder.parent])) for n in NUMBERS]
     assert len(set(told)) == len(told)
 
 
-def test_presets_are_elsewhere_at_the_same_viewpoints(analytic_scene: Scene) -> None:
+def test_presets_have_other_poses_at_the_same_viewpoints(analytic_scene: Scene) -> None:
     file = analytic_scene.varied(3).file
     assert [p.viewpoint for p in file.presets] == [p.viewpoint for p in analytic_scene.file.presets]
     assert not {p.name for p in file.presets} & {p.name for p in analytic_scene.file.presets}
@@ -38,7 +38,7 @@ def test_presets_are_elsewhere_at_the_same_viewpoints(analytic_scene: Scene) -> 
     assert file.home_preset in {p.name for p in file.presets}
 
 
-def test_every_fate_of_a_moving_thing_comes_up(analytic_scene: Scene) -> None:
+def test_actors_can_be_changed_in_every_way(analytic_scene: Scene) -> None:
     worlds = [analytic_scene.varied(n) for n in NUMBERS]
     assert {(len(w.file.actors), len(w.held)) for w in worlds} == {(1, 0), (0, 1), (0, 0)}
     assert all(w.file.actors[0].delay_s > 1 for w in worlds if w.file.actors)
@@ -47,7 +47,7 @@ def test_every_fate_of_a_moving_thing_comes_up(analytic_scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("number", [n for n in NUMBERS if n < 9])
-def test_what_changes_in_the_picture_is_what_the_truth_says(analytic_scene: Scene, number: int) -> None:
+def test_changes_of_the_picture_agree_with_ground_truth(analytic_scene: Scene, number: int) -> None:
     world = analytic_scene.varied(number)
     still = analytic_scene.varied(number)
     still.file, still.held = still.file.model_copy(update={"actors": []}), ()
@@ -68,7 +68,7 @@ def test_what_changes_in_the_picture_is_what_the_truth_says(analytic_scene: Scen
 
 
 @pytest.mark.anyio
-async def test_a_camera_in_a_varied_world_says_so(analytic_scene: Scene) -> None:
+async def test_a_camera_reports_its_variation(analytic_scene: Scene) -> None:
     world = analytic_scene.varied(2)
     camera = SimulatedCamera(world, width=64, height=36)
     frame = await camera.frame()
@@ -76,7 +76,7 @@ async def test_a_camera_in_a_varied_world_says_so(analytic_scene: Scene) -> None
     assert [p.name for p in await camera.presets()] == [p.name for p in world.file.presets]
 
 
-def test_those_who_go_together_share_their_fate(analytic_scene: Scene) -> None:
+def test_actors_that_belong_together_are_changed_together(analytic_scene: Scene) -> None:
     (roller,) = analytic_scene.file.actors
     dog = roller.model_copy(update={"id": "dog-1", "waypoints": [(t, x + 1, y, z) for t, x, y, z in roller.waypoints]})
     late: SceneActor = dog.model_copy(update={"id": "dog-2", "waypoints": [(t + 1, x, y, z) for t, x, y, z in roller.waypoints]})
@@ -84,6 +84,6 @@ def test_those_who_go_together_share_their_fate(analytic_scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("name", ["analytic-yard-v0", "analytic-yard-v", "analytic-yard-v1.5", "nowhere-v3", "../analytic-yard-v1"])
-def test_other_names_are_no_worlds(analytic_folder: Path, name: str) -> None:
+def test_invalid_world_names_are_refused(analytic_folder: Path, name: str) -> None:
     with pytest.raises(UnknownNameError):
         load_scene(name, [analytic_folder.parent])

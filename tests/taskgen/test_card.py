@@ -13,7 +13,7 @@ from scope_ptz.bench.tasks.task import CANARY
 from scope_ptz.errors import InputError
 from scope_ptz.simulator.pack import load_scene
 from scope_ptz.taskgen.dataset.card import AUDIT, GOLD, PROOF, Dataset, card
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.gold.gold_runs import gold_runs, write_gold
 from scope_ptz.taskgen.gold.mutations import FaultSetting
 from scope_ptz.taskgen.picture_audit import DRAW, QuestionDraw, draw_questions, score_answers
@@ -53,7 +53,7 @@ def test_card_lists_every_answer_that_does_not_agree(dataset: Path, tmp_path: Pa
     audit.mkdir()
     questions = draw_questions(TASKS, 6, seed=2)
     (audit / DRAW).write_text(QuestionDraw(number=6, seed=2, tasks=digest_of(TASKS)).model_dump_json())
-    rows = [{"q": q, "answer": right_answers(task.expected)[0]} for q, task in questions]
+    rows = [{"q": q, "answer": correct_answers(task.expected)[0]} for q, task in questions]
     rows[0]["answer"], wrong = "I cannot tell.", questions[0][1]
     (audit / "answers.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows[:-1]))
     (audit / "findings.jsonl").write_text(json.dumps({"q": rows[0]["q"], "finding": "Too small to see."}))
@@ -61,7 +61,7 @@ def test_card_lists_every_answer_that_does_not_agree(dataset: Path, tmp_path: Pa
     assert result.share() == (4, 5)  # the sixth question has no answer
     (dataset / AUDIT).write_text(json.dumps(result.as_dict()))
     text = card(Dataset.read(dataset))
-    assert "4 of 5 answers agree with the expected value (80.0%). Drawn tasks without an answer: 1." in text
+    assert "4 of 5 answers agree with the expected value (80.0%). Sampled tasks without an answer: 1." in text
     line = next(line for line in text.splitlines() if wrong.id in line)
     assert "I cannot tell." in line and "disagrees" in line and line.endswith("Too small to see. |")
     assert "not answered" in text and "(corrected)" not in text
@@ -73,12 +73,12 @@ def test_card_lists_every_answer_that_does_not_agree(dataset: Path, tmp_path: Pa
 def test_answers_to_unknown_questions_are_rejected(tmp_path: Path) -> None:
     (tmp_path / DRAW).write_text(QuestionDraw(number=3, seed=2, tasks=digest_of(TASKS)).model_dump_json())
     (tmp_path / "answers.jsonl").write_text('{"q": "q999", "answer": "yes"}')
-    with pytest.raises(InputError, match="q999, which was not asked"):
+    with pytest.raises(InputError, match="q999, which is not one of its questions"):
         score_answers(tmp_path, TASKS)
     (tmp_path / "answers.jsonl").write_text('{"q": "../x", "answer": "yes"}')
     with pytest.raises(InputError, match="line 1: q"):
         score_answers(tmp_path, TASKS)
-    with pytest.raises(InputError, match="drawn from other tasks"):
+    with pytest.raises(InputError, match="sampled from other tasks"):
         score_answers(tmp_path, TASKS[1:])
 
 

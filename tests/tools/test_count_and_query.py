@@ -1,4 +1,4 @@
-"""Counting and asking on the current view and the full scene; the sweep and its panorama."""
+"""Counting and querying in the current view and the full scene; the sweep and its panorama."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticEyes, 
 
 
 class HoldingCamera(AnalyticCamera):
-    """Stops its clock while a sweep holds the time."""
+    """A camera whose clock stops while a sweep holds the time."""
 
     @contextmanager
     def hold_time(self) -> Iterator[None]:
@@ -43,7 +43,7 @@ def cones() -> AnalyticEyes:
     return AnalyticEyes([solid("cones", pan, -8, (0.6, 0.6, 1), 15) for pan in (-170, -100, -10, 5, 60, 178)])
 
 
-def test_current_counts_what_is_in_view_and_full_counts_everything_once() -> None:
+def test_current_counts_objects_in_view_and_full_counts_everything_once() -> None:
     current = call(HoldingCamera(), cones(), "count_objects", description="cones")
     full = call(HoldingCamera(), cones(), "count_objects", description="cones", view="full")
     assert isinstance(current, CountResult)
@@ -52,14 +52,14 @@ def test_current_counts_what_is_in_view_and_full_counts_everything_once() -> Non
     assert len(full.boxes) == 6
 
 
-def test_a_failed_look_is_an_error_and_never_a_zero() -> None:
+def test_a_failed_perception_call_is_an_error_and_never_a_zero() -> None:
     eyes = cones()
     eyes.fail = True
     with pytest.raises(PerceptionError, match="shut"):
         call(HoldingCamera(), eyes, "count_objects", description="cones")
 
 
-def test_what_is_known_beside_a_result_is_said_with_it() -> None:
+def test_notes_of_perception_are_part_of_the_result() -> None:
     eyes = cones()
 
     async def detect(frame: Frame, description: str) -> Detections:
@@ -77,14 +77,14 @@ def test_what_is_known_beside_a_result_is_said_with_it() -> None:
     assert "cut off: there may be more." in result.message and "vlm sees it differently: 7 found." in result.message
 
 
-def test_query_answers_from_the_view_asked_for() -> None:
+def test_query_answers_from_the_requested_view() -> None:
     answer = call(HoldingCamera(), cones(), "query_answer", question="how many things?")
     assert isinstance(answer, AnswerResult)
     assert answer.answer == "6 things"
     assert answer.view == "current"
 
 
-def test_the_panorama_shows_every_direction_where_it_is() -> None:
+def test_the_panorama_shows_every_direction_at_its_place() -> None:
     frame = anyio.run(sweep, HoldingCamera(start=Pose(33, -4, 3)))
     xs, ys = np.meshgrid((np.arange(frame.width) + 0.5) / frame.width, (np.arange(frame.height) + 0.5) / frame.height)
     exact = colour_of(frame.projection.directions(np.stack([xs, ys], axis=-1))).astype(int)
@@ -93,7 +93,7 @@ def test_the_panorama_shows_every_direction_where_it_is() -> None:
     assert difference.mean() < 0.6
 
 
-def test_one_instant_and_back_where_it_was() -> None:
+def test_a_sweep_takes_one_instant_and_returns_to_the_pose() -> None:
     camera = HoldingCamera(start=Pose(33, -4, 3))
     eyes = AnalyticEyes([thing_moving("dog", 0, -5, (20, 0))])
     call(camera, eyes, "count_objects", description="dog", view="full")
@@ -101,7 +101,7 @@ def test_one_instant_and_back_where_it_was() -> None:
     assert camera.clock.time_s == 0.0
 
 
-def test_back_where_it_was_also_when_a_frame_fails() -> None:
+def test_a_sweep_returns_to_the_pose_even_if_a_frame_fails() -> None:
     class Blind(HoldingCamera):
         async def frame(self) -> Frame:
             raise CameraError("no picture")
@@ -123,7 +123,7 @@ def test_back_where_it_was_also_when_a_frame_fails() -> None:
         pan_endless=st.booleans(),
     )
 )
-def test_every_block_lies_in_its_frame_and_within_reach(limits: Limits) -> None:
+def test_every_panorama_block_is_in_its_frame_and_within_limits(limits: Limits) -> None:
     camera = AnalyticCamera(limits=limits)
     for block in plan_sweep(camera.info):
         assert limits.clamp(block.pose)[1] == ()

@@ -1,4 +1,4 @@
-"""Relative moves, presets, home, pictures: the pose after every call and what was clamped."""
+"""Relative moves, presets, home and pictures: the pose after every call and the clamped axes."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_any_finite_move_ends_within_the_limits(pan: float, tilt: float, factor:
     assert ("tilt" in result.clamped) == (not limits.min_tilt_deg <= 20 + tilt <= limits.max_tilt_deg)
 
 
-def test_right_is_positive_and_a_stop_never_turns_the_long_way() -> None:
+def test_right_is_positive_and_the_pan_stop_does_not_cause_a_turn_the_other_way() -> None:
     camera = AnalyticCamera()
     assert call(camera, "adjust_ptz", pan_deg=20, tilt_deg=-10).pose.pan_deg == 20
     assert call(camera, "adjust_ptz", pan_deg=300).pose.pan_deg == 179
@@ -104,7 +104,7 @@ def test_zoom(arguments: dict[str, Any], zoom: float) -> None:
         ("go_home", [], "JSON object"),
     ],
 )
-def test_wrong_calls_say_what_is_wrong_and_do_nothing(name: str, arguments: Any, says: str) -> None:
+def test_invalid_calls_report_the_error_and_do_nothing(name: str, arguments: Any, says: str) -> None:
     with pytest.raises(ToolCallError, match=says):
         parse_call(name, arguments)
 

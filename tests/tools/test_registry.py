@@ -31,7 +31,7 @@ class Wobble(Arguments):
 
 
 class WobbleResult(Result):
-    """How often the camera turned."""
+    """The number of turns of the camera."""
 
     turns: int
 
@@ -46,7 +46,7 @@ async def wobble(context: ToolContext, arguments: Wobble) -> WobbleResult:
 EXTENDED = ToolRegistry(*TOOLS.values(), Tool("wobble", Wobble, wobble, moves=True))
 
 
-def test_planners_see_its_schema_after_those_of_the_nine() -> None:
+def test_planners_get_its_schema_after_those_of_the_nine_tools() -> None:
     schemas = EXTENDED.schemas()
     assert schemas[:9] == TOOLS.schemas()
     assert schemas[9] == {
@@ -92,7 +92,7 @@ def test_the_loop_offers_and_runs_it_and_the_trace_keeps_it(tmp_path: Path) -> N
 
 
 def test_no_other_module_lists_the_tools() -> None:
-    """A literal with most of the nine names would have to grow with the registry. Spellings of other formats may be listed."""
+    """A list with most of the nine names would have to be extended with the registry. Names in other formats may be listed."""
     source = Path(__file__).parents[2] / "src" / "scope_ptz"
     names = re.compile("|".join(rf'"{name}"' for name in TOOLS))
     lists = []
@@ -103,7 +103,7 @@ def test_no_other_module_lists_the_tools() -> None:
     assert lists == []
 
 
-def test_schemas_are_the_ones_that_models_and_scores_were_measured_with() -> None:
-    """The digest changes when a schema changes in any byte; scores are not comparable across such a change."""
+def test_schemas_are_unchanged() -> None:
+    """The digest covers every byte of the schemas. Scores are not comparable across a change."""
     text = json.dumps(TOOLS.schemas(), ensure_ascii=False)
     assert hashlib.sha256(text.encode()).hexdigest() == "a6a1b4179787f45017d0093f38ebbd4b727c4959ac9e4ef80cb229e7f0d6f2c2"

@@ -1,4 +1,4 @@
-"""track_object keeps a moving target in view and tells honestly how long it did."""
+"""``track_object`` keeps a moving target in view and reports correctly for how long."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def track(camera: AnalyticCamera, eyes: AnalyticEyes, duration_s: float = 10) ->
 
 
 @pytest.mark.parametrize("rate", [(8.0, 0.0), (-12.0, 0.5), (0.0, -2.0), (0.0, 0.0)])
-def test_a_drifting_target_is_held(rate: tuple[float, float]) -> None:
+def test_a_drifting_target_is_tracked(rate: tuple[float, float]) -> None:
     camera = AnalyticCamera(start=Pose(0, -5, 1))
     result = track(camera, AnalyticEyes([thing_moving("van", 5, -8, rate)]))
     assert result.found
@@ -33,14 +33,14 @@ def test_a_drifting_target_is_held(rate: tuple[float, float]) -> None:
     assert all(point.seen for point in result.path)
 
 
-def test_the_nearest_of_many_is_followed() -> None:
+def test_the_nearest_of_several_is_tracked() -> None:
     moving, still = thing_moving("van", 5, -8, (8, 0)), solid("van", -20, -8, (2, 4, 2), 25)
     camera = AnalyticCamera(start=Pose(0, -5, 1))
     track(camera, AnalyticEyes([moving, still]))
     assert camera.now.pan_deg == pytest.approx(85, abs=8)
 
 
-def test_a_target_beyond_the_stop_is_lost_and_told() -> None:
+def test_a_target_beyond_the_pan_stop_is_reported_as_lost() -> None:
     camera = AnalyticCamera(start=Pose(130, -5, 1), limits=Limits(min_pan_deg=-140, max_pan_deg=140))
     result = track(camera, AnalyticEyes([thing_moving("van", 130, -5, (12, 0))]))
     assert result.clamped == ("pan",)
@@ -48,14 +48,14 @@ def test_a_target_beyond_the_stop_is_lost_and_told() -> None:
     assert "pan limit" in result.message
 
 
-def test_a_target_that_crosses_the_stop_is_followed_from_the_other_side() -> None:
+def test_a_target_that_crosses_the_pan_stop_is_tracked_from_the_other_side() -> None:
     camera = AnalyticCamera(start=Pose(150, -5, 1))
     result = track(camera, AnalyticEyes([thing_moving("van", 150, -5, (8, 0))]))
     assert result.held_share > 0.9
     assert camera.now.pan_deg == pytest.approx(-130, abs=8)
 
 
-def test_nothing_to_follow() -> None:
+def test_no_target() -> None:
     camera = AnalyticCamera()
     result = track(camera, AnalyticEyes([]))
     assert (result.found, result.held_share, camera.visited) == (False, 0.0, [])

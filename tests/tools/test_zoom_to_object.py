@@ -1,4 +1,4 @@
-"""zoom_to_object frames a target from any start, or says which limit kept it from doing so."""
+"""``zoom_to_object`` frames a target from any start pose, or reports the limit that prevents it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticEyes, 
 
 
 def truth(info: CameraInfo, pose: Pose, thing: Thing) -> tuple[float, float, float]:
-    """Fill of the limiting side and offsets of the middle, from the whole cloud."""
+    """Return the fill of the limiting side and the offsets of the middle, computed from all points."""
     view = Perspective(pose.pan_deg, pose.tilt_deg, info.optics.hfov_deg(pose.zoom), WIDTH, HEIGHT)
     points = view.points(thing.cloud)
     low, high = points.min(axis=0), points.max(axis=0)
@@ -74,7 +74,7 @@ def test_nothing_found_moves_nothing(start: Pose) -> None:
     assert "Nothing" in result.message
 
 
-def test_of_several_the_first_named_is_taken_and_the_count_is_told() -> None:
+def test_of_several_objects_the_first_is_taken_and_the_count_is_reported() -> None:
     camera = AnalyticCamera()
     near, far = solid("van", -12, -5, (2, 5, 2), 20), solid("van", 14, -3, (2, 5, 2), 30)
     result = zoom(camera, AnalyticEyes([near, far]))
@@ -83,7 +83,7 @@ def test_of_several_the_first_named_is_taken_and_the_count_is_told() -> None:
     assert abs(camera.now.pan_deg - -12) < 3
 
 
-def test_a_failed_look_leaves_the_camera_where_it_was() -> None:
+def test_a_failed_perception_call_does_not_move_the_camera() -> None:
     camera = AnalyticCamera(start=Pose(10, -5, 1))
     eyes = AnalyticEyes([solid("van", 20, -5, (2, 5, 2), 40)])
     detect = eyes.detect

@@ -18,7 +18,7 @@ from scope_ptz.virtual_camera.faults import Faults
 
 @dataclass
 class HandClock:
-    """Stands in for ``time.monotonic``, so that no test waits."""
+    """A replacement for ``time.monotonic`` that tests advance, so that no test waits."""
 
     now: float = 100.0
 
@@ -49,7 +49,7 @@ def test_a_move_takes_the_time_of_the_motors(device: VirtualDevice, time: HandCl
     assert not device.moving()
 
 
-def test_motors_can_run_faster_than_real(analytic_scene: Scene, time: HandClock) -> None:
+def test_motors_can_run_faster_than_real_time(analytic_scene: Scene, time: HandClock) -> None:
     device = VirtualDevice(analytic_scene, time_scale=100.0)
     device.move(Pose(120.0, 0.0, 5.0))
     time.now += 0.05
@@ -62,7 +62,7 @@ def test_values_beyond_a_limit_are_clamped(device: VirtualDevice, time: HandCloc
     assert device.pose() == Pose(179.0, 30.0, 5.0)
 
 
-def test_a_drive_ends_by_its_timeout_or_by_a_stop(device: VirtualDevice, time: HandClock) -> None:
+def test_a_drive_ends_at_its_timeout_or_with_a_stop(device: VirtualDevice, time: HandClock) -> None:
     assert device.drive(Velocity(pan_dps=20.0), timeout_s=1.0)
     time.now += 10
     ended = device.pose()
@@ -77,7 +77,7 @@ def test_a_drive_ends_by_its_timeout_or_by_a_stop(device: VirtualDevice, time: H
     assert not device.moving()
 
 
-def test_a_continuous_move_that_was_sent_before_the_last_stop_is_dropped(device: VirtualDevice, time: HandClock) -> None:
+def test_a_continuous_move_sent_before_the_last_stop_is_dropped(device: VirtualDevice, time: HandClock) -> None:
     device.drive(Velocity(pan_dps=20.0), sent_s=1000.0)
     device.stop(sent_s=1001.0)
     time.now += 1
@@ -111,7 +111,7 @@ def test_wrong_and_too_many_presets_are_refused(device: VirtualDevice) -> None:
         device.save_preset("one more")
 
 
-def test_a_stuck_axis_stays_and_the_others_move(device: VirtualDevice, time: HandClock) -> None:
+def test_a_stuck_axis_does_not_move_and_the_others_do(device: VirtualDevice, time: HandClock) -> None:
     device.faults = Faults(stuck=frozenset({"tilt"}))
     start = device.pose()
     device.move(Pose(30.0, 20.0, 2.0))
@@ -150,7 +150,7 @@ def test_faults_of_the_picture(device: VirtualDevice, time: HandClock) -> None:
     assert np.any(device.expose().image != good.image)
 
 
-def test_the_move_status_can_lie_or_be_missing(device: VirtualDevice) -> None:
+def test_the_move_status_can_be_wrong_or_missing(device: VirtualDevice) -> None:
     device.move(Pose(100.0, 0.0, 1.0))
     assert device.reported_moving() is True
     device.faults = Faults(move_status="lying")
@@ -160,7 +160,7 @@ def test_the_move_status_can_lie_or_be_missing(device: VirtualDevice) -> None:
     assert device.reported_moving() is None
 
 
-def test_a_reboot_brings_it_home(device: VirtualDevice, time: HandClock) -> None:
+def test_a_reboot_returns_to_the_home_pose(device: VirtualDevice, time: HandClock) -> None:
     device.move(Pose(100.0, 0.0, 1.0))
     time.now += 10
     device.reboot()

@@ -62,7 +62,7 @@ async def test_a_slow_client_skips_frames_and_gets_the_newest(device: VirtualDev
     assert all(later.taken_s - sooner.taken_s > 0.1 for sooner, later in pairwise(slow))
 
 
-async def test_nothing_is_exposed_while_nobody_watches(device: VirtualDevice) -> None:
+async def test_no_frames_are_produced_without_clients(device: VirtualDevice) -> None:
     source = LiveSource(device, rate_hz=200)
     exposed = 0
     expose = device.expose
@@ -85,7 +85,7 @@ async def test_nothing_is_exposed_while_nobody_watches(device: VirtualDevice) ->
         group.cancel_scope.cancel()
 
 
-async def test_a_new_client_never_gets_a_picture_from_before_it_came(device: VirtualDevice) -> None:
+async def test_a_new_client_never_gets_an_older_picture(device: VirtualDevice) -> None:
     source = LiveSource(device, rate_hz=200)
     async with anyio.create_task_group() as group:
         group.start_soon(source.run)

@@ -1,4 +1,4 @@
-"""Drawing primitives of filmstrips. Everything is drawn at twice its size and scaled down, which smooths edges and text."""
+"""Drawing primitives for filmstrips. Everything is drawn at twice its size and scaled down, to smooth edges and text."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 SCALE = 2  # drawing pixels per picture pixel
 
-GROUND = "#0E131A"
+BACKGROUND = "#0E131A"
 SURFACE = "#18202B"
 EDGE = "#2A3645"
 INK = "#F2F5F9"
@@ -19,13 +19,13 @@ GREEN = "#57D68D"
 AMBER = "#FFC94A"
 RED = "#FF7B6E"
 
-_STAND_INS = str.maketrans({"×": "x", "–": "-", "—": "-", "−": "-", "→": ">", "‑": "-"})
+_REPLACEMENTS = str.maketrans({"×": "x", "–": "-", "—": "-", "−": "-", "→": ">", "‑": "-"})
 _BOLD = 0.28  # picture pixels; stroke width that makes the built-in font bold at size 16
 
 
 def drawable(text: str) -> str:
-    """Return the text on one line in characters that the built-in font has. Accents are dropped; other characters become "?"."""
-    return "".join(_drawable(c) for c in " ".join(text.translate(_STAND_INS).split()))
+    """Return the text on one line, limited to characters of the built-in font. Accents are dropped; other characters become "?"."""
+    return "".join(_drawable(c) for c in " ".join(text.translate(_REPLACEMENTS).split()))
 
 
 def _drawable(character: str) -> str:
@@ -74,7 +74,7 @@ class Canvas:
 
     def __init__(self, width: float, height: float) -> None:
         self.width, self.height = width, height
-        self._image = Image.new("RGB", (round(width * SCALE), round(height * SCALE)), GROUND)
+        self._image = Image.new("RGB", (round(width * SCALE), round(height * SCALE)), BACKGROUND)
         self._draw = ImageDraw.Draw(self._image, "RGBA")
 
     def panel(
@@ -105,7 +105,7 @@ class Canvas:
         self._image.paste(image.resize(size, Image.Resampling.LANCZOS), (round(x * SCALE), round(y * SCALE)), mask)
 
     def frame(self, x: float, y: float, width: float, height: float, colour: str) -> None:
-        """Draw a thin box that shows on light and dark backgrounds."""
+        """Draw a thin box that is visible on light and dark backgrounds."""
         for grow, thickness, fill in ((1.2, 4.2, "#0E131AB0"), (0.0, 2.0, colour)):
             edges = (x - grow, y - grow, x + width + grow, y + height + grow)
             box = tuple(round(v * SCALE) for v in edges)
@@ -115,7 +115,7 @@ class Canvas:
         """Draw a text on a rounded background and return its width.
 
         Args:
-            x: position of the left end, right end or middle, as ``anchor`` says.
+            x: position of the left end, right end or middle, depending on ``anchor``.
             y: position of the vertical middle.
             text: the text.
             size: font size.
@@ -140,5 +140,5 @@ class Canvas:
         return width
 
     def finish(self) -> Image.Image:
-        """Return the finished picture, scaled down to its own size."""
+        """Return the finished picture, scaled down to its final size."""
         return self._image.resize((round(self.width), round(self.height)), Image.Resampling.LANCZOS)

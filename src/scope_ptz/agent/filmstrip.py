@@ -1,4 +1,4 @@
-"""Filmstrips: a whole run in one picture, in the style of the paper's Figure 1."""
+"""Filmstrips: one picture of a whole run, in the style of the paper's Figure 1."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from PIL import Image
 
 from scope_ptz.agent.drawing import (
     AMBER,
+    BACKGROUND,
     CYAN,
     EDGE,
     FAINT,
     GREEN,
-    GROUND,
     INK,
     RED,
     SURFACE,
@@ -34,12 +34,12 @@ MARGIN = 32
 GAP = 20
 CAPTION = 60
 MAX_PANELS = 12
-MAX_NUMBERED_BOXES = 40  # boxes in a panel; numbers on more of them would cover the picture
+MAX_NUMBERED_BOXES = 40  # with more boxes in a panel, the numbers would cover the picture
 
-_AIR = 2.0  # picture pixels between an object and its box, so that the box does not cover small objects
+_BOX_MARGIN = 2.0  # picture pixels between an object and its box, so that the box does not cover small objects
 _HEADLINES = {
     "answered": ("ANSWER", GREEN),
-    "clarification": ("QUESTION BACK", AMBER),
+    "clarification": ("CLARIFICATION", AMBER),
     "refused": ("REFUSED", AMBER),
     "step_limit": ("STEP LIMIT", RED),
     "budget": ("BUDGET SPENT", RED),
@@ -152,7 +152,7 @@ def open_picture(name: str, folder: Path, files: Mapping[str, bytes] | None = No
 
 
 def _elide(panels: list[Panel]) -> tuple[list[Panel], int]:
-    """Return at most ``MAX_PANELS`` panels, the first and the last of a longer run, and the number of omitted panels."""
+    """Return at most ``MAX_PANELS`` panels, and the number of omitted ones. In a longer run, the middle is omitted."""
     if len(panels) <= MAX_PANELS:
         return panels, 0
     first = MAX_PANELS // 2 - 1
@@ -188,7 +188,7 @@ def _spread(group: list[_Tile]) -> list[list[_Tile]]:
 
 
 def _picture_height(row: list[_Tile]) -> float:
-    """Return the height at which the pictures of a row fill its width. The limit keeps a single picture from being huge."""
+    """Return the height at which the pictures of a row fill its width, limited so that a single picture is not huge."""
     return min((WIDTH - 2 * MARGIN - GAP * (len(row) - 1)) / sum(tile.aspect for tile in row), 640.0)
 
 
@@ -216,27 +216,27 @@ def _draw_tile(canvas: Canvas, tile: _Tile, x: float, y: float, width: float, he
     readout = "full scene" if panel.whole else where
     canvas.tag(x + 12, y + height - 22, readout, 14, fill="#0E131AC8", ink=INK, pad=10)
     if panel.badge:
-        fill, ink = (AMBER, GROUND) if panel.boxes else ("#0E131AC8", INK)
+        fill, ink = (AMBER, BACKGROUND) if panel.boxes else ("#0E131AC8", INK)
         canvas.tag(x + width - 12, y + 28, panel.badge, 20, fill=fill, ink=ink, pad=13, anchor="r")
     _draw_caption(canvas, panel, x + 16, y + height + CAPTION / 2, width - 32)
 
 
 def _draw_boxes(canvas: Canvas, panel: Panel, x: float, y: float, width: float, height: float) -> None:
     for box in panel.boxes:
-        left, top = x + box.x_min * width - _AIR, y + box.y_min * height - _AIR
-        canvas.frame(left, top, box.width * width + 2 * _AIR, box.height * height + 2 * _AIR, AMBER)
+        left, top = x + box.x_min * width - _BOX_MARGIN, y + box.y_min * height - _BOX_MARGIN
+        canvas.frame(left, top, box.width * width + 2 * _BOX_MARGIN, box.height * height + 2 * _BOX_MARGIN, AMBER)
     if not panel.badge or len(panel.boxes) > MAX_NUMBERED_BOXES:
         return
-    # Numbers run from left to right, as people count, whatever the order of the detections.
+    # Boxes are numbered from left to right, independently of the order of the detections.
     for number, box in enumerate(sorted(panel.boxes, key=lambda b: b.centre[0]), 1):
-        top = y + box.y_min * height - 11 - _AIR
-        at_y = top if top > y + 10 else y + box.y_max * height + 11 + _AIR
-        canvas.tag(x + box.centre[0] * width, at_y, str(number), 11, fill=AMBER, ink=GROUND, pad=4, anchor="m")
+        top = y + box.y_min * height - 11 - _BOX_MARGIN
+        at_y = top if top > y + 10 else y + box.y_max * height + 11 + _BOX_MARGIN
+        canvas.tag(x + box.centre[0] * width, at_y, str(number), 11, fill=AMBER, ink=BACKGROUND, pad=4, anchor="m")
 
 
 def _draw_caption(canvas: Canvas, panel: Panel, x: float, y: float, width: float) -> None:
-    """Draw ``2  pan right 15° -> 4 cones``. The finding goes to a second line when both halves do not fit on one."""
-    chip = canvas.tag(x, y, str(panel.number), 17, fill=CYAN, ink=GROUND, pad=7) + 12 if panel.number else 0.0
+    """Draw a caption such as ``2  pan right 15° -> 4 cones``. If it does not fit on one line, the finding goes on a second one."""
+    chip = canvas.tag(x, y, str(panel.number), 17, fill=CYAN, ink=BACKGROUND, pad=7) + 12 if panel.number else 0.0
     left, available, colour = x + chip, width - chip, RED if panel.failed else AMBER
     action, finding = drawable(panel.action), drawable(panel.finding)
     if width_of(action, 20) + 36 + width_of(finding, 20) <= available or not finding:

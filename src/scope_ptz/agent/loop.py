@@ -1,6 +1,6 @@
-"""The agent loop: the paper's recurrence over S_t = (U, H_t, O_t), with budgets and typed outcomes.
+"""The agent loop: the paper's recurrence over S_t = (U, H_t, O_t), with budgets and defined outcomes.
 
-Every run takes the same code path. A listener receives each record as it is made; without a listener, the caller awaits the result.
+A listener receives each record of a run as it is created; the caller receives the finished run.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import anyio
 from scope_ptz.agent.planner_views import newest_view
 from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
 from scope_ptz.agent.timing import Stopwatch, server_events, wasted
-from scope_ptz.agent.tool_calls import CallRunner, RunEnd, RunTool, in_words
+from scope_ptz.agent.tool_calls import CallRunner, RunEnd, RunTool, error_text
 from scope_ptz.camera.base import Camera
 from scope_ptz.endpoints.failures import count_failures
 from scope_ptz.errors import CameraError, InputError, OutputError, PackError, PlannerError
@@ -67,7 +67,7 @@ class Agent:
             perception: answers questions about frames.
             images: stores the pictures of the run.
             budgets: limits on steps, time and tokens; the defaults of ``Budgets`` when None.
-            labels: facts about the run that the loop cannot know and that the trace should hold.
+            labels: facts about the run that the loop cannot know, for the trace.
             snapshots: whether to store the first view and the view after each move. Frames that perception reads are always stored.
             tools: the tools that the planner can call.
             run_tool: runs the calls in place of ``tools.run``. Pass a wrapper around it to observe the calls.
@@ -86,15 +86,15 @@ class Agent:
         Args:
             instruction: what the camera should do, in plain language.
             conversation: earlier turns that the instruction may refer to.
-            listener: receives each record of the run as it is made.
+            listener: receives each record of the run as it is created.
 
         Returns:
-            The finished run. A planner or camera that fails during the run gives an outcome, not an exception.
+            The finished run. If the planner or the camera fails during the run, the outcome says so; no exception is raised.
 
         Raises:
             InputError: the instruction is empty or too long, or a file cannot be written.
             PackError: the scene's files are damaged.
-            CameraError: the camera does not answer before the first step.
+            CameraError: the camera fails before the first step.
         """
         # Undecodable bytes of a command line become "?", because neither files nor servers accept them.
         instruction = instruction.encode("utf-8", "replace").decode().strip()
@@ -106,7 +106,7 @@ class Agent:
 
 
 class _Episode:
-    """The state of one run."""
+    """One run of an agent, with its state."""
 
     def __init__(self, agent: Agent, instruction: str, conversation: tuple[PastTurn, ...], listener: Listener) -> None:
         self.agent, self.instruction, self.conversation, self.emit = agent, instruction, conversation, listener
@@ -139,7 +139,7 @@ class _Episode:
             await self._finish(RunEnd("cancelled", "The run was cancelled."))
             raise
         except (PackError, OutputError) as error:
-            # The agent did not cause this and cannot recover from it: record it, then raise it to the caller.
+            # The agent cannot recover from damaged scenes and full disks, so the error is recorded and raised.
             with suppress(OutputError):
                 await self._finish(RunEnd("camera_error", str(error)))
             raise
@@ -151,7 +151,7 @@ class _Episode:
         agent, info = self.agent, self.camera.info
         presets = tuple(p.name for p in await self.camera.presets())
         self.start = self.calls.pose = await self.camera.pose()
-        # The first frame names the scene and the viewpoint, and proves that the camera delivers frames before anything moves.
+        # The first frame names the scene and the viewpoint, and shows that the camera delivers frames before anything moves.
         frame = await self.camera.frame()
         self.emit(
             Started(
@@ -197,8 +197,8 @@ class _Episode:
                 self.calls.events.update(server_events(error))
                 self.usage += wasted(error.attempts)
                 return RunEnd("planner_error", str(error), kind=error.kind)
-            except Exception as error:  # a planner that fails in any way is an outcome of the run, not a crash
-                return RunEnd("planner_error", f"The planner failed: {in_words(error)}", traceback.format_exc())
+            except Exception as error:  # any failure of a planner is an outcome of the run
+                return RunEnd("planner_error", f"The planner failed: {error_text(error)}", traceback.format_exc())
             if isinstance(decision, Finish):
                 return RunEnd(decision.kind, decision.text)
             spent = self.usage.input_tokens + self.usage.output_tokens
@@ -221,7 +221,7 @@ class _Episode:
         with self.watch.measure("planner"):
             decision = await planner.step(state)
         if not isinstance(decision, CallTools | Finish):
-            raise PlannerError(f"The planner answered with {type(decision).__name__}, which is no decision.")
+            raise PlannerError(f"The planner answered with {type(decision).__name__}, which is not a decision.")
         if self.agent.guarded:
             decision = _capped(decision)
         self.usage += decision.usage
@@ -257,7 +257,7 @@ class _Episode:
 
 
 def _capped(decision: Decision) -> Decision:
-    """Return the decision with no more calls than a step may have. The first dropped one stays, as a wrong call that says so."""
+    """Limit the calls of a decision to ``MAX_CALLS_PER_STEP``. The first excess call is kept as a bad call with a message."""
     if not isinstance(decision, CallTools) or len(decision.calls) <= MAX_CALLS_PER_STEP:
         return decision
     dropped = decision.calls[MAX_CALLS_PER_STEP]

@@ -22,10 +22,10 @@ class Panel:
     """One picture of a filmstrip with its caption.
 
     Attributes:
-        number: number of the panel, 0 for the view at the start.
-        action: what was done, the first half of the caption.
+        number: number of the panel; 0 for the view at the start.
+        action: what was done; the first half of the caption.
         file: name of the picture in the run folder.
-        finding: the result, the second half of the caption.
+        finding: the result; the second half of the caption.
         badge: a count in words ("4 cones"), drawn in a corner.
         whole: whether the picture is a panorama of the full scene.
         failed: whether the finding is an error.
@@ -68,7 +68,7 @@ def _joined(move: Panel, call: Panel) -> str:
 
 
 def _with_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
-    """Give steps without a picture (an error, a move that changed nothing) the last view before them."""
+    """Give steps without a picture, such as errors, the last view before them."""
     shown, last = [], first
     for panel in panels:
         shown.append(panel if panel.file else replace(panel, file=last))

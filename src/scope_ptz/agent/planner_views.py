@@ -10,14 +10,14 @@ from scope_ptz.perception.models.encoding import picture_of
 from scope_ptz.planner.base import Picture
 from scope_ptz.tools.context import ImageStore
 
-LONGEST_SIDE = 1280  # pixels; vision models scale larger pictures down, so sending them only costs time
+MAX_SIDE_PX = 1280  # larger pictures are scaled down, as vision models would do anyway
 
 
 async def picture(frame: Frame, caption: str) -> Picture:
-    """Return a frame as the captioned JPEG that a planner receives, at most ``LONGEST_SIDE`` pixels wide or high."""
-    scale = min(1.0, LONGEST_SIDE / max(frame.width, frame.height))
-    coded = await picture_of(frame, (round(frame.width * scale), round(frame.height * scale)))
-    return Picture(data_url=coded.data_url, caption=caption)
+    """Return a frame as a captioned JPEG for a planner, at most ``MAX_SIDE_PX`` pixels wide and high."""
+    scale = min(1.0, MAX_SIDE_PX / max(frame.width, frame.height))
+    encoded = await picture_of(frame, (round(frame.width * scale), round(frame.height * scale)))
+    return Picture(data_url=encoded.data_url, caption=caption)
 
 
 async def newest_view(frame: Frame) -> Picture:
@@ -29,29 +29,29 @@ async def newest_view(frame: Frame) -> Picture:
 
 
 class PictureStore:
-    """An image store that remembers the last picture of ``take_image``, so that it can be shown to the planner."""
+    """An image store that keeps the last picture of ``take_image``, so that it can be shown to the planner."""
 
     def __init__(self, images: ImageStore) -> None:
         self._images = images
-        self.kept: tuple[str, Frame] | None = None
+        self.last: tuple[str, Frame] | None = None
 
     def save_look(self, frame: Frame) -> str:
         return self._images.save_look(frame)
 
     def save_picture(self, frame: Frame) -> str:
         name = self._images.save_picture(frame)
-        self.kept = (name, frame)
+        self.last = (name, frame)
         return name
 
     async def shown(self) -> Picture | None:
-        """Return the remembered picture for the planner; None if no picture was taken."""
-        if self.kept is None:
+        """Return the last picture of ``take_image`` for the planner; None if there is none."""
+        if self.last is None:
             return None
-        name, frame = self.kept
+        name, frame = self.last
         return await picture(frame, f"The picture {name}:")
 
 
-class OneView(TimedCamera):
+class SharedFrameCamera(TimedCamera):
     """A camera for calls that run at the same time. The first request takes a frame, and every later request returns it."""
 
     def __init__(self, camera: Camera, watch: Stopwatch) -> None:

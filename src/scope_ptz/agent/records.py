@@ -13,7 +13,7 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import CallTools, Exchange, Finish, PastTurn, ToolOutcome, Usage
 
 FORMAT_VERSION = 1
-"""Version of the trace format. A change that an older program could misread raises it."""
+"""Version of the trace format. It is raised by changes that an older program could misread."""
 
 Outcome = Literal["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error", "cancelled"]
 OUTCOMES: tuple[str, ...] = get_args(Outcome)
@@ -21,8 +21,8 @@ OUTCOMES: tuple[str, ...] = get_args(Outcome)
 CallFault = Literal["bad_call", "perception", "camera", "skipped", "cancelled"]
 """Why a call failed.
 
-- ``bad_call``: the call itself was wrong.
-- ``perception``: perception could not read the view.
+- ``bad_call``: the name or the arguments were invalid.
+- ``perception``: a perception call failed.
 - ``camera``: the camera failed.
 - ``skipped``: an earlier call of the same step failed.
 - ``cancelled``: the run was cancelled or ran out of time during the call.
@@ -62,9 +62,9 @@ class RunLabels(_Record):
     """Facts about a run that the loop cannot know and that its trace stores.
 
     Attributes:
-        perception_note: a sentence on what the perception backend is, shown with the answer.
+        perception_note: a sentence about the perception backend, shown with the answer.
         seed: seed of the run's random choices.
-        home_viewpoint: the requested viewpoint of the camera, when it is not the scene's home.
+        home_viewpoint: the requested viewpoint of the camera, if it is not the scene's home.
     """
 
     perception_note: str = ""
@@ -138,7 +138,7 @@ class Called(_Record):
 
     @property
     def perception_s(self) -> float:
-        """Wall seconds of this call's own perception calls, without those of calls that ran at the same time."""
+        """Wall seconds of this call's own perception calls, without those of concurrent calls."""
         return sum(reply.wall_s for reply in self.replies)
 
 
@@ -146,7 +146,7 @@ class Ended(_Record):
     """The end of a run.
 
     Attributes:
-        text: the answer, the clarifying question, or the reason why there is none.
+        text: the answer, the clarifying question, or the reason why there is no answer.
         detail: a traceback or other details for debugging.
         kind: failure kind of the planner's model server (``endpoints.FailureKind``, such as "refused"), if it failed.
         server_events: number of failed requests to model servers by failure kind, including those that a retry recovered.

@@ -22,7 +22,7 @@ from scope_ptz.planner.base import CallTools, Decision, Planner, State
 _PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Points)
 
 REPEATABLE = ("answered", "clarification", "refused", "step_limit")
-"""Outcomes that a replay must reach again. The other outcomes have causes outside the run: budgets, failures, cancellation."""
+"""Outcomes that a replay must reach again. Other outcomes, such as an exhausted budget or a failure, have external causes."""
 
 _FILE_NAME_FIELDS = ("frames", "file")
 _TOLERANCE = 0.011  # results are rounded to hundredths or finer, so smaller differences are rounding
@@ -30,7 +30,7 @@ _TOLERANCE = 0.011  # results are rounded to hundredths or finer, so smaller dif
 
 @dataclass(frozen=True, slots=True)
 class CallComparison:
-    """A recorded call and how its repetition differs from it. ``difference`` is empty when they agree."""
+    """A recorded call and its difference from the repeated one. ``difference`` is empty if they agree."""
 
     recorded: Called
     difference: str
@@ -38,7 +38,7 @@ class CallComparison:
 
 @dataclass(frozen=True, slots=True)
 class Replay:
-    """The result of a replay. ``outcome_difference`` is empty when the outcomes agree."""
+    """The result of a replay. ``outcome_difference`` is empty if the outcomes agree."""
 
     comparisons: tuple[CallComparison, ...]
     outcome_difference: str
@@ -60,10 +60,10 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
         The differences between the recorded and the repeated calls.
 
     Raises:
-        TraceError: the run was made with a real camera, which cannot show the same world again.
+        TraceError: the run was made with a real camera and cannot be repeated.
     """
     if not trace.started.simulated:
-        raise TraceError("This run was made with a real camera: it can be shown, not repeated.")
+        raise TraceError("This run was made with a real camera, so it cannot be repeated.")
     # Calls that failed for a reason outside the scene would not fail again, so they are not repeated.
     calls = tuple(call for call in trace.calls if call.fault not in ("camera", "cancelled"))
     script = _Script(replace(trace, calls=calls), camera)
@@ -89,7 +89,7 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
 
 
 class _Script:
-    """The recorded decisions and the replies that are still to be given."""
+    """The recorded decisions, and the recorded perception replies that have not been used yet."""
 
     def __init__(self, trace: Trace, camera: Camera) -> None:
         self.decisions = _complete_decisions(trace)
@@ -101,7 +101,7 @@ class _Script:
         self._camera = camera
 
     async def wait_until(self, time_s: float) -> None:
-        """Advance scene time to the recorded time; the recorded run may have been slower than the replay."""
+        """Advance scene time to a recorded time, because the replay may be faster than the recorded run."""
         behind_s = time_s - self._camera.clock.now_s()
         if behind_s > 0:
             await self._camera.clock.sleep(behind_s)
@@ -155,7 +155,7 @@ class _RecordedPerception(Perception):
         return self._next(frame, "point", description, Points)
 
     def _next(self, frame: Frame, kind: PerceptionMethod, asked: str, as_type: type[_PerceptionResult]) -> _PerceptionResult:
-        # Calls that run at the same time may come in another order now, but they all belong to one step.
+        # Concurrent calls may arrive in a different order than recorded, but they all belong to one step.
         step = self._replies[0][0] if self._replies else 0
         fitting = (i for i, (at, reply) in enumerate(self._replies) if at == step and (reply.kind, reply.asked) == (kind, asked))
         index = next(fitting, None)
@@ -189,7 +189,7 @@ def _difference(recorded: Called, again: Called | None) -> str:
     old, new = before.result or {}, now.result or {}
     keys = [key for key in sorted(old.keys() | new.keys()) if key not in _FILE_NAME_FIELDS]
     changed = [key for key in keys if not _same(old.get(key), new.get(key))]
-    # The message repeats the numbers of the other fields, so it is not compared by itself.
+    # The message repeats the other fields, so it is not compared separately.
     named = [key for key in changed if key != "message"]
     return "; ".join(f"{key} was {old.get(key)}, now {new.get(key)}" for key in named[:3])
 

@@ -1,6 +1,6 @@
 """Image stores of runs: a folder, memory, or nothing.
 
-This module makes all names of files. Text from users and models never becomes a path unchanged.
+This module creates all file names. Text from users and models is never used as a path unchanged.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from scope_ptz.errors import OutputError
 from scope_ptz.geometry import Perspective
 
 JPEG_QUALITY = 92
-_SLUG_CHARS = 40  # longer names of run folders are cut at a word
+_MAX_SLUG_CHARS = 40  # longer names of run folders are truncated at a word
 
 
 def slug(text: str) -> str:
-    """Return the first words of a text in lower-case letters and digits, joined by hyphens; "run" when there are none."""
+    """Return the first words of a text in lower case, joined by hyphens; "run" if there are none."""
     words = re.findall(r"[a-z0-9]+", text.lower())
     kept = ""
     for word in words:
-        if len(kept) + len(word) + 1 > _SLUG_CHARS:
+        if len(kept) + len(word) + 1 > _MAX_SLUG_CHARS:
             break
         kept = f"{kept}-{word}" if kept else word
     return kept or "run"
@@ -51,7 +51,7 @@ class Numbering:
 
 
 class NoImages:
-    """An image store that stores nothing and returns the names that a run folder would, for replays and evaluations."""
+    """An image store that stores nothing, for replays and evaluations. It returns the same names as a run folder."""
 
     def __init__(self) -> None:
         self._names = Numbering()
@@ -81,7 +81,7 @@ class EncodedImages(ABC):
         suffix = Path(name).suffix
         encoded, data = cv2.imencode(suffix, cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), options)
         if not encoded:
-            raise OutputError(f"A frame of {frame.width}x{frame.height} pixels cannot be coded as {suffix}.")
+            raise OutputError(f"A frame of {frame.width}x{frame.height} pixels cannot be encoded as {suffix}.")
         self.write(name, data.tobytes())
         return name
 

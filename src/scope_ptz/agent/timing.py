@@ -30,8 +30,8 @@ class Timings(BaseModel):
         perception_s: perception calls.
         camera_s: moves, and frames of a real camera.
         render_s: frames of a simulated camera.
-        total_s: the whole run. The rest beyond the parts is the work of the loop and the tools.
-        first_token_s: the part of ``planner_s`` before the first tokens arrived, when the planner's server streams.
+        total_s: the whole run. What the parts do not account for is time of the loop and the tools.
+        first_token_s: the part of ``planner_s`` before the first tokens arrived, if the planner's server streams.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -253,12 +253,12 @@ class TimedPerception(Perception):
 
 
 def wasted(attempts: Iterable[object]) -> Usage:
-    """Return the tokens of failed requests."""
+    """Return the tokens that failed requests used."""
     spent = [a for a in attempts if isinstance(a, Attempt)]
     return Usage(input_tokens=sum(a.input_tokens for a in spent), output_tokens=sum(a.output_tokens for a in spent))
 
 
 def server_events(error: PerceptionError | PlannerError) -> dict[str, int]:
-    """Return the number of failed requests by failure kind that led to an error. Unusable replies count as failures."""
+    """Return the numbers of failed requests behind an error, by failure kind. Unusable replies count as failures."""
     events = count_failures(a for a in error.attempts if isinstance(a, Attempt))
     return events if error.kind is None or error.kind in events else {**events, str(error.kind): 1}

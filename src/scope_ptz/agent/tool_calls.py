@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import anyio
 
-from scope_ptz.agent.planner_views import OneView, PictureStore
+from scope_ptz.agent.planner_views import PictureStore, SharedFrameCamera
 from scope_ptz.agent.records import Called, CallFault, Listener, Outcome, RecordedPose
 from scope_ptz.agent.timing import PerceptionReply, Stopwatch, TimedCamera, TimedPerception, Timings
 from scope_ptz.camera.base import Camera
@@ -22,7 +22,7 @@ from scope_ptz.tools.context import ImageStore, ToolContext
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.tools.results import Result
 
-MAX_CONCURRENT_CALLS = 8  # perception calls at a time; a model server does not answer more of them any faster
+MAX_CONCURRENT_CALLS = 8  # perception calls at a time
 
 RunTool = Callable[[ToolContext, str, Any], Awaitable[Result]]
 """The function that runs a call: ``ToolRegistry.run`` or a wrapper around it."""
@@ -41,7 +41,7 @@ class RunEnd(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Done:
-    """A finished or cancelled call. ``end`` is set when the call ends the run, ``raised`` when its error goes to the caller."""
+    """A finished or cancelled call. ``end`` is set if the call ends the run, ``raised`` if its error is raised to the caller."""
 
     outcome: ToolOutcome
     fault: CallFault | None
@@ -74,19 +74,19 @@ class CallRunner:
         self.camera = TimedCamera(camera, watch)
         self.pose = Pose()
         self.bad_calls = self.perception_failures = 0
-        self.same_bad_call = 0  # Steps in a row with the same wrong call
+        self.same_bad_call = 0  # consecutive steps with the same bad call
         self._last_bad_call: tuple[str, dict[str, Any]] | None = None
         self.events: Counter[str] = Counter()
 
     async def carry_out(self, step: int, decision: CallTools, history: list[Exchange]) -> RunEnd | None:
         """Run the calls of a step in order and append them to the history.
 
-        After a failed call the remaining calls are skipped, because the planner planned them for another state.
+        After a failed call the remaining calls are skipped, because they were planned for another state.
 
         Args:
             step: number of the step, from 1.
             decision: the calls to run.
-            history: the exchanges of the run; the step is appended, also when the run is cancelled between two calls.
+            history: the exchanges of the run; the step is appended, even if the run is cancelled between two calls.
 
         Returns:
             The end of the run when a call ended it; otherwise None.
@@ -116,7 +116,7 @@ class CallRunner:
             if len(batch) == 1:
                 await self._make(calls[batch[0]], batch[0], self.camera, made)
             else:
-                camera = OneView(self._raw_camera, self._watch)
+                camera = SharedFrameCamera(self._raw_camera, self._watch)
                 async with anyio.create_task_group() as group:
                     for index in batch:
                         group.start_soon(self._make, calls[index], index, camera, made)
@@ -159,7 +159,7 @@ class CallRunner:
         except CameraError as error:
             outcome, fault, end = ToolOutcome(call=call, error=str(error)), "camera", RunEnd("camera_error", str(error))
         except Exception as error:  # any other failure below the tools ends the run and is recorded
-            words = f"{call.name} broke down: {in_words(error)}"
+            words = f"{call.name} broke down: {error_text(error)}"
             outcome, fault = ToolOutcome(call=call, error=words), "camera"
             end = RunEnd("camera_error", words, traceback.format_exc())
         made[index] = _Done(outcome, fault, time_s, self._watch.read() - before, perception.drain(), frame, end, raised)
@@ -197,7 +197,7 @@ class CallRunner:
 def batches(calls: Sequence[ToolCall], tools: ToolRegistry = TOOLS) -> Iterator[list[int]]:
     """Yield the indices of the calls in batches; the calls of one batch can run at the same time.
 
-    Neighbouring calls that only read the current view share a batch. Every other call is a batch of its own.
+    Consecutive calls that only read the current view share a batch. Every other call is a batch of its own.
     """
     together: list[int] = []
     for index, call in enumerate(calls):
@@ -225,6 +225,6 @@ def _only_reads_view(call: ToolCall, tools: ToolRegistry) -> bool:
     return tool.only_reads(arguments)
 
 
-def in_words(error: Exception) -> str:
-    """Return the type and the message of an error as one line."""
+def error_text(error: Exception) -> str:
+    """Return the type and the message of an error as text."""
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

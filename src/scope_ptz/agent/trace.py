@@ -18,7 +18,7 @@ FILE_NAME = "trace.jsonl"
 
 
 class TraceWriter:
-    """A listener that appends each record to a new file. Raises ``OutputError`` when the file cannot be written."""
+    """A listener that writes each record to a new file. Raises ``OutputError`` if the file cannot be written."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -90,17 +90,17 @@ def read_trace(run: Path) -> Trace:
         lines = path.read_bytes().decode("utf-8", errors="replace").split("\n")
     except OSError as error:
         raise TraceError(f"There is no trace at {path} ({error.strerror}).") from error
-    cut = lines.pop()  # the text after the last newline: nothing, or an incomplete line
+    cut = lines.pop()  # the text after the last newline: empty, or an incomplete line
     records = [_parse(line, number, path) for number, line in enumerate(lines, 1) if line.strip()]
     if not records or not isinstance(records[0], Started):
-        raise TraceError(f"{path} does not begin with a header{' (it was cut off)' if cut else ''}: it is no trace of a run.")
+        raise TraceError(f"{path} does not begin with a header{' (it was cut off)' if cut else ''}: it is not the trace of a run.")
     if any(isinstance(record, Started) for record in records[1:]) or any(isinstance(r, Ended) for r in records[:-1]):
-        raise TraceError(f"{path} holds more than one run, or goes on after its end.")
+        raise TraceError(f"{path} contains more than one run, or continues after its end.")
     return trace_of(records, path.parent)
 
 
 def trace_of(records: Sequence[Started | Decided | Called | Ended], folder: Path) -> Trace:
-    """Put the records of one run together.
+    """Create a trace from the records of one run.
 
     Args:
         records: the records in order. The first one is the header.
@@ -136,4 +136,4 @@ def _parse(line: str, number: int, path: Path) -> Started | Decided | Called | E
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise TraceError(f"{path}, line {number} is no record of a run: {where}: {first['msg']}.") from error
+        raise TraceError(f"{path}, line {number} is not a record of a run: {where}: {first['msg']}.") from error

@@ -1,4 +1,4 @@
-"""The asynchronous session. The synchronous one wraps it."""
+"""The asynchronous session, which the synchronous session wraps."""
 
 from __future__ import annotations
 
@@ -48,7 +48,8 @@ _R = TypeVar("_R", bound=Result)
 class AsyncScope:
     """A session for asynchronous code: a camera, a planner and perception that stay open for several runs.
 
-    ``scope_ptz.open_async`` makes one. Its methods have the names and arguments of ``Scope``; those that wait are coroutines.
+    ``scope_ptz.open_async`` creates one. It has the same methods as ``Scope``, with the same arguments. Methods that wait for the
+    camera or a model are coroutines.
 
     Example:
         >>> import asyncio, scope_ptz
@@ -64,7 +65,7 @@ class AsyncScope:
         self._options = options
         self._parts: Parts | None = None
         self._closed = False
-        self._work: anyio.CancelScope | None = None
+        self._cancel_scope: anyio.CancelScope | None = None
         self._finished: anyio.Event | None = None
         self._runs: tuple[Run, ...] = ()
         self._conversation: tuple[PastTurn, ...] = ()
@@ -84,7 +85,10 @@ class AsyncScope:
         await self.close()
 
     async def close(self) -> None:
-        """Cancel what is in progress, then close the camera and the connections to models. Closing twice is allowed."""
+        """Cancel any run or tool call in progress, then close the camera and the connections to models.
+
+        Calling it again has no effect.
+        """
         self._closed = True
         self.cancel()
         with anyio.CancelScope(shield=True):
@@ -97,22 +101,22 @@ class AsyncScope:
     @property
     def camera(self) -> Camera:
         """The camera."""
-        return self._opened().camera
+        return self._open_parts().camera
 
     @property
     def planner(self) -> Planner:
         """The planner."""
-        return self._opened().planner
+        return self._open_parts().planner
 
     @property
     def perception(self) -> Perception:
         """The perception backend."""
-        return self._opened().perception
+        return self._open_parts().perception
 
     @property
     def scene(self) -> SceneInfo | None:
-        """The scene of a simulated camera, None for other cameras."""
-        scene = self._opened().scene
+        """The scene that provides the ground truth of the camera's frames; None if there is none."""
+        scene = self._open_parts().scene
         if scene is None:
             return None
         from scope_ptz.api.scenes import SceneInfo
@@ -130,7 +134,7 @@ class AsyncScope:
 
     async def stream(self, instruction: str) -> AsyncIterator[Event]:
         """Carry out an instruction and yield its events as they happen. See ``Scope.stream``."""
-        self._idle()
+        self._require_idle()
         send, receive = anyio.create_memory_object_stream[Event](float("inf"))
         work = asyncio.create_task(self.run_with_events(instruction, partial(_send, send)))
         work.add_done_callback(lambda _: send.close())
@@ -147,20 +151,20 @@ class AsyncScope:
 
     def cancel(self) -> None:
         """Cancel the run or tool call in progress, if any. A cancelled run ends with the outcome "cancelled"."""
-        if self._work is not None:
-            self._work.cancel()
+        if self._cancel_scope is not None:
+            self._cancel_scope.cancel()
 
     def forget(self) -> None:
-        """Forget the conversation, so that the next instruction cannot refer to earlier ones. ``runs`` keeps its runs."""
+        """Clear the conversation, so that the next instruction cannot refer to earlier ones. ``runs`` is not cleared."""
         self._conversation = ()
 
     async def pose(self) -> Pose:
         """Return the camera's pose."""
-        return await self._opened().camera.pose()
+        return await self._open_parts().camera.pose()
 
     async def frame(self) -> Frame:
         """Take a frame of the current view."""
-        return await self._opened().camera.frame()
+        return await self._open_parts().camera.frame()
 
     async def move(
         self,
@@ -170,13 +174,13 @@ class AsyncScope:
         zoom_percent: float | None = None,
         zoom_limit: Literal["in", "out"] | None = None,
     ) -> MoveResult:
-        """Turn and zoom the camera relative to its pose; the short name of ``adjust_ptz``. See ``Scope.move``."""
+        """Turn and zoom the camera relative to its current pose. A short name for ``adjust_ptz``. See ``Scope.move``."""
         return await self.adjust_ptz(pan_deg, tilt_deg, zoom_factor, zoom_percent, zoom_limit)
 
     async def move_to(self, pan_deg: float | None = None, tilt_deg: float | None = None, zoom: float | None = None) -> Pose:
         """Move the camera to an absolute pose and return the pose reached. See ``Scope.move_to``."""
         with self._working():
-            camera = self._opened().camera
+            camera = self._open_parts().camera
             now = await camera.pose()
             try:
                 target = Pose(
@@ -185,7 +189,7 @@ class AsyncScope:
                     now.zoom if zoom is None else zoom,
                 )
             except ValueError as error:
-                raise InputError(f"That is not a pose: {error}.") from error
+                raise InputError(f"The pose is invalid: {error}.") from error
             return (await camera.move(target)).pose
         raise _cancelled_call()
 
@@ -197,7 +201,7 @@ class AsyncScope:
         zoom_percent: float | None = None,
         zoom_limit: Literal["in", "out"] | None = None,
     ) -> MoveResult:
-        """Turn and zoom the camera relative to its pose. See ``Scope.adjust_ptz``."""
+        """Turn and zoom the camera relative to its current pose. See ``Scope.adjust_ptz``."""
         return await self._run_tool(
             MoveResult,
             "adjust_ptz",
@@ -241,7 +245,7 @@ class AsyncScope:
         return await self._run_tool(TrackResult, "track_object", description=description, duration_s=duration_s)
 
     def __getattr__(self, name: str) -> Any:
-        """Return a method for a tool of the registry that has no method above, such as the tool of a newer release."""
+        """Return a method that calls a registered tool for which this class defines no method."""
         if name in TOOLS:
             return partial(self._run_tool, Result, name)
         raise AttributeError(f"A session has no attribute '{name}'.")
@@ -255,12 +259,12 @@ class AsyncScope:
         Raises:
             InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
             PackError: the files of a scene are damaged.
-            CameraError: the camera does not answer before the first step.
+            CameraError: the camera failed before the first step.
         """
-        parts, options = self._opened(), self._options
-        self._idle()
+        parts, options = self._open_parts(), self._options
+        self._require_idle()
         if not instruction.strip():
-            raise InputError("The instruction is empty. Say what the camera should do.")
+            raise InputError("The instruction is empty. Describe what the camera should do.")
         recorder = _Recorder(options, instruction, listener)
         labels = RunLabels(perception_note=parts.note, seed=options.seed, home_viewpoint=options.viewpoint)
         agent = Agent(parts.planner, parts.camera, parts.perception, recorder.images, budgets=options.budgets, labels=labels)
@@ -277,13 +281,13 @@ class AsyncScope:
         listener(Event("ended", f"{run.outcome}: {run.answer}", run=run))
         return run
 
-    async def _run_tool(self, kind: type[_R], name: str, /, **arguments: Any) -> _R:
+    async def _run_tool(self, result_type: type[_R], name: str, /, **arguments: Any) -> _R:
         """Run a tool without the planner."""
-        parts = self._opened()
+        parts = self._open_parts()
         with self._working():
             context = ToolContext(parts.camera, parts.perception, self._images)
             result = await run_tool(context, name, arguments)
-            assert isinstance(result, kind), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
+            assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
             return result
         raise _cancelled_call()
 
@@ -293,30 +297,32 @@ class AsyncScope:
 
     @contextmanager
     def _working(self) -> Iterator[None]:
-        """Mark the session as busy. ``cancel`` leaves the block silently."""
-        self._idle()
+        """Mark the session as busy while the block runs. If ``cancel`` is called, the block ends without an exception."""
+        self._require_idle()
         self._finished = anyio.Event()
         try:
-            with anyio.CancelScope() as self._work:
+            with anyio.CancelScope() as self._cancel_scope:
                 yield
         finally:
-            self._work = None
+            self._cancel_scope = None
             self._finished.set()
 
-    def _opened(self) -> Parts:
+    def _open_parts(self) -> Parts:
+        """Return the parts of the session. Raises ``InputError`` if the session is not open."""
         if self._parts is None:
-            done = "is closed" if self._closed else "is not open yet: use `async with` or `await`"
-            raise InputError(f"This session {done}. Open one with scope_ptz.open() or scope_ptz.open_async().")
+            state = "is closed" if self._closed else "is not open yet: use `async with` or `await`"
+            raise InputError(f"This session {state}. Open one with scope_ptz.open() or scope_ptz.open_async().")
         return self._parts
 
-    def _idle(self) -> None:
-        self._opened()
-        if self._work is not None:
+    def _require_idle(self) -> None:
+        """Raise ``InputError`` if the session is not open, or if a run or tool call is in progress."""
+        self._open_parts()
+        if self._cancel_scope is not None:
             raise InputError("A run or tool call is in progress in this session. Wait for it, call cancel(), or open another one.")
 
 
 def _send(stream: MemoryObjectSendStream[Event], event: Event) -> None:
-    """Pass an event to the caller, unless the caller has stopped reading."""
+    """Send an event to the caller, unless the caller has stopped reading events."""
     with suppress(anyio.BrokenResourceError):
         stream.send_nowait(event)
 
@@ -326,7 +332,7 @@ def _cancelled_call() -> ScopeError:
 
 
 class _Recorder:
-    """Collects the records of a run, writes its trace when there is a folder, and passes events on."""
+    """Collects the records of a run, writes its trace if runs are stored in a folder, and passes events to the listener."""
 
     def __init__(self, options: SessionOptions, instruction: str, listener: EventListener) -> None:
         folder = options.runs_dir
@@ -352,7 +358,7 @@ class _Recorder:
             self._listener(event_of(record))
 
     def run(self) -> Run | None:
-        """Return the run; None if it never began or its end could not be recorded."""
+        """Return the finished run; None if the run did not start or its end could not be recorded."""
         if not self._records or not isinstance(ended := self._records[-1], Ended):
             return None
         if isinstance(self.images, RunFolder):

@@ -1,4 +1,4 @@
-"""Wrappers that keep the objects of a caller open when an evaluation closes its planner and perception."""
+"""Wrappers that keep the caller's planner and perception open when an evaluation ends."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.planner.base import Decision, Planner, State
 
 
 class BorrowedPlanner(Planner):
-    """A planner of the caller. ``close`` does nothing, so that the caller can use the planner again."""
+    """A wrapper of the caller's planner. Its ``close`` does nothing, so that the caller can use the planner again."""
 
     def __init__(self, planner: Planner) -> None:
         self._planner = planner
@@ -28,7 +28,7 @@ class BorrowedPlanner(Planner):
 
 
 class BorrowedPerception(Perception):
-    """A perception backend of the caller. ``close`` does nothing, so that the caller can use the backend again."""
+    """A wrapper of the caller's perception backend. Its ``close`` does nothing, so that the caller can use the backend again."""
 
     def __init__(self, perception: Perception) -> None:
         self._perception = perception

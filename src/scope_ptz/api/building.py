@@ -1,4 +1,4 @@
-"""Turn the options of a session into a camera, a planner and perception."""
+"""Create the camera, the planner and the perception of a session from its options."""
 
 from __future__ import annotations
 
@@ -25,9 +25,12 @@ class Parts:
     """The parts of an open session.
 
     Attributes:
-        scene: the scene of a camera in a scene; otherwise None.
-        note: a sentence on what perception is, empty for models.
-        release: closes the parts that were made for the session. Objects that the caller passed stay open.
+        camera: the open camera.
+        planner: the planner.
+        perception: the perception backend.
+        scene: the scene that provides the ground truth of the camera's frames; None if there is none.
+        note: a sentence that describes built-in perception, such as ground truth; empty for models.
+        release: closes the parts that were created for the session. Objects that the caller passed stay open.
     """
 
     camera: Camera
@@ -39,12 +42,12 @@ class Parts:
 
 
 async def build(options: SessionOptions) -> Parts:
-    """Open the camera and make the planner and perception.
+    """Open the camera and create the planner and perception.
 
     Raises:
         InputError: an option is wrong.
         PackError: the files of a scene are damaged.
-        CameraError: the camera does not answer.
+        CameraError: the camera failed or did not answer.
         BlenderError: Blender cannot be started, or cannot open the scene or the file.
     """
     pair = await resolve_models(options.served.model_options(options.planner, options.perception))
@@ -75,7 +78,7 @@ async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camer
         return opened.camera, opened
     given = [name for name in ("viewpoint", "time_s") if getattr(options, name) is not None]
     if given:
-        raise InputError(f"The camera is an object of your own, so {' and '.join(given)} has no effect. Leave it out.")
+        raise InputError(f"camera= is a Camera object, which cannot be combined with {' and '.join(given)}. Remove the argument.")
     if options.preset is not None:
         await options.camera.go_to_preset(options.preset)
     return options.camera, None
@@ -88,13 +91,13 @@ def _perception(options: SessionOptions, resolved: ResolvedPerception, camera: C
             return NoPerception()
         raise InputError(
             f"The perception '{resolved.name}' reads the ground truth of a simulated scene, and the camera '{camera.info.name}' "
-            "has none. Pass perception=, the name of a vision model or an object of your own."
+            "has none. Pass perception= with the name of a vision model or a Perception object."
         )
     return make_perception(resolved, scenes, options.seed)
 
 
 def _scenes_by_name() -> Callable[[str], Scene]:
-    """Return a function that opens scenes, for the frames of a simulated camera that the caller made."""
+    """Return a function that opens scenes by name. Ground truth needs it for a simulated camera that the caller created."""
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.library import Library

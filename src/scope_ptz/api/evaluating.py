@@ -49,7 +49,7 @@ class EvaluationRequest:
 
 
 def run_evaluation(request: EvaluationRequest) -> Evaluation:
-    """Run an evaluation, or read it when it is complete. It also works where an event loop is running."""
+    """Run or resume an evaluation, or read a complete one. This also works while an event loop is running, as in a notebook."""
     from scope_ptz.factory.evaluate import evaluate, require_engine
 
     require_engine()
@@ -62,7 +62,7 @@ def run_evaluation(request: EvaluationRequest) -> Evaluation:
 
 
 def read_results(path: Path) -> Evaluation:
-    """Read a log, or the newest log of a folder."""
+    """Read a log, or the newest log in a folder."""
     from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
@@ -71,7 +71,7 @@ def read_results(path: Path) -> Evaluation:
     if path.is_dir():
         logs = sorted(path.rglob("*.eval"), key=lambda log: log.stat().st_mtime)
         if not logs:
-            raise TraceError(f"There is no log in {path}. Evaluations write one there with evaluate(out=...).")
+            raise TraceError(f"There is no log in {path}. Pass a folder to which evaluate(out=...) has written.")
         path = logs[-1]
     return read_evaluation(path)
 
@@ -106,7 +106,7 @@ def _options(request: EvaluationRequest) -> EvaluationOptions:
 
 
 def _borrowed(models: ModelOptions) -> ModelOptions:
-    """Protect the caller's objects from being closed at the end of the evaluation."""
+    """Wrap the caller's objects, so that they stay open at the end of the evaluation."""
     planner, perception = models.own_planner, models.own_perception
     return replace(
         models,
@@ -116,7 +116,7 @@ def _borrowed(models: ModelOptions) -> ModelOptions:
 
 
 def _task_file(tasks: tuple[Task, ...], out: Path) -> str:
-    """Write tasks next to the logs, so that the log names a file that contains them and the evaluation can be resumed."""
+    """Write tasks to a file next to the logs and return its path. A log names its task file, which is needed to resume it."""
     from scope_ptz.bench.tasks.files import digest_of, dump_tasks
 
     path = out / "tasks" / f"{digest_of(tasks)[:16]}.jsonl"

@@ -21,10 +21,10 @@ CATEGORIES: tuple[str, ...] = get_args(Category)
 
 
 class EvaluationResults:
-    """The results of an evaluation: scores by category, and every trial. In a notebook, it shows a table of scores.
+    """The results of an evaluation: scores by category, and every trial. In a notebook, they are shown as a table.
 
-    ``evaluate`` and ``load_results`` return it. A score is the share of correct trials among those that were scored. Trials that
-    failed because of infrastructure are excluded, and so are those that await a judge.
+    ``evaluate`` and ``load_results`` return this class. A score is the share of correct trials among those that were scored.
+    Trials that failed because of infrastructure are excluded, and so are those that await a judge.
 
     Example:
         >>> import scope_ptz, tempfile
@@ -41,28 +41,28 @@ class EvaluationResults:
 
     @property
     def trials(self) -> tuple[Trial, ...]:
-        """The trials: one run of one task each, with its verdict, answer, error mode and timings."""
+        """All trials. A trial is one run of one task, with its verdict, answer, error mode and timings."""
         return self._evaluation.trials
 
     @property
     def pair(self) -> str:
-        """The planner and perception that were evaluated."""
+        """Names of the planner and perception that were evaluated, as "PLANNER + PERCEPTION"."""
         return self._evaluation.card.pair
 
     @property
     def log(self) -> Path:
-        """The log file, which ``load_results`` and ``scope bench report`` read."""
+        """Path of the log file, which ``load_results`` and ``scope bench report`` read."""
         return Path(self._evaluation.log)
 
     @property
     def finished(self) -> bool:
-        """Whether the evaluation has all of its trials. Running it again resumes an unfinished one."""
+        """Whether all trials are complete. Running the same evaluation again resumes an unfinished one."""
         return self._evaluation.finished
 
     @cached_property
     def scores(self) -> dict[str, float]:
-        """Score of each category, from 0 to 1. Categories without scored trials are missing."""
-        scored = {category: score(self._of(category)) for category in CATEGORIES}
+        """Score of each category, from 0 to 1. Categories without scored trials are omitted."""
+        scored = {category: score(self._trials_of(category)) for category in CATEGORIES}
         return {category: value for category, value in scored.items() if value is not None}
 
     @property
@@ -76,10 +76,10 @@ class EvaluationResults:
         return score(self.trials)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the trials as a data frame, one row each.
+        """Return the trials as a data frame.
 
         Returns:
-            The data frame.
+            The data frame, with one row for each trial.
 
         Raises:
             ConfigError: pandas is not installed.
@@ -103,16 +103,16 @@ class EvaluationResults:
     def _repr_html_(self) -> str:
         from scope_ptz.api.notebook import table_html
 
-        rows = [self._counts(name.replace("_", " "), self._of(name), value) for name, value in self.scores.items()]
-        rows.append(self._counts("macro (mean of categories)", (), self.macro))
-        rows.append(self._counts("micro (all trials)", self.trials, self.micro))
+        rows = [self._table_row(name.replace("_", " "), self._trials_of(name), value) for name, value in self.scores.items()]
+        rows.append(self._table_row("macro (mean of categories)", (), self.macro))
+        rows.append(self._table_row("micro (all trials)", self.trials, self.micro))
         return table_html(self.pair, ("category", "trials", "correct", "score"), rows, f"log: {self.log}")
 
-    def _of(self, category: str) -> tuple[Trial, ...]:
+    def _trials_of(self, category: str) -> tuple[Trial, ...]:
         return tuple(trial for trial in self.trials if trial.task.category == category)
 
     @staticmethod
-    def _counts(name: str, trials: Sequence[Trial], value: float | None) -> tuple[str, str, str, str]:
+    def _table_row(name: str, trials: Sequence[Trial], value: float | None) -> tuple[str, str, str, str]:
         correct = sum(trial.headline == "correct" for trial in trials)
         numbers = (str(len(trials)), str(correct)) if trials else ("", "")
         return name, *numbers, "-" if value is None else f"{value:.1%}"
@@ -137,7 +137,7 @@ def load_tasks(
         The tasks, always the same ones for the same arguments.
 
     Raises:
-        InputError: a name is unknown, a file is missing or damaged, or no task is left.
+        InputError: a name is unknown, a file is missing or damaged, or no task matches the selection.
 
     Example:
         >>> import scope_ptz
@@ -155,7 +155,7 @@ def load_tasks(
     selected = select(entries, _names("categories", categories), _names("scenes", scenes), limit)
     loaded = tuple(entry.task for entry in selected if entry.task is not None)
     if len(loaded) < len(selected):
-        raise InputError(f"{tasks} holds imported tasks, which only a judge can score. Pass its path to evaluate(tasks=...).")
+        raise InputError(f"{tasks} contains imported tasks, which only a judge can score. Pass its path to evaluate(tasks=...).")
     return loaded
 
 
@@ -191,23 +191,23 @@ def evaluate(
     Args:
         planner: name of a planner or model, or a ``Planner`` object; the built-in rule-based planner by default.
         perception: name of a backend or model, or a ``Perception`` object; the simulator's ground truth by default.
-        tasks: a split, a task file, or tasks of ``load_tasks``.
-        out: folder of the logs.
+        tasks: a split, a task file, or tasks returned by ``load_tasks``.
+        out: folder for the logs.
         pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that does both.
-        agent: "module:Class" of an agent of your own, which replaces the planner and the loop around it.
+        agent: "module:Class" of an external agent, which replaces the planner and the agent loop.
         categories: only tasks of these categories; all by default.
         scenes: only tasks of these scenes; all by default.
         limit: at most this many tasks, sampled evenly across the selected categories and scenes.
         epochs: number of runs of each task.
         seed: seed for every random choice.
         max_steps: planner steps after which a run ends.
-        time_budget_s: wall seconds after which a run ends; no limit by default.
+        time_budget_s: wall-clock seconds after which a run ends; no limit by default.
         concurrency: number of concurrent runs; by default it depends on the models.
-        pictures: whether to render and log frames. Ground truth needs none, and is faster without.
-        fresh: start again even if there is a log of the same evaluation.
+        pictures: whether to render and log frames. Ground truth does not need them and is faster without them.
+        fresh: start a new evaluation even if there is a log of the same one.
         planner_url: address of the planner's model server.
         planner_model: the server's name for the planner.
-        perception_url: address of perception's model server.
+        perception_url: address of the vision model's server.
         perception_model: the server's name for the vision model.
         timeout_s: seconds after which a request to a model server fails.
 
@@ -216,8 +216,8 @@ def evaluate(
 
     Raises:
         ConfigError: the evaluation engine is not installed, or a model is not configured.
-        InputError: an option is wrong, or a name is unknown.
-        ScopeError: too many runs in a row failed because of infrastructure.
+        InputError: an option is invalid, or a name is unknown.
+        ScopeError: too many consecutive runs failed because of infrastructure.
 
     Example:
         >>> import scope_ptz, tempfile
@@ -242,7 +242,7 @@ def load_results(path: str | PathLike[str]) -> EvaluationResults:
     """Read the results of an evaluation.
 
     Args:
-        path: a log file, or a folder, whose newest log is read.
+        path: a log file, or a folder. The newest log in the folder is read.
 
     Returns:
         The results. ``finished`` is False if the evaluation is incomplete.

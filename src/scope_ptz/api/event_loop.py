@@ -1,4 +1,4 @@
-"""An event loop in a thread of its own, for the synchronous session."""
+"""An event loop that runs in its own thread, for the synchronous session."""
 
 from __future__ import annotations
 
@@ -10,19 +10,23 @@ from typing import TypeVar
 import anyio
 from anyio.from_thread import BlockingPortal
 
-CHECK_S = 0.5  # seconds between checks whether the main thread has ended
+EXIT_CHECK_INTERVAL_S = 0.5  # seconds between checks whether the main thread has ended
 _T = TypeVar("_T")
 
 
 class EventLoopThread:
     """Runs coroutines in another thread, so that synchronous code works inside a running event loop, such as Jupyter's.
 
-    The thread ends with ``stop``. It also ends by itself when the main thread does, because the interpreter would otherwise wait
-    at exit for a session that was never closed.
+    ``stop`` ends the thread. The thread also ends when the main thread does, because the interpreter would otherwise wait at exit
+    for a session that was never closed.
     """
 
     def __init__(self, at_exit: Callable[[], Awaitable[None]]) -> None:
-        """``at_exit`` runs in the thread before it ends."""
+        """Start the thread.
+
+        Args:
+            at_exit: coroutine function that runs in the event loop before the thread ends.
+        """
         self._at_exit = at_exit
         self._ready: Future[BlockingPortal] = Future()
         self._stop: anyio.Event | None = None
@@ -42,15 +46,15 @@ class EventLoopThread:
         async with BlockingPortal() as portal:
             self._ready.set_result(portal)
             while not self._stop.is_set() and threading.main_thread().is_alive():
-                with anyio.move_on_after(CHECK_S):
+                with anyio.move_on_after(EXIT_CHECK_INTERVAL_S):
                     await self._stop.wait()
             await self._at_exit()
 
     def call(self, work: Callable[[], Awaitable[_T]]) -> _T:
         """Run a coroutine and return its result.
 
-        An exception in the waiting thread, such as KeyboardInterrupt, cancels the coroutine. It is raised after the coroutine has
-        finished, so that a cancelled run has a complete trace.
+        An exception in the waiting thread, such as KeyboardInterrupt, cancels the coroutine. It is raised again after the coroutine
+        has finished, so that a cancelled run has a complete trace.
         """
         future, finished = self.start(work)
         try:
@@ -64,7 +68,7 @@ class EventLoopThread:
             raise
 
     def start(self, work: Callable[[], Awaitable[_T]]) -> tuple[Future[_T], threading.Event]:
-        """Start a coroutine. Return its future and an event that is set when it has finished, also after a cancellation."""
+        """Start a coroutine. Return its future and an event that is set when it has finished or its cancellation is complete."""
         finished = threading.Event()
 
         async def run() -> _T:
@@ -80,7 +84,7 @@ class EventLoopThread:
         self._portal.call(function)
 
     def stop(self) -> None:
-        """End the thread and wait for it. Stopping twice is allowed."""
+        """End the thread and wait for it. Calling it again has no effect."""
         if self._thread.is_alive() and self._stop is not None:
             self._portal.call(self._stop.set)
             self._thread.join()

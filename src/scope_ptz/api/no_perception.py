@@ -1,4 +1,4 @@
-"""A placeholder for perception in sessions without any."""
+"""Placeholder perception for sessions that have none."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from scope_ptz.perception.base import Answer, Caption, Detections, Perception, P
 
 
 class NoPerception(Perception):
-    """Perception of a camera without ground truth, when none was requested. Moving and taking frames work without it."""
+    """Perception that raises ``PerceptionError`` on every call, for cameras without ground truth and without a chosen backend.
+
+    Moving the camera and taking frames work without perception.
+    """
 
     name = "none"
     skills = frozenset()
@@ -30,6 +33,6 @@ class NoPerception(Perception):
     @staticmethod
     def _refuse() -> NoReturn:
         raise PerceptionError(
-            "This session has no perception: the camera has no ground truth. Pass perception= to scope_ptz.open, the name of a "
-            "vision model or an object of your own."
+            "This session has no perception, because the camera has no ground truth and no backend was chosen. "
+            "Pass perception= to scope_ptz.open with the name of a vision model or a Perception object."
         )

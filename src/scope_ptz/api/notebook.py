@@ -11,7 +11,7 @@ from PIL import Image
 
 PICTURE_WIDTH = 1100  # pixels; wider pictures are scaled down to keep notebooks small
 JPEG_QUALITY = 85
-MAX_TEXT_CHARS = 300  # longer cells of a table are cut
+MAX_CELL_CHARS = 300  # longer table cells are truncated
 
 _COLOURS = {"answered": "#2e9e5b", "clarification": "#c98a00", "refused": "#c98a00"}
 _FAILED = "#d5483b"
@@ -26,10 +26,10 @@ def run_html(
 
     Args:
         instruction: the instruction.
-        answer: the final text.
-        outcome: the outcome, which decides the colour.
-        facts: short phrases on planner, perception and duration.
-        filmstrip: the filmstrip, or a sentence that says why there is none.
+        answer: the final text of the run.
+        outcome: the outcome, which determines the colour of the bar.
+        facts: short phrases about the planner, the perception and the duration.
+        filmstrip: the filmstrip, or a sentence that explains why there is none.
         calls: step, tool, arguments, result and seconds of each tool call.
     """
     colour = _COLOURS.get(outcome, _FAILED)
@@ -46,7 +46,7 @@ def run_html(
 
 
 def card_html(title: str, rows: Iterable[Sequence[str]], picture: Image.Image) -> str:
-    """Return a card as HTML: a title, labelled lines and a picture."""
+    """Return a card as HTML: a title, rows of a label and a text, and a picture."""
     heading = f'<div style="font-size:1.15em;font-weight:600;margin-bottom:4px">{escape(title)}</div>'
     return _block([heading, _table((), rows), picture_html(picture, title)])
 
@@ -60,7 +60,7 @@ def table_html(title: str, header: Sequence[str], rows: Iterable[Sequence[str]],
 
 
 def picture_html(image: Image.Image, alt: str) -> str:
-    """Return a picture as an HTML image with its data in it."""
+    """Return a picture as an HTML ``img`` element with embedded JPEG data."""
     if image.width > PICTURE_WIDTH:
         image = image.resize((PICTURE_WIDTH, round(image.height * PICTURE_WIDTH / image.width)), Image.Resampling.LANCZOS)
     buffer = io.BytesIO()
@@ -78,7 +78,7 @@ def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _cell(text: str, *, first: bool) -> str:
-    shown = text if len(text) <= MAX_TEXT_CHARS else text[: MAX_TEXT_CHARS - 1] + "…"
+    shown = text if len(text) <= MAX_CELL_CHARS else text[: MAX_CELL_CHARS - 1] + "…"
     nowrap = ";white-space:nowrap" if first else ""
     return f'<td style="{_CELL}{nowrap}">{escape(shown)}</td>'
 

@@ -1,4 +1,4 @@
-"""``open`` and ``open_async``: make a session."""
+"""``open`` and ``open_async``, which create a session."""
 
 from __future__ import annotations
 
@@ -48,43 +48,44 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
 ) -> Scope:
     """Open a session with a camera.
 
-    Without options, the built-in rule-based planner plans, and perception is the simulator's ground truth. No model, key or network
-    is needed for that. A camera without ground truth has no perception unless you name one: it moves and takes frames, and
-    questions about what it sees raise ``PerceptionError``.
+    By default, the planner is the built-in rule-based one and perception is the simulator's ground truth. They need no model, key
+    or network. A camera without ground truth has no perception unless you choose one: it can move and take frames, but questions
+    about what it sees raise ``PerceptionError``.
 
     Args:
         camera: a scene ("highway-works"), any other camera spec ("blender:yard.blend"), or a ``Camera`` object.
         planner: name of a planner or model ("grammar", "qwen3-4b"), or a ``Planner`` object.
         perception: name of a backend or model ("ground-truth", "noisy", "moondream3"), or a ``Perception`` object.
-        pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that is both.
-        viewpoint: where the camera stands in a scene; the scene's home by default.
-        preset: the preset to start at. A preset names its viewpoint.
-        time_s: scene time at the start, in seconds; the scene's own start by default.
+        pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that does both.
+        viewpoint: the viewpoint in the scene at which the camera stands; that of the home preset by default.
+        preset: the preset to start at. It determines the viewpoint, so pass only one of the two.
+        time_s: scene time at the start, in seconds; the scene's own start time by default.
         seed: seed for every random choice.
-        realtime: whether moves take as long as those of a real camera and scene time follows the wall clock.
-        runs_dir: folder in which every run gets a folder with trace and pictures; by default runs are kept in memory.
+        realtime: whether moves take as long as those of a real camera, and scene time follows the wall clock.
+        runs_dir: folder in which each run creates a folder with its trace and pictures; by default runs are kept in memory.
         max_steps: planner steps after which a run ends.
-        time_budget_s: wall seconds after which a run ends; no limit by default.
-        token_budget: planner tokens after which a run ends; no limit by default.
+        time_budget_s: wall-clock seconds after which a run ends; no limit by default.
+        token_budget: tokens used by the planner after which a run ends; no limit by default.
         planner_url: address of the planner's model server.
         planner_model: the server's name for the planner.
-        planner_key_file: file with the key of the planner's server.
-        planner_options: further options of the planner, such as ``{"temperature": 0.2}``.
-        perception_url: address of perception's model server.
+        planner_key_file: file that contains the API key of the planner's server.
+        planner_options: additional options of the planner, such as ``{"temperature": 0.2}``.
+        perception_url: address of the vision model's server.
         perception_model: the server's name for the vision model.
-        perception_key_file: file with the key of perception's server.
-        perception_options: further options of perception.
-        reader: name of a second backend that reads text.
-        detector: name of a second backend that finds objects.
+        perception_key_file: file that contains the API key of the vision model's server.
+        perception_options: additional options of the perception backend.
+        reader: name of an additional backend that reads text.
+        detector: name of an additional backend that detects objects.
         timeout_s: seconds after which a request to a model server fails.
 
     Returns:
-        An open session. Use it in a ``with`` statement, or call its ``close``.
+        An open session. Use it in a ``with`` statement, or call ``close`` at the end.
 
     Raises:
-        InputError: an option is wrong, or a name is unknown.
+        InputError: an option is invalid, or a name is unknown.
         PackError: the files of a scene are damaged.
-        CameraError: the camera does not answer.
+        CameraError: the camera failed or did not answer.
+        BlenderError: Blender cannot be started, or cannot open the scene or the file.
 
     Example:
         >>> import scope_ptz
@@ -123,17 +124,13 @@ def open_async(
     detector: str | None = None,
     timeout_s: float | None = None,
 ) -> AsyncScope:
-    """Open a session for asynchronous code. The arguments are those of ``open``.
-
-    Args:
-        camera: as in ``open``.
-        **options: as in ``open``.
+    """Create a session for asynchronous code. The arguments are the same as those of ``open``, which describes them.
 
     Returns:
-        A session for ``async with``, or to be awaited and closed later.
+        A session that is not open yet. Use it in an ``async with`` statement, or await it and call ``close`` at the end.
 
     Raises:
-        InputError: an option is wrong. Errors of opening, as in ``open``, are raised by ``async with`` or ``await``.
+        InputError: an option is invalid. The other errors of ``open`` are raised by ``async with`` or ``await``.
 
     Example:
         >>> import asyncio, scope_ptz
@@ -168,7 +165,7 @@ def _session_options(
         names = {"time_s": "time_budget_s", "tokens": "token_budget"}
         first = error.errors(include_url=False)[0]
         field = str(first["loc"][0])
-        raise InputError(f"{names.get(field, field)} is wrong: {first['msg']}.") from None
+        raise InputError(f"{names.get(field, field)} is invalid: {first['msg']}.") from None
     return SessionOptions(
         camera=camera,
         planner=planner,

@@ -1,4 +1,4 @@
-"""The options of a session, as ``scope_ptz.open`` and ``scope_ptz.open_async`` take them."""
+"""The options of a session, which ``scope_ptz.open`` and ``scope_ptz.open_async`` accept."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ StrPath = str | PathLike[str]
 
 @dataclass(frozen=True, slots=True)
 class ServedModels:
-    """Where models are served and how they are called. The fields are those of ``ModelOptions`` in plain Python types."""
+    """Options for served models: addresses, served names, keys and request options. ``scope_ptz.open`` describes each of them."""
 
     pair: str | None = None
     planner_url: str | None = None
@@ -37,11 +37,11 @@ class ServedModels:
     timeout_s: float | None = None
 
     def model_options(self, planner: Planner | str | None, perception: Perception | str | None) -> ModelOptions:
-        """Return the options in the form in which the factory takes them.
+        """Return the options in the form that the factory accepts.
 
         Args:
-            planner: a name, None for the default, or an object, which needs no resolution.
-            perception: the same for perception.
+            planner: a name, an object, or None for the default.
+            perception: a name, an object, or None for the default.
 
         Raises:
             InputError: an object is combined with options that only apply to names.
@@ -54,7 +54,7 @@ class ServedModels:
             extra = [name for name in (*options, "pair") if getattr(self, name)]
             extra += [name for name in ("reader", "detector") if role == "perception" and getattr(self, name)]
             if extra:
-                raise InputError(f"{role}= is an object of your own, so {', '.join(extra)} has no effect. Leave it out.")
+                raise InputError(f"{role}= is an object, which cannot be combined with {', '.join(extra)}. Remove the argument.")
         return ModelOptions(
             planner=planner if isinstance(planner, str) else None,
             perception=perception if isinstance(perception, str) else None,
@@ -77,7 +77,7 @@ class ServedModels:
 
 @dataclass(frozen=True, slots=True)
 class SessionOptions:
-    """Everything that a session needs to open."""
+    """All options of a session, with the defaults of ``scope_ptz.open``."""
 
     camera: Camera | str
     planner: Planner | str | None = None
@@ -93,10 +93,12 @@ class SessionOptions:
 
 
 def check_type(option: str, given: object, contract: type) -> None:
-    """Raise ``InputError`` unless an option is a name, None, or an object of the contract's class."""
+    """Raise ``InputError`` unless an option is a name, None, or an instance of the contract's class."""
     if not isinstance(given, str | contract | None):
-        wanted = "an object of the class, not the class itself" if isinstance(given, type) else f"a scope_ptz.{contract.__name__}"
-        raise InputError(f"{option}= takes a name or {wanted}, got {given!r}.")
+        expected = (
+            "an instance of the class, not the class itself" if isinstance(given, type) else f"a scope_ptz.{contract.__name__}"
+        )
+        raise InputError(f"{option}= takes a name or {expected}, got {given!r}.")
 
 
 def _path(given: StrPath | None) -> Path | None:
@@ -104,5 +106,5 @@ def _path(given: StrPath | None) -> Path | None:
 
 
 def _pairs(options: Mapping[str, Any] | None) -> tuple[str, ...]:
-    """Return options as ``NAME=JSON``, which the factory parses back to the same values."""
+    """Return options as ``NAME=JSON`` strings. The factory parses them back to the same values."""
     return tuple(f"{name}={json.dumps(value)}" for name, value in (options or {}).items())

@@ -1,4 +1,4 @@
-"""The pictures of tool calls that do not belong to a run."""
+"""Storage for the pictures of tool calls outside a run."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ if TYPE_CHECKING:
 
 
 class ToolCallImages(EncodedImages):
-    """Stores pictures in a folder, which is created with the first of them, or in memory.
+    """Stores pictures in memory, or in a folder that is created when the first picture is stored.
 
-    In memory, only the pictures of ``take_image`` are stored. Frames that perception reads would fill the memory of a long session.
+    In memory, it stores only the pictures of ``take_image``. Storing the frames that perception receives would use too much memory
+    in a long session.
     """
 
     def __init__(self, runs_dir: Path | None) -> None:
@@ -25,7 +26,7 @@ class ToolCallImages(EncodedImages):
         self._files: dict[str, bytes] = {}
 
     def write(self, name: str, data: bytes) -> None:
-        """Store an encoded picture under its name."""
+        """Store an encoded picture under a name."""
         if self._runs_dir is None:
             if name.startswith("pictures/"):
                 self._files[name] = data
@@ -35,7 +36,7 @@ class ToolCallImages(EncodedImages):
         self._folder.write(name, data)
 
     def picture(self, name: str) -> Image.Image:
-        """Open a stored picture. Raises ``TraceError`` when there is none of this name."""
+        """Open a stored picture. Raises ``TraceError`` if no picture has this name."""
         if self._folder is not None:
             return open_picture(name, self._folder.path)
         return open_picture(name, Path(), self._files)

@@ -24,17 +24,17 @@ EventKind = Literal["started", "decided", "called", "ended"]
 
 @dataclass(frozen=True, slots=True)
 class CallResult:
-    """A tool call of a run and what came back.
+    """A tool call of a run, with its result or its error.
 
     Attributes:
-        step: the planner step that the call belongs to, from 1.
+        step: the planner step that made the call, counted from 1.
         name: name of the tool.
-        arguments: the arguments as the planner gave them.
+        arguments: the arguments that the planner passed.
         result: the result of the tool as JSON data; None if the call failed.
-        error: why the call failed; None if it succeeded.
-        fault: the category of the failure: "bad_call", "perception", "camera", "skipped" or "cancelled".
+        error: the reason why the call failed; None if it succeeded.
+        fault: the type of failure: "bad_call", "perception", "camera", "skipped" or "cancelled"; None if the call succeeded.
         pose: pose of the camera after the call.
-        duration_s: wall seconds of the call.
+        duration_s: duration of the call in wall-clock seconds.
 
     Example:
         >>> import scope_ptz
@@ -55,7 +55,7 @@ class CallResult:
 
     @classmethod
     def of(cls, record: Called) -> CallResult:
-        """Return the call of a trace record."""
+        """Create a call result from a trace record."""
         outcome = record.outcome
         return cls(
             step=record.step,
@@ -75,7 +75,7 @@ class CallResult:
 
     @property
     def message(self) -> str:
-        """One sentence on what came back: the message of the result, or the error."""
+        """A sentence about the result: its message, or the error if the call failed."""
         return self.error if self.error is not None else str((self.result or {}).get("message", ""))
 
     def __str__(self) -> str:
@@ -103,7 +103,7 @@ class Run:
 
     @classmethod
     def load(cls, folder: str | PathLike[str]) -> Run:
-        """Read a run from its folder, as ``scope ask`` and ``open(runs_dir=...)`` write it.
+        """Read a run from a run folder, which ``scope ask`` and ``open(runs_dir=...)`` write.
 
         Args:
             folder: the run folder, or the trace file in it.
@@ -112,21 +112,23 @@ class Run:
             The run.
 
         Raises:
-            TraceError: the trace is missing, damaged, or of a run that never ended.
+            TraceError: the trace is missing, damaged or incomplete.
         """
         trace = read_trace(Path(folder))
         if trace.ended is None:
-            raise TraceError(f"The run in {folder} never ended: the program was killed before. `scope replay` shows what is there.")
+            raise TraceError(
+                f"The run in {folder} is incomplete, because the program was stopped. Inspect its steps with `scope replay`."
+            )
         return cls(trace, trace.ended)
 
     @property
     def instruction(self) -> str:
-        """The instruction."""
+        """The instruction that the run carried out."""
         return self._trace.started.instruction
 
     @property
     def answer(self) -> str:
-        """The final text: the answer, the clarifying question, the reason for refusing, or what went wrong (see ``outcome``)."""
+        """The final text: the answer, the clarifying question, the reason for a refusal, or an error message (see ``outcome``)."""
         return self._ended.text
 
     @property
@@ -169,22 +171,22 @@ class Run:
 
     @property
     def note(self) -> str:
-        """A sentence about the perception if it is not a model; otherwise empty."""
+        """A sentence that describes built-in perception, such as ground truth; empty for models."""
         return self._trace.started.labels.perception_note
 
     @property
     def timings(self) -> Timings:
-        """Wall seconds by part: ``planner_s``, ``perception_s``, ``camera_s``, ``render_s``, ``total_s``."""
+        """Wall-clock seconds by component: ``planner_s``, ``perception_s``, ``camera_s``, ``render_s``, ``total_s``."""
         return self._ended.timings
 
     @property
     def usage(self) -> Usage:
-        """Tokens of the planner: ``input_tokens``, ``output_tokens``, ``cached_tokens``."""
+        """Token counts of the planner: ``input_tokens``, ``output_tokens``, ``cached_tokens``."""
         return self._ended.usage
 
     @property
     def folder(self) -> Path | None:
-        """The run folder with trace and pictures; None if the run was kept in memory."""
+        """The run folder, which contains the trace and the pictures; None if the run was kept in memory."""
         return self._trace.folder if self._files is None else None
 
     @cached_property
@@ -214,7 +216,7 @@ class Run:
         """Open a stored picture.
 
         Args:
-            name: one of ``pictures``, or a name in a call's result (``file`` of ``take_image``, ``frames``).
+            name: one of ``pictures``, or a name from the result of a call (``file`` of ``take_image``, or ``frames``).
 
         Returns:
             The picture.
@@ -246,13 +248,13 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happened in a run. ``print(event)`` shows it on one line.
+    """An event of a run in progress. ``print(event)`` shows it on one line.
 
     Attributes:
-        kind: "started", "decided" (the planner chose calls or an end), "called" (a tool call finished) or "ended".
-        text: the event in words.
+        kind: "started", "decided" (the planner chose tool calls or ended the run), "called" (a tool call finished) or "ended".
+        text: a description of the event.
         call: the finished call of a "called" event; otherwise None.
-        run: the whole run of an "ended" event; otherwise None.
+        run: the finished run of an "ended" event; otherwise None.
 
     Example:
         >>> import scope_ptz
@@ -276,7 +278,7 @@ class Event:
 
 
 def event_of(record: Started | Decided | Called) -> Event:
-    """Return the event of a trace record. The end of a run needs the whole run and is made by the session."""
+    """Return the event for a trace record. The session creates the "ended" event itself, because it contains the finished run."""
     match record:
         case Started():
             return Event("started", record.instruction)

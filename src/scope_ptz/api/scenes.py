@@ -14,11 +14,11 @@ from scope_ptz.simulator.pack import Scene, list_scenes
 if TYPE_CHECKING:
     from PIL import Image
 
-MAX_CATEGORIES = 10  # categories of objects in the card of a scene
+MAX_CATEGORIES = 10  # object categories listed in the notebook display of a scene
 
 
 class SceneInfo:
-    """A simulated scene: its presets and what it contains. In a notebook, a scene shows its contact sheet.
+    """A simulated scene: its viewpoints, presets and objects. In a notebook, it is shown with its contact sheet.
 
     Example:
         >>> import scope_ptz
@@ -32,12 +32,12 @@ class SceneInfo:
 
     @property
     def name(self) -> str:
-        """Name of the scene, which ``scope_ptz.open`` takes."""
+        """Name of the scene, which ``scope_ptz.open`` accepts."""
         return self._scene.name
 
     @property
     def title(self) -> str:
-        """The scene's title."""
+        """Title of the scene, such as "Highway works"."""
         return self._scene.file.title
 
     @property
@@ -47,7 +47,7 @@ class SceneInfo:
 
     @property
     def presets(self) -> dict[str, str]:
-        """Names of the presets, and the viewpoint of each."""
+        """The viewpoint of each preset, by the preset's name."""
         return {preset.name: preset.viewpoint for preset in self._scene.file.presets}
 
     @cached_property
@@ -89,16 +89,16 @@ class SceneInfo:
         more = f" and {len(objects) - MAX_CATEGORIES} more categories" if len(objects) > MAX_CATEGORIES else ""
         rows = [("open with", f'scope_ptz.open("{self.name}")')]
         for viewpoint in self.viewpoints:
-            presets = ", ".join(name for name, of in self.presets.items() if of == viewpoint)
+            presets = ", ".join(name for name, stands_at in self.presets.items() if stands_at == viewpoint)
             rows.append((f"presets at {viewpoint}", presets or "none"))
         return card_html(self.title, [*rows, ("objects", listed + more)], self.contact_sheet)
 
 
 def scenes() -> dict[str, SceneInfo]:
-    """Return all scenes by name: the built-in ones and those of the folder that SCOPE_SCENES_DIR names.
+    """Return all scenes by name: the built-in ones and those in the folder set by ``SCOPE_SCENES_DIR``.
 
     Returns:
-        The scenes. Their pictures are not loaded before they are needed.
+        The scenes. Their pictures are loaded on first use.
 
     Raises:
         PackError: the files of a scene are damaged.
@@ -112,16 +112,16 @@ def scenes() -> dict[str, SceneInfo]:
 
 
 def models(role: Role | None = None) -> dict[str, Model]:
-    """Return the registered models by name: the built-in list and the user's own models file.
+    """Return the registered models by name: the built-in ones and those of the user's models file.
 
     Args:
-        role: "planner" or "perception" for models of that role only.
+        role: "planner" or "perception" to select the models of one role; all models by default.
 
     Returns:
-        The models. ``model.memory_for()`` is the memory in GB that serving one needs.
+        The models. ``model.memory_for()`` returns the memory in GB that is needed to serve a model.
 
     Raises:
-        ConfigError: the user's models file is wrong.
+        ConfigError: the user's models file is invalid.
 
     Example:
         >>> import scope_ptz

@@ -35,13 +35,13 @@ _T = TypeVar("_T")
 
 
 class Scope:
-    """A session: a camera, a planner and perception that stay open for several runs. ``scope_ptz.open`` makes one.
+    """A session: a camera, a planner and perception that stay open for several runs. ``scope_ptz.open`` creates one.
 
-    ``ask`` and ``stream`` give an instruction to the planner, which remembers the earlier ones of the session. The nine tools are
-    methods, too: they move the camera and ask perception without the planner.
+    ``ask`` and ``stream`` pass an instruction to the planner, together with the earlier instructions of the session and their
+    answers. The nine tools are also methods of the session, which move the camera and call perception without the planner.
 
-    A session works in scripts and in notebooks. Ctrl-C cancels the run in progress and leaves a complete trace. One run or tool
-    call can be in progress at a time; open several sessions to work with several cameras.
+    A session works in scripts and in notebooks. Ctrl-C cancels the run in progress, and its trace is still complete. Only one run
+    or tool call can be in progress at a time; open several sessions to work with several cameras.
 
     Example:
         >>> import scope_ptz
@@ -66,16 +66,16 @@ class Scope:
             raise
 
     def __enter__(self) -> Self:
-        self._open()
+        self._require_open()
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
-        """Cancel what is in progress, then close the camera and the connections to models. Closing twice is allowed.
+        """Cancel any run or tool call in progress, then close the camera and the connections to models.
 
-        Objects that you passed to ``scope_ptz.open`` stay open.
+        Objects that you passed to ``scope_ptz.open`` stay open. Calling ``close`` again has no effect.
         """
         if not self._closed:
             self._closed = True
@@ -84,7 +84,7 @@ class Scope:
     def ask(self, instruction: str) -> Run:
         """Carry out an instruction.
 
-        A planner or camera that fails during the run is an outcome of the run, not an exception: see ``Run.outcome``.
+        If the planner or the camera fails during the run, no exception is raised: ``Run.outcome`` reports the failure.
 
         Args:
             instruction: what the camera should do, in plain language. It may refer to earlier instructions of the session.
@@ -95,7 +95,7 @@ class Scope:
         Raises:
             InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
             PackError: the files of a scene are damaged.
-            CameraError: the camera does not answer before the first step.
+            CameraError: the camera failed before the first step.
             KeyboardInterrupt: Ctrl-C was pressed. The cancelled run is the last one of ``runs``.
 
         Example:
@@ -109,18 +109,18 @@ class Scope:
     def stream(self, instruction: str) -> Iterator[Event]:
         """Carry out an instruction and yield its events as they happen.
 
-        The run starts with the first event that is requested. Leaving the loop early cancels the run.
+        The run starts when the first event is requested. Leaving the loop early cancels the run.
 
         Args:
-            instruction: what the camera should do, in plain language.
+            instruction: what the camera should do, in plain language. It may refer to earlier instructions of the session.
 
         Yields:
-            Events. The last one has the finished run in ``event.run``.
+            The events of the run. The last one contains the finished run in ``event.run``.
 
         Raises:
             InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
             PackError: the files of a scene are damaged.
-            CameraError: the camera does not answer before the first step.
+            CameraError: the camera failed before the first step.
 
         Example:
             >>> import scope_ptz
@@ -130,7 +130,7 @@ class Scope:
             ...             print(event.call.name)
             count_objects
         """
-        self._open()
+        self._require_open()
         events: SimpleQueue[Event | None] = SimpleQueue()
         future, finished = self._loop.start(partial(self._session.run_with_events, instruction, events.put))
         future.add_done_callback(lambda _: events.put(None))
@@ -153,7 +153,7 @@ class Scope:
                 self._loop.call_function(self._session.cancel)
 
     def forget(self) -> None:
-        """Forget the conversation, so that the next instruction cannot refer to earlier ones. ``runs`` keeps its runs."""
+        """Clear the conversation, so that the next instruction cannot refer to earlier ones. ``runs`` is not cleared."""
         self._session.forget()
 
     @property
@@ -178,11 +178,19 @@ class Scope:
 
     @property
     def scene(self) -> SceneInfo | None:
-        """The scene of a simulated camera, None for other cameras."""
+        """The scene that provides the ground truth of the camera's frames; None if there is none."""
         return self._session.scene
 
     def pose(self) -> Pose:
-        """Return the camera's pose."""
+        """Return the camera's pose.
+
+        Returns:
+            The pose, with ``pan_deg``, ``tilt_deg`` and ``zoom``.
+
+        Raises:
+            InputError: the session is closed.
+            CameraError: the camera failed.
+        """
         return self._call(self._session.pose)
 
     def frame(self) -> Frame:
@@ -190,6 +198,10 @@ class Scope:
 
         Returns:
             The frame. ``frame.image`` is an ``(H, W, 3)`` uint8 RGB array; a notebook displays the frame as a picture.
+
+        Raises:
+            InputError: the session is closed.
+            CameraError: the camera failed.
         """
         return self._call(self._session.frame)
 
@@ -197,7 +209,10 @@ class Scope:
         """Open a picture that ``take_image`` stored.
 
         Args:
-            name: ``file`` of the result of ``take_image``.
+            name: name of the picture, which is the field ``file`` in the result of ``take_image``.
+
+        Returns:
+            The picture.
 
         Raises:
             TraceError: there is no such picture.
@@ -212,23 +227,33 @@ class Scope:
         zoom_percent: float | None = None,
         zoom_limit: Literal["in", "out"] | None = None,
     ) -> MoveResult:
-        """Turn and zoom the camera relative to its pose. This is the short name of ``adjust_ptz``, with the same arguments."""
+        """Turn and zoom the camera relative to its current pose.
+
+        This is a short name for ``adjust_ptz``, with the same arguments, result and errors.
+
+        Example:
+            >>> import scope_ptz
+            >>> with scope_ptz.open("highway-works") as scope:
+            ...     print(scope.move(zoom_factor=2.0).pose.zoom)
+            2.0
+        """
         return self.adjust_ptz(pan_deg, tilt_deg, zoom_factor, zoom_percent, zoom_limit)
 
     def move_to(self, pan_deg: float | None = None, tilt_deg: float | None = None, zoom: float | None = None) -> Pose:
-        """Move the camera to an absolute pose. Axes that are not given stay as they are.
+        """Move the camera to an absolute pose.
 
         Args:
-            pan_deg: pan; positive is right of the camera's zero.
-            tilt_deg: tilt; 0 is the horizon, positive is up.
-            zoom: magnification; 1 is the widest.
+            pan_deg: pan in degrees; positive is to the right of the camera's zero direction. Unchanged by default.
+            tilt_deg: tilt in degrees; 0 is the horizon, and positive is up. Unchanged by default.
+            zoom: magnification; 1 is the widest view. Unchanged by default.
 
         Returns:
-            The pose reached, which the camera's limits may have cut.
+            The pose reached. It is the nearest pose within the camera's limits.
 
         Raises:
-            InputError: the pose is not made of finite numbers, or the session is closed or busy.
-            CameraError: the camera did not move.
+            InputError: a number is not finite, the zoom is not positive, or the session is closed or busy.
+            CameraError: the camera failed.
+            ScopeError: the call was cancelled.
         """
         return self._call(partial(self._session.move_to, pan_deg, tilt_deg, zoom))
 
@@ -240,21 +265,30 @@ class Scope:
         zoom_percent: float | None = None,
         zoom_limit: Literal["in", "out"] | None = None,
     ) -> MoveResult:
-        """Turn and zoom the camera relative to its pose.
+        """Turn and zoom the camera relative to its current pose.
 
         Args:
             pan_deg: degrees to turn right; negative turns left.
             tilt_deg: degrees to turn up; negative turns down.
-            zoom_factor: factor on the magnification: 2.0 is twice as close.
-            zoom_percent: change of the magnification in percent: 50 is 1.5 times as close.
-            zoom_limit: "in" zooms as close as possible, "out" as wide as possible.
+            zoom_factor: factor by which the magnification is multiplied; 2.0 zooms in to twice the magnification.
+            zoom_percent: change of the magnification in percent; 50 multiplies it by 1.5.
+            zoom_limit: "in" for the highest magnification, "out" for the lowest.
 
         Returns:
-            The pose reached and the axes that a limit cut.
+            The result: the ``pose`` reached, and in ``clamped`` the axes on which a limit stopped the camera.
 
         Raises:
-            ToolCallError: the arguments are wrong, such as two of the three zoom arguments.
-            CameraError: the camera did not move.
+            ToolCallError: the arguments are invalid, for example more than one zoom argument.
+            InputError: the session is closed or busy.
+            CameraError: the camera failed.
+            ScopeError: the call was cancelled.
+
+        Example:
+            >>> import scope_ptz
+            >>> with scope_ptz.open("highway-works") as scope:
+            ...     result = scope.adjust_ptz(pan_deg=-20, zoom_percent=50)
+            >>> result.pose.zoom, result.clamped
+            (1.5, ())
         """
         return self._call(partial(self._session.adjust_ptz, pan_deg, tilt_deg, zoom_factor, zoom_percent, zoom_limit))
 
@@ -264,41 +298,73 @@ class Scope:
         Args:
             name: one of the names that ``get_presets`` lists.
 
+        Returns:
+            The result, with the ``pose`` reached and the name of the ``preset``.
+
         Raises:
             UnknownNameError: there is no such preset.
-            CameraError: the camera did not move.
+            InputError: the session is closed or busy.
+            CameraError: the camera failed.
         """
         return self._call(partial(self._session.go_to_preset, name))
 
     def go_home(self) -> MoveResult:
-        """Return to the home view."""
+        """Return to the home view.
+
+        Returns:
+            The result, with the ``pose`` reached.
+
+        Raises:
+            InputError: the session is closed or busy.
+            CameraError: the camera failed.
+        """
         return self._call(self._session.go_home)
 
     def get_presets(self) -> PresetsResult:
-        """List the named preset views."""
+        """List the named preset views.
+
+        Returns:
+            The result, with the names in ``presets``.
+
+        Raises:
+            InputError: the session is closed or busy.
+            CameraError: the camera failed.
+        """
         return self._call(self._session.get_presets)
 
     def take_image(self) -> ImageResult:
         """Store a picture of the current view.
 
         Returns:
-            The name of the picture in ``file``; ``picture(name)`` opens it.
+            The result, with the name of the picture in ``file``. ``picture(name)`` opens it.
+
+        Raises:
+            InputError: the session is closed or busy, or the file cannot be written.
+            CameraError: the camera failed.
         """
         return self._call(self._session.take_image)
 
     def count_objects(self, description: str, view: View = "current") -> CountResult:
-        """Count the objects that fit a description.
+        """Count the objects that match a description.
 
         Args:
             description: what to count, for example "traffic cones".
             view: "current" for this view, "full" to sweep everything around the camera.
 
         Returns:
-            The count and the boxes of the objects.
+            The result: the ``count``, and the ``boxes`` of the objects. ``complete`` is False if the count is a lower bound.
 
         Raises:
-            PerceptionError: the view could not be read.
-            ToolCallError: the arguments are wrong.
+            PerceptionError: perception failed.
+            ToolCallError: the arguments are invalid.
+            InputError: the session is closed or busy.
+            CameraError: the camera failed.
+
+        Example:
+            >>> import scope_ptz
+            >>> with scope_ptz.open("highway-works") as scope:
+            ...     print(scope.count_objects("cones").count)
+            7
         """
         return self._call(partial(self._session.count_objects, description, view))
 
@@ -306,15 +372,17 @@ class Scope:
         """Answer a question about what the camera sees: existence, colour, text, position, state.
 
         Args:
-            question: the question in plain words.
+            question: the question in plain language.
             view: "current" for this view, "full" to sweep everything around the camera.
 
         Returns:
-            The answer. ``known`` is False when the view does not tell.
+            The result, with the ``answer``. ``known`` is False if the answer cannot be determined from the view.
 
         Raises:
-            PerceptionError: the view could not be read.
-            ToolCallError: the arguments are wrong.
+            PerceptionError: perception failed.
+            ToolCallError: the arguments are invalid.
+            InputError: the session is closed or busy.
+            CameraError: the camera failed.
         """
         return self._call(partial(self._session.query_answer, question, view))
 
@@ -325,32 +393,36 @@ class Scope:
             description: what to zoom in on, for example "the white van".
 
         Returns:
-            Whether the object was found, and how much of the frame it fills.
+            The result: ``found`` tells whether the object was found, and ``fill`` how much of the frame it fills.
 
         Raises:
-            PerceptionError: the view could not be read.
-            ToolCallError: the arguments are wrong.
+            PerceptionError: perception failed.
+            ToolCallError: the arguments are invalid.
+            InputError: the session is closed or busy.
+            CameraError: the camera failed.
         """
         return self._call(partial(self._session.zoom_to_object, description))
 
     def track_object(self, description: str, duration_s: float = 10.0) -> TrackResult:
-        """Keep a moving object in the middle of the view for some time.
+        """Keep a moving object in the middle of the view for a given time.
 
         Args:
-            description: what to follow, for example "the white van".
-            duration_s: for how many seconds of scene time, at most 600.
+            description: what to track, for example "the white van".
+            duration_s: duration in seconds of scene time, at most 600.
 
         Returns:
-            The camera's path and the share of the time during which the object was in view.
+            The result: the camera's ``path``, and in ``held_share`` the share of the time during which the object was seen.
 
         Raises:
-            PerceptionError: the view could not be read.
-            ToolCallError: the arguments are wrong.
+            PerceptionError: perception failed.
+            ToolCallError: the arguments are invalid.
+            InputError: the session is closed or busy.
+            CameraError: the camera failed.
         """
         return self._call(partial(self._session.track_object, description, duration_s))
 
     def __getattr__(self, name: str) -> Any:
-        """Return a method for a tool of the registry that has no method above, such as the tool of a newer release."""
+        """Return a method that calls a registered tool for which this class defines no method."""
         if name in TOOLS:
 
             def run_tool(**arguments: Any) -> Result:
@@ -363,10 +435,11 @@ class Scope:
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *TOOLS})
 
-    def _open(self) -> None:
+    def _require_open(self) -> None:
+        """Raise ``InputError`` if the session is closed."""
         if self._closed:
             raise InputError("This session is closed. Open another one with scope_ptz.open().")
 
     def _call(self, work: Callable[[], Awaitable[_T]]) -> _T:
-        self._open()
+        self._require_open()
         return self._loop.call(work)

@@ -1,1 +1,1 @@
-"""The benchmark: what a task expects, how an answer is read, what a run must show, and how a failed run failed."""
+"""The benchmark: tasks, answer parsing, scoring, statistics, the evaluation engine, judging and reports."""

@@ -1,4 +1,4 @@
-"""A person in place of the models: a planner whose commands are typed, and a perception that asks what a picture shows."""
+"""A planner and a perception for a person: commands are typed, and the person says what a picture shows."""
 
 from __future__ import annotations
 
@@ -19,36 +19,39 @@ from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, 
 HELP = """  pan 20  pan -20  tilt -5  zoom 2  zoom in  zoom out   turn and zoom; several in one line are one move
   preset NAME   home   presets   picture                go to a preset or home, list presets, take a picture
   count WHAT    count all WHAT                          count in this view, or all around
-  ask QUESTION  ask all QUESTION                        look closely at this view, or all around
+  ask QUESTION  ask all QUESTION                        ask about this view, or all around
   zoomto WHAT   track WHAT SECONDS                      frame something, follow something
-  answer TEXT   question TEXT   refuse TEXT             end the task with an answer, a question back, or a refusal
-  call TOOL {"argument": value}                         any tool call as a program would make it
-  skip          quit                                    leave this task for later; stop for now"""
+  answer TEXT   question TEXT   refuse TEXT             end the task with an answer, a clarification question, or a refusal
+  call TOOL {"argument": value}                         call a tool with JSON arguments
+  skip          quit                                    leave this task for later; end the session"""
 
 Ask = Callable[[str], str]
 """Asks the person for a line. Raises ``EOFError`` at the end of the input."""
 T = TypeVar("T")
-_ENDS = {"answer": "answered", "question": "clarification", "refuse": "refused"}
+_FINAL_REPLIES = {"answer": "answered", "question": "clarification", "refuse": "refused"}
 
 
 class TaskLeftError(Exception):
-    """The person leaves the task unfinished. ``for_good`` ends the session, too."""
+    """The person leaves the task unfinished. If ``ends_session`` is true, the session ends."""
 
-    def __init__(self, *, for_good: bool) -> None:
+    def __init__(self, *, ends_session: bool) -> None:
         super().__init__()
-        self.for_good = for_good
+        self.ends_session = ends_session
 
 
 def parse(line: str) -> ToolCall | Finish | None:
-    """Parse a typed line; None for help. Raises ``TaskLeftError``, or ``InputError`` when the line is wrong."""
+    """Parse a typed line into a call or a final reply; return None if it asks for help.
+
+    Raises ``TaskLeftError``, or ``InputError`` when the line is wrong.
+    """
     verb, _, rest = line.strip().partition(" ")
     verb, rest = verb.lower(), rest.strip()
-    if verb in _ENDS:
+    if verb in _FINAL_REPLIES:
         if not rest:
-            raise InputError(f"Say what after '{verb}'.")
-        return Finish(kind=_ENDS[verb], text=rest)  # type: ignore[arg-type]
+            raise InputError(f"'{verb}' needs a text after it.")
+        return Finish(kind=_FINAL_REPLIES[verb], text=rest)  # type: ignore[arg-type]
     if verb in ("skip", "quit"):
-        raise TaskLeftError(for_good=verb == "quit")
+        raise TaskLeftError(ends_session=verb == "quit")
     if verb in ("help", "?", ""):
         return None
     name, arguments = _call(verb, rest)
@@ -60,14 +63,14 @@ def _call(verb: str, rest: str) -> tuple[str, dict[str, Any]]:
     if verb in simple and not rest:
         return simple[verb], {}
     if verb in ("pan", "tilt", "zoom"):
-        return "adjust_ptz", _turn(f"{verb} {rest}".split())
+        return "adjust_ptz", _turn_arguments(f"{verb} {rest}".split())
     if verb == "preset" and rest:
         return "go_to_preset", {"name": rest}
     if verb in ("count", "ask") and rest:
         full = rest.lower().startswith("all ")
-        said = rest[4:].strip() if full else rest
+        text = rest[4:].strip() if full else rest
         key = "description" if verb == "count" else "question"
-        return ("count_objects" if verb == "count" else "query_answer"), {key: said, "view": "full" if full else "current"}
+        return ("count_objects" if verb == "count" else "query_answer"), {key: text, "view": "full" if full else "current"}
     if verb == "zoomto" and rest:
         return "zoom_to_object", {"description": rest}
     if verb == "track":
@@ -76,13 +79,13 @@ def _call(verb: str, rest: str) -> tuple[str, dict[str, Any]]:
     if verb == "call":
         name, _, given = rest.partition(" ")
         return name, _json(given or "{}")
-    raise InputError(f"'{verb}' is no command, or something is missing after it. Type help.")
+    raise InputError(f"'{verb}' is not a command, or its argument is missing. Type help for a list of commands.")
 
 
-def _turn(words: list[str]) -> dict[str, Any]:
-    """Parse ``pan 20 tilt -5 zoom 2`` as arguments."""
+def _turn_arguments(words: list[str]) -> dict[str, Any]:
+    """Parse ``pan 20 tilt -5 zoom 2`` as arguments of ``adjust_ptz``."""
     if len(words) % 2:
-        raise InputError("Say how far: pan 20, tilt -5, zoom 2, zoom in.")
+        raise InputError("An amount is missing. Examples: pan 20, tilt -5, zoom 2, zoom in.")
     arguments: dict[str, Any] = {}
     for axis, amount in zip(words[::2], words[1::2], strict=True):
         if axis == "zoom" and amount in ("in", "out"):
@@ -90,7 +93,7 @@ def _turn(words: list[str]) -> dict[str, Any]:
         elif axis in ("pan", "tilt", "zoom"):
             arguments["zoom_factor" if axis == "zoom" else f"{axis}_deg"] = _number(amount)
         else:
-            raise InputError(f"'{axis}' is neither pan nor tilt nor zoom.")
+            raise InputError(f"'{axis}' is not pan, tilt or zoom.")
     return arguments
 
 
@@ -98,23 +101,23 @@ def _number(text: str) -> float:
     try:
         return float(text.rstrip("°sx%"))
     except ValueError as error:
-        raise InputError(f"'{text}' is no number.") from error
+        raise InputError(f"'{text}' is not a number.") from error
 
 
 def _json(text: str) -> dict[str, Any]:
     try:
         content = json.loads(text)
     except ValueError as error:
-        raise InputError(f"{shlex.quote(text)} is no JSON: {error}.") from error
+        raise InputError(f"{shlex.quote(text)} is not valid JSON: {error}.") from error
     if not isinstance(content, dict):
-        raise InputError("The arguments of a call are a JSON object.")
+        raise InputError("The arguments of a call must be a JSON object.")
     return content
 
 
 class HumanPlanner(Planner):
-    """A planner that shows the view and the last result, and makes the calls that the person types.
+    """A planner that shows the view and the last results to a person, and returns the calls that the person types.
 
-    ``left`` is set when the person left the task.
+    ``left`` is set if the person left the task.
     """
 
     sees = True
@@ -134,24 +137,24 @@ class HumanPlanner(Planner):
         self._tell(f"  view ({where}): {self._viewer.show(frame)}")
         while True:
             try:
-                meant = parse(await to_thread.run_sync(self._ask, "› "))
+                command = parse(await to_thread.run_sync(self._ask, "› "))
             except InputError as error:
                 self._tell(f"  {error}")
                 continue
             except (TaskLeftError, EOFError) as left:
-                self.left = left if isinstance(left, TaskLeftError) else TaskLeftError(for_good=True)
+                self.left = left if isinstance(left, TaskLeftError) else TaskLeftError(ends_session=True)
                 return Finish(kind="refused", text="left")
-            if isinstance(meant, Finish):
-                return meant
-            if meant is None:
+            if isinstance(command, Finish):
+                return command
+            if command is None:
                 self._tell(HELP)
                 continue
-            self._perception.counts = meant.name == "count_objects"
-            return CallTools(calls=(meant.model_copy(update={"id": f"call-{len(state.history) + 1}"}),))
+            self._perception.counts = command.name == "count_objects"
+            return CallTools(calls=(command.model_copy(update={"id": f"call-{len(state.history) + 1}"}),))
 
 
 class HumanPerception(Perception):
-    """A perception that asks the person. ``counts`` says that the next search needs only a number, not places."""
+    """A perception that asks a person. If ``counts`` is true, the next detection needs only a number and no boxes."""
 
     def __init__(self, name: str, viewer: Viewer, ask: Ask, tell: Callable[[str], None]) -> None:
         self.name, self._viewer, self._ask, self._tell = name, viewer, ask, tell
@@ -167,13 +170,13 @@ class HumanPerception(Perception):
         began = time.perf_counter()
         text = await self._answer(frame, f"{question} (? if you cannot tell)")
         known = text != "?"
-        said = text if known else "I cannot tell."
-        return Answer(text=said, known=known, source=self.name, raw=text, latency_s=time.perf_counter() - began)
+        answer = text if known else "I cannot tell."
+        return Answer(text=answer, known=known, source=self.name, raw=text, latency_s=time.perf_counter() - began)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         began = time.perf_counter()
         if self.counts:
-            number = await self._ask_until(frame, f"How many: {description}?", _whole)
+            number = await self._ask_until(frame, f"How many: {description}?", _whole_number)
             boxes = (Box(x_min=0, y_min=0, x_max=1, y_max=1, label="counted, place not asked"),) * number
         else:
             boxes = await self._places(frame, description)
@@ -184,7 +187,7 @@ class HumanPerception(Perception):
         return Points(points=tuple(Point(x=b.centre[0], y=b.centre[1]) for b in boxes), source=self.name)
 
     async def _places(self, frame: Frame, description: str) -> tuple[Box, ...]:
-        ask = f"Where is: {description}? left top right bottom, in % of the picture; 'none'; Enter: as before"
+        ask = f"Where is: {description}? left top right bottom, in % of the picture; 'none'; Enter: same as before"
         box = await self._ask_until(frame, ask, self._box, grid=True)
         return () if box is None else (box,)
 
@@ -195,16 +198,16 @@ class HumanPerception(Perception):
             return None
         sides = [_number(part) / 100 for part in text.replace(",", " ").split()]
         if len(sides) != 4 or not (0 <= sides[0] < sides[2] <= 1 and 0 <= sides[1] < sides[3] <= 1):
-            raise InputError("Four numbers from 0 to 100: left, top, right, bottom; or none.")
+            raise InputError("Enter four numbers from 0 to 100 (left, top, right, bottom), or none.")
         return Box(x_min=sides[0], y_min=sides[1], x_max=sides[2], y_max=sides[3])
 
     async def _answer(self, frame: Frame, question: str) -> str:
-        def given(text: str) -> str:
+        def not_empty(text: str) -> str:
             if not text:
                 raise InputError("Type what you see.")
             return text
 
-        return await self._ask_until(frame, question, given)
+        return await self._ask_until(frame, question, not_empty)
 
     async def _ask_until(self, frame: Frame, question: str, read: Callable[[str], T], *, grid: bool = False) -> T:
         self._tell(f"  picture: {self._viewer.show(frame, grid=grid)}")
@@ -217,7 +220,7 @@ class HumanPerception(Perception):
                 raise PerceptionError("The input ended before the person answered.") from error
 
 
-def _whole(text: str) -> int:
+def _whole_number(text: str) -> int:
     if not text.isdecimal() or int(text) > 999:
-        raise InputError("A whole number, in digits.")
+        raise InputError("Enter a whole number below 1000 in digits.")
     return int(text)

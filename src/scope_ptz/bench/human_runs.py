@@ -1,4 +1,4 @@
-"""The human baseline: runs of people, scored by the same checks and stored in the same records as runs of models."""
+"""The human baseline: runs by people, scored by the same checks and stored in the same records as runs of models."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Tria
 
 @dataclass(frozen=True, slots=True)
 class StoredHumanRun:
-    """A person's run: its trace, and the pictures in its folder."""
+    """A run by a person, with its trace and the pictures in its folder."""
 
     trace: Trace
 
@@ -87,7 +87,7 @@ class StoredHumanRun:
 
 
 def open_run(result: Path, sample: str) -> StoredHumanRun:
-    """Open a run of a result by its name (``Trial.sample``) from its folder next to the result.
+    """Open a run by its name (``Trial.sample``), from its folder next to the result.
 
     Raises:
         TraceError: The run cannot be read, or its name leads outside the folder.
@@ -99,7 +99,7 @@ def open_run(result: Path, sample: str) -> StoredHumanRun:
 
 
 def write_result(evaluation: Evaluation, folder: Path) -> Path:
-    """Write the result atomically, so that an interruption leaves the previous one.
+    """Write the result of a session atomically, so that an interruption keeps the previous one.
 
     Raises:
         OutputError: The file cannot be written.
@@ -117,7 +117,7 @@ def read_result(path: Path) -> Evaluation:
     """Read a result of ``scope bench human``.
 
     Raises:
-        InputError: The file cannot be read or holds no result.
+        InputError: The file cannot be read or is not a result.
     """
     try:
         return Evaluation.model_validate_json(path.read_bytes())
@@ -125,4 +125,6 @@ def read_result(path: Path) -> Evaluation:
         raise InputError(f"The result {path} cannot be read: {error.strerror}.") from error
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
-        raise InputError(f"{path} holds no result: {'.'.join(map(str, first['loc']))}: {first['msg']}.") from error
+        raise InputError(
+            f"{path} is not a result of scope bench human: {'.'.join(map(str, first['loc']))}: {first['msg']}."
+        ) from error

@@ -1,4 +1,4 @@
-"""Pictures for a person at a terminal: as files, and in the terminal itself where it can show them."""
+"""Show pictures to a person: as files, and inline in terminals that support it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from PIL import Image
 from scope_ptz.agent.drawing import INK, Canvas
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import OutputError
-from scope_ptz.settings import Inline
+from scope_ptz.settings import InlineProtocol
 
 JPEG_QUALITY = 92
 _KITTY_CHUNK = 4096
@@ -20,14 +20,17 @@ _GRID = range(10, 100, 10)
 
 
 class Viewer:
-    """Writes pictures into a folder, numbered in order, and shows them inline in a terminal."""
+    """Writes numbered pictures into a folder, and shows them in a terminal that supports inline pictures."""
 
-    def __init__(self, folder: Path, terminal: IO[str] | None, inline: Inline | None) -> None:
+    def __init__(self, folder: Path, terminal: IO[str] | None, inline: InlineProtocol | None) -> None:
         self._folder, self._terminal, self._inline = folder, terminal, inline
         self._shown = 0
 
     def show(self, frame: Frame, *, grid: bool = False) -> Path:
-        """Write a frame and return its file. ``grid`` draws lines at every tenth of its sides. Raises ``OutputError``."""
+        """Write a frame and return its file.
+
+        With ``grid``, draw lines at every tenth of its width and height. Raises ``OutputError``.
+        """
         self._shown += 1
         path = self._folder / f"{self._shown:03d}.jpg"
         image = Image.fromarray(frame.image)
@@ -56,7 +59,7 @@ def _gridded(image: Image.Image) -> Image.Image:
     return canvas.finish()
 
 
-def escape(frame: Frame, inline: Inline) -> str:
+def escape(frame: Frame, inline: InlineProtocol) -> str:
     """Return the escape sequence that makes a terminal show a frame at half its size."""
     small = cv2.resize(cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     suffix = ".png" if inline == "kitty" else ".jpg"

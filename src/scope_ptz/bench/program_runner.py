@@ -1,6 +1,6 @@
-"""Run programs of tool calls as an agent would, with the real tools and the simulated camera, fast and in memory.
+"""Run programs of tool calls with the real tools and the simulated camera, in memory.
 
-The caller chooses the perception backend and the place for pictures. Blank frames are enough for backends that use the ground
+The caller chooses the perception backend and the image store. Frames are blank, which is enough for backends that use the ground
 truth.
 """
 
@@ -22,11 +22,11 @@ from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
 
 MakeToolContext = Callable[[Camera], ToolContext]
-"""Creates the tool context of a camera, with perception and a place for pictures."""
+"""Creates the tool context for a camera, with perception and an image store."""
 
 
 class BlankCamera(SimulatedCamera):
-    """A simulated camera whose frames know their origin but are blank, because rendering is most of the work."""
+    """A simulated camera with blank frames, which saves the time of rendering. The frames contain their origin."""
 
     def __init__(self, scene: Scene, *, clock: SceneClock, width: int, height: int) -> None:
         super().__init__(scene, clock=clock, width=width, height=height)
@@ -46,7 +46,7 @@ class ProgramRunner:
 
     Args:
         scene: The scene.
-        make_context: Creates the tool context of a camera.
+        make_context: Creates the tool context for the camera.
         geometry: Size and lens of the frames.
     """
 
@@ -54,11 +54,11 @@ class ProgramRunner:
         self.scene, self.make_context, self.geometry = scene, make_context, geometry
 
     async def run(self, task: Task, program: Sequence[ProgramCall], text: str, outcome: str = "answered") -> Episode:
-        """Run a program from the task's start. After a failed call the program continues.
+        """Run a program from the start of a task. After a failed call the program continues.
 
         Args:
-            task: The task that gives the start.
-            program: The calls.
+            task: The task, which defines preset and scene time at the start.
+            program: The calls in order.
             text: The final answer of the run.
             outcome: How the run ends.
         """
@@ -88,7 +88,7 @@ class ProgramRunner:
 
 
 def with_observations(call: EpisodeCall, geometry: FrameGeometry) -> EpisodeCall:
-    """Return a call with the observations that it made."""
+    """Return a call with its observations added."""
     observations = observations_of(call, geometry) if call.succeeded else ()
     return EpisodeCall(
         call.name, call.arguments, call.before, call.after, call.result, call.error, call.fault, call.time_s, observations

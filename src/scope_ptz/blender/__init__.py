@@ -1,1 +1,1 @@
-"""Blender from the main program's side: its environment, the worker's client, and the bake of viewpoint packs."""
+"""Blender as the main program uses it: its environment, the client of the worker process, and the baking of viewpoint packs."""

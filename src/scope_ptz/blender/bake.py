@@ -1,4 +1,4 @@
-"""The bake of a scene into viewpoint packs. An interrupted bake resumes where it stopped."""
+"""Baking of a scene into viewpoint packs. An interrupted bake resumes where it stopped."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from scope_ptz.blender.extents import extents
 from scope_ptz.blender.keyframes import Keyframe, keyframes
 from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
 from scope_ptz.blender.panorama import render_base
+from scope_ptz.blender.part_cache import PartCache, Progress
 from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, WIDER_DENSITY_PX_PER_DEG, Quality
 from scope_ptz.blender.requests import panorama_request, perspective_request
 from scope_ptz.blender.sheets import make_sheet
 from scope_ptz.blender.sources import scene_key
 from scope_ptz.blender.tiles import busiest, cover, covers, in_rows, most_useful, targets
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
-from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.errors import BlenderError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective
 from scope_ptz.simulator.layers import encode_depth, read_colour
@@ -32,12 +32,12 @@ from scope_ptz.simulator.models import Extent, SceneActor, SceneFile, SceneViewp
 from scope_ptz.simulator.pack import Scene
 
 CHECKS, CHECK_SEED = 2, 1
-"""Live renders per viewpoint at the end of a bake, both at the widest zoom and zoomed in, and the seed of their poses."""
+"""Number of live renders per viewpoint at the end of a bake, at the widest zoom and as many zoomed in; and their seed."""
 
 
 @dataclass(frozen=True, slots=True)
 class BakedViewpoint:
-    """The result of a bake for one viewpoint: its folder, size, number of tiles, and the targets that no tile covers."""
+    """The baked pack of one viewpoint: its folder, size, number of tiles, and the targets that no tile covers."""
 
     folder: Path
     weight_bytes: int
@@ -47,7 +47,7 @@ class BakedViewpoint:
 
 @dataclass(frozen=True, slots=True)
 class Baked:
-    """The packs of a scene, and how they compare with live renders."""
+    """The result of a bake: the packs of a scene, and their comparison with live renders."""
 
     packs: tuple[BakedViewpoint, ...]
     reports: tuple[PoseReport, ...]
@@ -70,10 +70,10 @@ def bake(
     Args:
         source: A scene of ``scope_studio.scenes``, or the path of a Python file with ``build(stage)``.
         out_dir: The scene's folder, which must have the scene's name.
-        quality: Sizes and samples.
-        command: Starts the worker.
-        cache_dir: Where unfinished parts are kept.
-        viewpoints: Names of the viewpoints to bake, None for all.
+        quality: The quality settings.
+        command: The command that starts the worker.
+        cache_dir: The folder for unfinished parts.
+        viewpoints: Names of the viewpoints to bake; None bakes all.
         progress: Called after every step.
 
     Raises:
@@ -81,23 +81,23 @@ def bake(
         UnknownNameError: The scene has no such viewpoint.
     """
     key = scene_key(source)
-    shop = Workshop(cache_dir / "bakes", key, progress)
-    with BlenderWorker(command, shop.folder / "blender.log") as worker:
-        step = shop.steps("scene", 2)
+    cache = PartCache(cache_dir / "bakes", key, progress)
+    with BlenderWorker(command, cache.folder / "blender.log") as worker:
+        step = cache.steps("scene", 2)
         worker.request("load_scene", {"source": source})
         step()
         description = worker.request("describe")
         step()
         scene = scene_file(description, key.rsplit("-", 1)[1])
         if out_dir.name != scene.name:
-            raise BlenderError(f"The folder of a scene bears its name: bake to '{out_dir.with_name(scene.name)}'.")
+            raise BlenderError(f"The folder must have the name of the scene: bake to '{out_dir.with_name(scene.name)}'.")
         known = {v.name: v for v in scene.viewpoints}
         wanted = list(known) if viewpoints is None else list(viewpoints)
         for name in wanted:
             if name not in known:
                 raise UnknownNameError("viewpoint", name, known)
         out_dir.mkdir(parents=True, exist_ok=True)
-        baker = _Baker(worker, shop, scene, description, quality)
+        baker = _Baker(worker, cache, scene, description, quality)
         baked = [baker.bake_viewpoint(known[name], out_dir / name) for name in wanted]
         (out_dir / "scene.json").write_text(scene.model_dump_json(indent=1) + "\n")
         packs = Scene(out_dir)
@@ -110,7 +110,7 @@ def bake(
 
 
 def scene_file(description: dict[str, Any], version: str) -> SceneFile:
-    """Return the scene file that the worker's description makes.
+    """Return the scene file for the worker's description of a scene.
 
     Raises:
         BlenderError: The description is not a valid scene.
@@ -125,12 +125,12 @@ def scene_file(description: dict[str, Any], version: str) -> SceneFile:
 
 
 class _Baker:
-    """The parts of a bake that share a worker and a workshop."""
+    """Bakes viewpoints with one worker and one folder of unfinished parts."""
 
     def __init__(
-        self, worker: BlenderWorker, shop: Workshop, scene: SceneFile, description: dict[str, Any], quality: Quality
+        self, worker: BlenderWorker, cache: PartCache, scene: SceneFile, description: dict[str, Any], quality: Quality
     ) -> None:
-        self._worker, self._shop, self._scene, self._quality = worker, shop, scene, quality
+        self._worker, self._cache, self._scene, self._quality = worker, cache, scene, quality
         self._strides: dict[str, float | None] = description["strides_m"]
         self._sun = None if description["sun"] is None else np.array(description["sun"])
         self._band = reachable_band(Limits(), AXIS_M5075_G)
@@ -143,7 +143,7 @@ class _Baker:
         _, metres = self._truth(name, "depth", panorama_request(coarse.projection))
         silhouettes = self._extents(viewpoint)
         panorama = Panorama.of(q.base_width, self._band)
-        base = render_base(self._worker, self._shop, name, panorama, q.base_samples)
+        base = render_base(self._worker, self._cache, name, panorama, q.base_samples)
         wanted = targets(self._scene, viewpoint, ids, wide.projection)
         views = [cell.view(q.tile_density_px_per_deg) for cell in in_rows(most_useful(cover(wanted), wanted, q.max_cells))]
         tiles = self._tiles(name, "tiles", views)
@@ -152,17 +152,17 @@ class _Baker:
             tiles += self._tiles(name, "wider tiles", [cell.view(WIDER_DENSITY_PX_PER_DEG) for cell in busy])
         actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
         rendered = Rendered(panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes)
-        manifest = write_pack(folder, self._scene, viewpoint, rendered, q, PACK_BYTES, self._shop.steps(f"{name}/pack", 3))
+        manifest = write_pack(folder, self._scene, viewpoint, rendered, q, PACK_BYTES, self._cache.steps(f"{name}/pack", 3))
         uncovered = tuple(t.name for t in wanted if not covers(views, t))
         return BakedViewpoint(folder, weight_bytes(folder), len(manifest.tiles), uncovered)
 
     def _truth(self, viewpoint: str, part: str, projection: dict[str, Any]) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
         def produce(path: Path) -> None:
-            step = self._shop.steps(f"{viewpoint}/{part}", 1)
+            step = self._cache.steps(f"{viewpoint}/{part}", 1)
             self._worker.request("truth", {"viewpoint": viewpoint, "projection": projection, "out": str(path)})
             step()
 
-        with np.load(self._shop.part(f"{viewpoint}/truth", ".npz", projection, produce)) as file:
+        with np.load(self._cache.part(f"{viewpoint}/truth", ".npz", projection, produce)) as file:
             return file["ids"], file["depth"]
 
     def _colour(self, viewpoint: str, part: str, view: Perspective, samples: int) -> NDArray[np.uint8]:
@@ -172,23 +172,23 @@ class _Baker:
             parameters = {"viewpoint": viewpoint, "projection": projection, "samples": samples, "seed": 1, "out": str(path)}
             self._worker.request("colour", parameters)
 
-        return read_colour(self._shop.part(part, ".png", {"projection": projection, "samples": samples}, produce))
+        return read_colour(self._cache.part(part, ".png", {"projection": projection, "samples": samples}, produce))
 
     def _extents(self, viewpoint: SceneViewpoint) -> list[Extent]:
         def dump(path: Path) -> None:
             self._worker.request("meshes", {"out": str(path)})
 
         def measure(path: Path) -> None:
-            found = extents(meshes, viewpoint, self._shop.follow(f"{viewpoint.name}/extents"))
+            found = extents(meshes, viewpoint, self._cache.follow(f"{viewpoint.name}/extents"))
             path.write_text(json.dumps([e.model_dump() for e in found]))
 
-        meshes = self._shop.part("meshes", ".npz", {}, dump)
+        meshes = self._cache.part("meshes", ".npz", {}, dump)
         place = viewpoint.model_dump(mode="json")
-        done = self._shop.part(f"{viewpoint.name}/extents", ".json", place, measure)
+        done = self._cache.part(f"{viewpoint.name}/extents", ".json", place, measure)
         return [Extent.model_validate(e) for e in json.loads(done.read_text())]
 
     def _tiles(self, viewpoint: str, part: str, views: list[Perspective]) -> list[RenderedTile]:
-        step = self._shop.steps(f"{viewpoint}/{part}", len(views))
+        step = self._cache.steps(f"{viewpoint}/{part}", len(views))
         tiles = []
         for view in views:
             colour = self._colour(viewpoint, f"{viewpoint}/tile", view, self._quality.tile_samples)
@@ -199,8 +199,8 @@ class _Baker:
 
     def _actor(self, viewpoint: SceneViewpoint, actor: SceneActor) -> RenderedActor | None:
         q, stride_m = self._quality, self._strides[actor.id]
-        most = q.max_sprites * 3 // 2 if stride_m else q.max_sprites
-        frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, most)
+        limit = q.max_sprites * 3 // 2 if stride_m else q.max_sprites
+        frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, limit)
         if not frames:
             return None
         folder = self._sprite_folder(viewpoint.name, actor, frames)
@@ -214,8 +214,8 @@ class _Baker:
             folder = stamp.with_suffix("")
             folder.mkdir(exist_ok=True)
             parameters = {"actor": actor.id, "viewpoint": viewpoint, "frames": requests, "samples": samples, "out_dir": str(folder)}
-            self._worker.request("sprites", parameters, progress=self._shop.follow(f"{viewpoint}/{actor.id}"))
+            self._worker.request("sprites", parameters, progress=self._cache.follow(f"{viewpoint}/{actor.id}"))
             stamp.write_text("done\n")
 
-        stamp = self._shop.part(f"{viewpoint}/{actor.id}", ".done", {"frames": requests, "samples": samples}, produce)
+        stamp = self._cache.part(f"{viewpoint}/{actor.id}", ".done", {"frames": requests, "samples": samples}, produce)
         return stamp.with_name(f"unfinished-{stamp.stem}")

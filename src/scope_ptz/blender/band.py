@@ -1,4 +1,4 @@
-"""The part of the sphere that a camera can see, and the strips in which a panorama of it is rendered."""
+"""The band of the sphere that a camera can see, and the strips in which its panorama is rendered."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from scope_ptz.geometry import Equirectangular, Limits, Optics, Perspective, pan
 from scope_ptz.simulator.models import Band
 
 ASPECTS = (16 / 9, 4 / 3)
-"""Aspect ratios of the frames that a pack serves."""
+"""Aspect ratios of the frames that a pack must cover."""
 
-MARGIN_DEG = 0.8
+MARGIN_DEG = 0.8  # added to the band at the top and the bottom
 POLE_DEG = 7.0
-"""A band that ends within this angle of straight down is extended to the pole."""
+"""A band that ends within this angle of a pole is extended to it."""
 
 
 def reachable_band(limits: Limits, optics: Optics) -> Band:
@@ -38,7 +38,7 @@ def reachable_band(limits: Limits, optics: Optics) -> Band:
 
 @dataclass(frozen=True, slots=True)
 class Strip:
-    """Rows ``first_row`` to ``last_row`` (exclusive) of a panorama, rendered with a width of ``width`` pixels."""
+    """Rows ``first_row`` to ``last_row`` (exclusive) of a panorama, rendered ``width`` pixels wide."""
 
     first_row: int
     last_row: int
@@ -49,7 +49,7 @@ class Strip:
 
 @dataclass(frozen=True, slots=True)
 class Panorama:
-    """Size and band of a panorama. The band is in whole degrees, and pixels are square in degrees."""
+    """The size and the band of a panorama. The band has whole degrees, and each pixel spans equal angles in pan and tilt."""
 
     width: int
     height: int
@@ -57,7 +57,7 @@ class Panorama:
 
     @classmethod
     def of(cls, width: int, band: Band) -> Panorama:
-        """Return the panorama of a width that covers at least a band. Multiples of a width share one band."""
+        """Return a panorama of a given width that covers a band. The band is extended to whole degrees."""
         top = min(90.0, float(math.ceil(band.top_tilt_deg)))
         bottom = max(-90.0, float(math.floor(band.bottom_tilt_deg)))
         height = round((top - bottom) / 360.0 * width)
@@ -73,7 +73,7 @@ class Panorama:
         return self.band.top_tilt_deg - row / self.height * (self.band.top_tilt_deg - self.band.bottom_tilt_deg)
 
     def strips(self, rows: int, overlap_rows: int) -> list[Strip]:
-        """Return strips of about ``rows`` rows, with some overlap for blending. Strips near a pole need fewer columns."""
+        """Return strips of about ``rows`` rows that overlap for blending. Strips near a pole need fewer columns."""
         count = max(1, round(self.height / rows))
         edges = [round(k * self.height / count) for k in range(count + 1)]
         strips = []

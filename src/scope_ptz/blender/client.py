@@ -16,18 +16,19 @@ from typing import IO, Any
 
 from scope_ptz.errors import BlenderError
 
-MARK = "@scope "
+MARK = "@scope "  # begins the lines of the worker's output that are replies
 START_TIMEOUT_S = 120.0
 QUIT_TIMEOUT_S = 10.0
 Progress = Callable[[int, int], None]
+"""Receives the number of finished steps and the total."""
 
 
 class BlenderWorker:
-    """One worker process. A lock allows one request at a time.
+    """A Blender worker process. It carries out one request at a time.
 
     Args:
-        command: Starts the process.
-        log_file: Receives what Blender prints.
+        command: The command that starts the process.
+        log_file: The file for Blender's messages.
     """
 
     def __init__(self, command: Sequence[str], log_file: Path) -> None:
@@ -55,7 +56,7 @@ class BlenderWorker:
         """Start the process and wait until Blender is ready.
 
         Raises:
-            BlenderError: The process does not start.
+            BlenderError: The process does not start in time.
         """
         self._log_file.parent.mkdir(parents=True, exist_ok=True)
         environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
@@ -79,8 +80,8 @@ class BlenderWorker:
         Args:
             op: Name of the operation in ``scope_studio.operations``.
             params: Its arguments, as JSON data.
-            timeout_s: Seconds after which the worker is ended.
-            progress: Called with the steps done and the total.
+            timeout_s: Seconds after which the worker is killed.
+            progress: Called with the number of finished steps and the total.
 
         Raises:
             BlenderError: The operation fails, or the worker crashes or does not answer in time.
@@ -107,7 +108,7 @@ class BlenderWorker:
                     return reply["result"]
 
     def close(self) -> None:
-        """Ask the worker to quit, and end it if it is busy or does not."""
+        """Ask the worker to quit. Kill it if it is busy or does not quit."""
         process = self._process
         if process is not None and process.poll() is None and process.stdin is not None and not self._lock.locked():
             with suppress(OSError, subprocess.TimeoutExpired):
@@ -127,7 +128,7 @@ class BlenderWorker:
             reply = self._replies.get(timeout=max(0.0, deadline - time.monotonic()))
         except queue.Empty:
             self._kill()
-            raise BlenderError(f"Blender did not finish '{op}' in time and was ended. {self._tail()}") from None
+            raise BlenderError(f"Blender did not finish '{op}' in time and was stopped. {self._tail()}") from None
         if reply is None:
             raise self._crashed(op)
         return reply

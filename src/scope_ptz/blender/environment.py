@@ -1,4 +1,4 @@
-"""The Python that runs Blender: the user's own, or an environment with the ``bpy`` wheel, made on demand.
+"""The Python environment that runs Blender: the user's own, or one with the ``bpy`` wheel that is created on demand.
 
 The wheel needs Python 3.11 and NumPy 1, so it never shares an environment with the main program.
 """
@@ -17,25 +17,25 @@ from scope_ptz.errors import BlenderError
 BPY_VERSION = "5.0.1"
 REQUIREMENTS = (f"bpy=={BPY_VERSION}", "numpy>=1.26,<2", "OpenEXR>=3.3,<4")
 PYTHON_VERSION = "3.11"
-READY = "ready"
+READY = "ready"  # a file that marks a complete environment
 
 
 def worker_command(cache_dir: Path, blender_python: Path | None = None) -> list[str]:
     """Return the command that starts the worker.
 
     Args:
-        cache_dir: Where the environment is kept. It is made on the first call, a download of about 400 MB.
-        blender_python: A Python that can import ``bpy``, or the ``blender`` program, in place of the environment.
+        cache_dir: The folder for the environment. The first call creates it, which downloads about 400 MB.
+        blender_python: A Python that can import ``bpy``, or the ``blender`` program, to use instead of the environment.
 
     Raises:
-        BlenderError: There is no such program, or the environment cannot be made.
+        BlenderError: There is no such program, or the environment cannot be created.
     """
     script = str(studio_folder() / "worker.py")
     if blender_python is None:
         return [str(ensure_environment(cache_dir)), script]
     program = shutil.which(str(blender_python))
     if program is None:
-        raise BlenderError(f"There is no program '{blender_python}': name a Python that has bpy, or Blender itself.")
+        raise BlenderError(f"There is no program '{blender_python}'. Give a Python that has bpy, or the blender program.")
     if Path(program).name.lower().startswith("blender"):
         return [program, "--background", "--factory-startup", "--python-exit-code", "1", "--python", script]
     return [program, script]
@@ -53,10 +53,10 @@ def is_ready(cache_dir: Path) -> bool:
 
 
 def ensure_environment(cache_dir: Path) -> Path:
-    """Make the environment if it is missing or incomplete, and return its Python.
+    """Create the environment if it is missing or incomplete, and return its Python.
 
     Raises:
-        BlenderError: The environment cannot be made.
+        BlenderError: The environment cannot be created.
     """
     python = environment_python(cache_dir)
     if is_ready(cache_dir):
@@ -80,7 +80,7 @@ def _python311() -> str:
         return sys.executable
     found = shutil.which(f"python{PYTHON_VERSION}")
     if found is None:
-        raise BlenderError(f"Blender's Python module needs Python {PYTHON_VERSION}: install it, or uv, which fetches it.")
+        raise BlenderError(f"Blender's Python module needs Python {PYTHON_VERSION}. Install it, or install uv, which downloads it.")
     return found
 
 
@@ -88,4 +88,4 @@ def _run(command: list[str]) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         tail = "\n".join((done.stderr or done.stdout).strip().splitlines()[-8:])
-        raise BlenderError(f"Blender's environment could not be made: `{' '.join(command)}` failed.\n{tail}")
+        raise BlenderError(f"Blender's environment could not be created: `{' '.join(command)}` failed.\n{tail}")

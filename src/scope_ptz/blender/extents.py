@@ -1,4 +1,4 @@
-"""The whole silhouette of every instance from a viewpoint, hidden parts included, calculated from its triangles."""
+"""The full silhouettes of instances as seen from a viewpoint, including hidden parts, calculated from their triangles."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from scope_ptz.simulator.models import Extent, SceneViewpoint
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-RASTER_PX = 512
+RASTER_PX = 512  # side of the raster on which silhouettes are drawn
 WIDE_DEG = 60.0
-"""Silhouettes that extend further than this from their middle are drawn on the faces of a cube."""
+"""Silhouettes that extend further than this from their middle are drawn on the six faces of a cube."""
 
-NEAR_M = 1e-3
-FRACTION_BITS = 4
-HULL_POINTS = 24
+NEAR_M = 1e-3  # distance of the plane at which triangles are clipped
+FRACTION_BITS = 4  # of the fixed-point coordinates of OpenCV
+HULL_POINTS = 24  # maximum number of points of an outline
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """An instance: vertices of shape ``(n, 3)`` in the camera's frame and triangles of shape ``(m, 3)``."""
+    """The mesh of an instance: vertices ``(n, 3)`` in the viewpoint's coordinates, and triangles ``(m, 3)`` of vertex indices."""
 
     number: int
     vertices: Floats
@@ -37,7 +37,7 @@ class Body:
 
 
 def extents(meshes: Path, viewpoint: SceneViewpoint, progress: Callable[[int, int], None]) -> list[Extent]:
-    """Return the extent of every instance in a file that the worker's ``meshes`` wrote."""
+    """Return the extent of every instance in a file from the worker's operation ``meshes``."""
     bodies = read_bodies(meshes, viewpoint)
     found = []
     for k, body in enumerate(bodies):
@@ -47,7 +47,7 @@ def extents(meshes: Path, viewpoint: SceneViewpoint, progress: Callable[[int, in
 
 
 def read_bodies(meshes: Path, viewpoint: SceneViewpoint) -> list[Body]:
-    """Return all instances in the frame of a viewpoint, ordered by number."""
+    """Return the meshes of all instances in the coordinates of a viewpoint, ordered by number."""
     bearing = math.radians(viewpoint.pan0_bearing_deg)
     c, s = math.cos(bearing), math.sin(bearing)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -76,7 +76,7 @@ def extent(body: Body) -> Extent:
     used = body.vertices[np.unique(body.triangles)]
     rays = used / np.linalg.norm(used, axis=1, keepdims=True)
     middle = rays.mean(axis=0)
-    for _ in range(3):  # The axis of the smallest cone around the rays.
+    for _ in range(3):  # approximates the axis of the smallest cone around the rays
         middle = middle / max(np.linalg.norm(middle), 1e-9)
         farthest = rays[np.argmin(rays @ middle)]
         middle = middle + 0.25 * (farthest - middle)
@@ -97,29 +97,29 @@ def _narrow_solid_angle(body: Body, axes: Floats) -> float:
     local = body.vertices @ axes.T
     flat = local[:, :2] / local[:, 2:]
     used = flat[np.unique(body.triangles)]
-    lengthwise = np.linalg.eigh(np.cov(used.T))[1]  # A leaning pole is drawn upright, which wastes fewer pixels.
+    lengthwise = np.linalg.eigh(np.cov(used.T))[1]  # a leaning pole is drawn upright, which uses more of the raster
     flat, used = flat @ lengthwise, used @ lengthwise
     low, high = used.min(axis=0), used.max(axis=0)
-    coarse, fine = (_drawn(flat[body.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
+    coarse, fine = (_drawn_solid_angle(flat[body.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
     return _without_outline(coarse, fine)
 
 
 def _without_outline(coarse: float, fine: float) -> float:
-    """Correct an area for OpenCV's outlines.
+    """Correct an area for the way in which OpenCV fills polygons.
 
-    OpenCV fills every pixel that an outline touches, which is too much. The excess halves with pixels of half the size.
+    OpenCV fills every pixel that an outline touches, so areas are too large. The excess halves with pixels of half the size.
     """
     return max(2 * fine - coarse, 0.3 * fine)
 
 
-def _drawn(triangles: Floats, low: Floats, high: Floats, side: int) -> float:
+def _drawn_solid_angle(triangles: Floats, low: Floats, high: Floats, side: int) -> float:
     """Return the solid angle of the union of triangles in a tangent plane.
 
     Args:
         triangles: Shape ``(m, 3, 2)``.
         low: Lower corner of the raster.
         high: Upper corner of the raster.
-        side: Width and height of the raster in pixels, which are oblong.
+        side: Width and height of the raster in pixels. The pixels need not be square.
     """
     pitch = np.maximum((high - low) / side, 1e-12)
     mask = np.zeros((side + 3, side + 3), dtype=np.uint8)
@@ -141,12 +141,12 @@ def _wide_solid_angle(body: Body) -> float:
         touching = np.all(flat.max(axis=1) > low, axis=1) & np.all(flat.min(axis=1) < high, axis=1)
         if touching.any():
             for k, side in enumerate((RASTER_PX, 2 * RASTER_PX)):
-                totals[k] += _drawn(flat[touching], low, high, side)
+                totals[k] += _drawn_solid_angle(flat[touching], low, high, side)
     return _without_outline(*totals)
 
 
 def _in_front(corners: Floats) -> Floats:
-    """Cut triangles of shape ``(m, 3, 3)`` at a plane just in front of the camera. A quadrilateral becomes two triangles."""
+    """Clip triangles of shape ``(m, 3, 3)`` at a plane just in front of the camera. Quadrilaterals are split into two triangles."""
     ahead = corners[..., 2] > NEAR_M
     whole = corners[ahead.all(axis=1)]
     pieces = []
@@ -176,13 +176,13 @@ def _hull(rays: Floats, axes: Floats) -> list[tuple[float, float]]:
 
 
 def _nearest_m(body: Body) -> float:
-    """Return the distance from the origin to the nearest point of any triangle, on an edge or inside."""
+    """Return the distance from the origin to the nearest point of all triangles."""
     a, b, c = (body.vertices[body.triangles[:, k]] for k in range(3))
     nearest = min(_edge_distance(a, b), _edge_distance(b, c), _edge_distance(c, a))
     normal = np.cross(b - a, c - a)
     area2 = np.einsum("ij,ij->i", normal, normal)
-    fair = area2 > 1e-18
-    a, b, c, normal, area2 = a[fair], b[fair], c[fair], normal[fair], area2[fair]
+    not_degenerate = area2 > 1e-18
+    a, b, c, normal, area2 = a[not_degenerate], b[not_degenerate], c[not_degenerate], normal[not_degenerate], area2[not_degenerate]
     foot = normal * (np.einsum("ij,ij->i", normal, a) / area2)[:, None]
     inside = np.ones(len(a), dtype=bool)
     for p, q in ((a, b), (b, c), (c, a)):

@@ -10,17 +10,17 @@ from scope_ptz.geometry import Limits, Optics
 from scope_ptz.simulator.models import SceneFile, ScenePreset, SceneViewpoint
 
 ZOOM_RANGE = 5.0
-"""A camera of a .blend file zooms at least this much beyond its widest field of view."""
+"""Minimum zoom range of the camera."""
 
 
 @dataclass(frozen=True, slots=True)
 class FileCameras:
-    """What a live camera needs to know about a .blend file.
+    """The cameras of a .blend file, as one pan-tilt-zoom camera.
 
     Attributes:
-        scene: The file's cameras as viewpoints, each with one preset; home is the file's active camera. It has no instances.
+        scene: The cameras as viewpoints, each with one preset. The active camera is home. The scene has no instances.
         optics: Zoom 1 is the widest field of view among the cameras.
-        limits: Pan is endless, tilt goes from straight down to straight up, and zoom reaches every camera.
+        limits: Pan is endless, tilt ranges from straight down to straight up, and zoom includes every camera's field of view.
     """
 
     scene: SceneFile
@@ -33,8 +33,8 @@ def file_cameras(description: dict[str, Any]) -> FileCameras:
     cameras = description["cameras"]
     widest_deg = max(camera["hfov_deg"] for camera in cameras)
     zooms = [_half_width(widest_deg) / _half_width(camera["hfov_deg"]) for camera in cameras]
-    most = max(ZOOM_RANGE, *zooms)
-    closest_deg = 2 * math.degrees(math.atan(_half_width(widest_deg) / most))
+    max_zoom = max(ZOOM_RANGE, *zooms)
+    closest_deg = 2 * math.degrees(math.atan(_half_width(widest_deg) / max_zoom))
     presets = [
         ScenePreset(
             name=camera["name"], viewpoint=camera["name"], pan_deg=0.0, tilt_deg=camera["tilt_deg"], zoom=zoom,
@@ -50,8 +50,8 @@ def file_cameras(description: dict[str, Any]) -> FileCameras:
         name=description["name"], title=description["title"], version="live", blender_version=description["blender_version"],
         viewpoints=viewpoints, presets=presets, home_preset=description["active"], instances=[], texts=[],
     )  # fmt: skip
-    limits = Limits(-180.0, 180.0, -90.0, 90.0, 1.0, most, pan_endless=True)
-    return FileCameras(scene, Optics(((1.0, widest_deg), (most, closest_deg))), limits)
+    limits = Limits(-180.0, 180.0, -90.0, 90.0, 1.0, max_zoom, pan_endless=True)
+    return FileCameras(scene, Optics(((1.0, widest_deg), (max_zoom, closest_deg))), limits)
 
 
 def _half_width(hfov_deg: float) -> float:

@@ -1,4 +1,4 @@
-"""The places on an actor's path at which it is rendered, and the view of each picture."""
+"""Keyframes of actors: the places on an actor's path at which it is rendered, and the view of each render."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.simulator.models import Band, SceneActor, SceneViewpoint
 
 TURN_STEP_DEG, DISTANCE_STEP = 2.5, 1.06
-"""Limits between two pictures: the change of the angle from which the actor is seen, and the factor on its distance."""
+"""Maximum change between two keyframes: of the angle from which the actor is seen, and of its distance as a factor."""
 
-GAIT_PHASES = 8
-MIN_SIDE_PX = 6.0
-MAX_SIDE_PX = 420
-SAMPLES = 1200
-MARGIN = 1.06
+GAIT_PHASES = 8  # pictures of a walker at each place
+MIN_SIDE_PX = 6.0  # actors that stay smaller at the closest zoom are not rendered
+MAX_SIDE_PX = 420  # maximum side of a picture
+SAMPLES = 1200  # points along a path
+MARGIN = 1.06  # factor on the size of a view
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Keyframe:
-    """A picture of an actor: its time on the path, its gait phase, and the view.
+    """A picture of an actor to render: its time on the path, its gait phase, and the view.
 
     Attributes:
-        also_s: Other times that use this picture. A renderer uses the picture nearest in time, and near a corner of the path that
-            must not be a picture from beyond the corner, where the actor faces another way.
+        also_s: Further times at which the picture is listed. A view uses the picture nearest in time. These times, at corners of
+            the path, prevent it from using a picture from beyond the corner, where the actor faces another way.
     """
 
     time_s: float
@@ -43,7 +43,7 @@ class Keyframe:
     also_s: tuple[float, ...] = ()
 
     def request(self) -> dict[str, Any]:
-        """Return the frame as the worker's ``sprites`` takes it."""
+        """Return the keyframe as a parameter of the worker's operation ``sprites``."""
         return {
             "time_s": self.time_s,
             "phase": self.phase,
@@ -53,16 +53,16 @@ class Keyframe:
 
 
 def keyframes(
-    actor: SceneActor, stride_m: float | None, viewpoint: SceneViewpoint, band: Band, sun: Floats | None, most: int
+    actor: SceneActor, stride_m: float | None, viewpoint: SceneViewpoint, band: Band, sun: Floats | None, limit: int
 ) -> list[Keyframe]:
-    """Return the pictures of an actor along its path, as seen from a viewpoint. Walkers get every gait phase at each place.
+    """Return the keyframes of an actor as seen from a viewpoint. Walkers get a keyframe for every gait phase at each place.
 
-    Each leg of the path has at least one place, even if that makes more than ``most`` pictures.
+    Each leg of the path has at least one place, even if that exceeds ``limit`` keyframes.
     """
     places = _Places.along(actor, viewpoint)
     per_place = GAIT_PHASES if stride_m else 1
     coarseness = 1.0
-    while len(chosen := places.distinct(coarseness)) * per_place > most and len(chosen) > len(actor.waypoints) - 1:
+    while len(chosen := places.distinct(coarseness)) * per_place > limit and len(chosen) > len(actor.waypoints) - 1:
         coarseness *= 1.15
     frames = []
     for k, also in chosen.items():
@@ -76,7 +76,7 @@ def keyframes(
 
 @dataclass(frozen=True, slots=True)
 class _Places:
-    """Fine samples of the path: times of shape ``(n,)``, positions ``(n, 3)``, bearings, and angles as seen from the viewpoint."""
+    """Dense samples of a path: times ``(n,)``, positions ``(n, 3)``, bearings, and angles as seen from the viewpoint."""
 
     times: Floats
     positions: Floats
@@ -99,9 +99,9 @@ class _Places:
         return cls(times, positions, bearings, bearings - seen, elevations, np.linalg.norm(offset, axis=1), leg)
 
     def distinct(self, coarseness: float) -> dict[int, list[int]]:
-        """Return the indices of samples that differ visibly from the previous one, at least one for each leg of the path.
+        """Return the indices of samples that differ visibly from the one before, at least one for each leg of the path.
 
-        The values are the ends of a leg, for the samples nearest to them.
+        The first and the last one of a leg have the index of the leg's start and end as value.
         """
         chosen: dict[int, list[int]] = {}
         for leg in np.unique(self.legs):
@@ -146,7 +146,7 @@ def _corners(actor: SceneActor, places: _Places, k: int, sun: Floats | None) -> 
 
 
 def _view(corners: Floats, viewpoint: SceneViewpoint, band: Band) -> Perspective | None:
-    """Return the tight view of some points; None if it leaves the band, is too small to matter, or too close to be flat."""
+    """Return the tightest view of points; None if it leaves the band, is too small to be useful, or is too close to the camera."""
     offset = corners - np.array(viewpoint.position_m)
     aim = offset.mean(axis=0)
     for _ in range(3):

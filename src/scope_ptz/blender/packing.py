@@ -1,4 +1,4 @@
-"""The files of a viewpoint folder from rendered parts, within the size limit of a pack."""
+"""Writes a viewpoint's rendered parts as a pack, within its size limit."""
 
 from __future__ import annotations
 
@@ -21,19 +21,21 @@ from scope_ptz.simulator.layers import write_colour, write_ids
 from scope_ptz.simulator.models import ActorSheet, Depth, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Tile
 
 COLOUR = ".avif"
-"""AVIF is a quarter smaller than WebP at the same structural similarity."""
+"""File format of pictures. AVIF is a quarter smaller than WebP at the same structural similarity."""
 
-NUMBERS = ".webp"
+NUMBERS = ".webp"  # file format of instance numbers and depth, lossless
 SPRITE_CODING = 62
-FINEST_BASE_CODING = 94
-LOWEST_BASE_CODING, LOWEST_TILE_CODING = 74, 48
+MAX_BASE_CODING = 94
+MIN_BASE_CODING, MIN_TILE_CODING = 74, 48
 CODING_STEP = 4
-MANIFEST_BYTES = 400_000
+"""Encoder qualities of sprites, base and tiles, and the step in which they are reduced."""
+
+MANIFEST_BYTES = 400_000  # reserved for the manifest
 
 
 @dataclass(frozen=True, slots=True)
 class RenderedTile:
-    """A tile's view, its picture of shape ``(H, W, 3)`` and its instance numbers ``(H, W)``."""
+    """A rendered tile: its view, its picture of shape ``(H, W, 3)`` and its instance numbers ``(H, W)``."""
 
     view: Perspective
     colour: NDArray[np.uint8]
@@ -42,7 +44,7 @@ class RenderedTile:
 
 @dataclass(frozen=True, slots=True)
 class RenderedActor:
-    """An actor's number and sheet, and the stride of a walker."""
+    """A rendered actor: its number, its sprite sheet, and the stride if it walks."""
 
     number: int
     sheet: Sheet
@@ -71,7 +73,11 @@ def write_pack(
     limit_bytes: int,
     step: Callable[[], None],
 ) -> Manifest:
-    """Write the folder of a viewpoint, replacing an existing one. Colour gets the best quality that ``limit_bytes`` allows."""
+    """Write a pack, replacing an existing one. Pictures get the best quality that ``limit_bytes`` allows.
+
+    Raises:
+        BlenderError: The pack is too large even at the lowest quality.
+    """
     fresh = folder.with_name(f".{folder.name}.new")
     shutil.rmtree(fresh, ignore_errors=True)
     (fresh / "tiles").mkdir(parents=True)
@@ -104,11 +110,9 @@ def write_pack(
         actors=actors,
     )
     (fresh / "manifest.json").write_text(manifest.model_dump_json() + "\n")
-    weight = weight_bytes(fresh)
-    if weight > limit_bytes:
-        raise BlenderError(
-            f"The pack of '{viewpoint.name}' weighs {weight / 1e6:.2f} MB even when coded coarsely: bake fewer tiles."
-        )
+    size = weight_bytes(fresh)
+    if size > limit_bytes:
+        raise BlenderError(f"The pack of '{viewpoint.name}' is {size / 1e6:.2f} MB even at the lowest quality. Bake fewer tiles.")
     for name in ("tiles", "actors"):
         if not any((fresh / name).iterdir()):
             (fresh / name).rmdir()
@@ -118,41 +122,41 @@ def write_pack(
 
 
 def weight_bytes(folder: Path) -> int:
-    """Return the size of all files of a folder."""
+    """Return the total size of all files in a folder."""
     return sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
 
 
 def _fitting_colour(folder: Path, rendered: Rendered, quality: Quality, limit_bytes: int) -> tuple[Layer, list[Layer]]:
-    """Return base and tiles in the best encodings that fit.
+    """Encode base and tiles at the best quality that fits into ``limit_bytes``.
 
-    The base gets the spare room. If room is short, the quality of the tiles is reduced first.
+    Spare space goes to the base. If there is too little space, the quality of the tiles is reduced first.
     """
-    room = limit_bytes - weight_bytes(folder)
-    coded = (-1, -1)
+    space = limit_bytes - weight_bytes(folder)
+    encoded = (-1, -1)
     layers: list[Layer] = []
     for codings in _codings(quality):
-        if codings[0] != coded[0]:
+        if codings[0] != encoded[0]:
             layers[:1] = [_colour(folder, f"base{COLOUR}", rendered.base, codings[0])]
-        if codings[1] != coded[1]:
+        if codings[1] != encoded[1]:
             layers[1:] = _tiles(folder, rendered.tiles, codings[1])
-        coded = codings
-        if sum((folder / layer.file).stat().st_size for layer in layers) <= room:
+        encoded = codings
+        if sum((folder / layer.file).stat().st_size for layer in layers) <= space:
             break
     return layers[0], layers[1:]
 
 
 def _codings(quality: Quality) -> Iterator[tuple[int, int]]:
-    """Yield the encodings of base and tiles, best first."""
-    for base in range(FINEST_BASE_CODING, quality.base_coding, -CODING_STEP):
+    """Yield the encoder qualities of base and tiles, best first."""
+    for base in range(MAX_BASE_CODING, quality.base_coding, -CODING_STEP):
         yield base, quality.tile_coding
-    for tile in range(quality.tile_coding, LOWEST_TILE_CODING, -CODING_STEP):
+    for tile in range(quality.tile_coding, MIN_TILE_CODING, -CODING_STEP):
         yield quality.base_coding, tile
-    for base in range(quality.base_coding, LOWEST_BASE_CODING - 1, -CODING_STEP):
-        yield base, LOWEST_TILE_CODING
+    for base in range(quality.base_coding, MIN_BASE_CODING - 1, -CODING_STEP):
+        yield base, MIN_TILE_CODING
 
 
 def _tiles(folder: Path, tiles: list[RenderedTile], coding: int) -> list[Layer]:
-    """Encode tiles in threads: the encoder releases Python's lock, and a pack has about a hundred tiles."""
+    """Encode tiles in threads, because a pack has about a hundred tiles and the encoder releases the global interpreter lock."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(lambda k: _colour(folder, f"tiles/{k:02d}{COLOUR}", tiles[k].colour, coding), range(len(tiles))))
 
@@ -174,5 +178,5 @@ def _numbers(folder: Path, name: str, numbers: NDArray[np.uint16]) -> Layer:
 
 
 def layer_of(folder: Path, name: str, width: int, height: int) -> Layer:
-    """Return the manifest's entry for a written file."""
+    """Return the manifest entry of a file."""
     return Layer(file=name, sha256=hashlib.sha256((folder / name).read_bytes()).hexdigest(), width=width, height=height)

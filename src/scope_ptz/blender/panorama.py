@@ -1,4 +1,4 @@
-"""Panoramas from the worker: rendered in strips, joined, and smoothed where the projection stretches them."""
+"""Panoramas that the worker renders in strips. They are joined, and smoothed where the projection stretches them."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.band import Panorama, Strip
 from scope_ptz.blender.client import BlenderWorker
+from scope_ptz.blender.part_cache import PartCache
 from scope_ptz.blender.requests import panorama_request
-from scope_ptz.blender.workshop import Workshop
 from scope_ptz.geometry import Equirectangular
 from scope_ptz.simulator.layers import read_colour
 
 STRIP_ROWS = 384
 OVERLAP_ROWS = 8
-SKY_TILT_DEG, NADIR_TILT_DEG = 22.0, -58.0
+SKY_TILT_DEG, NADIR_TILT_DEG = 22.0, -58.0  # strips above and below need fewer samples
 
 Picture = NDArray[np.uint8]
 
 
-def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
+def render_base(worker: BlenderWorker, cache: PartCache, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
     """Render the base panorama of shape ``(H, W, 3)``, RGB.
 
-    Each strip is a part of its own, so an interrupted bake loses one at most.
+    Each strip is cached separately, so an interrupted bake loses at most one.
     """
     strips = panorama.strips(STRIP_ROWS, OVERLAP_ROWS)
-    step = shop.steps(f"{viewpoint}/base", len(strips))
+    step = cache.steps(f"{viewpoint}/base", len(strips))
     pictures = []
     for strip in strips:
         size = strip.width, strip.last_row - strip.first_row
@@ -44,13 +44,13 @@ def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama:
             )
 
         parameters = {"projection": projection, "samples": count}
-        pictures.append(read_colour(shop.part(f"{viewpoint}/base-{strip.first_row:04d}", ".png", parameters, produce)))
+        pictures.append(read_colour(cache.part(f"{viewpoint}/base-{strip.first_row:04d}", ".png", parameters, produce)))
         step()
     return smoothed(joined(panorama, strips, pictures), panorama)
 
 
 def _is_plain(strip: Strip) -> bool:
-    """Return whether a strip needs few samples: the sky has no noise, and the ground below is averaged later."""
+    """Return whether a strip needs fewer samples: the sky has no noise, and the ground below is smoothed later."""
     return strip.bottom_tilt_deg > SKY_TILT_DEG or strip.top_tilt_deg < NADIR_TILT_DEG
 
 
@@ -71,7 +71,7 @@ def joined(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> 
 
 
 def _widened(picture: Picture, width: int) -> Picture:
-    """Stretch a strip horizontally. Its left edge continues its right edge."""
+    """Stretch a strip horizontally. It wraps around, so its left edge continues its right edge."""
     if picture.shape[1] == width:
         return picture
     pad = 8
@@ -84,7 +84,7 @@ def _widened(picture: Picture, width: int) -> Picture:
 
 
 def smoothed(picture: Picture, panorama: Panorama) -> Picture:
-    """Blur each row horizontally to the detail of the equator: no view can show more."""
+    """Blur each row horizontally to the level of detail at the equator, which no view exceeds."""
     result = picture.copy()
     for row in range(panorama.height):
         tilt = panorama.tilt_of_row(row + 0.5)

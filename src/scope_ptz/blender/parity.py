@@ -1,4 +1,4 @@
-"""Similarity of two pictures of one view, and of two sets of instance boxes."""
+"""Measures of similarity between two pictures of the same view, and between their instance boxes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 WINDOW_PX = 7
-K1, K2 = 0.01, 0.03
+K1, K2 = 0.01, 0.03  # constants of SSIM
 
 Picture = NDArray[np.uint8]
 Mask = NDArray[np.bool_]
@@ -44,7 +44,7 @@ def _inside(values: NDArray[np.float64], mask: Mask | None) -> NDArray[np.float6
 
 
 def box_ious(a: NDArray[np.uint16], b: NDArray[np.uint16], min_pixels: int) -> dict[int, float]:
-    """Return the intersection over union of boxes by number, for instances with more than ``min_pixels`` in the reference ``b``."""
+    """Return the IoU of boxes by instance number, for instances with more than ``min_pixels`` pixels in the reference ``b``."""
     numbers, counts = np.unique(b[b > 0], return_counts=True)
     return {int(n): _iou(_box(a == n), _box(b == n)) for n, count in zip(numbers, counts, strict=True) if count > min_pixels}
 

@@ -7,25 +7,25 @@ from dataclasses import dataclass
 from scope_ptz.errors import UnknownNameError
 
 PACK_BYTES = 6_600_000
-"""Limit for all layers of one viewpoint."""
+"""Maximum size of the pack of one viewpoint."""
 
 NEAR_M, FAR_M = 0.3, 20000.0
 """Range of the depth encoding in metres."""
 
 WIDER_DENSITY_PX_PER_DEG = 34.0
-"""Density for views at 1.7x, half of what a view at 3.5x needs."""
+"""Density of the wider tiles: enough for views at 1.7x, and half of what a view at 3.5x needs."""
 
 DEPTH_STEP = 48
-"""Distances are rounded to this many codes, 0.8%, far less than the distance between an actor and what hides it."""
+"""Depth codes are rounded to multiples of this, which is 0.8% of the distance and precise enough for occlusion."""
 
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Settings of a bake: sizes in pixels, samples per pixel, numbers of tiles, and the colour encoder's own quality scale.
+    """Settings of a bake: sizes in pixels, samples per pixel, numbers of tiles, and qualities on the encoder's own scale.
 
-    ``wider_tiles`` have about a third of the density of the sharp tiles and cover the busiest areas, so that the surroundings of a
-    sharp tile are not as soft as the panorama. ``check_samples`` and ``check_width`` are for the live renders with which a finished
-    pack is compared. ``judged`` says whether the pack must meet the tolerances.
+    ``wider_tiles`` is the number of tiles that cover the busiest areas at about a third of the density of the sharp tiles, so that
+    the surroundings of a sharp tile are not as soft as the panorama. ``check_samples`` and ``check_width`` are for the live renders
+    with which a finished pack is compared. ``judged`` states whether the pack must meet the tolerances.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Quality:
 
 
 def named_quality(name: str) -> Quality:
-    """Return the quality of a name.
+    """Return quality settings by name.
 
     Raises:
         UnknownNameError: There is no such quality.

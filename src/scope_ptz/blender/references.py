@@ -1,4 +1,4 @@
-"""Live renders as files, so that packs can be compared with them without Blender."""
+"""Storage of live renders, so that packs can be compared with them without Blender."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.simulator.layers import read_colour, read_ids, write_colour, writ
 
 INDEX = "references.json"
 QUALITY = 97
-"""Encoding quality of the pictures: high, because losses would count against the pack."""
+"""Encoding quality of the pictures. It is high, because compression losses would look like differences of the pack."""
 
 Reference = tuple[str, Pose, NDArray[np.uint8], NDArray[np.uint16]]
 """Viewpoint, pose, picture of shape ``(H, W, 3)`` and instance numbers ``(H, W)``."""
@@ -33,7 +33,7 @@ def keep_reference(folder: Path, viewpoint: str, pose: Pose, colour: NDArray[np.
 
 
 def references(folder: Path) -> Iterator[Reference]:
-    """Yield the live renders of a folder, in the order in which they were added."""
+    """Yield the live renders in a folder, in the order in which they were added."""
     for entry in json.loads((folder / INDEX).read_text()):
         name = entry["name"]
         yield entry["viewpoint"], Pose(*entry["pose"]), read_colour(folder / f"{name}.webp"), read_ids(folder / f"{name}-ids.webp")

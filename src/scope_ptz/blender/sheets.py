@@ -1,4 +1,4 @@
-"""The sprites of an actor on one sheet."""
+"""Sprite sheets of actors."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from scope_ptz.simulator.models import Sprite
 
 MAX_SHEET_WIDTH = 4096
 SHADOW_GAMMA = 0.5
-"""Gamma of shadows: they are measured in linear light and drawn over display values."""
+"""Gamma of shadows, which are rendered in linear light but drawn over display values."""
 
 FAINT = 0.04
-"""Shadows weaker than this are cut: the faint dimming around a body has no edge."""
+"""Shadows weaker than this are removed, so that the dimming around a body does not extend to the border of its picture."""
 
 FEATHER_SHARE = 0.06
 """Share of a sprite's size over which the shadow fades towards the border of its picture."""
@@ -26,7 +26,7 @@ FEATHER_SHARE = 0.06
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A sheet: straight RGBA of shape ``(H, W, 4)``, distance codes ``(H, W)``, and the place of each sprite."""
+    """A sprite sheet: a picture ``(H, W, 4)`` with straight alpha, distance codes ``(H, W)``, and the place of each sprite."""
 
     colour: NDArray[np.uint8]
     depth: NDArray[np.uint16]
@@ -34,7 +34,7 @@ class Sheet:
 
 
 def make_sheet(frames: list[Keyframe], folder: Path) -> Sheet:
-    """Make a sheet from the pictures that the worker wrote to ``folder``."""
+    """Create a sheet from the pictures that the worker wrote to ``folder``."""
     pictures, depths = [], []
     for k in range(len(frames)):
         with np.load(folder / f"{k:03d}.npz") as file:
@@ -79,13 +79,13 @@ def _display_shadow(picture: NDArray[np.uint8], body: NDArray[np.bool_]) -> NDAr
 
 
 def _feather(shape: tuple[int, ...]) -> NDArray[np.float32]:
-    """Return weights of shape ``(H, W)``, 0 at the border and 1 inside."""
+    """Return weights of shape ``(H, W)`` that rise from 0 at the border to 1 inside."""
     rows, columns = (np.minimum(np.arange(n) + 0.5, n - np.arange(n) - 0.5) / (FEATHER_SHARE * n) for n in shape)
     return np.asarray(np.clip(np.minimum(rows[:, None], columns[None, :]), 0, 1), dtype=np.float32)
 
 
 def _lay_out(sizes: list[tuple[int, int]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
-    """Lay rectangles out on shelves, in the given order. Return the left and top of each, and the size of the sheet."""
+    """Arrange rectangles in rows, in the given order. Return the left and top of each, and the size of the sheet."""
     places: list[tuple[int, int]] = []
     x = y = shelf = right = 0
     for width, height in sizes:

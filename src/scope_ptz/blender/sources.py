@@ -1,4 +1,4 @@
-"""The source files that a scene is built from. A bake depends on these and on no others."""
+"""The source files that a scene is built from. A bake depends only on these."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ PACKAGE = "scope_studio"
 
 
 def studio_folder() -> Path:
-    """Return the folder of the ``scope_studio`` package, which is found without importing it.
+    """Return the folder of the ``scope_studio`` package without importing it.
 
     Raises:
         BlenderError: The package is not installed.
     """
     spec = importlib.util.find_spec(PACKAGE)
     if spec is None or not spec.submodule_search_locations:
-        raise BlenderError("scope-studio is not installed: building and rendering scenes needs it. Install it beside scope-ptz.")
+        raise BlenderError("scope-studio is not installed. Building and rendering scenes needs it: install it next to scope-ptz.")
     return Path(next(iter(spec.submodule_search_locations)))
 
 
 def scene_key(source: str) -> str:
-    """Return a name for the current state of a scene's code: its name and a digest.
+    """Return a key for the current version of a scene's code: the scene's name and a digest.
 
     The digest covers the scene's own module and every module of ``scope_studio`` that it imports, directly or indirectly.
     """
     own = scene_file(source)
     digest = sha256()
-    for path in [own, *sorted(_reach(own))]:
+    for path in [own, *sorted(_imported_modules(own))]:
         digest.update(path.read_bytes())
     name = own.parent.name if own.name == "__init__.py" else own.stem
     return f"{name.replace('_', '-')}-{digest.hexdigest()[:12]}"
@@ -55,7 +55,7 @@ def scene_names() -> list[str]:
     return sorted(f.parent.name.replace("_", "-") for f in (studio_folder() / "scenes").glob("*/__init__.py"))
 
 
-def _reach(start: Path) -> set[Path]:
+def _imported_modules(start: Path) -> set[Path]:
     """Return the ``scope_studio`` modules that a file imports, directly or indirectly, without the file itself."""
     found: set[Path] = set()
     waiting = [start]

@@ -1,4 +1,4 @@
-"""The parts of the sphere that get sharper pictures, chosen from the scene."""
+"""The choice of tiles: the parts of the sphere that get sharper pictures."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ from scope_ptz.geometry import Equirectangular, Perspective, direction, pan_tilt
 from scope_ptz.simulator.models import SceneFile, SceneText, SceneViewpoint
 
 CELL_PAN_DEG, CELL_TILT_DEG = 6.0, 4.0
+"""Size of the cells of the sharp tiles."""
+
 WIDER_PAN_DEG, WIDER_TILT_DEG = 30.0, 20.0
 """Size of the cells of the wider tiles."""
 
 OVERLAP_DEG = 0.15
-"""A tile extends this far beyond its cell, so that neighbours leave no seam."""
+"""A tile extends this far beyond its cell, so that there is no gap between neighbours."""
 
-MOST_JOINED, JOINED_TO_DEG = 3, 35.0
-"""Number of cells in a row that are rendered as one, and the tilt up to which rows are joined."""
+MAX_JOINED, MAX_JOINED_TILT_DEG = 3, 35.0
+"""Maximum number of neighbouring cells that are rendered as one tile, and the maximum tilt of such cells."""
 
 GRID_DEG = 0.25
 """Resolution of the map of directions to cover."""
@@ -29,22 +31,24 @@ WIDE_FOCAL_PX, TELE_FOCAL_PX = 897.0, 5212.0
 """Focal lengths of a frame 1280 pixels wide, at both ends of the zoom."""
 
 SMALL_SIDE_PX = 60.0
-"""An instance is a target for zooming if its longer side is below this at the widest zoom."""
+"""An instance is a target only if its longer side is shorter than this at the widest zoom."""
 
 MIN_TELE_SIDE_PX, MIN_TELE_AREA_PX = 12.0, 70.0
 """An instance is a target only if its shorter side and its area reach this at the closest zoom, so that it can be counted."""
 
 SMALL_CAPS_PX = 20.0
+"""A text is a target only if its capitals are lower than this at the widest zoom."""
+
 MIN_TELE_CAPS_PX = 12.0
 MAX_READING_ANGLE_DEG = 58.0
-"""Limit on the reading angle of texts, a little more generous than that of legibility."""
+"""A text is a target only if its capitals reach this height at the closest zoom, and its reading angle is at most this."""
 
 Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A thing that tiles must cover: directions of shape ``(n, 2)``, pan and tilt in degrees."""
+    """An instance or text that tiles must cover. ``directions`` has shape ``(n, 2)``: pan and tilt in degrees."""
 
     name: str
     directions: NDArray[np.float64]
@@ -60,7 +64,7 @@ class Cell:
     span_tilt_deg: float
 
     def view(self, density_px_per_deg: float) -> Perspective:
-        """Return the smallest upright perspective view that shows the cell with its overlap, with this density in its middle."""
+        """Return the smallest upright view that shows the cell with its overlap at this density in the middle."""
         edge = np.linspace(-0.5, 0.5, 17)
         pans, tilts = np.meshgrid(edge * (self.span_pan_deg + 2 * OVERLAP_DEG), edge * (self.span_tilt_deg + 2 * OVERLAP_DEG))
         axes = Perspective(self.pan_deg, self.tilt_deg, 90.0, 2, 2)
@@ -72,7 +76,7 @@ class Cell:
 
 
 def targets(scene: SceneFile, viewpoint: SceneViewpoint, ids: NDArray[np.uint16], projection: Equirectangular) -> list[Target]:
-    """Return every text and every small instance that can be read or counted after zooming in.
+    """Return all texts and small instances that can be read or counted only after zooming in.
 
     Args:
         scene: The scene.
@@ -114,7 +118,7 @@ def _is_small(points: NDArray[np.float64], projection: Equirectangular) -> bool:
 
 
 def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.float64] | None:
-    """Return the directions of a text that needs zoom and is legible with it, otherwise None. Occlusion is ignored."""
+    """Return the directions of a text that is legible only with zoom; None for others. Occlusion is ignored."""
     centre, right, up = (np.array(v) for v in (text.centre_m, text.right, text.up))
     towards = np.array(viewpoint.position_m) - centre
     distance = float(np.linalg.norm(towards))
@@ -130,33 +134,33 @@ def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.f
     return np.stack([(pan - viewpoint.pan0_bearing_deg + 180.0) % 360.0 - 180.0, tilt], axis=-1)
 
 
-def cover(wanted: Sequence[Target]) -> list[Cell]:
-    """Return the grid cells that hold every target. The grid is shifted to where it needs the fewest cells."""
-    if not wanted:
+def cover(targets: Sequence[Target]) -> list[Cell]:
+    """Return grid cells that cover all targets. The grid is shifted so that the fewest cells are needed."""
+    if not targets:
         return []
-    needed = _needed(wanted)
+    needed = _needed(targets)
     shifts = np.arange(0.0, CELL_TILT_DEG, GRID_DEG)
     return min((_cells(needed, float(shift), CELL_PAN_DEG, CELL_TILT_DEG) for shift in shifts), key=len)
 
 
-def busiest(ids: NDArray[np.uint16], projection: Equirectangular, most: int) -> list[Cell]:
-    """Return the ``most`` wide grid cells with the longest outlines of things.
+def busiest(ids: NDArray[np.uint16], projection: Equirectangular, limit: int) -> list[Cell]:
+    """Return the ``limit`` wide grid cells that contain the longest outlines of instances.
 
     Args:
         ids: Instance numbers of the panorama.
         projection: The panorama's projection.
-        most: Number of cells.
+        limit: Maximum number of cells.
     """
     outlines = _outlines(ids, projection)
     everywhere = np.ones_like(outlines, dtype=bool)
     best: list[Cell] = []
-    held = -1.0
+    best_total = -1.0
     for shift in np.arange(0.0, WIDER_TILT_DEG, 1.0):
         cells = _cells(everywhere, float(shift), WIDER_PAN_DEG, WIDER_TILT_DEG)
-        found = [(_held(outlines, cell), k) for k, cell in enumerate(cells)]
-        chosen = sorted(found, reverse=True)[:most]
-        if (total := sum(share for share, _ in chosen)) > held:
-            best, held = [cells[k] for k in sorted(k for share, k in chosen if share > 0)], total
+        found = [(_outline_length(outlines, cell), k) for k, cell in enumerate(cells)]
+        chosen = sorted(found, reverse=True)[:limit]
+        if (total := sum(share for share, _ in chosen)) > best_total:
+            best, best_total = [cells[k] for k in sorted(k for share, k in chosen if share > 0)], total
     return best
 
 
@@ -170,26 +174,26 @@ def _inside(view: Perspective, target: Target) -> Mask:
     return np.asarray(np.all((points >= 0) & (points <= 1), axis=-1))
 
 
-def most_useful(cells: Sequence[Cell], wanted: Sequence[Target], most: int) -> list[Cell]:
-    """Return the ``most`` cells that show parts of the most targets, in their previous order."""
+def most_useful(cells: Sequence[Cell], targets: Sequence[Target], limit: int) -> list[Cell]:
+    """Return the ``limit`` cells that show parts of the most targets, in their previous order."""
     views = [cell.view(1.0) for cell in cells]
-    shown = [sum(bool(_inside(view, target).any()) for target in wanted) for view in views]
-    kept = sorted(sorted(range(len(cells)), key=lambda k: (-int(shown[k]), k))[:most])
+    shown = [sum(bool(_inside(view, target).any()) for target in targets) for view in views]
+    kept = sorted(sorted(range(len(cells)), key=lambda k: (-int(shown[k]), k))[:limit])
     return [cells[k] for k in kept]
 
 
 def in_rows(cells: Sequence[Cell]) -> list[Cell]:
-    """Join neighbouring cells of a row, which saves render starts.
+    """Join neighbouring cells of a row, so that fewer renders must be started.
 
-    Rows far from the horizon are not joined: a long cell fills its picture badly there.
+    Rows far from the horizon are not joined, because a long cell there would fill little of its picture.
     """
     found: list[Cell] = []
     length = 0
     for cell in sorted(cells, key=lambda c: (c.tilt_deg, c.pan_deg)):
         last = found[-1] if found else None
         touching = last is not None and abs(cell.pan_deg - last.pan_deg - (last.span_pan_deg + cell.span_pan_deg) / 2) < 1e-6
-        in_row = last is not None and last.tilt_deg == cell.tilt_deg and abs(cell.tilt_deg) < JOINED_TO_DEG
-        if last is not None and in_row and touching and length < MOST_JOINED:
+        in_row = last is not None and last.tilt_deg == cell.tilt_deg and abs(cell.tilt_deg) < MAX_JOINED_TILT_DEG
+        if last is not None and in_row and touching and length < MAX_JOINED:
             span_deg = last.span_pan_deg + cell.span_pan_deg
             middle_deg = cell.pan_deg + cell.span_pan_deg / 2 - span_deg / 2
             found[-1] = Cell(middle_deg, cell.tilt_deg, span_deg, cell.span_tilt_deg)
@@ -200,10 +204,10 @@ def in_rows(cells: Sequence[Cell]) -> list[Cell]:
     return found
 
 
-def _needed(wanted: Sequence[Target]) -> Mask:
+def _needed(targets: Sequence[Target]) -> Mask:
     """Return a map of the directions to cover, of shape ``(720, 1440)``; row 0 is tilt -90, column 0 is pan -180."""
     grid = np.zeros((round(180 / GRID_DEG), round(360 / GRID_DEG)), dtype=bool)
-    for target in wanted:
+    for target in targets:
         rows = np.clip(((target.directions[:, 1] + 90) / GRID_DEG).astype(int), 0, grid.shape[0] - 1)
         grid[rows, ((target.directions[:, 0] + 180) / GRID_DEG).astype(int) % grid.shape[1]] = True
     return grid
@@ -218,11 +222,11 @@ def _outlines(ids: NDArray[np.uint16], projection: Equirectangular) -> NDArray[n
     tilts = projection.top_tilt_deg - (rows + 0.5) / projection.height * (projection.top_tilt_deg - projection.bottom_tilt_deg)
     pans = (columns + 0.5) / projection.width * 360.0
     bins = [round(180 / GRID_DEG), round(360 / GRID_DEG)]
-    weights = np.cos(np.radians(tilts))  # Pixels near the poles are narrower.
+    weights = np.cos(np.radians(tilts))  # pixels near the poles are narrower
     return np.histogram2d(tilts, pans, bins=bins, range=[[-90.0, 90.0], [0.0, 360.0]], weights=weights)[0]
 
 
-def _held(outlines: NDArray[np.float64], cell: Cell) -> float:
+def _outline_length(outlines: NDArray[np.float64], cell: Cell) -> float:
     tilts, pans = (np.arange(-span / 2, span / 2, GRID_DEG) for span in (cell.span_tilt_deg, cell.span_pan_deg))
     rows = ((cell.tilt_deg + tilts + 90.0) / GRID_DEG).astype(int)
     columns = ((cell.pan_deg + pans + 180.0) / GRID_DEG).astype(int) % outlines.shape[1]
@@ -246,7 +250,7 @@ def _cells(needed: Mask, shift_deg: float, span_pan_deg: float, span_tilt_deg: f
 
 
 def _best_starts(columns: Mask, span_deg: float) -> list[float]:
-    """Return the left edges of the needed grid columns, in degrees from pan -180, for the grid offset that needs the fewest."""
+    """Return the left edges of the grid columns to render, in degrees from pan -180, for the offset that needs the fewest."""
     places = np.flatnonzero(columns) * GRID_DEG
     best: list[float] = []
     for offset in np.arange(0.0, span_deg, GRID_DEG):

@@ -1,4 +1,4 @@
-"""Tolerances between a pack and live renders, and the ones that a comparison misses."""
+"""Tolerances for the comparison of a pack with live renders."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ from statistics import mean
 from scope_ptz.blender.verify import PoseReport
 
 WIDE_SSIM_MEAN, WIDE_SSIM_MIN = 0.93, 0.88
-"""Similarity of whole views at the widest zoom."""
+"""Minimum similarity of whole views at the widest zoom: mean, and single view."""
 
 TILE_SSIM_MIN, TILE_SHARPNESS_MIN = 0.90, 0.60
-"""Similarity and sharpness of zoomed views, in the part that tiles cover."""
+"""Minimum similarity and sharpness of zoomed views, in the part that tiles cover."""
 
 WIDE_IOU_MEAN, TELE_IOU_MEAN = 0.97, 0.93
-"""Overlap of the boxes of instances over 400 pixels, at the widest zoom and zoomed in."""
+"""Minimum mean IoU of the boxes of instances over 400 pixels, at the widest zoom and zoomed in."""
 
 
 def shortcomings(reports: Sequence[PoseReport]) -> list[str]:
-    """Return a sentence for every tolerance that a comparison misses."""
+    """Return a sentence for each tolerance that is not met."""
     wide = [r for r in reports if r.pose.zoom == 1.0]
     tiled = [r for r in reports if r.pose.zoom > 1.0 and r.tile_share > 0]
     found = []
     if wide and (average := mean(r.ssim for r in wide)) < WIDE_SSIM_MEAN:
-        found.append(f"mean SSIM at 1x is {average:.3f}, {WIDE_SSIM_MEAN:g} is wanted")
-    found += [f"{_where(r)}: SSIM {r.ssim:.3f}, {WIDE_SSIM_MIN:g} is wanted" for r in wide if r.ssim < WIDE_SSIM_MIN]
-    found += [f"{_where(r)}: SSIM {r.ssim:.3f}, {TILE_SSIM_MIN:g} is wanted in tiles" for r in tiled if r.ssim < TILE_SSIM_MIN]
+        found.append(f"mean SSIM at 1x is {average:.3f}, {WIDE_SSIM_MEAN:g} is required")
+    found += [f"{_where(r)}: SSIM {r.ssim:.3f}, {WIDE_SSIM_MIN:g} is required" for r in wide if r.ssim < WIDE_SSIM_MIN]
+    found += [f"{_where(r)}: SSIM {r.ssim:.3f}, {TILE_SSIM_MIN:g} is required in tiles" for r in tiled if r.ssim < TILE_SSIM_MIN]
     found += [
-        f"{_where(r)}: {r.sharpness_ratio:.2f} of the live sharpness, {TILE_SHARPNESS_MIN:g} is wanted in tiles"
+        f"{_where(r)}: {r.sharpness_ratio:.2f} of the live sharpness, {TILE_SHARPNESS_MIN:g} is required in tiles"
         for r in tiled
         if r.sharpness_ratio < TILE_SHARPNESS_MIN
     ]
     for name, group, least in (("1x", wide, WIDE_IOU_MEAN), ("2x to 5x", tiled, TELE_IOU_MEAN)):
         ious = [r.box_iou for r in group if r.box_iou is not None]
         if ious and mean(ious) < least:
-            found.append(f"mean box IoU at {name} is {mean(ious):.3f}, {least:g} is wanted")
+            found.append(f"mean box IoU at {name} is {mean(ious):.3f}, {least:g} is required")
     return found
 
 

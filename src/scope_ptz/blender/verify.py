@@ -1,4 +1,4 @@
-"""Comparison of a pack with live Blender: re-projected views against live renders of the same poses, drawn by seed."""
+"""Comparison of packs with live Blender renders of the same poses, which are drawn at random by a seed."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.parity import box_ious, sharpness, ssim
+from scope_ptz.blender.part_cache import PartCache, Progress
 from scope_ptz.blender.references import keep_reference
 from scope_ptz.blender.requests import perspective_request
-from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, angle_between_deg, direction, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.simulator.layers import read_colour
 from scope_ptz.simulator.models import Tile
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
 
-SEED_OF_LIVE = 7
-"""Seed of the live renders. It differs from the seed of bakes, because equal noise would improve the similarity."""
+LIVE_SEED = 7
+"""Seed of the live renders. It differs from the seed of bakes, because equal noise would increase the similarity."""
 
-MIN_BOX_PIXELS = 400
+MIN_BOX_PIXELS = 400  # boxes of smaller instances are not compared
 
 FOLIAGE = ("tree", "bush", "hedge", "planter", "flower bed", "hanging basket")
 """Categories of plants, where re-projection is hardest."""
@@ -34,10 +34,10 @@ FOLIAGE = ("tree", "bush", "hedge", "planter", "flower bed", "hanging basket")
 
 @dataclass(frozen=True, slots=True)
 class PoseReport:
-    """The comparison of one pose: similarity of pictures, relative sharpness of the pack, mean IoU of boxes (None without boxes).
+    """The comparison of one pose: SSIM, sharpness relative to the live render, and mean IoU of boxes (None without boxes).
 
-    ``tile_share`` is the part of the view in tiles that are dense enough for it. If it is above 0 and the zoom above 1, similarity
-    and sharpness refer to that part.
+    ``tile_share`` is the share of the view that is covered by tiles that are dense enough for it. If it is above 0 and the zoom
+    above 1, similarity and sharpness refer to that part.
     """
 
     viewpoint: str
@@ -49,10 +49,10 @@ class PoseReport:
 
 
 def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None) -> list[tuple[str, Pose]]:
-    """Draw ``wide`` poses at the widest zoom and ``zoomed`` ones on tiles, at 2x to 5x in equal steps, over all viewpoints in turn.
+    """Draw ``wide`` poses at the widest zoom, and ``zoomed`` ones on tiles at 2x to 5x, for all viewpoints in turn.
 
-    Every second pair of poses is at a hard place: a sign, foliage, or the ground far below. The others are anywhere: over all pans
-    and tilts at the widest zoom, on any tile when zoomed in.
+    Half of the poses are at places that are hard to re-project: a sign, foliage, or the ground far below. The others are spread
+    over all pans and tilts at the widest zoom, and on random tiles when zoomed in.
     """
     rng, limits = random.Random(seed), Limits()
     names = [v.name for v in scene.file.viewpoints] if viewpoints is None else viewpoints
@@ -61,7 +61,7 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
         name = names[k % len(names)]
         share = (k + rng.random()) / wide
         pan, tilt = rng.uniform(-179, 179), limits.min_tilt_deg + share * (limits.max_tilt_deg - limits.min_tilt_deg)
-        if hard := _hard(scene, name, k // len(names), rng, limits):
+        if hard := _hard_place(scene, name, k // len(names), rng, limits):
             pan, tilt = hard
         poses.append((name, limits.clamp(Pose(limits.aim_pan_deg(pan), tilt, 1.0))[0]))
     for k in range(zoomed):
@@ -70,7 +70,7 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
         tiles = [t for t in scene.viewpoint(name).manifest.tiles if t.suits(closest)]
         if tiles:
             tile = rng.choice(tiles)
-            if hard := _hard(scene, name, k // len(names), rng, limits):
+            if hard := _hard_place(scene, name, k // len(names), rng, limits):
                 tile = min(tiles, key=lambda t: float(angle_between_deg(direction(t.pan_deg, t.tilt_deg), direction(*hard))))
             pan, tilt = tile.pan_deg + rng.uniform(-2, 2), tile.tilt_deg + rng.uniform(-2, 2)
             zoom = 2.0 + 3.0 * k / max(1, zoomed - 1)
@@ -78,8 +78,8 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
     return poses
 
 
-def _hard(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: Limits) -> tuple[float, float] | None:
-    """Return pan and tilt of a sign, foliage or bare ground in turn; None for every second pair and where there is none."""
+def _hard_place(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: Limits) -> tuple[float, float] | None:
+    """Return pan and tilt of foliage, a sign or the ground, in turn; None in every second turn, or if there is none."""
     place = next(v for v in scene.file.viewpoints if v.name == viewpoint)
     kind = turn // 2 % 3
     if turn % 2:
@@ -100,7 +100,7 @@ def _hard(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: L
 
 
 def compare(scene: Scene, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> PoseReport:
-    """Compare the pack's view of a pose with a live render of shape ``(H, W, 3)`` and its instance numbers."""
+    """Compare the pack's view of a pose with a live render: a picture ``(H, W, 3)`` and instance numbers ``(H, W)``."""
     height, width = ids.shape
     view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
     here = scene.viewpoint(viewpoint)
@@ -129,14 +129,14 @@ def verify(
     height: int = 720,
     keep: Path | None = None,
 ) -> list[PoseReport]:
-    """Compare each pose. The worker must have the scene loaded. Moving actors are left out on both sides.
+    """Compare packs with live renders at each pose. The worker must have loaded the scene. Moving actors are not rendered.
 
     Args:
-        keep: A folder for the live renders, so that later packs can be compared without Blender.
+        keep: A folder to save the live renders in, so that later packs can be compared without Blender.
     """
     reports = []
     with TemporaryDirectory() as folder:
-        step = Workshop(Path(folder), "verify", progress).steps("verify", len(poses))
+        step = PartCache(Path(folder), "verify", progress).steps("verify", len(poses))
         for name, pose in poses:
             view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
             colour, ids = _live(worker, name, view, samples, Path(folder))
@@ -152,14 +152,14 @@ def _live(
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint16]]:
     common: dict[str, Any] = {"viewpoint": viewpoint, "projection": perspective_request(view)}
     picture, truth = folder / "live.png", folder / "live.npz"
-    worker.request("colour", {**common, "samples": samples, "seed": SEED_OF_LIVE, "out": str(picture)})
+    worker.request("colour", {**common, "samples": samples, "seed": LIVE_SEED, "out": str(picture)})
     worker.request("truth", {**common, "out": str(truth)})
     with np.load(truth) as file:
         return read_colour(picture), file["ids"]
 
 
 def _in_tiles(tiles: Sequence[Tile], view: Perspective) -> NDArray[np.bool_]:
-    """Return a mask of shape ``(H, W)``: the pixels of a view that lie in a tile that is dense enough for it."""
+    """Return a mask ``(H, W)`` of the pixels of a view that are covered by a tile that is dense enough for it."""
     x, y = np.meshgrid((np.arange(view.width) + 0.5) / view.width, (np.arange(view.height) + 0.5) / view.height)
     directions = view.directions(np.stack([x, y], axis=-1))
     inside = np.zeros((view.height, view.width), dtype=bool)

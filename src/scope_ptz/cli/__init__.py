@@ -1,4 +1,4 @@
-"""The command line: ``scope ...``. Importing this package is cheap; each command imports what it needs when it runs."""
+"""The command line ``scope``. Importing this package is cheap, because each command imports what it needs when it runs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 
 
 def main() -> None:
-    """Run ``scope``; the entry point of the installed program."""
+    """Run ``scope``. This is the entry point of the installed program."""
     from scope_ptz.cli.exit import guarded_streams, readable_arguments
 
     with guarded_streams():

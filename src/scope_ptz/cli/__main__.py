@@ -1,4 +1,4 @@
-"""``python -m scope_ptz.cli`` is ``scope``."""
+"""Run ``scope`` with ``python -m scope_ptz.cli``."""
 
 from scope_ptz.cli import main
 

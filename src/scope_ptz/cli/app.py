@@ -1,4 +1,4 @@
-"""The commands of ``scope`` outside ``scope bench``. Their bodies import lazily, so that ``scope --help`` is instant."""
+"""The commands of ``scope`` other than ``scope bench``. Their bodies import lazily, so that ``scope --help`` starts fast."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def ask(
     hints: Annotated[bool, typer.Option("--next-steps", help="Print commands to try next.")] = False,
     as_json: JsonOption = False,
 ) -> int:
-    """Carry out one instruction and keep the run: trace, frames and a filmstrip."""
+    """Carry out one instruction and save the run: its trace, frames and a filmstrip."""
     from scope_ptz.cli.ask import ask as run
 
     return run(instruction, session, models.options(), as_json=as_json, next_steps=hints)
@@ -70,7 +70,7 @@ def ask(
 @app.command(rich_help_panel="Talk to a camera")
 @command
 def chat(session: SessionFlags, models: PairFlags) -> int:
-    """Give several instructions in one conversation. Type /help in it for its commands."""
+    """Give several instructions in one conversation. Type /help there for its commands."""
     from scope_ptz.cli.chat import chat as run
 
     return run(session, models.options())
@@ -145,7 +145,7 @@ def profile(
 @app.command(rich_help_panel="Set up")
 @command
 def doctor(models: PairFlags, as_json: JsonOption = False) -> int:
-    """Report what is installed, reachable and missing. With a server's address, check that server."""
+    """Report what is installed and what is missing. With the address of a model server, check that server instead."""
     from scope_ptz.cli.doctor import check_installation, check_servers
 
     options = models.options()
@@ -187,7 +187,7 @@ def models_serve(
         str | None, typer.Option("--server", help="Server: vllm, sglang, llama.cpp, ollama, ... (default: the model's first).")
     ] = None,
 ) -> None:
-    """Print the exact command that serves a model."""
+    """Print the command that serves a model."""
     from scope_ptz.cli.models import serve_command
 
     serve_command(name, server)
@@ -215,7 +215,7 @@ def models_pairs(as_json: JsonOption = False) -> None:
 @scene_app.command("list")
 @command
 def scene_list(as_json: JsonOption = False) -> int:
-    """List the scenes that can be loaded, and report those that cannot."""
+    """List the installed scenes, and report those that cannot be loaded."""
     from scope_ptz.cli.scenes import list_scenes
 
     return list_scenes(as_json=as_json)
@@ -225,16 +225,16 @@ def scene_list(as_json: JsonOption = False) -> int:
 @command
 def scene_show(
     name: SceneName,
-    everything: Annotated[bool, typer.Option("--all", help="Print everything: all texts, objects and checksums, too.")] = False,
+    everything: Annotated[bool, typer.Option("--all", help="Print the whole card, with all texts, objects and checksums.")] = False,
     contact_sheet: Annotated[
         Path | None, typer.Option("--contact-sheet", help="PNG file for the picture of all presets (default: in the cache).")
     ] = None,
     opened: Annotated[
         bool | None, typer.Option("--open/--no-open", help="Open the picture (default: open it if there is a desktop).")
     ] = None,
-    as_markdown: Annotated[bool, typer.Option("--markdown", help="Print the card as a Markdown page and nothing else.")] = False,
+    as_markdown: Annotated[bool, typer.Option("--markdown", help="Print only the card, as a Markdown page.")] = False,
 ) -> None:
-    """Print a scene's card: viewpoints, presets, what it contains and lacks. Draws a picture of all presets."""
+    """Print a scene's card: its viewpoints, presets, objects and texts. Also draw a picture of all presets."""
     from scope_ptz.cli.scenes import print_markdown, show_scene
 
     if as_markdown:
@@ -257,7 +257,7 @@ def scene_view(
     ] = None,
     zoom: Annotated[float | None, typer.Option("--zoom", help="Magnification, 1 is widest (default: as at the start).")] = None,
 ) -> None:
-    """Write what the camera sees at a pose to a picture file."""
+    """Save the camera's view at a pose as a picture file."""
     from scope_ptz.cli.scenes import view_scene
 
     view_scene(start, name, (pan, tilt, zoom), out)
@@ -296,7 +296,7 @@ def scene_verify(
     seed: SeedOption = 1,
     wide: Annotated[int, typer.Option("--wide", min=0, help="Number of poses at the widest zoom, over all tilts.")] = 8,
     zoomed: Annotated[int, typer.Option("--zoomed", min=0, help="Number of poses at 2x to 5x, where the pack has tiles.")] = 8,
-    keep: Annotated[Path | None, typer.Option("--keep", help="Folder to keep the live renders in.")] = None,
+    keep: Annotated[Path | None, typer.Option("--keep", help="Folder to save the live renders in.")] = None,
 ) -> int:
     """Compare a scene's packs with live Blender renders of the same poses."""
     from scope_ptz.cli.bake import verify_scene

@@ -31,12 +31,12 @@ _NEXT_STEPS = """
 Next:
   {program} ask "count the workers"    another instruction, in your own words
   {program} chat                       a conversation with the camera
-  {program} scene list                 the scenes; name one with --scene
+  {program} scene list                 the scenes; select one with --scene
   {program} --help                     every command"""
 
 
 class Session:
-    """A camera, perception and a planner that stay together for one or several runs."""
+    """The camera, perception and planner of one or several runs."""
 
     def __init__(self, flags: SessionFlags, opened: OpenCamera, perception: Perception, planner: Planner, note: str) -> None:
         self.flags, self.perception, self.planner, self.note = flags, perception, planner, note
@@ -50,7 +50,7 @@ class Session:
         Args:
             flags: Where the camera starts, and the limits of runs.
             models: The planner and perception.
-            realtime: Whether the camera takes as long for a move as a real one does.
+            realtime: Whether moves take as long as with a real camera.
         """
         choice = await resolve_models(models)
         planner = make_planner(choice.planner)
@@ -85,7 +85,7 @@ class Session:
 
 
 def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json: bool, next_steps: bool) -> int:
-    """Carry out one instruction, show it, and return the exit code."""
+    """Carry out one instruction, show the run, and return the exit code."""
     if not instruction.strip():
         raise InputError("The instruction is empty. Say what the camera should do.")
     folder: RunFolder | None = None
@@ -117,7 +117,7 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
 
 
 def make_filmstrip(trace: Trace) -> Path | None:
-    """Draw a run's filmstrip, unless the instruction was not understood or refused before anything was done."""
+    """Draw a run's filmstrip, unless the planner asked for clarification or refused without any call."""
     if not trace.calls and (trace.ended is None or trace.ended.outcome in ("clarification", "refused")):
         return None
     return write_filmstrip(trace)

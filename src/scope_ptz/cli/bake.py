@@ -1,4 +1,4 @@
-"""``scope scene build``, ``bake`` and ``verify``: Blender files and packs from a scene's code, and packs against live renders."""
+"""``scope scene build``, ``bake`` and ``verify``: build scenes in Blender, bake packs, and compare packs with live renders."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
     """Bake a scene's packs and compare them with live renders. An interrupted bake is resumed.
 
     Returns:
-        1 if a pack differs too much from its scene. Drafts are not judged.
+        The exit code: 1 if a pack differs too much from its scene. Drafts always give 0.
     """
     settings, console = load_settings(), Console(highlight=False)
     _check(source)
@@ -85,7 +85,7 @@ def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None
 
 
 def _show_comparison(console: Console, reports: Sequence[PoseReport]) -> list[str]:
-    """Print the figures of each pose, and return what falls short of the tolerances."""
+    """Print the comparison of each pose, and return a sentence for each missed tolerance."""
     table = Table("viewpoint", "pan", "tilt", "zoom", "SSIM", "sharpness", "box IoU", "in tiles")
     for r in reports:
         figures = (
@@ -105,7 +105,7 @@ def _show_comparison(console: Console, reports: Sequence[PoseReport]) -> list[st
 
 
 class _Bars:
-    """A progress bar for every part of a bake, with the remaining time."""
+    """Progress bars, one for each part of a bake, with the remaining time."""
 
     def __init__(self, console: Console) -> None:
         self._progress = Progress(
@@ -128,7 +128,7 @@ class _Bars:
 
 
 def _check(source: str) -> None:
-    """Report an unknown scene before Blender starts."""
+    """Raise ``UnknownNameError`` for an unknown scene before Blender starts."""
     if source.endswith(".py") and Path(source).is_file():
         return
     known = scene_names()

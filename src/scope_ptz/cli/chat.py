@@ -1,4 +1,4 @@
-"""``scope chat``: several runs that share a camera and their history."""
+"""``scope chat``: a conversation of several runs that share a camera and a history."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ Ctrl-C cancels a run. Everything else is an instruction, for example: pan right 
 
 
 def chat(flags: SessionFlags, models: ModelOptions) -> int:
-    """Talk until /quit or the end of the input, and return the exit code.
+    """Carry out instructions until /quit or the end of the input, and return the exit code.
 
-    Lines are read in the main thread and carried out in another one, so that Ctrl-C always reaches the main thread: during a run it
-    cancels the run, at the prompt it ends the program.
+    The main thread reads lines, and another thread carries them out, so that Ctrl-C always reaches the main thread. During a run it
+    cancels the run; at the prompt it ends the program.
     """
     if not has_input():
-        raise InputError("The standard input is closed, so there is nobody to chat with. Use `scope ask` for one instruction.")
+        raise InputError("The standard input is closed, so a chat is not possible. Use `scope ask` for one instruction.")
     with start_blocking_portal() as portal, _line_editing():
         session = portal.call(_open, flags, models)
         try:
-            _talk(portal, _Chat(session))
+            _read_and_run(portal, _Chat(session))
         finally:
             portal.call(session.close)
     return 0
@@ -57,7 +57,7 @@ async def _open(flags: SessionFlags, models: ModelOptions) -> Session:
     return await Session.open(flags, models, realtime=flags.in_real_time())
 
 
-def _talk(portal: BlockingPortal, chat: _Chat) -> None:
+def _read_and_run(portal: BlockingPortal, chat: _Chat) -> None:
     interactive = sys.stdin.isatty()
     chat.console.print(Text(_WELCOME, style="dim"))
     while True:
@@ -88,17 +88,17 @@ def _talk(portal: BlockingPortal, chat: _Chat) -> None:
 
 
 class _Chat:
-    """A conversation: its turns so far, and a folder for pictures once one is saved."""
+    """A conversation: its turns so far, and the folder of saved pictures, if any."""
 
     def __init__(self, session: Session) -> None:
         self.session, self.console = session, Console(highlight=False)
         self.turns: tuple[PastTurn, ...] = ()
         self.pictures: RunFolder | None = None
         self.idle = Event()
-        self._note = session.note  # Printed after the first run only
+        self._note = session.note  # printed only after the first run
 
     async def turn(self, line: str) -> None:
-        """Carry out a command of the chat or an instruction. ``idle`` is set when it is over, also after a cancellation."""
+        """Carry out a chat command or an instruction. ``idle`` is set at the end, even after a cancellation."""
         try:
             if line.startswith("/"):
                 await self._command(line)
@@ -136,10 +136,10 @@ class _Chat:
 
 @contextmanager
 def _line_editing() -> Iterator[None]:
-    """Give the prompt line editing and a history that is kept between chats, where there is a terminal and ``readline``."""
+    """Add line editing and a history that is kept between chats to the prompt, if there is a terminal and ``readline``."""
     try:
         import readline
-    except ImportError:  # Windows, whose console edits lines itself
+    except ImportError:  # on Windows, the console itself supports line editing
         yield
         return
     if not sys.stdin.isatty():
@@ -158,7 +158,7 @@ def _line_editing() -> Iterator[None]:
 
 
 def _make_private(path: Path) -> None:
-    """Create the file, readable by its owner only: instructions may be confidential."""
+    """Create a file that only its owner can read, because instructions may be confidential."""
     path.parent.mkdir(parents=True, exist_ok=True)
     os.close(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600))
     path.chmod(0o600)

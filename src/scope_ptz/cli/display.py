@@ -16,8 +16,8 @@ from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.timing import Timings
 from scope_ptz.planner.base import CallTools, ToolCall
 
-MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
-SHOWN_CHARS = 200  # longer instructions and arguments are truncated when printed
+MAX_MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
+MAX_SHOWN_CHARS = 200  # longer instructions and arguments are truncated when printed
 _OUTCOME_WORDS = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
@@ -31,13 +31,13 @@ _OUTCOME_WORDS = {
 
 
 def plain(text: str) -> str:
-    """Return text without control characters, so that a sign in a scene or a model cannot control the terminal."""
+    """Return text without control characters, so that text from models and scenes cannot control the terminal."""
     return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
 
 
-def shortened(text: str, most: int = SHOWN_CHARS) -> str:
-    """Truncate a text. A truncated text ends with the full length."""
-    return text if len(text) <= most else f"{text[:most].rstrip()}… ({len(text)} characters)"
+def shortened(text: str, limit: int = MAX_SHOWN_CHARS) -> str:
+    """Truncate a text to a number of characters, and append its full length."""
+    return text if len(text) <= limit else f"{text[:limit].rstrip()}… ({len(text)} characters)"
 
 
 def arguments_text(arguments: dict[str, Any]) -> str:
@@ -47,7 +47,7 @@ def arguments_text(arguments: dict[str, Any]) -> str:
 
 
 def seconds(value: float) -> str:
-    """Format a duration with its unit."""
+    """Format a duration in seconds or milliseconds."""
     return f"{value:.1f} s" if value >= 1 else f"{value * 1000:.0f} ms"
 
 
@@ -99,7 +99,7 @@ class LiveView:
         if outcome.error is not None:
             table.add_row("", "", Text(plain(shortened(outcome.error)), style="red"), "")
         elif outcome.result is not None:
-            table.add_row("", "", Text(plain(shortened(str(outcome.result["message"]), MESSAGE_CHARS)), style="green"), "")
+            table.add_row("", "", Text(plain(shortened(str(outcome.result["message"]), MAX_MESSAGE_CHARS)), style="green"), "")
         self.console.print(table)
 
 
@@ -109,9 +109,9 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
     Args:
         console: Where to print.
         ended: The run's last record.
-        note: A note on the perception, if it is not a model.
+        note: A note about the perception backend, if it is not a model.
         folder: The run folder. If None, only the answer is printed.
-        filmstrip: The run's picture, if one was made.
+        filmstrip: The run's filmstrip, if there is one.
     """
     title, style = _OUTCOME_WORDS[ended.outcome]
     console.print()

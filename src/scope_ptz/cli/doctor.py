@@ -1,4 +1,4 @@
-"""``scope doctor``: what is installed and missing and how to get it; and whether a model server does what SCOPE needs."""
+"""``scope doctor``: report what is installed and what is missing, or check whether a model server does what SCOPE needs."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ if TYPE_CHECKING:
 Verdict = Literal["ok", "optional", "missing"]
 _OK, _PARTLY, _BAD = ("ok", "green"), ("--", "yellow"), ("!!", "bold red")
 _MARKS: dict[str, tuple[str, str]] = {"ok": _OK, "optional": _PARTLY, "missing": _BAD, "partly": _PARTLY, "failed": _BAD}
-_THING, _PRESET = "traffic cone", "highway"  # an object that the default scene shows for certain at this preset
+_THING, _PRESET = "traffic cone", "highway"  # the default scene shows this object at this preset
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing that was examined.
+    """The result of one check of the installation.
 
     Attributes:
-        what: Its name.
-        verdict: ``optional`` if it is absent but not needed for the demo, ``missing`` if something does not work without it.
+        what: What was checked.
+        verdict: ``optional`` if it is absent but only some commands need it, ``missing`` if it is absent or broken and needed.
         detail: What was found.
-        remedy: What to do about it.
+        remedy: How to fix it, if necessary.
     """
 
     what: str
@@ -55,7 +55,7 @@ class Finding:
 
 
 def check_installation(*, as_json: bool) -> int:
-    """Print all findings, and return 1 if something is missing that is needed."""
+    """Print all findings, and return 1 if something needed is missing."""
     findings = list(examine(load_settings()))
     if as_json:
         put_json([asdict(finding) for finding in findings])
@@ -70,7 +70,7 @@ def check_installation(*, as_json: bool) -> int:
 
 
 def examine(settings: ScopeSettings) -> Iterator[Finding]:
-    """Yield a finding for everything that may explain why something does not work."""
+    """Check Python, packages, scenes, run folders, Blender and plug-ins, and yield the findings."""
     yield Finding("scope-ptz", "ok", f"{__version__} in {Path(__file__).parents[1]}")
     enough = sys.version_info >= (3, 11)
     yield Finding(
@@ -110,7 +110,7 @@ def _packages() -> Finding:
         except PackageNotFoundError:
             missing.append(name)
     if missing:
-        return Finding("packages", "missing", f"missing: {', '.join(missing)}", "Run `pip install -r requirements/base.txt`.")
+        return Finding("packages", "missing", f"not installed: {', '.join(missing)}", "Run `pip install -r requirements/base.txt`.")
     return Finding("packages", "ok", ", ".join(found))
 
 
@@ -154,19 +154,19 @@ def _blender(settings: ScopeSettings) -> Finding:
         return Finding("Blender", "ok", f"bpy {BPY_VERSION} in {environment_python(settings.cache_dir).parents[1]}")
     return Finding(
         "Blender", "optional", "not installed; only `scope scene build` and `scope scene bake` need it",
-        "The first of them downloads it (about 400 MB). To use your own blender program, set SCOPE_BLENDER.",
+        "The first use downloads it (about 400 MB). To use your own blender program, set SCOPE_BLENDER.",
     )  # fmt: skip
 
 
 def check_servers(options: ModelOptions, *, as_json: bool) -> int:
-    """Print each check of the model servers as it ends, and return 1 if one of them failed."""
+    """Check the model servers, print each result, and return 1 if any check failed."""
     found: list[tuple[str, ServerCheck]] = []
     console = Console(highlight=False)
 
     async def work() -> None:
         choice = await resolve_models(options)
         if choice.planner.endpoint is None and choice.perception.spec is None:
-            raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --perception-url.")
+            raise InputError("There is no server to check. Give one with --planner-url, or with --perception and --perception-url.")
         async for server, check in _server_checks(choice.planner, choice.perception):
             found.append((server, check))
             if not as_json:
@@ -179,15 +179,15 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
 
 
 async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerception) -> AsyncIterator[tuple[str, ServerCheck]]:
-    """Yield the checks of both servers, each with the name of its server."""
+    """Yield the name of the server and the result for each check."""
     if planner.endpoint is not None:
-        from scope_ptz.endpoints.chat_server_checks import LAST, check_chat
+        from scope_ptz.endpoints.chat_server_checks import UNKNOWN_MODEL_CHECK, check_chat
         from scope_ptz.planner.chat.planning_checks import check_planning
         from scope_ptz.tools.registry import schemas
 
         server, alive = f"planner {planner.name}".strip(), False
         async for check in check_chat(planner.endpoint):
-            alive = check.what == LAST
+            alive = check.what == UNKNOWN_MODEL_CHECK
             yield server, check
         if alive:
             async for check in check_planning(planner.endpoint, schemas(), planner.options):

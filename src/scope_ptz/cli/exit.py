@@ -1,11 +1,11 @@
-"""Exit codes, error messages, and what the program does with its standard streams.
+"""Exit codes, error messages, and robust standard streams.
 
 A command ends with one clear line on stderr and an exit code; bad input never shows a traceback.
 
 0    done
-1    the run or the machinery failed: step limit, budget, planner, camera, Blender, a full disk; a replay that differs
-2    the input or the configuration is wrong, or a pack or a trace is missing or damaged
-3    the planner needs clarification, so nothing (more) was done
+1    failed: step limit, budget, planner, camera, Blender, full disk, or a replay with differences
+2    wrong input or configuration, or a missing or damaged pack or trace
+3    the planner needs clarification
 4    the planner refused the instruction
 130  cancelled (Ctrl-C)
 """
@@ -26,7 +26,7 @@ from typing import Any, TextIO, cast
 from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, TraceError
 
 FAILED, BAD_INPUT, UNCLEAR, REFUSED, CANCELLED = 1, 2, 3, 4, 130
-_FORCED = 3  # presses of Ctrl-C that end the program without clean-up
+_FORCE_EXIT_PRESSES = 3  # this many presses of Ctrl-C end the program without clean-up
 EXIT_CODES = "Exit codes: 0 done, 1 failed, 2 wrong input or a damaged file, 3 clarification needed, 4 refused, 130 cancelled."
 
 _BY_OUTCOME = {"answered": 0, "clarification": UNCLEAR, "refused": REFUSED, "cancelled": CANCELLED}
@@ -39,12 +39,12 @@ def exit_code(outcome: str) -> int:
 
 
 def put(text: str) -> None:
-    """Print one line on stdout, unformatted."""
+    """Print one line on stdout without formatting."""
     sys.stdout.write(text + "\n")
 
 
 def put_json(content: Any, *, indent: int | None = None) -> None:
-    """Print JSON on stdout. An encoding that cannot represent all characters gets them as ``\\uXXXX``."""
+    """Print JSON on stdout. If the encoding of stdout is not Unicode, other characters are escaped as ``\\uXXXX``."""
     put(json.dumps(content, indent=indent, ensure_ascii=not _is_unicode(sys.stdout)))
 
 
@@ -69,7 +69,7 @@ def _show_warnings() -> None:
 
 @contextmanager
 def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
-    """Turn SCOPE's own errors and Ctrl-C into a message and an exit code.
+    """Convert SCOPE's errors and Ctrl-C to a message on stderr and an exit code.
 
     Args:
         as_json: Print the error as a JSON object on stdout, too.
@@ -92,7 +92,7 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
 def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
     """Run a coroutine function, and cancel it at the first Ctrl-C.
 
-    The work then has time to record how it ended; a second Ctrl-C is ignored, and the third one ends the program at once.
+    The function can then record how it ended. A second Ctrl-C is ignored, and a third one ends the program at once.
 
     Returns:
         Whether it was cancelled.
@@ -110,7 +110,7 @@ def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
                 presses += 1
                 if presses == 1:
                     loop.call_soon_threadsafe(scope.cancel)
-                elif presses == _FORCED:
+                elif presses == _FORCE_EXIT_PRESSES:
                     os._exit(CANCELLED)
 
             with interrupts_handled_by(interrupt):
@@ -121,7 +121,7 @@ def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
 
 
 def run_async(work: Callable[[], Awaitable[None]]) -> None:
-    """Run a coroutine function to its end. Ctrl-C cancels it and then ends the command, as ``run_until_interrupted`` describes.
+    """Run a coroutine function. Ctrl-C cancels it, as in ``run_until_interrupted``.
 
     Raises:
         KeyboardInterrupt: It was cancelled.
@@ -132,7 +132,7 @@ def run_async(work: Callable[[], Awaitable[None]]) -> None:
 
 @contextmanager
 def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
-    """Handle Ctrl-C otherwise for a while. Outside the main thread, or where the program ignores Ctrl-C, nothing changes."""
+    """Replace the Ctrl-C handler within the block. Outside the main thread, or if Ctrl-C is ignored, nothing changes."""
     main = threading.current_thread() is threading.main_thread()
     if not main or signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, None):
         yield
@@ -146,16 +146,16 @@ def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Ite
 
 @contextmanager
 def guarded_streams() -> Iterator[None]:
-    """Make standard streams safe that are closed, full, cut off by their reader, or not in UTF-8.
+    """Make standard streams safe even if they are closed, not writable, a broken pipe, or not in UTF-8.
 
-    A closed stream becomes the null device. Output whose reader has gone (``scope tools | head``) is dropped silently, because the
-    command's result decides its exit code. When output cannot be written, for example to a full disk, the exit code is 1.
+    A closed stream is replaced by the null device. Output to a broken pipe (``scope tools | head``) is dropped silently and does
+    not change the exit code. If output cannot be written for another reason, such as a full disk, the exit code is 1.
     """
     _open_closed_descriptors()
     before = sys.stdin, sys.stdout, sys.stderr
     stdin = sys.stdin if sys.stdin is not None else open(os.devnull, encoding="utf-8")  # noqa: SIM115, PTH123
     stdout, stderr = (_Output(stream or open(os.devnull, "w", encoding="utf-8")) for stream in before[1:])  # noqa: SIM115, PTH123
-    _make_readable(stdin, stdout, stderr)
+    _set_error_handlers(stdin, stdout, stderr)
     sys.stdin, sys.stdout, sys.stderr = stdin, cast(TextIO, stdout), cast(TextIO, stderr)
     try:
         yield
@@ -179,7 +179,7 @@ def has_input() -> bool:
 
 
 class _Output:
-    """A text stream that stays writable when the file behind it fails. ``failure`` is the first error other than a closed pipe."""
+    """A text stream that never raises when writing fails. ``failure`` is the first error other than a broken pipe."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -199,7 +199,7 @@ class _Output:
             self._give_up(error)
 
     def _give_up(self, error: OSError) -> None:
-        """Send the rest of the output, and what is still buffered, to the null device."""
+        """Redirect all further and buffered output to the null device."""
         if not isinstance(error, BrokenPipeError) and self.failure is None:
             self.failure = error
         with suppress(OSError, ValueError):
@@ -212,7 +212,7 @@ class _Output:
 
 
 def _open_closed_descriptors() -> None:
-    """Occupy closed standard descriptors, so that no other file gets their numbers and then the program's output."""
+    """Open the null device for closed standard descriptors, so that no other file gets their numbers and receives output."""
     for descriptor in range(3):
         try:
             os.fstat(descriptor)
@@ -221,9 +221,9 @@ def _open_closed_descriptors() -> None:
                 os.open(os.devnull, os.O_RDWR)
 
 
-def _make_readable(stdin: TextIO, *outputs: _Output) -> None:
-    """Let an output that is not in UTF-8 replace what it cannot represent, and let any bytes be read."""
-    codecs.register_error("scope-ascii", _ascii_in_place)
+def _set_error_handlers(stdin: TextIO, *outputs: _Output) -> None:
+    """Set the error handlers: outputs replace characters that they cannot encode, and the input replaces invalid bytes."""
+    codecs.register_error("scope-ascii", _ascii_replacement)
     for output in outputs:
         if not _is_unicode(output) and hasattr(output, "reconfigure"):
             output.reconfigure(errors="scope-ascii")
@@ -235,8 +235,8 @@ def _make_readable(stdin: TextIO, *outputs: _Output) -> None:
         stdin.reconfigure(errors="replace")
 
 
-def _ascii_in_place(error: UnicodeError) -> tuple[str, int]:
-    """Encoding error handler: write a character in ASCII where there is a usual way, else as a question mark."""
+def _ascii_replacement(error: UnicodeError) -> tuple[str, int]:
+    """Replace characters by an ASCII equivalent, or by a question mark. This is a codec error handler."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return "".join(_ASCII.get(c, "?") for c in error.object[error.start : error.end]), error.end
@@ -247,7 +247,7 @@ def _is_unicode(stream: Any) -> bool:
 
 
 def readable_arguments(arguments: list[str]) -> list[str]:
-    """Return command-line arguments with UTF-8 bytes decoded that the locale's encoding could not decode."""
+    """Decode arguments as UTF-8 that the locale's encoding could not decode."""
     return [os.fsencode(text).decode("utf-8", "replace") if _has_surrogates(text) else text for text in arguments]
 
 
@@ -256,6 +256,6 @@ def _has_surrogates(text: str) -> bool:
 
 
 def _ignore_interrupts() -> None:
-    """Ignore Ctrl-C from here on: the program is about to end, and a second one would only show a traceback."""
-    with suppress(ValueError):  # Signals belong to the main thread
+    """Ignore Ctrl-C from now on. The program is about to end, and another Ctrl-C would only show a traceback."""
+    with suppress(ValueError):  # signal handlers can be set in the main thread only
         signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,4 +1,4 @@
-"""``scope models``: the known models, what they need, and how they are served."""
+"""``scope models``: list the known models, their memory needs, and the commands that serve them."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from scope_ptz.settings import load_settings
 
 MEMORY_NOTE = (
     f"Memory in GB, computed, not measured: parameters x bytes + cache for {WINDOW} tokens + {RUNTIME_GB:g} GB. "
-    "'from': with the smallest weights that a server offers, mostly 4-bit."
+    "'from': the same with the smallest weights that a server offers, mostly 4-bit."
 )
-_WIDE, _PIPE = 120, 180  # terminal columns for the wide table, and for a file or a pipe
+_WIDE, _PIPE = 120, 180  # minimum terminal width for the wide table, and the width for a file or a pipe
 _THINKING = {"none": "no", "optional": "when asked", "default": "unless switched off", "always": "always"}
 
 
 def registry() -> Registry:
-    """Return the shipped models and the user's own."""
+    """Return the registry of the shipped models and the user's own."""
     return load_registry(load_settings().models_file())
 
 
@@ -32,9 +32,9 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
     """Print the models.
 
     Args:
-        role: Only models for this role.
-        memory_gb: Only models that fit into this many GB. A line below the table names those that fit only with smaller weights.
-        as_json: Print JSON, without that line.
+        role: List only models for this role.
+        memory_gb: List only models that fit into this many GB. A line below the table names those that fit with smaller weights.
+        as_json: Print JSON instead of a table.
     """
     known, only = registry(), _role(role)
     suitable = [m for m in known.models.values() if only is None or only in m.roles]
@@ -58,7 +58,7 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
     ):
         table.add_column(column, no_wrap=True)
     for m in chosen:
-        roles, (_, least) = "+".join(sorted(m.roles, reverse=True)), m.smallest()
+        roles, (_, least) = "+".join(sorted(m.roles, reverse=True)), m.least_memory()
         more = (_THINKING[m.thinking], m.licence) if wide else ()
         table.add_row(
             m.name, roles, f"{m.size_b:g}B", f"{m.active_b:g}B", m.precision, f"{m.memory_for():.1f}", f"{least:.1f}",
@@ -67,10 +67,10 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
         )  # fmt: skip
     console.print(table)
     if memory_gb is not None:
-        smaller = [m for m in suitable if m not in chosen and m.smallest()[1] <= memory_gb]
+        smaller = [m for m in suitable if m not in chosen and m.least_memory()[1] <= memory_gb]
         if smaller:
-            names = ", ".join(f"{m.name} ({m.smallest()[1]:.1f} GB)" for m in smaller)
-            console.print(Text(f"With smaller weights, {memory_gb:g} GB are enough for: {names}."), soft_wrap=True)
+            names = ", ".join(f"{m.name} ({m.least_memory()[1]:.1f} GB)" for m in smaller)
+            console.print(Text(f"With smaller weights, {memory_gb:g} GB is enough for: {names}."), soft_wrap=True)
     console.print(Text(MEMORY_NOTE, style="dim"), soft_wrap=True)
     _name_plugins(console, only)
     if console.is_terminal:
@@ -78,7 +78,7 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
 
 
 def list_plugins(*, as_json: bool) -> None:
-    """Print the installed plug-ins: cameras, planners and perception of other packages."""
+    """Print the installed plug-ins: cameras, planners and perception backends of other packages."""
     from scope_ptz.factory.plugins import list_plugins as installed
 
     rows = [{"kind": p.kind, "name": p.name, "package": p.package, "factory": p.target, "problem": p.problem} for p in installed()]
@@ -195,7 +195,7 @@ def describe(known: Registry, model: Model) -> dict[str, Any]:
         }
         for server, serving in model.serve.items()
     }
-    return {**data, "memory_gb": model.memory_for(), "least_memory_gb": model.smallest()[1], "serve": servings}
+    return {**data, "memory_gb": model.memory_for(), "least_memory_gb": model.least_memory()[1], "serve": servings}
 
 
 def _console() -> Console:

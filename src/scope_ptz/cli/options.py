@@ -1,6 +1,6 @@
-"""Options that several commands share, each declared once, and the decorator that gives them to a command.
+"""Options that several commands share, and the decorator that adds them to a command.
 
-A group of options is a frozen dataclass whose fields carry a ``typer.Option``. A command asks for a group by annotating one
+A group of options is a frozen dataclass whose fields carry a ``typer.Option``. A command includes a group by annotating one
 parameter with it, and ``command`` expands the group into the flat signature that Typer reads::
 
     @app.command()
@@ -8,7 +8,7 @@ parameter with it, and ``command`` expands the group into the flat signature tha
     def ask(instruction: Instruction, session: SessionFlags, models: PairFlags, as_json: JsonOption = False) -> int:
         ...
 
-A parameter's default, if there is one, is an instance of its group: its values are the defaults of the options in that command.
+If such a parameter has a default, it is an instance of the group, and its values are the defaults of the options in that command.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 
 CAMERA_PANEL, RUN_PANEL, MODEL_PANEL, JUDGE_PANEL = "Camera", "Run", "Models", "Judge"
 
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print only JSON.")]
 SeedOption = Annotated[int, typer.Option("--seed", help="Seed for every random choice.")]
 OutputFile = Annotated[Path, typer.Option("--out", "-o", help="File to write.")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class StartFlags:
-    """The camera, and where and when it starts."""
+    """Options for the camera and its start."""
 
     camera: Annotated[
         str | None,
@@ -52,7 +52,7 @@ class StartFlags:
     ] = None
     scene: Annotated[
         str | None,
-        typer.Option("--scene", help="Short for --camera sim:SCENE; see `scope scene list`.", rich_help_panel=CAMERA_PANEL),
+        typer.Option("--scene", help="Scene: short for --camera sim:SCENE; see `scope scene list`.", rich_help_panel=CAMERA_PANEL),
     ] = None
     viewpoint: Annotated[
         str | None,
@@ -86,7 +86,7 @@ class StartFlags:
 
 @dataclass(frozen=True, kw_only=True)
 class SessionFlags(StartFlags):
-    """The camera's start, and how runs are carried out and kept."""
+    """Options for the camera, its start, and the runs."""
 
     realtime: Annotated[
         bool | None,
@@ -112,13 +112,13 @@ class SessionFlags(StartFlags):
     seed: Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)] = 0
 
     def in_real_time(self, *, as_json: bool = False) -> bool:
-        """Return whether moves take real time: as requested, else for a person at a terminal but not for a program."""
+        """Return whether moves take real time: as requested, or by default only for output on a terminal."""
         return self.realtime if self.realtime is not None else sys.stdout.isatty() and not as_json
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModelFlags:
-    """The planner, perception, and the servers that they run on."""
+    """Options for the planner, perception, and their servers."""
 
     planner: Annotated[
         str | None,
@@ -247,7 +247,7 @@ class _PairFlag:
         str | None,
         typer.Option(
             "--pair",
-            help="Both at once: PLANNER+PERCEPTION, or one model that does both; see `scope models pairs`.",
+            help="Planner and perception at once: PLANNER+PERCEPTION, or one model that does both; see `scope models pairs`.",
             rich_help_panel=MODEL_PANEL,
         ),
     ] = None
@@ -255,7 +255,7 @@ class _PairFlag:
 
 @dataclass(frozen=True, kw_only=True)
 class PairFlags(ModelFlags, _PairFlag):
-    """The options about models, with ``--pair`` as the short form. ``--pair`` comes first in the help."""
+    """The options of ``ModelFlags`` and ``--pair``, which comes first in the help."""
 
     def options(self, pair: str | None = None) -> ModelOptions:
         """Return these flags as the options that ``factory.resolve_models`` takes."""
@@ -264,7 +264,7 @@ class PairFlags(ModelFlags, _PairFlag):
 
 @dataclass(frozen=True, kw_only=True)
 class JudgeFlags:
-    """The judge's server, and how it is asked."""
+    """Options for the judge and its server."""
 
     judge_url: Annotated[
         str | None,
@@ -302,11 +302,11 @@ class JudgeFlags:
 
 
 def command(function: Callable[..., int | None]) -> Callable[..., None]:
-    """Make a function with option groups into one that Typer can register.
+    """Convert a function with option groups to one that Typer can register.
 
     Each parameter annotated with a group becomes one keyword parameter per field of the group. The returned number becomes the exit
-    code. Errors that SCOPE raises on purpose become one line on stderr and an exit code (see ``scope_ptz.cli.exit``); a command
-    with a parameter ``as_json`` that is set prints the error as JSON, too.
+    code. SCOPE's own errors become one line on stderr and an exit code (see ``scope_ptz.cli.exit``). If the command has a parameter
+    ``as_json`` that is set, the error is also printed as JSON.
     """
     hints = get_type_hints(function, include_extras=True)
     groups: dict[str, type[Any]] = {}
@@ -320,10 +320,10 @@ def command(function: Callable[..., int | None]) -> Callable[..., None]:
             flat.append(parameter.replace(annotation=kind, kind=Parameter.KEYWORD_ONLY))
 
     @wraps(function)
-    def run(**given: Any) -> None:
-        with exit_on_error(as_json=bool(given.get("as_json"))):
-            made = {name: kind(**{f.name: given.pop(f.name) for f in fields(kind)}) for name, kind in groups.items()}
-            if code := function(**given, **made):
+    def run(**values: Any) -> None:
+        with exit_on_error(as_json=bool(values.get("as_json"))):
+            group_values = {name: kind(**{f.name: values.pop(f.name) for f in fields(kind)}) for name, kind in groups.items()}
+            if code := function(**values, **group_values):
                 sys.exit(code)
 
     del run.__wrapped__

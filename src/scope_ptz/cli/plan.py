@@ -1,4 +1,4 @@
-"""``scope plan``: what would be done, without moving anything."""
+"""``scope plan``: show the tool calls for an instruction without moving the camera."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _INDENT = 5
 
 
 class _Line(BaseModel):
-    """One line of a file of instructions. Other fields are ignored, so that a task file can be given as it is."""
+    """One line of a file of instructions. Other fields are ignored, so that a task file works, too."""
 
     model_config = ConfigDict(strict=True)
 
@@ -37,7 +37,7 @@ def plan(instruction: str | None, presets: str | None, source: Path | None, *, a
         raise InputError("Give an instruction, or a file of them with --from.")
     if source is not None:
         if presets is not None:
-            raise InputError("With --from, presets are given in the file: one list per line.")
+            raise InputError("--presets cannot be used with --from. Give the presets of each instruction in the file.")
         return _plan_file(source, as_json=as_json)
     names = [name.strip() for name in (presets or "").split(",") if name.strip()]
     _show(_planned(instruction or "", names), as_json=as_json)
@@ -98,7 +98,7 @@ def _show(planned: Plan, *, as_json: bool) -> None:
 
 
 def _show_line(console: Console, line: OutlineCall | OutlineBlock, lead: str) -> None:
-    """Print a line of the outline, and what belongs to it indented below. Long lines continue below their own beginning."""
+    """Print a line of the outline with its inner lines indented below it. Long lines wrap at their own indentation."""
     grid = Table.grid(Column(width=len(lead), no_wrap=True), Column())
     if isinstance(line, OutlineCall):
         grid.add_row(Text(lead, "cyan"), Text.assemble((line.name, "bold"), f"({arguments_text(line.arguments)})"))

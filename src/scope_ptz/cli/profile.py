@@ -1,4 +1,4 @@
-"""``scope profile``: what a pair does on the user's own servers, and whether it meets the paper's real-time bar."""
+"""``scope profile``: measure a pair on the user's own servers, and compare it with the paper's real-time criterion."""
 
 from __future__ import annotations
 
@@ -35,20 +35,20 @@ from scope_ptz.planner.profile.speed import Speed, Spread, speed_of
 if TYPE_CHECKING:
     from scope_ptz.camera.base import Frame
 
-REAL_TIME_S = 0.5  # the paper's bar: a control loop of about 2 Hz, so at most 500 ms per inference
-_FURTHER_DEG = 7.0  # how far the camera turns on from a preset when more frames are requested than there are presets
+REAL_TIME_S = 0.5  # the paper's criterion: a control loop of about 2 Hz, so at most 500 ms per inference
+_EXTRA_PAN_DEG = 7.0  # additional pan for each further frame of a preset, if there are more frames than presets
 
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """How much to measure.
+    """What to measure, and how much.
 
     Attributes:
         instructions: A file to use instead of the packaged instructions.
         limit: Maximum number of instructions, sampled evenly.
         frames: Number of frames for perception.
-        scene: Scene that the frames are taken from.
-        prompts: Whether to measure the effect of small edits of prompt and instruction.
+        scene: Scene to take the frames from.
+        prompts: Whether to measure the effect of small edits of the prompt and the instruction.
     """
 
     instructions: Path | None = None
@@ -59,7 +59,7 @@ class Extent:
 
 
 class Side(BaseModel):
-    """A planner or perception as measured. ``meets_real_time`` is None if nothing, or nothing of one skill, succeeded."""
+    """The measurements of a planner or perception. ``meets_real_time`` is None if all requests, or all of one skill, failed."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -79,7 +79,7 @@ def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
     """Measure a pair and print the report.
 
     Returns:
-        0 whether or not the bar is met; 1 if there is nothing to judge, because no request of a side succeeded.
+        0 whether or not the criterion is met; 1 if it cannot be evaluated because requests failed.
     """
     report: dict[str, Any] = {}
     rows = _rows(extent)
@@ -87,7 +87,7 @@ def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
     async def work() -> None:
         choice = await resolve_models(options)
         if choice.planner.endpoint is None and choice.perception.spec is None:
-            raise InputError("Name what to profile: a pair, or a planner or perception with the address of its server.")
+            raise InputError("There is nothing to profile. Give a pair, or a planner or perception with the address of its server.")
         sides = {}
         if choice.planner.endpoint is not None:
             sides["planner"] = await _planner_side(choice.planner, rows)
@@ -118,7 +118,7 @@ async def _planner_side(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...
     assert choice.endpoint is not None  # noqa: S101 - called only with a server
     planner, trials = make_planner(choice), []
     try:
-        first = await ask_once(planner, rows[0])  # Loads the model, opens the connection, fills the prefix cache
+        first = await ask_once(planner, rows[0])  # loads the model, opens the connection, and fills the prefix cache
         with _bar("planner", len(rows)) as advance:
             for row in rows:
                 trials.append(await ask_once(planner, row))
@@ -134,7 +134,7 @@ async def _planner_side(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...
         memory_gb=memory_gb(facts),
         computed_memory_gb=choice.model.memory_for() if choice.model else None,
         serving=facts,
-        **_against_bar(speed.turn_s.median if speed.turn_s else None),
+        **_against_criterion(speed.turn_s.median if speed.turn_s else None),
     )
 
 
@@ -156,16 +156,16 @@ async def _perception_side(choice: ResolvedPerception, extent: Extent) -> Side:
         memory_gb=memory_gb(facts),
         computed_memory_gb=choice.model.memory_for() if choice.model else None,
         serving=facts,
-        **_against_bar(speed.slowest_median_s),
+        **_against_criterion(speed.slowest_median_s),
     )
 
 
-def _against_bar(median_s: float | None) -> dict[str, Any]:
+def _against_criterion(median_s: float | None) -> dict[str, Any]:
     return {"slowest_median_s": median_s, "meets_real_time": None if median_s is None else median_s <= REAL_TIME_S}
 
 
 async def _frames(scene_name: str, count: int) -> list[Frame]:
-    """Return frames of a scene's presets, turned on from them if more are requested, so that no two are alike."""
+    """Return frames of a scene's presets. If more are requested, further ones are taken next to the presets, so that all differ."""
     from scope_ptz.geometry import Pose
 
     async with await open_camera(f"sim:{scene_name}") as opened:
@@ -176,7 +176,7 @@ async def _frames(scene_name: str, count: int) -> list[Frame]:
             await camera.go_to_preset(names[index % len(names)])
             if index >= len(names):
                 pose = await camera.pose()
-                await camera.move(Pose(pose.pan_deg + _FURTHER_DEG * (index // len(names)), pose.tilt_deg, pose.zoom))
+                await camera.move(Pose(pose.pan_deg + _EXTRA_PAN_DEG * (index // len(names)), pose.tilt_deg, pose.zoom))
             frames.append(await camera.frame())
         return frames
 
@@ -201,7 +201,7 @@ def _verdict(sides: list[bool | None]) -> str:
 
 @contextmanager
 def _bar(title: str, total: int) -> Iterator[Callable[[], None]]:
-    """Show a progress bar on stderr, if that is a terminal; the function that is yielded advances it."""
+    """Show a progress bar if stderr is a terminal, and yield the function that advances it."""
     console = Console(stderr=True)
     columns = (*Progress.get_default_columns(), TextColumn(title))
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
@@ -213,7 +213,7 @@ def _bar(title: str, total: int) -> Iterator[Callable[[], None]]:
 _VERDICTS = {
     "met": ("met", "bold green"),
     "missed": ("missed", "bold yellow"),
-    "unknown": ("unknown, because something never worked", "bold red"),
+    "unknown": ("unknown, because requests failed", "bold red"),
 }
 
 
@@ -221,7 +221,7 @@ def _show(console: Console, report: dict[str, Any]) -> None:
     for role in ("planner", "perception"):
         if role in report:
             _show_side(console, role, Side.model_validate(report[role]))
-    console.print(Text.assemble("Real-time bar of the paper (2 Hz, 500 ms per inference): ", _VERDICTS[report["real_time"]]))
+    console.print(Text.assemble("Real-time criterion of the paper (2 Hz, 500 ms per inference): ", _VERDICTS[report["real_time"]]))
     if "prompts" in report:
         _show_prompts(console, Sensitivity.model_validate(report["prompts"]))
 
@@ -257,7 +257,7 @@ def _show_perception(console: Console, speed: PerceptionSpeed) -> None:
     for skill, spread in speed.by_skill.items():
         _show_spread(console, skill, spread, " s")
     for skill in speed.never_worked:
-        console.print(Text(f"  {skill:16}never worked", style="red"))
+        console.print(Text(f"  {skill:16}no request succeeded", style="red"))
     _show_failures(console, speed.failures, speed.first_failure)
 
 
@@ -281,7 +281,7 @@ def _show_prompts(console: Console, result: Sensitivity) -> None:
     rates = {
         "tools changed by prompt edits": result.by_prompt,
         "by instruction edits": result.by_instruction,
-        "by nothing (noise)": result.noise,
+        "without edits (noise)": result.noise,
         "inverted moves, all trials": result.inverted_anywhere,
     }
     for label, rate in rates.items():

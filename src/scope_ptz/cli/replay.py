@@ -19,7 +19,7 @@ from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.simulator.clock import SceneClock
 
-_LEAD_S = 30.0  # the clock starts this long before the run, so that the camera reaches the first pose in time
+_LEAD_S = 30.0  # the clock starts this long before the run, so that there is time to reach the first pose
 _NO_CALLS = "the trace contains no calls, so there is nothing to repeat"
 
 
@@ -57,12 +57,12 @@ async def _repeat(trace: Trace) -> Replay:
         width=started.frame_width,
         height=started.frame_height,
     )
-    await _take_position(camera, started)
+    await _move_to_start(camera, started)
     return await repeat(trace, camera)
 
 
-async def _take_position(camera: SimulatedCamera, started: Started) -> None:
-    """Bring a new camera to the pose of the recorded one, at the same scene time."""
+async def _move_to_start(camera: SimulatedCamera, started: Started) -> None:
+    """Move a new camera to the recorded start pose, at the recorded scene time."""
     if camera.viewpoint != started.viewpoint:
         presets = open_scene(started.scene or "").file.presets
         there = next((p.name for p in presets if p.viewpoint == started.viewpoint), None)
@@ -83,7 +83,7 @@ def _show(trace: Trace, found: Replay | None, reason: str) -> None:
         if difference := differences.get((call.step, call.index)):
             console.print(Text(f"     differs: {plain(difference)}", style="bold red"))
     if trace.ended is None:
-        console.print(Text("The trace ends here: the run was cut off.", style="bold red"))
+        console.print(Text("The trace ends here: the run was interrupted.", style="bold red"))
     else:
         show_end(console, trace.ended, trace.started.labels.perception_note, trace.folder, None)
     console.print()

@@ -1,4 +1,4 @@
-"""``scope scene list|show|view``: the scenes, their cards, and pictures of them."""
+"""``scope scene list``, ``show`` and ``view``: list scenes, print their cards, and save views."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from scope_ptz.simulator.card import card, folder_bytes, markdown, megabytes
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene, find_scenes
 
-MOST_NAMED = 16  # names in a list of the short card; the rest is counted
+MAX_NAMED = 16  # names in a list of the short card; the others are only counted
 
 
 def list_scenes(*, as_json: bool) -> int:
-    """Print every scene with its viewpoints and sizes, and what is wrong with those that cannot be loaded."""
+    """Print every scene with its viewpoints and sizes, and the errors of those that cannot be loaded."""
     folders = dict(sorted(find_scenes(scene_search(load_settings())).items()))
     scenes = [_facts(name, folder) for name, folder in folders.items()]
     if as_json:
         put_json(scenes)
         return 0
     if not scenes:
-        put("There are no scenes. `scope doctor` reports where they are searched for.")
+        put("There are no scenes. Run `scope doctor` to find out why.")
         return 0
     table = Table("scene", "viewpoint", "presets", "objects", "texts", "size", box=None, pad_edge=False, header_style="dim")
     for scene in scenes:
@@ -53,7 +53,7 @@ def list_scenes(*, as_json: bool) -> int:
 
 
 def _facts(name: str, folder: Path) -> dict[str, Any]:
-    """Return the facts about a scene; ``error`` is there only if it cannot be loaded."""
+    """Return a scene as JSON data. ``error`` is present only if the scene cannot be loaded."""
     try:
         file = open_scene(name).file
     except PackError as error:
@@ -79,9 +79,9 @@ def show_scene(name: str, sheet: Path | None, *, opened: bool | None, everything
 
     Args:
         name: The scene.
-        sheet: PNG file for the contact sheet; one in the cache folder when None.
-        opened: Whether to open the sheet in the desktop's picture viewer; None: if a person sits at a desktop.
-        everything: Print the whole card instead of one that fits a screen.
+        sheet: PNG file for the contact sheet; None writes it to the cache folder.
+        opened: Whether to open the sheet in a picture viewer; None opens it if there is a terminal and a desktop.
+        everything: Whether to print the whole card instead of one that fits on a screen.
     """
     scene = open_scene(name)
     file, console = scene.file, Console(highlight=False)
@@ -108,7 +108,7 @@ def _print_card(console: Console, scene: Scene) -> None:
 
 
 def _print_short_card(console: Console, scene: Scene) -> None:
-    """Print what helps to give instructions: where the camera can look, and what there is to see."""
+    """Print the viewpoints with their presets, and summaries of objects and texts."""
     file = scene.file
     width = max(len(preset.name) for preset in file.presets)
     for viewpoint in file.viewpoints:
@@ -132,8 +132,8 @@ def _print_short_card(console: Console, scene: Scene) -> None:
         ("Moving", [actor.name for actor in file.actors]),
         ("Deliberately absent", list(file.absent)),
     ):
-        more = f", and {len(items) - MOST_NAMED} more" if len(items) > MOST_NAMED else ""
-        console.print(Text.assemble((title, "bold cyan"), f": {', '.join(items[:MOST_NAMED]) or 'none'}{more}"))
+        more = f", and {len(items) - MAX_NAMED} more" if len(items) > MAX_NAMED else ""
+        console.print(Text.assemble((title, "bold cyan"), f": {', '.join(items[:MAX_NAMED]) or 'none'}{more}"))
 
 
 def _print_line(console: Console, text: Text) -> None:
@@ -149,7 +149,7 @@ def _cached_sheet(scene: Scene) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{folder} cannot be made: {error.strerror}. Set SCOPE_CACHE_DIR, or give --contact-sheet.") from error
+        raise OutputError(f"{folder} cannot be created: {error.strerror}. Set SCOPE_CACHE_DIR, or give --contact-sheet.") from error
     return folder / f"{scene.name}-{scene.file.version}.png"
 
 
@@ -168,18 +168,18 @@ async def _write_contact_sheet(scene: Scene, path: Path) -> None:
 
 
 def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, float | None, float | None], out: Path) -> None:
-    """Write what a camera sees to a picture file.
+    """Save the view of a camera as a picture file.
 
     Args:
         flags: The camera and where it starts.
-        name: The scene of a simulated camera, instead of the one in ``flags``.
+        name: The scene of a simulated camera, if ``flags`` has neither scene nor camera.
         pose: Pan and tilt in degrees, and zoom; None keeps the value at the start.
         out: The picture file.
     """
     from PIL import Image
 
     if name is not None and (flags.camera or flags.scene):
-        raise InputError("Name the camera once: as the argument, or with --camera or --scene.")
+        raise InputError("Give the scene or camera once: as the argument, with --camera, or with --scene.")
     start = flags if name is None else replace(flags, scene=name)
 
     async def work() -> None:

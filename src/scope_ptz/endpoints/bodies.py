@@ -1,4 +1,4 @@
-"""Reading what a server sent: limited in size, decoded, and safe to store and to print."""
+"""Read the replies of a server: limit their size, decode them, and make them safe to store and to print."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 K = FailureKind
 
-_QUOTED = 80
-"""Bytes of an unreadable body that the error message shows."""
+_MAX_QUOTED_BYTES = 80
+"""Bytes of an unreadable body that the error message quotes."""
 
 _JSON_TYPE = re.compile(r"^(application|text)/([\w.+-]+\+)?json$")
 _UNSAFE = re.compile("[\\x00-\\x08\\x0b\\x0c\\x0e-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
@@ -25,7 +25,7 @@ _UNSAFE_ESCAPE = re.compile(rb"\\u(00[0189]|[dD][89a-fA-F])|\\[bf]|[\x00-\x08\x0
 
 
 def content_type(response: Response) -> str:
-    """Return the media type in lower case, empty when the server states none."""
+    """Return the media type in lower case; empty if the server sent none."""
     return str(response.headers.get("content-type", "")).partition(";")[0].strip().lower()
 
 
@@ -47,7 +47,11 @@ def too_large(endpoint: Endpoint, status: int) -> ServerFailure:
 
 
 async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes, None]:
-    """Yield the decompressed body in pieces, up to ``MAX_BODY_BYTES``. A timeout in the middle counts as a broken reply."""
+    """Yield the decompressed body in pieces, up to ``MAX_BODY_BYTES``.
+
+    Raises:
+        ServerFailure: The body is too large, or the server stops sending after the first piece.
+    """
     import httpx2
 
     received = 0
@@ -60,15 +64,15 @@ async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes
     except httpx2.ReadTimeout:
         if not received:
             raise
-        silence = f"silent for {endpoint.timeouts.first_byte_s:g} s in the midst of it"
-        raise ServerFailure(K.CUT_OFF, where=endpoint.url, status=response.status_code, detail=silence) from None
+        detail = f"no data for {endpoint.timeouts.first_byte_s:g} s in the middle of the reply"
+        raise ServerFailure(K.CUT_OFF, where=endpoint.url, status=response.status_code, detail=detail) from None
 
 
 async def read_object(response: Response, endpoint: Endpoint) -> dict[str, Any]:
-    """Return a complete JSON object.
+    """Read the body of a response as a JSON object.
 
     Raises:
-        ServerFailure: Wrong content type, an empty or too large body, invalid JSON, no object, or an error reported as success.
+        ServerFailure: The content type is wrong, or the body is empty, too large, not a JSON object, or an error message.
     """
     media_type = content_type(response)
     if not is_json(media_type):
@@ -78,14 +82,18 @@ async def read_object(response: Response, endpoint: Endpoint) -> dict[str, Any]:
 
 
 def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
-    """Return a JSON object from bytes, without the key and without characters that break files or terminals."""
+    """Parse a JSON object from bytes. The API key and characters that are unsafe in files or terminals are removed.
+
+    Raises:
+        ServerFailure: The body is empty, not a JSON object, or an error message.
+    """
     if not body.strip():
         raise ServerFailure(K.EMPTY, where=endpoint.url, status=status, detail="an empty body")
     try:
         # Not strict, because some servers leave raw line breaks in strings.
         data: Any = json.loads(scrub(body.decode("utf-8"), endpoint.secret), strict=False)
     except (ValueError, RecursionError) as error:
-        detail = f"{_no_json(error)} in '{in_brief(body[:_QUOTED].decode(errors='replace'), endpoint.secret)}'"
+        detail = f"{_json_error(error)} in '{in_brief(body[:_MAX_QUOTED_BYTES].decode(errors='replace'), endpoint.secret)}'"
         raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=detail) from None
     if not isinstance(data, dict):
         raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=f"a JSON {type(data).__name__}, not an object")
@@ -96,10 +104,10 @@ def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
     return whole
 
 
-def _no_json(error: Exception) -> str:
+def _json_error(error: Exception) -> str:
     if isinstance(error, json.JSONDecodeError):
-        return f"no JSON: {error.msg} at character {error.pos}"
-    return "no JSON: nested too deeply" if isinstance(error, RecursionError) else "no JSON: not UTF-8 or an endless number"
+        return f"not JSON: {error.msg} at character {error.pos}"
+    return "not JSON: nested too deeply" if isinstance(error, RecursionError) else "not UTF-8, or a number has too many digits"
 
 
 def _safe(value: Any) -> Any:
@@ -113,5 +121,5 @@ def _safe(value: Any) -> Any:
 
 
 def safe_text(text: str) -> str:
-    """Return text without control characters, which terminals obey, and lone surrogates, which files cannot hold."""
+    """Replace control characters, which terminals interpret, and lone surrogates, which UTF-8 cannot encode."""
     return _UNSAFE.sub("\ufffd", text)

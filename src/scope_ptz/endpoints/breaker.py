@@ -1,4 +1,4 @@
-"""A circuit breaker: a dead server is not asked for a while, instead of causing a timeout in every call."""
+"""A circuit breaker: after several failures, calls to an unavailable server fail at once instead of waiting for a timeout."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from time import monotonic
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
 K = FailureKind
-DEAD = frozenset({K.REFUSED, K.DNS, K.TLS, K.CONNECT_TIMEOUT, K.FIRST_BYTE_TIMEOUT, K.TOTAL_TIMEOUT, K.CUT_OFF})
-DEAD_STATUS = frozenset({502, 503, 504})
+UNAVAILABLE = frozenset({K.REFUSED, K.DNS, K.TLS, K.CONNECT_TIMEOUT, K.FIRST_BYTE_TIMEOUT, K.TOTAL_TIMEOUT, K.CUT_OFF})
+UNAVAILABLE_STATUS = frozenset({502, 503, 504})
+"""Failures and status codes which show that the server, or the connection to it, is not working."""
 
 
 class Breaker:
-    """Opens when ``threshold`` consecutive attempts found the server dead.
+    """A circuit breaker. After ``threshold`` consecutive failures of an unavailable server it is open, and no request may be sent.
 
-    It stays open for ``pause_s``, then lets one request through. Each time that this request fails, too, the pause doubles, up to
-    ``longest_pause_s``.
+    After ``pause_s`` seconds it permits one request. If that request fails too, the pause doubles, up to ``longest_pause_s``.
     """
 
     def __init__(
@@ -36,11 +36,14 @@ class Breaker:
 
     @property
     def last(self) -> ServerFailure | None:
-        """The last failure, None after a success."""
+        """The last failure; None after a success."""
         return self._last
 
     def wait_s(self) -> float | None:
-        """Return how many seconds no request may be sent; None if one may be sent now. Its outcome must then be reported."""
+        """Return the seconds until a request may be sent, or None if one may be sent now.
+
+        If one may be sent, the caller must report its outcome with one of the methods below.
+        """
         if self._open_until is None:
             return None
         left = self._open_until - self.clock()
@@ -54,8 +57,8 @@ class Breaker:
         self._failures, self._open_until, self._pause_s, self._probing, self._last = 0, None, self.pause_s, False, None
 
     def failed(self, failure: ServerFailure) -> None:
-        """Report a failed request. A failure that only a living server can cause counts as a success."""
-        if failure.kind not in DEAD and failure.status not in DEAD_STATUS:
+        """Report a failed request. A failure which shows that the server is running counts as a success."""
+        if failure.kind not in UNAVAILABLE and failure.status not in UNAVAILABLE_STATUS:
             self.succeeded()
             return
         self._last = failure
@@ -67,5 +70,5 @@ class Breaker:
         self._probing = False
 
     def abandoned(self) -> None:
-        """Report a cancelled request, which shows nothing about the server."""
+        """Report a cancelled request, which gives no information about the server."""
         self._probing = False

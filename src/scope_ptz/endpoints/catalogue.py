@@ -10,21 +10,21 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.endpoints.retries import Caller
 from scope_ptz.endpoints.translate import status_failure
 
-PATIENCE = Timeouts(connect_s=3.0, first_byte_s=3.0, total_s=5.0)
-"""Short, because the list is only a convenience."""
+QUICK_TIMEOUTS = Timeouts(connect_s=3.0, first_byte_s=3.0, total_s=5.0)
+"""Short timeouts for optional information, such as the list of models."""
 
 
 async def served_models(endpoint: Endpoint) -> tuple[str, ...]:
     """Return the names under which a server serves models, from ``GET /models``.
 
     Raises:
-        ServerFailure: There is no such list.
+        ServerFailure: The server is unreachable or has no list of models.
     """
     return tuple(str(entry["id"]) for entry in await _entries(endpoint))
 
 
 async def find_api(endpoint: Endpoint) -> tuple[Endpoint, tuple[str, ...]]:
-    """Return the endpoint and its models. When only the address with ``/v1`` has a list, return that endpoint.
+    """Return the endpoint and the models that it lists. If only the address with ``/v1`` has a list, return that endpoint.
 
     Raises:
         ServerFailure: Neither address has a list.
@@ -34,9 +34,9 @@ async def find_api(endpoint: Endpoint) -> tuple[Endpoint, tuple[str, ...]]:
     except ServerFailure as failure:
         if failure.kind not in (FailureKind.NOT_FOUND, FailureKind.WRONG_CONTENT_TYPE) or endpoint.url.endswith("/v1"):
             raise
-        longer = endpoint.model_copy(update={"url": f"{endpoint.url}/v1"})
+        with_v1 = endpoint.model_copy(update={"url": f"{endpoint.url}/v1"})
         try:
-            return longer, await served_models(longer)
+            return with_v1, await served_models(with_v1)
         except ServerFailure:
             raise failure from None
 
@@ -44,7 +44,7 @@ async def find_api(endpoint: Endpoint) -> tuple[Endpoint, tuple[str, ...]]:
 async def _entries(endpoint: Endpoint) -> list[dict[str, Any]]:
     from scope_ptz.endpoints.transport import make_client
 
-    quick = endpoint.model_copy(update={"timeouts": PATIENCE, "retries": 0})
+    quick = endpoint.model_copy(update={"timeouts": QUICK_TIMEOUTS, "retries": 0})
 
     async def ask() -> dict[str, Any]:
         async with make_client(quick) as client, client.stream("GET", f"{quick.url}/models") as response:

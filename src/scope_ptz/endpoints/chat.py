@@ -1,4 +1,4 @@
-"""The chat client: the ``openai`` client with this project's retries, deadlines and parsing of replies."""
+"""The chat client: the ``openai`` client with SCOPE's own retries, deadlines and reply parsing."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import anyio
 from pydantic_core import to_json
 
 from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type
-from scope_ptz.endpoints.chat_replies import ChatReply, Gathering, RawToolCall
+from scope_ptz.endpoints.chat_replies import ChatReply, RawToolCall, ReplyAssembler
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.events import DONE, Events
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, in_brief
@@ -23,7 +23,7 @@ __all__ = ["ChatClient", "ChatReply", "RawToolCall"]
 
 K = FailureKind
 EVENT_STREAM = "text/event-stream"
-UNKNOWN_FIELD = 422
+UNKNOWN_FIELD = 422  # the status with which strict servers reject unknown request fields
 DRAIN_S = 0.1
 """Time limit for draining a finished stream, so that its connection can be reused."""
 
@@ -51,32 +51,32 @@ class ChatClient:
         Args:
             messages: The conversation in the wire format.
             tools: Function schemas of the offered tools.
-            stream: Whether to stream the reply, which measures the time to its first token. The reply is the same.
-            extra: Request fields that only some servers know.
-            options: Further request fields, such as ``temperature``; those that are None are left out.
+            stream: Whether to stream the reply, so that the time to its first token can be measured.
+            extra: Request fields that only some servers support.
+            options: Further request fields, such as ``temperature``; fields that are None are omitted.
 
         Raises:
-            ServerFailure: There was no usable reply.
+            ServerFailure: The server gave no usable reply.
         """
         body: dict[str, Any] = {"model": self.endpoint.model, "messages": messages}
         if tools:
             body["tools"] = tools
         body.update((name, value) for name, value in options.items() if value is not None)
         body.update(extra or {})
-        self._client()  # made before the clock starts, because importing the library takes most of a second
+        self._client()  # created before the clock starts, because importing the library takes most of a second
         began = perf_counter()
         reply, attempts = await (self._streamed(body | {"stream": True}) if stream else self._called(body))
         return reply.model_copy(update={"attempts": attempts, "seconds": perf_counter() - began})
 
     async def _called(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        # Serialised once, by a serialiser that is fast with pictures; the library's own takes several times as long.
+        # The body is serialised once for all attempts. The library's own serialiser is several times slower with pictures.
         content, streaming = to_json(body, inf_nan_mode="null"), bool(body.get("stream"))
         return await self.caller.call(lambda: self._exchange(content, streaming))
 
     async def _streamed(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """Stream with a token count at the end, which servers send only on request.
+        """Stream a reply that ends with the token counts, which servers send only on request.
 
-        A server that refuses this request field is asked without it, now and from then on.
+        If the server rejects the request field for that, the request is repeated without it, and later requests omit it.
         """
         if not self._counts_tokens:
             return await self._called(body)
@@ -89,7 +89,7 @@ class ChatClient:
         try:
             reply, attempts = await self._called(body)
         except ServerFailure as failure:
-            raise failure.after((*refused, *failure.history)) from None
+            raise failure.with_history((*refused, *failure.history)) from None
         self._counts_tokens = False
         return reply, (*refused, *attempts)
 
@@ -98,7 +98,7 @@ class ChatClient:
         from openai import AsyncStream
 
         began = perf_counter()
-        # No response is read by the library, so that the size of its body can be limited.
+        # The library does not read the response, so that the size of the body can be limited.
         answer = await self._client().post(
             "/chat/completions", cast_to=httpx2.Response, content=content, stream=True, stream_cls=AsyncStream[Any]
         )
@@ -109,14 +109,14 @@ class ChatClient:
                 return await self._read_stream(response, began)
             if not is_json(media_type):
                 raise wrong_type(media_type, self.endpoint, response.status_code)
-            whole = Gathering(self.endpoint)
-            whole.add(await read_object(response, self.endpoint))
-            return whole.reply()
+            assembler = ReplyAssembler(self.endpoint)
+            assembler.add(await read_object(response, self.endpoint))
+            return assembler.reply()
         finally:
             await response.aclose()
 
     async def _read_stream(self, response: Response, began: float) -> ChatReply:
-        gathering, first_token_s, done = Gathering(self.endpoint), None, False
+        assembler, first_token_s, done = ReplyAssembler(self.endpoint), None, False
         head, events = b"", Events()
         pieces = chunks(response, self.endpoint)
 
@@ -125,8 +125,8 @@ class ChatClient:
             for data in stream:
                 if data == DONE:
                     return True
-                brought = gathering.add(load_object(data, self.endpoint, response.status_code))
-                if brought and first_token_s is None:
+                has_content = assembler.add(load_object(data, self.endpoint, response.status_code))
+                if has_content and first_token_s is None:
                     first_token_s = perf_counter() - began
             return False
 
@@ -143,18 +143,24 @@ class ChatClient:
         finally:
             await pieces.aclose()
         done = done or take(events.end())
-        if not done and gathering.finish_reason is None:
-            raise self._broken_off(gathering, head, response.status_code)
-        return gathering.reply().model_copy(update={"first_token_s": first_token_s})
+        if not done and assembler.finish_reason is None:
+            raise self._unfinished_stream(assembler, head, response.status_code)
+        return assembler.reply().model_copy(update={"first_token_s": first_token_s})
 
-    def _broken_off(self, gathering: Gathering, head: bytes, status: int) -> ServerFailure:
-        """Return the failure for a stream without an end: it broke off, or it was no stream. ``head`` is its beginning."""
+    def _unfinished_stream(self, assembler: ReplyAssembler, head: bytes, status: int) -> ServerFailure:
+        """Return the failure for a stream that was cut off, or for a reply that is not an event stream.
+
+        Args:
+            assembler: The chunks received so far.
+            head: The first bytes of the reply.
+            status: The HTTP status.
+        """
         where = self.endpoint.url
-        if gathering.pieces:
+        if assembler.pieces:
             return ServerFailure(K.CUT_OFF, where=where, status=status, detail="the stream ended before the answer did")
         if not head.strip():
             return ServerFailure(K.EMPTY, where=where, status=status, detail="an empty body")
-        detail = f"no event stream: {in_brief(head[:200].decode(errors='replace'), self.endpoint.secret)}"
+        detail = f"not an event stream: {in_brief(head[:200].decode(errors='replace'), self.endpoint.secret)}"
         return ServerFailure(K.MALFORMED, where=where, status=status, detail=detail)
 
     def _client(self) -> AsyncOpenAI:

@@ -1,4 +1,7 @@
-"""From an OpenAI-style completion, complete or in chunks, to a ``ChatReply``. Lenient about form, strict about empty replies."""
+"""Assemble a ``ChatReply`` from an OpenAI-style completion, whole or streamed.
+
+Variations of the format are tolerated; an empty reply is a failure.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ K = FailureKind
 
 
 class RawToolCall(BaseModel):
-    """A tool call as the server returned it. ``arguments_text`` should be JSON, but may be anything."""
+    """A tool call as the server returned it. ``arguments_text`` should be JSON, but may be any text."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -28,7 +31,7 @@ class ChatReply(BaseModel):
     """A reply of a chat model.
 
     Attributes:
-        reasoning: Reasoning that the server separated from the text.
+        reasoning: The reasoning that the server returned in a separate field.
         first_token_s: Seconds to the first token, for streamed replies only.
     """
 
@@ -47,8 +50,8 @@ class ChatReply(BaseModel):
     attempts: tuple[Attempt, ...] = ()
 
 
-class Gathering:
-    """Collects the chunks of a reply. A complete reply is a stream with one chunk."""
+class ReplyAssembler:
+    """Collects the chunks of a reply. A reply that is not streamed is a single chunk."""
 
     def __init__(self, endpoint: Endpoint) -> None:
         self.endpoint = endpoint
@@ -63,18 +66,18 @@ class Gathering:
         self._usage: dict[str, Any] = {}
 
     def add(self, data: dict[str, Any]) -> bool:
-        """Add a completion or a chunk. Return whether it contained any part of the reply itself."""
+        """Add a completion or a chunk. Return whether it contained text, reasoning or tool calls."""
         self.pieces += 1
         self.model = self.model or _text_of(data.get("model"))
         self._usage = _object_of(data.get("usage")) or self._usage
         choices = data.get("choices")
         if choices is not None and not isinstance(choices, list):
-            raise self._malformed("'choices' is no list")
+            raise self._malformed("'choices' is not a list")
         choice = choices[0] if choices else None
         if choice is None:
             return False
         if not isinstance(choice, dict):
-            raise self._malformed("a choice is no object")
+            raise self._malformed("a choice is not an object")
         self.has_choice = True
         self.finish_reason = _text_of(choice.get("finish_reason")) or self.finish_reason
         delta = choice.get("delta")
@@ -86,8 +89,8 @@ class Gathering:
         reasoning = _text_of(message.get("reasoning_content")) or _text_of(message.get("reasoning"))
         calls = message.get("tool_calls") or []
         if not isinstance(calls, list):
-            raise self._malformed("'tool_calls' is no list")
-        if not calls and message.get("function_call"):  # the older interface, before tools
+            raise self._malformed("'tool_calls' is not a list")
+        if not calls and message.get("function_call"):  # the interface that preceded tool calls
             calls = [{"index": 0, "function": message["function_call"]}]
         self._text.append(text)
         self._reasoning.append(reasoning)
@@ -98,14 +101,14 @@ class Gathering:
     def _content(self, content: Any) -> str:
         if content is None or isinstance(content, str):
             return content or ""
-        if isinstance(content, list):  # parts, as in requests
+        if isinstance(content, list):  # content parts, as in requests
             return "".join(_text_of(part.get("text")) for part in content if isinstance(part, dict))
-        raise self._malformed("'content' is no text")
+        raise self._malformed("'content' is not text")
 
     def _add_call(self, call: Any, *, whole: bool) -> None:
         function = _object_of(call.get("function")) if isinstance(call, dict) else None
         if function is None:
-            raise self._malformed("a tool call is no object")
+            raise self._malformed("a tool call is not an object")
         index, call_id, name = call.get("index"), _text_of(call.get("id")), _text_of(function.get("name"))
         given = function.get("arguments")
         arguments = given if isinstance(given, str) else "" if given is None else json.dumps(given)
@@ -115,23 +118,23 @@ class Gathering:
             self._calls.append({"id": "", "name": "", "arguments": ""})
             if isinstance(index, int):
                 self._slots[index] = slot
-        held = self._calls[slot]
-        held["id"] = held["id"] or call_id
-        held["name"] = held["name"] or name
-        held["arguments"] += arguments
+        stored = self._calls[slot]
+        stored["id"] = stored["id"] or call_id
+        stored["name"] = stored["name"] or name
+        stored["arguments"] += arguments
 
     def _slot(self, index: Any, call_id: str, name: str, arguments: str) -> int | None:
-        """Return the call that a chunk continues; None if it begins a new one.
+        """Return the index in ``_calls`` of the call that a chunk continues; None if it begins a new call.
 
-        Chunks of a call share an index. Some servers send no index, send the same one for every call, or repeat id and name in each
-        chunk.
+        Chunks of a call share an index. However, some servers send no index, send the same index for every call, or repeat id and
+        name in each chunk.
         """
         slot = self._slots.get(index) if isinstance(index, int) else len(self._calls) - 1 if self._calls else None
         if slot is None or not name:
             return slot
-        held = self._calls[slot]
-        another = (held["id"] and call_id and held["id"] != call_id) or (held["name"] and held["name"] != name)
-        return None if another or (arguments and _is_object(held["arguments"])) else slot
+        stored = self._calls[slot]
+        another = (stored["id"] and call_id and stored["id"] != call_id) or (stored["name"] and stored["name"] != name)
+        return None if another or (arguments and _is_object(stored["arguments"])) else slot
 
     def reply(self) -> ChatReply:
         """Return the complete reply.
@@ -140,10 +143,10 @@ class Gathering:
             ServerFailure: The reply is empty.
         """
         text, reasoning = self._clean("".join(self._text)), self._clean("".join(self._reasoning))
-        read, written = (_count_of(self._usage.get(name)) for name in ("prompt_tokens", "completion_tokens"))
+        tokens_in, tokens_out = (_count_of(self._usage.get(name)) for name in ("prompt_tokens", "completion_tokens"))
         if not (text.strip() or reasoning.strip() or self._calls):
             detail = "a message without content" if self.has_choice else "no choices"
-            raise ServerFailure(K.EMPTY, where=self.endpoint.url, status=200, detail=detail, tokens=(read, written))
+            raise ServerFailure(K.EMPTY, where=self.endpoint.url, status=200, detail=detail, tokens=(tokens_in, tokens_out))
         calls = tuple(
             RawToolCall(id=call["id"], name=self._clean(call["name"]), arguments_text=self._clean(call["arguments"]))
             for call in self._calls
@@ -153,8 +156,8 @@ class Gathering:
             reasoning=reasoning,
             tool_calls=calls,
             finish_reason=self.finish_reason,
-            input_tokens=read,
-            output_tokens=written,
+            input_tokens=tokens_in,
+            output_tokens=tokens_out,
             cached_tokens=_count_of((_object_of(self._usage.get("prompt_tokens_details")) or {}).get("cached_tokens")),
             model=self._clean(self.model),
         )
@@ -175,7 +178,7 @@ def _object_of(value: Any) -> dict[str, Any] | None:
 
 
 def _is_object(arguments: str) -> bool:
-    """Return whether arguments are complete, so that a following chunk with a name is another call."""
+    """Return whether arguments are a complete JSON object, so that a following chunk with a name is another call."""
     try:
         return isinstance(json.loads(arguments), dict)
     except (ValueError, RecursionError):
@@ -183,5 +186,5 @@ def _is_object(arguments: str) -> bool:
 
 
 def _count_of(value: Any) -> int:
-    """Return a token count, 0 for anything else that a server may send."""
+    """Return a token count; 0 for any value that is not one."""
     return value if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**53 else 0

@@ -1,4 +1,4 @@
-"""Checks of a chat server at any address: the part that has nothing to do with cameras."""
+"""Check that a chat server works, independently of cameras and planning."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ Verdict = Literal["ok", "partly", "failed"]
 UNREACHABLE = frozenset(
     {FailureKind.REFUSED, FailureKind.DNS, FailureKind.TLS, FailureKind.CONNECT_TIMEOUT, FailureKind.UNAUTHORISED}
 )
-"""After one of these failures no further check can show anything."""
+"""Failures after which further checks are pointless."""
 _GREETING = [
     {"role": "system", "content": "You answer in one short sentence."},
     {"role": "user", "content": "Say hello."},
 ]
-LAST = "a model that is not there"
-"""The check that is reached only when the server answers at all."""
+UNKNOWN_MODEL_CHECK = "an unknown model name"
+"""The last check, which runs only if the server is reachable."""
 _NO_MODEL = "no-model-has-this-name"
 
 
@@ -50,7 +50,7 @@ Finding = tuple[Verdict, str]
 
 
 async def checked(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerCheck:
-    """Run one check. An error that SCOPE raises on purpose is a failed check."""
+    """Run one check. A ``ScopeError`` makes it a failed check; other errors are raised."""
     began, kind = perf_counter(), ""
     try:
         verdict, detail = await check()
@@ -60,7 +60,7 @@ async def checked(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerC
 
 
 async def check_chat(endpoint: Endpoint) -> AsyncIterator[ServerCheck]:
-    """Check a chat server. The checks end early when the server is not there or the key is wrong."""
+    """Check a chat server. The checks end early if the server is unreachable or rejects the key."""
     patient = endpoint.model_copy(update={"retries": 1})
     client = ChatClient(patient)
     try:
@@ -71,7 +71,7 @@ async def check_chat(endpoint: Endpoint) -> AsyncIterator[ServerCheck]:
             return
         yield await checked("an answer, streamed", lambda: _answers(client, stream=True))
         yield await checked("two requests at once", lambda: _two_at_once(client))
-        yield await checked(LAST, lambda: _refuses(patient))
+        yield await checked(UNKNOWN_MODEL_CHECK, lambda: _refuses_unknown_model(patient))
     finally:
         await client.close()
 
@@ -82,7 +82,7 @@ async def _listing(endpoint: Endpoint) -> Finding:
     except ServerFailure as failure:
         if failure.kind in UNREACHABLE:
             raise
-        return "partly", f"{failure} Give the model's name yourself."
+        return "partly", f"{failure} The model's name must be given as an option."
     if endpoint.model in served:
         return "ok", f"{len(served)}, '{endpoint.model}' among them"
     return "partly", f"'{endpoint.model}' is not among them: {', '.join(served[:10]) or 'none'}"
@@ -94,7 +94,7 @@ async def _answers(client: ChatClient, *, stream: bool) -> Finding:
     if not (reply.text or reply.reasoning):
         return "failed", "the reply is empty"
     if not reply.output_tokens:
-        return "partly", "it does not report token counts, so budgets and speeds are unknown"
+        return "partly", "the server does not report token counts, so budgets and speeds are unknown"
     if stream and reply.first_token_s is None:
         return "partly", f"{figures}; not streamed: it arrived in one piece"
     first = f", the first after {reply.first_token_s:.2f} s" if reply.first_token_s is not None else ""
@@ -118,14 +118,14 @@ async def _two_at_once(client: ChatClient) -> Finding:
     return "ok", "both were answered"
 
 
-async def _refuses(endpoint: Endpoint) -> Finding:
+async def _refuses_unknown_model(endpoint: Endpoint) -> Finding:
     client = ChatClient(endpoint.model_copy(update={"model": _NO_MODEL}))
     try:
         reply = await client.complete(_GREETING)
     except ServerFailure as failure:
         if failure.kind in (FailureKind.NOT_FOUND, FailureKind.BAD_REQUEST):
             return "ok", f"refused: {failure.kind.value}"
-        return "partly", f"it is not a clear refusal: {failure}"
+        return "partly", f"the error does not say that the model is unknown: {failure}"
     finally:
         await client.close()
-    return "partly", f"'{reply.model or 'some model'}' answers to any model name: check that it is the right model"
+    return "partly", f"'{reply.model or 'some model'}' answers to any model name; check that it is the right model"

@@ -1,4 +1,4 @@
-"""The address of a model server, and how long to wait for it."""
+"""Endpoints: the address, key and timeouts of a model server."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from scope_ptz.errors import ConfigError
 
 MAX_KEY_CHARS = 8192
 MAX_BODY_BYTES = 8 * 1024 * 1024
-"""The longest reply that is read."""
+"""Larger replies are rejected."""
 
 
 class Timeouts(BaseModel):
     """Timeouts in seconds.
 
     Attributes:
-        connect_s: The time to connect.
-        first_byte_s: The longest silence while waiting for a reply.
-        total_s: The time for a call with all its retries.
+        connect_s: Limit for connecting.
+        first_byte_s: Limit for the wait until the reply begins, and between two pieces of it.
+        total_s: Limit for a call with all its retries.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -31,17 +31,28 @@ class Timeouts(BaseModel):
 
     @classmethod
     def within(cls, total_s: float) -> Timeouts:
-        """Return timeouts for a call that may take ``total_s``. A slow machine may need half of a long time for its first token."""
-        usual = cls()
+        """Return timeouts for a call that may take ``total_s`` in total.
+
+        Up to half of a long limit may pass before the reply begins, because slow machines need that for the first token.
+        """
+        default = cls()
         return cls(
-            connect_s=min(usual.connect_s, total_s),
-            first_byte_s=min(max(usual.first_byte_s, total_s / 2), total_s),
+            connect_s=min(default.connect_s, total_s),
+            first_byte_s=min(max(default.first_byte_s, total_s / 2), total_s),
             total_s=total_s,
         )
 
 
 class Endpoint(BaseModel):
-    """A model server. For OpenAI-compatible servers ``url`` includes ``/v1``. ``key`` is never shown anywhere."""
+    """A model server and the model to use on it.
+
+    Attributes:
+        url: The base address, including ``/v1`` for OpenAI-compatible servers.
+        model: The model's name on the server; empty for servers with one model.
+        key: The API key, which is never shown.
+        timeouts: The timeouts of requests.
+        retries: The maximum number of retries of a call.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
 
@@ -63,7 +74,7 @@ class Endpoint(BaseModel):
 
     @property
     def secret(self) -> str:
-        """The key in clear text, empty when there is none. Only for request headers and for removing it from texts."""
+        """The key in clear text; empty if there is none. Use it only for request headers and for removing the key from texts."""
         return self.key.get_secret_value() if self.key is not None else ""
 
     @property
@@ -72,29 +83,29 @@ class Endpoint(BaseModel):
 
     @property
     def loopback(self) -> bool:
-        """Whether the server is on this machine, so that no proxy is used."""
+        """Whether the server is on this machine. Requests to it never use a proxy."""
         return self.host == "localhost" or self.host.startswith("127.") or self.host == "::1"
 
 
 def checked_url(url: str) -> str:
-    """Return an http(s) address without a trailing slash.
+    """Validate an HTTP or HTTPS address, and return it without a trailing slash.
 
     Raises:
-        ConfigError: It is no such address, or it contains a user, password, query or fragment.
+        ConfigError: It is not such an address, or it contains a user, password, query or fragment.
     """
     url = url.strip()
     parts = _split(url)
     if parts is None or parts.scheme not in ("http", "https") or not parts.hostname:
         shown = _without_secrets(url)
-        raise ConfigError(f"'{shown}' is no address of a model server. Give a full one, such as http://127.0.0.1:8000/v1.")
+        raise ConfigError(f"'{shown}' is not the address of a model server. Give a full address, such as http://127.0.0.1:8000/v1.")
     if parts.username is not None or parts.password is not None:
         raise ConfigError(
-            f"The address of {parts.hostname} has a user or password in it. Leave it out, and give the key by its variable."
+            f"The address of {parts.hostname} contains a password or user name. Use the variable for the key instead."
         )
     if parts.query or parts.fragment:
-        raise ConfigError(f"The address {_without_secrets(url)} has a query or fragment. Give it without what follows ? or #.")
+        raise ConfigError(f"The address {_without_secrets(url)} contains a query or fragment. Remove the part from ? or # on.")
     if any(character.isspace() or not character.isprintable() for character in url):
-        raise ConfigError("The address of a model server has a space or an unprintable character in it.")
+        raise ConfigError("The address of a model server contains a space or an unprintable character. Remove it.")
     return url.rstrip("/")
 
 
@@ -108,24 +119,25 @@ def _split(url: str) -> SplitResult | None:
 
 
 def _without_secrets(url: str) -> str:
-    """Return an address that is safe to show: nothing before an @ and nothing after a ?."""
+    """Return an address without user, password, query and fragment, so that it is safe to show."""
     bare = url.split("?", 1)[0].split("#", 1)[0]
     scheme, separator, rest = bare.rpartition("://")
     return (scheme + separator + rest.rpartition("@")[2])[:200]
 
 
 def checked_key(key: str) -> SecretStr | None:
-    """Return a key that fits into a header; None if it is blank.
+    """Validate a key for use in a header, and return it; None if it is blank.
 
     Raises:
-        ConfigError: It cannot be a key. The message does not show it.
+        ConfigError: The text cannot be a key. The message does not show it.
     """
     key = key.strip()
     if not key:
         return None
     if len(key) > MAX_KEY_CHARS or not key.isascii() or not key.isprintable() or " " in key:
         raise ConfigError(
-            "The key of a model server contains characters that no key has. Check that the whole file or variable is the key."
+            "The key of a model server is too long or contains invalid characters. "
+            "Check that the file or variable contains only the key."
         )
     return SecretStr(key)
 

@@ -1,4 +1,4 @@
-"""Server-sent events, parsed from bytes that arrive in arbitrary pieces."""
+"""An incremental parser of server-sent events."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ DONE = b"[DONE]"
 
 
 class Events:
-    """Parses the data of events.
+    """Parses the data of events from bytes that arrive in arbitrary pieces.
 
-    According to the standard, any of three line ends is accepted, comments and other fields are skipped, the data lines of an event
-    are joined, and a byte order mark is dropped. In addition, the blank line after an event or the last line end may be missing.
+    As in the standard, line ends are LF, CR or CRLF, comments and other fields are skipped, the data lines of an event are joined,
+    and a byte order mark is ignored. In addition, the blank line after an event or the last line end may be missing.
     """
 
     def __init__(self) -> None:
@@ -25,10 +25,10 @@ class Events:
         text = self._rest + piece
         if not self._begun:
             if codecs.BOM_UTF8.startswith(text):
-                self._rest = text  # too short to tell, or nothing but the mark
+                self._rest = text  # a part of the byte order mark, or only the mark
                 return []
             text, self._begun = text.removeprefix(codecs.BOM_UTF8), True
-        # A carriage return at the end may be half of a line end.
+        # A carriage return at the end may be the first half of CRLF.
         held = text.endswith(b"\r")
         lines = (text[:-1] if held else text).replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
         self._rest = lines.pop() + (b"\r" if held else b"")
@@ -41,18 +41,18 @@ class Events:
 
     def _line(self, line: bytes) -> list[bytes]:
         if line.startswith(b"data:"):
-            before = self._taken() if self._data and _whole(b"\n".join(self._data)) else []
+            before = self._pop_event() if self._data and _is_complete(b"\n".join(self._data)) else []
             self._data.append(line[5:].strip())
             return before
-        return [] if line else self._taken()
+        return [] if line else self._pop_event()
 
-    def _taken(self) -> list[bytes]:
+    def _pop_event(self) -> list[bytes]:
         data, self._data = b"\n".join(self._data).strip(), []
         return [data] if data else []
 
 
-def _whole(data: bytes) -> bool:
-    """Return whether data needs no further line. Called only when one data line follows another, which is rare."""
+def _is_complete(data: bytes) -> bool:
+    """Return whether data is complete. Called only if one data line follows another, which is rare."""
     if data == DONE:
         return True
     try:

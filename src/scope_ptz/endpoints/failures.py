@@ -1,4 +1,4 @@
-"""The ways in which a model server can fail, and what a user can do about each."""
+"""The kinds of model server failures, with a message and a remedy for each."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from scope_ptz.errors import ScopeError
 
 MAX_DETAIL_CHARS = 300
 MIN_SCRUBBED_CHARS = 6
-"""Shorter keys ("none", "EMPTY") are placeholders for servers without keys, and may be ordinary words."""
+"""Shorter keys ("none", "EMPTY") are not removed from texts: they are placeholders, and may be ordinary words."""
 
 
 class FailureKind(StrEnum):
-    """A way to fail. Traces store the values, so they never change."""
+    """A kind of failure. Traces store the values, so they must not change."""
 
     REFUSED = "refused"
     DNS = "dns"
@@ -42,35 +42,38 @@ class FailureKind(StrEnum):
 
 K = FailureKind
 
-_WORDS: dict[FailureKind, tuple[str, str]] = {
+_MESSAGES: dict[FailureKind, tuple[str, str]] = {
     K.REFUSED: ("cannot be reached", "Start it, or check the address."),
-    K.DNS: ("has a host name that nobody knows", "Check the address."),
+    K.DNS: ("has an unknown host name", "Check the address."),
     K.TLS: ("has no certificate that this machine trusts", "Check the address and the certificate."),
-    K.CONNECT_TIMEOUT: ("did not take the connection in time", "Check the address and the network."),
-    K.FIRST_BYTE_TIMEOUT: ("was silent for too long", "It may be loading or overloaded; allow more time, or use a smaller model."),
+    K.CONNECT_TIMEOUT: ("did not accept the connection in time", "Check the address and the network."),
+    K.FIRST_BYTE_TIMEOUT: (
+        "sent nothing for too long",
+        "It may be busy or loading. Allow more time, or use a smaller model.",
+    ),
     K.TOTAL_TIMEOUT: ("did not finish in time", "Allow more time, or use a smaller model."),
-    K.UNAUTHORISED: ("refused the key", "Set the key of this server, and check what it may do."),
-    K.NOT_FOUND: ("does not know this path or model", "Check the address (most want /v1 at its end) and the model's name."),
-    K.RATE_LIMITED: ("wants fewer requests", "Wait, or ask for a higher limit."),
+    K.UNAUTHORISED: ("refused the key", "Set the key of this server, and check its permissions."),
+    K.NOT_FOUND: ("does not know this path or model", "Check the address (most servers need /v1 at the end) and the model's name."),
+    K.RATE_LIMITED: ("limits the rate of requests", "Wait, or ask for a higher limit."),
     K.BAD_REQUEST: ("refused the request", "Check the model's name and what the server supports."),
-    K.CONTEXT_OVERFLOW: ("says that the conversation outgrew the model's context", "Serve the model with a longer context."),
-    K.SERVER_ERROR: ("failed inside", "Look at its log."),
-    K.ERROR_BODY: ("answered with an error", "Look at its log."),
-    K.CUT_OFF: ("broke off its answer", "Look at its log; it may have crashed."),
-    K.EMPTY: ("answered with nothing", "Check that the model is the right one for this use."),
-    K.WRONG_CONTENT_TYPE: ("answered with something that is no model's reply", "Check that the address is a model server's."),
-    K.MALFORMED: ("answered with something unreadable", "Check that the address is a model server's."),
-    K.TOO_LARGE: ("answered with more than a reply can hold", "Check that the address is a model server's."),
-    K.CIRCUIT_OPEN: ("failed again and again, and is left alone for a while", "Start it, or check the address."),
+    K.CONTEXT_OVERFLOW: ("reports that the conversation exceeds the model's context", "Serve the model with a longer context."),
+    K.SERVER_ERROR: ("had an internal error", "Check its log."),
+    K.ERROR_BODY: ("sent an error message", "Check its log."),
+    K.CUT_OFF: ("did not complete its reply", "Check its log; it may have crashed."),
+    K.EMPTY: ("sent an empty reply", "Check that the model is the right one for this use."),
+    K.WRONG_CONTENT_TYPE: ("sent a reply of the wrong content type", "Check that the address is that of a model server."),
+    K.MALFORMED: ("sent an unreadable reply", "Check that the address is that of a model server."),
+    K.TOO_LARGE: ("sent a reply that is too large", "Check that the address is that of a model server."),
+    K.CIRCUIT_OPEN: ("failed repeatedly, so no request is sent for a while", "Start it, or check the address."),
 }
 
 
 class Attempt(BaseModel):
-    """One request of a call.
+    """One request to a model server. A call may need several requests.
 
     Attributes:
         kind: How it failed; None if it succeeded.
-        waited_s: The pause before it.
+        waited_s: The pause before the request, in seconds.
         input_tokens: Input tokens of a reply that was unusable; usable replies carry their own counts.
         output_tokens: Output tokens of a reply that was unusable.
     """
@@ -108,7 +111,7 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
     ) -> None:
         self.kind, self.where, self.status, self.retry_after_s, self.detail = kind, where, status, retry_after_s, detail
         self.history, self.tokens = history, tokens
-        what, remedy = _WORDS[kind]
+        what, remedy = _MESSAGES[kind]
         facts = [f"HTTP {status}"] if status is not None and status != 200 else []
         facts += [f"{len(history)} attempts"] if len(history) > 1 else []
         aside = f" ({', '.join(facts)})" if facts else ""
@@ -120,8 +123,8 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
         """Number of requests to the server."""
         return len(self.history)
 
-    def after(self, history: Iterable[Attempt]) -> ServerFailure:
-        """Return the same failure with all attempts."""
+    def with_history(self, history: Iterable[Attempt]) -> ServerFailure:
+        """Return the same failure with another history."""
         return ServerFailure(
             self.kind,
             where=self.where,
@@ -134,12 +137,12 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
 
 
 def count_failures(attempts: Iterable[Attempt]) -> dict[str, int]:
-    """Return how often each kind occurred, including failures that a retry repaired."""
+    """Return how often each kind of failure occurred, including failures before a successful retry."""
     return dict(Counter(attempt.kind.value for attempt in attempts if attempt.kind is not None))
 
 
 def scrub(text: str, secret: str) -> str:
-    """Return a server's message without the key, which some servers repeat."""
+    """Return a server's message without the key, which some servers echo."""
     if len(secret) >= MIN_SCRUBBED_CHARS and secret in text:
         return text.replace(secret, "***")
     return text

@@ -1,4 +1,4 @@
-"""A client for servers with a plain JSON interface."""
+"""A client for model servers with a plain JSON interface."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class JsonClient:
-    """Posts JSON and returns a JSON object. ``key_header`` is the header for the key."""
+    """Posts JSON and returns JSON objects. ``key_header`` is the name of the request header for the key."""
 
     def __init__(self, endpoint: Endpoint, *, key_header: str = "Authorization", caller: Caller | None = None) -> None:
         self.endpoint, self.key_header = endpoint, key_header
@@ -24,10 +24,10 @@ class JsonClient:
         self._client: AsyncClient | None = None
 
     async def post(self, path: str, body: bytes | dict[str, Any]) -> tuple[dict[str, Any], tuple[Attempt, ...]]:
-        """Return the reply to a JSON body, which may be bytes when it is already encoded.
+        """Post a JSON body, which may already be encoded as bytes. Return the reply and the attempts.
 
         Raises:
-            ServerFailure: There was no usable reply.
+            ServerFailure: The server gave no usable reply.
         """
         content = body if isinstance(body, bytes) else json.dumps(body, separators=(",", ":"), allow_nan=False).encode()
         if self._client is None:

@@ -31,16 +31,16 @@ RETRIED = frozenset(
         K.MALFORMED,
     }
 )
-"""Failures that may not occur again. A wrong key, path, request or content type will."""
+"""Failures that a retry may fix. A wrong key, path, request or content type fails again."""
 
 FIRST_PAUSE_S = 0.5
 LONGEST_PAUSE_S = 8.0
 LONGEST_RETRY_AFTER_S = 30.0
-"""A server that asks for a longer pause counts as failed."""
+"""If a server asks for a longer pause, the call fails."""
 
 
 class Caller:
-    """Makes calls to one endpoint. All calls to the endpoint share it, including concurrent ones."""
+    """Makes calls to one endpoint. All calls to the endpoint, including concurrent ones, should share one caller."""
 
     def __init__(
         self,
@@ -54,10 +54,10 @@ class Caller:
         self.rng, self.breaker = rng or random.Random(), breaker or Breaker()
 
     async def call(self, attempt: Callable[[], Awaitable[T]]) -> tuple[T, tuple[Attempt, ...]]:
-        """Return the result of ``attempt`` and all attempts made for it.
+        """Run ``attempt`` until it succeeds or the retries are used up. Return its result and all attempts.
 
         Raises:
-            ServerFailure: All attempts failed; ``history`` lists them.
+            ServerFailure: No attempt succeeded; ``history`` lists the attempts.
         """
         tried: list[Attempt] = []
         deadline = perf_counter() + self.endpoint.timeouts.total_s
@@ -67,8 +67,8 @@ class Caller:
             if not isinstance(result, ServerFailure):
                 return result, tuple(tried)
             pause_s = self._pause_s(result, len(tried))
-            if pause_s is None or perf_counter() + pause_s + self._least_s(result) >= deadline:
-                raise result.after(tried)
+            if pause_s is None or perf_counter() + pause_s + self._needed_s(result) >= deadline:
+                raise result.with_history(tried)
             await self.sleep(pause_s)
             waited_s = pause_s
 
@@ -79,10 +79,10 @@ class Caller:
 
         A failure is returned instead of raised, so that it carries no library exception, which may quote a key.
         """
-        closed_for_s = self.breaker.wait_s()
-        if closed_for_s is not None:
+        open_for_s = self.breaker.wait_s()
+        if open_for_s is not None:
             tried.append(Attempt(kind=K.CIRCUIT_OPEN, waited_s=waited_s))
-            return self._left_alone(closed_for_s)
+            return self._circuit_open(open_for_s)
         began = perf_counter()
         failure: ServerFailure | None = None
         reported = False
@@ -100,7 +100,7 @@ class Caller:
                     tried.append(Attempt(seconds=perf_counter() - began, waited_s=waited_s))
                     return result
             if limit.cancelled_caught:
-                detail = f"{self.endpoint.timeouts.total_s:g} s were allowed"
+                detail = f"the limit is {self.endpoint.timeouts.total_s:g} s"
                 failure = ServerFailure(K.TOTAL_TIMEOUT, where=self.endpoint.url, detail=detail)
             assert failure is not None  # noqa: S101 - the scope ends with a result, a failure or its deadline
             self.breaker.failed(failure)
@@ -122,7 +122,7 @@ class Caller:
         return failure
 
     def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
-        """Return the pause before the next attempt; None if there is none."""
+        """Return the pause before the next attempt; None if there is no further attempt."""
         if failure.kind not in RETRIED or attempts > self.endpoint.retries:
             return None
         jitter_s = self.rng.uniform(0.0, min(LONGEST_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))
@@ -131,11 +131,13 @@ class Caller:
             return jitter_s
         return asked_s + 0.1 * jitter_s if asked_s <= LONGEST_RETRY_AFTER_S else None
 
-    def _least_s(self, failure: ServerFailure) -> float:
-        """Return the time that another attempt needs to be worthwhile. A silent server may be silent for as long again."""
+    def _needed_s(self, failure: ServerFailure) -> float:
+        """Return the seconds that another attempt needs. A server that sent nothing may again need the full timeout."""
         return self.endpoint.timeouts.first_byte_s if failure.kind is K.FIRST_BYTE_TIMEOUT else 0.0
 
-    def _left_alone(self, for_s: float) -> ServerFailure:
+    def _circuit_open(self, for_s: float) -> ServerFailure:
         last = self.breaker.last
-        why = f"last failure: {last.kind.value}; " if last is not None else ""
-        return ServerFailure(K.CIRCUIT_OPEN, where=self.endpoint.url, detail=f"{why}it will be asked again in {for_s:.0f} s")
+        reason = f"last failure: {last.kind.value}; " if last is not None else ""
+        return ServerFailure(
+            K.CIRCUIT_OPEN, where=self.endpoint.url, detail=f"{reason}the next request is possible in {for_s:.0f} s"
+        )

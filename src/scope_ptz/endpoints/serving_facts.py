@@ -1,4 +1,7 @@
-"""The setup that a model server reports: version, context, precision, memory. Each kind of server uses a different path."""
+"""Read the setup that a model server reports, such as version, context, precision and memory.
+
+Each server program reports it under different paths.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from scope_ptz.endpoints.bodies import safe_text
-from scope_ptz.endpoints.catalogue import PATIENCE
+from scope_ptz.endpoints.catalogue import QUICK_TIMEOUTS
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import scrub
 from scope_ptz.endpoints.translate import as_failure
@@ -16,34 +19,34 @@ from scope_ptz.endpoints.translate import as_failure
 if TYPE_CHECKING:
     from httpx2 import AsyncClient
 
-PLACES = ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/metrics", "/v1/stats")
-"""vLLM and most others: models, version; llama.cpp: props; Ollama: ps; SGLang: server info; vLLM: metrics; Moondream Station:
-stats.
+PATHS = ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/metrics", "/v1/stats")
+"""Most servers report models and version. The other paths belong to llama.cpp (props), Ollama (ps), SGLang (server info), vLLM
+(metrics) and Moondream Station (stats).
 """
-_WANTED = re.compile(
+_FIELDS = re.compile(
     r"^(id|owned_by|root|max_model_len|version|build_info|model_path|n_ctx|size|size_vram|context_length|parameter_size"
     r"|quantization(_level)?|dtype|tp_size|tensor_parallel_size|memory_usage|weight|kvcache|kv_cache_dtype|attention_backend"
     r"|gpu_memory_utilization|num_gpu_blocks|block_size|enable_prefix_caching|cache_dtype|status|model|device|workers)$"
 )
 _METRIC = re.compile(r"^(vllm:cache_config_info\{(?P<labels>.*)\}|process_resident_memory_bytes)\s+(?P<value>\S+)$", re.MULTILINE)
 _LABEL = re.compile(r'(\w+)="([^"]*)"')
-_LONGEST = 200
-_MOST = 40
+_MAX_VALUE_CHARS = 200  # longer values are truncated
+_MAX_FACTS = 40  # further fields are ignored
 
 
 async def serving_facts(endpoint: Endpoint) -> dict[str, str]:
-    """Return what the server reports about itself, by path and field. Never raises because of the server."""
+    """Return what the server reports about itself, by path and field. Paths that fail are left out."""
     from scope_ptz.endpoints.transport import make_client
 
-    quick = endpoint.model_copy(update={"timeouts": PATIENCE})
+    quick = endpoint.model_copy(update={"timeouts": QUICK_TIMEOUTS})
     root = quick.url.removesuffix("/v1")
     facts: dict[str, str] = {}
     async with make_client(quick) as client:
-        for place in PLACES:
-            text = await _get(client, root + place, quick)
-            for name, value in _facts(place, text):
-                if len(facts) < _MOST:
-                    facts[f"{place} {name}"] = safe_text(scrub(value, quick.secret))[:_LONGEST]
+        for path in PATHS:
+            text = await _get(client, root + path, quick)
+            for name, value in _facts(path, text):
+                if len(facts) < _MAX_FACTS:
+                    facts[f"{path} {name}"] = safe_text(scrub(value, quick.secret))[:_MAX_VALUE_CHARS]
     return facts
 
 
@@ -57,8 +60,8 @@ async def _get(client: AsyncClient, url: str, endpoint: Endpoint) -> str:
     return response.text if response.is_success else ""
 
 
-def _facts(place: str, text: str) -> Iterator[tuple[str, str]]:
-    if place == "/metrics":
+def _facts(path: str, text: str) -> Iterator[tuple[str, str]]:
+    if path == "/metrics":
         for match in _METRIC.finditer(text):
             yield from _labels(match["labels"]) if match["labels"] else [("process_resident_memory_bytes", match["value"])]
         return
@@ -70,18 +73,18 @@ def _facts(place: str, text: str) -> Iterator[tuple[str, str]]:
 
 
 def _labels(labels: str) -> Iterator[tuple[str, str]]:
-    yield from ((name, value) for name, value in _LABEL.findall(labels) if _WANTED.match(name))
+    yield from ((name, value) for name, value in _LABEL.findall(labels) if _FIELDS.match(name))
 
 
 def _walk(content: Any, depth: int) -> Iterator[tuple[str, str]]:
-    """Yield the requested fields of nested JSON, to a limited depth."""
+    """Yield the fields of interest in nested JSON, to a limited depth."""
     if depth > 4:
         return
     if isinstance(content, Mapping):
         for name, value in content.items():
             if isinstance(value, Mapping | list):
                 yield from _walk(value, depth + 1)
-            elif value is not None and _WANTED.match(str(name)):
+            elif value is not None and _FIELDS.match(str(name)):
                 yield str(name), str(value)
     elif isinstance(content, list):
         for value in content[:5]:
@@ -89,7 +92,7 @@ def _walk(content: Any, depth: int) -> Iterator[tuple[str, str]]:
 
 
 def memory_gb(facts: Mapping[str, str]) -> float | None:
-    """Return the GB that the model takes, where the server reports it: Ollama's video memory, SGLang's weights and cache."""
+    """Return the GB of memory that the model uses, as reported by Ollama or SGLang; None for other servers."""
     by_name = {key.split(" ", 1)[1]: value for key, value in facts.items()}
     try:
         if "size_vram" in by_name:

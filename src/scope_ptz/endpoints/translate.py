@@ -1,4 +1,4 @@
-"""From exceptions of HTTP libraries and error replies of servers to a ``ServerFailure``."""
+"""Convert exceptions of HTTP libraries and error replies of servers to ``ServerFailure``."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _OVERFLOW = re.compile(
     r"|exceed\w*[^.]{0,40}(context|number of tokens|token limit)|reduce the length|tokens to keep from the initial prompt",
     re.IGNORECASE,
 )
-"""Messages of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and compatible servers, which share no error code."""
+"""Context overflow messages of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and others, which share no error code."""
 
-_SPENT = re.compile(r"insufficient_quota|billing|payment|credits?\b", re.IGNORECASE)
+_NO_CREDIT = re.compile(r"insufficient_quota|billing|payment|credits?\b", re.IGNORECASE)
 
 
 def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None:
-    """Return the failure that a client library's exception stands for; None if it is something else, such as a bug."""
+    """Return the failure that an exception of a client library represents; None for other exceptions, such as bugs."""
     import httpx2
 
     chain = list(_chain(error))
@@ -50,7 +50,7 @@ def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None
 
 
 def _chain(error: BaseException) -> Iterator[BaseException]:
-    """Yield an exception and everything that led to it, including members of groups."""
+    """Yield an exception, its causes and contexts, and the members of exception groups."""
     waiting, seen = [error], set[int]()
     while waiting:
         link = waiting.pop(0)
@@ -68,9 +68,9 @@ def _transport_kind(error: Exception, chain: list[BaseException], endpoint: Endp
 
     timeouts = endpoint.timeouts
     if isinstance(error, httpx2.ConnectTimeout | httpx2.PoolTimeout):
-        return K.CONNECT_TIMEOUT, f"{timeouts.connect_s:g} s were allowed"
+        return K.CONNECT_TIMEOUT, f"the limit is {timeouts.connect_s:g} s"
     if isinstance(error, httpx2.TimeoutException):
-        return K.FIRST_BYTE_TIMEOUT, f"{timeouts.first_byte_s:g} s were allowed"
+        return K.FIRST_BYTE_TIMEOUT, f"the limit is {timeouts.first_byte_s:g} s"
     if isinstance(error, httpx2.ConnectError | httpx2.ProxyError):
         if any(isinstance(link, socket.gaierror) for link in chain):
             return K.DNS, endpoint.host
@@ -78,8 +78,8 @@ def _transport_kind(error: Exception, chain: list[BaseException], endpoint: Endp
             return K.TLS, str(next(link for link in chain if isinstance(link, ssl.SSLError)))
         return K.REFUSED, "" if any(isinstance(link, ConnectionRefusedError) for link in chain) else str(error)
     if isinstance(error, httpx2.RemoteProtocolError):
-        broken_off = re.search(r"disconnect|closed|incomplete|without sending", str(error), re.IGNORECASE)
-        return (K.CUT_OFF if broken_off else K.MALFORMED), str(error)
+        cut_off = re.search(r"disconnect|closed|incomplete|without sending", str(error), re.IGNORECASE)
+        return (K.CUT_OFF if cut_off else K.MALFORMED), str(error)
     if isinstance(error, httpx2.NetworkError):
         return K.CUT_OFF, "the connection was lost"
     if isinstance(error, httpx2.DecodingError):
@@ -90,18 +90,18 @@ def _transport_kind(error: Exception, chain: list[BaseException], endpoint: Endp
 def _body_text(response: Any) -> str:
     try:
         return str(response.text)
-    except Exception:  # an unread body or broken compression or encoding; the status says enough
+    except Exception:  # the body was not read or cannot be decoded; the status is enough
         return ""
 
 
 def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint: Endpoint) -> ServerFailure:
-    """Return the failure for a reply whose status is not success."""
+    """Return the failure for a reply with an error status or a redirect."""
     parsed = _ErrorBody(body)
     if 300 <= status < 400:
-        kind, parsed.message = K.NOT_FOUND, f"it sends on to {headers.get('location', 'nowhere')}"
+        kind, parsed.message = K.NOT_FOUND, f"it redirects to {headers.get('location', 'an unknown address')}"
     elif status in (400, 413, 422, 500) and parsed.overflow:
         kind = K.CONTEXT_OVERFLOW
-    elif status in (401, 402, 403, 407) or (status == 429 and parsed.spent):
+    elif status in (401, 402, 403, 407) or (status == 429 and parsed.no_credit):
         kind = K.UNAUTHORISED
     elif status == 429:
         kind = K.RATE_LIMITED
@@ -116,8 +116,8 @@ def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint:
 
 
 def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> ServerFailure | None:
-    """Return the failure in a reply that claims success; None if there is no error in it."""
-    if not body.get("error") and body.get("object") != "error" and not _only_words(body):
+    """Return the failure for an error message in a reply with a success status; None if the reply contains no error."""
+    if not body.get("error") and body.get("object") != "error" and not _is_only_message(body):
         return None
     parsed = _ErrorBody(json.dumps(body))
     if parsed.overflow:
@@ -131,21 +131,21 @@ def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> S
     return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(parsed.message, endpoint.secret))
 
 
-_WORDS = frozenset({"detail", "message"})
-_AROUND_WORDS = _WORDS | {"code", "error", "status", "status_code", "statusCode", "title", "type", "success", "request_id"}
+_MESSAGE_FIELDS = frozenset({"detail", "message"})
+_ERROR_FIELDS = _MESSAGE_FIELDS | {"code", "error", "status", "status_code", "statusCode", "title", "type", "success", "request_id"}
 
 
-def _only_words(body: dict[str, Any]) -> bool:
-    """Return whether a body consists of a message only, as gateways and simple frameworks report errors."""
-    return body.keys() <= _AROUND_WORDS and any(body.get(name) for name in _WORDS)
+def _is_only_message(body: dict[str, Any]) -> bool:
+    """Return whether a body consists only of a message, which is how gateways and simple frameworks report errors."""
+    return body.keys() <= _ERROR_FIELDS and any(body.get(name) for name in _MESSAGE_FIELDS)
 
 
 class _ErrorBody:
     """An error body.
 
     Attributes:
-        message: Its human-readable part from the usual fields, or else the body without markup.
-        tags: Its error codes.
+        message: The messages in the usual fields; if there are none, the body without markup.
+        tags: The error codes and types.
     """
 
     def __init__(self, body: str) -> None:
@@ -166,9 +166,9 @@ class _ErrorBody:
         return any(_OVERFLOW.search(text) for text in (self.message, *self.tags))
 
     @property
-    def spent(self) -> bool:
-        """Whether waiting will not help because the credit is used up."""
-        return any(_SPENT.search(text) for text in (self.message, *self.tags))
+    def no_credit(self) -> bool:
+        """Whether the account's credit is used up, so that waiting does not help."""
+        return any(_NO_CREDIT.search(text) for text in (self.message, *self.tags))
 
 
 def _as_text(value: Any) -> str:

@@ -1,6 +1,6 @@
 """English words that several packages share: number words, noun forms, colours, lists and sentences.
 
-Pure data and pure functions at the bottom of the package layers. Nothing here knows about cameras, pictures or tasks.
+The package consists of data and pure functions, and is independent of cameras, pictures and tasks.
 """
 
 from scope_ptz.english.colours import COLOURS

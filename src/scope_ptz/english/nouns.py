@@ -12,26 +12,26 @@ SINGULARS: Mapping[str, str] = MappingProxyType({
     "foremen": "foreman", "passers-by": "passer-by", "passersby": "passerby", "axes": "axe", "taxis": "taxi", "oxen": "ox",
     "wolves": "wolf", "loaves": "loaf", "halves": "half", "roofs": "roof", "banksmen": "banksman", "ponies": "pony",
 })  # fmt: skip
-"""Irregular plural to singular."""
+"""Singulars by irregular plural."""
 
-_SECOND_CHOICE = frozenset({"persons", "busses"})  # plurals that are understood and never written
+_NEVER_GENERATED = frozenset({"persons", "busses"})  # plurals that are recognised but never generated
 
-PLURALS: Mapping[str, str] = MappingProxyType({one: many for many, one in SINGULARS.items() if many not in _SECOND_CHOICE})
-"""Irregular singular to plural."""
+PLURALS: Mapping[str, str] = MappingProxyType({one: many for many, one in SINGULARS.items() if many not in _NEVER_GENERATED})
+"""Irregular plurals by singular."""
 
 _INVARIANT = frozenset({
     "bus", "grass", "gas", "glass", "press", "sheep", "deer", "series", "traffic", "vms", "this", "is", "its", "was", "has", "does",
     "chassis", "cctv", "fencing", "scaffolding", "yes", "lens", "cross", "bass", "pass", "less", "across", "cattle", "machinery",
     "equipment", "luggage", "furniture", "compass", "canvas", "campus", "bypass", "aircraft", "various", "as", "us",
 })  # fmt: skip
-"""Words that end in "s" without being a plural, or that have no plural of their own."""
+"""Words that end in "s" but are not plurals, and words without a plural form."""
 
-_PLURAL_ALL_THE_SAME = frozenset({"bus", "glass", "cross"})  # invariant when read, but with a plural when written
-_AFTER_NOUN = frozenset({"with", "of", "on", "in", "at", "for", "by", "from", "near", "carrying"})
+_REGULAR_PLURAL = frozenset({"bus", "glass", "cross"})  # words of _INVARIANT whose plural is formed regularly
+_PREPOSITIONS = frozenset({"with", "of", "on", "in", "at", "for", "by", "from", "near", "carrying"})
 
 
 def singular(word: str) -> str:
-    """Return the singular of a noun; a word that is no plural is returned unchanged."""
+    """Return the singular of a noun; a word that is not a plural is returned unchanged."""
     if word in SINGULARS:
         return SINGULARS[word]
     if word in _INVARIANT or len(word) < 3 or not word.endswith("s") or word.endswith(("ss", "us", "is")):
@@ -57,15 +57,15 @@ def plural(phrase: str) -> str:
 
 
 def _head(words: list[str]) -> int:
-    """Return the index of the head noun: the last word, or the one before "with", "of" or another preposition."""
-    return next((i for i, word in enumerate(words) if word in _AFTER_NOUN and i > 0), len(words)) - 1
+    """Return the index of the head noun: the word before the first preposition, otherwise the last word."""
+    return next((i for i, word in enumerate(words) if word in _PREPOSITIONS and i > 0), len(words)) - 1
 
 
 def plural_noun(word: str) -> str:
     """Return the plural of a single noun; a plural is returned unchanged."""
     if word in PLURALS:
         return PLURALS[word]
-    if singular(word) != word or (word in _INVARIANT and word not in _PLURAL_ALL_THE_SAME):
+    if singular(word) != word or (word in _INVARIANT and word not in _REGULAR_PLURAL):
         return word
     if word.endswith("y") and word[-2:-1] not in {"a", "e", "i", "o", "u"}:
         return word[:-1] + "ies"

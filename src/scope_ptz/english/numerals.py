@@ -16,29 +16,29 @@ _TENS_WORDS = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty
 _ORDINAL_WORDS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 
 UNITS: Mapping[str, int] = MappingProxyType({word: value for value, word in enumerate(SMALL_NUMBERS)})
-"""Word to value, 0 to 19."""
+"""Values by word, from 0 to 19."""
 
 TENS: Mapping[str, int] = MappingProxyType({word: 10 * value for value, word in enumerate(_TENS_WORDS, 2)})
-"""Word to value, 20 to 90."""
+"""Values by word: the multiples of ten from 20 to 90."""
 
 SCALES: Mapping[str, int] = MappingProxyType({"hundred": 100, "thousand": 1000})
 """Words that multiply the number before them."""
 
 CARDINALS: Mapping[str, int] = MappingProxyType({**UNITS, **TENS})
-"""Every cardinal that is a single word below one hundred."""
+"""Values of the cardinals below one hundred that are a single word."""
 
 ORDINALS: Mapping[str, int] = MappingProxyType({word: value for value, word in enumerate(_ORDINAL_WORDS, 1)})
-"""Word to value, first to tenth."""
+"""Values by word, from first to tenth."""
 
 FRACTIONS: Mapping[str, float] = MappingProxyType({
     "half": 0.5, "third": 1 / 3, "thirds": 1 / 3, "quarter": 0.25, "quarters": 0.25, "fourth": 0.25, "fourths": 0.25, "fifth": 0.2,
     "sixth": 1 / 6, "eighth": 0.125, "eighths": 0.125, "tenth": 0.1, "twelfth": 1 / 12,
 })  # fmt: skip
-"""Word to the fraction of one."""
+"""Values by word, such as 0.5 for "half"."""
 
 
 def cardinal(word: str) -> int | None:
-    """Return the value of a cardinal in digits or words ("12", "twelve", "twenty-five"), None for other words."""
+    """Return the value of a cardinal in digits or words ("12", "twelve", "twenty-five"); None for other words."""
     if word.isdigit():
         return int(word)
     if word in CARDINALS:
@@ -50,7 +50,7 @@ def cardinal(word: str) -> int | None:
 
 
 def ordinal(word: str) -> int | None:
-    """Return the value of an ordinal in digits or words ("2nd", "second"), -1 for "last", None for other words."""
+    """Return the value of an ordinal in digits or words ("2nd", "second"): -1 for "last", None for other words."""
     if word == "last":
         return -1
     if word in ORDINALS:
@@ -60,8 +60,8 @@ def ordinal(word: str) -> int | None:
 
 
 def ordinal_suffix(number: int) -> str:
-    """Return the letters that make digits an ordinal: "st", "nd", "rd" or "th"."""
-    return "th" if number in {11, 12, 13} else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    """Return the suffix of an ordinal in digits: "st", "nd", "rd" or "th"."""
+    return "th" if number % 100 in {11, 12, 13} else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
 
 
 def number_word(number: int) -> str:

@@ -1,1 +1,1 @@
-"""Specs to objects: cameras, planners, perception and evaluation contexts are built here and nowhere else."""
+"""Creation of cameras, planners, perception and evaluation contexts from specs and options. No other package creates them."""

@@ -1,4 +1,4 @@
-"""Live Blender cameras: a worker process is started, opens a scene or a .blend file, and renders every frame."""
+"""Live Blender cameras. A worker process opens a scene or a .blend file and renders every frame."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class LiveBlender:
-    """A camera and the worker that renders for it.
+    """A live Blender camera and its worker process.
 
     Attributes:
         camera: The camera.
-        scene: The pack with the ground truth of the same scene; None if there is none.
-        release: Ends the worker.
+        scene: The scene whose packs contain the ground truth of the camera's frames; None if there is no such scene.
+        release: Closes the worker.
     """
 
     camera: BlenderCamera
@@ -47,7 +47,7 @@ class LiveBlender:
 async def open_live_blender(spec: CameraSpec, *, viewpoint: str | None, time_s: float | None, realtime: bool) -> LiveBlender:
     """Start Blender and open a scene by name, a scene's Python file, or a .blend file.
 
-    The first use installs Blender's Python module (about 400 MB); a warning in the log says so.
+    The first use installs Blender's Python module (about 400 MB) and logs a warning.
 
     Raises:
         UnknownNameError: There is no such viewpoint.
@@ -56,7 +56,7 @@ async def open_live_blender(spec: CameraSpec, *, viewpoint: str | None, time_s: 
     settings = load_settings()
     program = settings.blender_python or settings.blender
     if program is None and not is_ready(settings.cache_dir):
-        _LOG.warning("note: installing Blender's Python module, about 400 MB; this happens once.")
+        _LOG.warning("note: installing Blender's Python module (about 400 MB), which is needed only once.")
     command = await to_thread.run_sync(worker_command, settings.cache_dir, program)
     logs = tempfile.TemporaryDirectory(prefix="scope-blender-", ignore_cleanup_errors=True)
     worker = BlenderWorker(command, Path(logs.name) / "blender.log")
@@ -81,7 +81,7 @@ async def open_live_blender(spec: CameraSpec, *, viewpoint: str | None, time_s: 
         if time_s is None:
             clock = SceneClock(file.start_s, realtime=realtime)
         camera = BlenderCamera(worker, file, viewpoint=viewpoint, clock=clock, **size)
-        return LiveBlender(camera, _pack_of(file), release)
+        return LiveBlender(camera, _stored_scene(file), release)
     except BaseException:
         await release()
         raise
@@ -100,18 +100,19 @@ async def _build_scene(worker: BlenderWorker, source: str) -> SceneFile:
 
 
 def _absolute(path: str) -> str:
-    """Return an absolute path: the worker may have another working directory."""
+    """Return an absolute path, because the worker may have a different working directory."""
     return str(Path(path).absolute())
 
 
-def _pack_of(live: SceneFile) -> Scene | None:
-    """Return the pack that holds the ground truth of a live scene; None if none was baked from the same things."""
+def _stored_scene(live: SceneFile) -> Scene | None:
+    """Return the stored scene with the ground truth of a live scene; None if no stored scene has the same objects and actors."""
     try:
         scene = open_scene(live.name)
     except (UnknownNameError, PackError):
         return None
-    return scene if _things(scene.file) == _things(live) else None
+    return scene if _numbered_ids(scene.file) == _numbered_ids(live) else None
 
 
-def _things(file: SceneFile) -> set[tuple[str, int]]:
+def _numbered_ids(file: SceneFile) -> set[tuple[str, int]]:
+    """Return the ids and numbers of all objects and actors in a scene."""
     return {(i.id, i.number) for i in file.instances} | {(a.id, a.number) for a in file.actors}

@@ -1,4 +1,4 @@
-"""Cameras from specs: parse a spec, then open the camera with its clock and its ground truth."""
+"""Parse camera specs, and open cameras with their clock and ground truth."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def parse_camera(text: str) -> CameraSpec:
     address, _, query = rest.partition("?")
     if _has_credentials(scheme, address):
         raise InputError(
-            f"Leave user:password@ out of the camera: `{scheme}:...` ends up in traces and in the history of the shell."
+            f"Remove user:password@ from the camera spec `{scheme}:...`: traces and the shell history would store the password."
         )
     if scheme not in BUILT_IN_SCHEMES and find(CAMERAS, scheme) is None:
         raise InputError(_unknown_scheme(scheme, text))
@@ -59,7 +59,7 @@ def parse_camera(text: str) -> CameraSpec:
 
 
 def camera_names() -> tuple[str, ...]:
-    """Return what can be opened: each scene, the scenes that Blender can render live, and the schemes of plug-ins."""
+    """Return the camera specs that can be opened: scenes, scenes that Blender can render live, and schemes of plug-ins."""
     from scope_ptz.blender.sources import scene_names
     from scope_ptz.simulator.pack import list_scenes
 
@@ -73,9 +73,9 @@ class OpenCamera:
     """A camera that is ready for use. Close it with ``aclose`` or use it as an async context manager.
 
     Attributes:
-        spec: What was opened.
+        spec: The spec from which the camera was opened.
         camera: The camera.
-        scene: The scene that holds the ground truth of the camera's frames; None if there is no ground truth.
+        scene: The scene that provides the ground truth of the camera's frames; None if there is no ground truth.
     """
 
     def __init__(
@@ -96,11 +96,11 @@ class OpenCamera:
 
     @property
     def scenes(self) -> Callable[[str], Scene] | None:
-        """A function from a scene's name to the scene, as ``make_perception`` takes it; None without ground truth."""
+        """A function that returns a scene by name, for ``make_perception``; None without ground truth."""
         return None if self.scene is None else {self.scene.name: self.scene}.__getitem__
 
     async def aclose(self) -> None:
-        """Close the camera and what was started for it. Closing twice is allowed."""
+        """Close the camera and the worker process that was started for it, if any. Calling it again has no effect."""
         release, self._release = self._release, None
         try:
             await self.camera.close()
@@ -127,21 +127,24 @@ async def open_camera(
 
     Args:
         spec: A parsed spec, or its text.
-        viewpoint: Where a camera in a scene stands; the default is the viewpoint of the home preset.
-        preset: The preset to start at. A preset names its viewpoint.
-        time_s: The scene time at which a camera in a scene starts; the default is the scene's own start.
-        realtime: Whether scene time follows the wall clock, for a person who watches. Otherwise moves take no wall time.
+        viewpoint: The viewpoint in the scene at which the camera stands; the default is that of the home preset.
+        preset: The preset to start at. It determines the viewpoint, so only one of the two may be given.
+        time_s: Scene time at the start, in seconds; the default is the scene's own start time.
+        realtime: Whether scene time follows the wall clock, so that a person can watch. Otherwise moves take no wall-clock time.
+
+    Returns:
+        The open camera, which the caller closes.
 
     Raises:
-        InputError: The spec, the viewpoint, the preset or the combination of options is wrong.
+        InputError: The spec, the viewpoint, the preset or the combination of options is invalid.
         PackError: The files of a scene are damaged.
-        CameraError: The camera does not answer.
+        CameraError: The camera failed or did not answer.
         BlenderError: Blender cannot be started, or cannot open the scene or the file.
     """
     if isinstance(spec, str):
         spec = parse_camera(spec)
     if viewpoint and preset:
-        raise InputError("Give --viewpoint or --preset, not both: a preset names its viewpoint.")
+        raise InputError("Give --viewpoint or --preset, not both: a preset determines the viewpoint.")
     if spec.scheme == "sim":
         opened = _open_simulated(spec, viewpoint, time_s, realtime=realtime)
     elif spec.scheme == "blender":
@@ -172,20 +175,20 @@ def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | Non
 
 
 async def _open_plugin(spec: CameraSpec, viewpoint: str | None, time_s: float | None) -> OpenCamera:
-    """Open the camera of an installed package. Its factory may be a plain or an async function."""
+    """Open a camera of an installed plug-in. The plug-in's factory may be a plain or an async function."""
     entry = find(CAMERAS, spec.scheme)
     if entry is None:
         raise InputError(_unknown_scheme(spec.scheme, str(spec)))
     if viewpoint is not None or time_s is not None:
         option = "--viewpoint" if viewpoint is not None else "--at"
-        raise InputError(f"{option} is for cameras in a scene; '{spec}' is the camera of {entry.package}. Leave it out.")
+        raise InputError(f"{option} needs a camera in a scene, but '{spec}' is a camera of {entry.package}. Remove the option.")
     product = call_factory(entry, object, spec)
     if inspect.isawaitable(product):
         try:
             product = await product
         except ScopeError:
             raise
-        except Exception as error:  # code of another package may fail in any way
+        except Exception as error:  # the code of another package can raise anything
             raise CameraError(f"The camera '{spec}' ({entry.package}) cannot be opened: {one_line(error)}.") from error
     return OpenCamera(spec, expect_product(entry, Camera, product))  # type: ignore[type-abstract]
 
@@ -196,7 +199,7 @@ def frame_size(spec: CameraSpec) -> tuple[int, int]:
 
 
 def _has_credentials(scheme: str, address: str) -> bool:
-    """Return whether an address looks like ``user:password@host``. File names of Blender may contain both characters."""
+    """Return whether an address looks like ``user:password@host``. Names of Blender files may contain both characters."""
     if scheme in BUILT_IN_SCHEMES and not address.startswith("//"):
         return False
     before, at, _ = address.rpartition("@")
@@ -205,26 +208,28 @@ def _has_credentials(scheme: str, address: str) -> bool:
 
 def _unknown_scheme(scheme: str, text: str) -> str:
     if text.lower().endswith(_BLENDER_FILES) and len(scheme) == 1:  # a drive letter of Windows
-        return f"'{text}' is a file: write blender:{text}"
-    # The address is not repeated: with a mistyped scheme it may hold a password.
+        return f"'{text}' is a file: write blender:{text} to open it with Blender."
+    # The message omits the address, which may contain a password if the scheme is mistyped.
     return str(UnknownNameError("camera scheme", scheme, [*BUILT_IN_SCHEMES, *(entry.name for entry in installed(CAMERAS))]))
 
 
 def _check_built_in(spec: CameraSpec) -> None:
     if not spec.address:
-        raise InputError("The camera is empty. Name a scene, for example highway-works; `scope scene list` lists them.")
+        raise InputError(
+            "The camera spec names no scene. Name one, for example highway-works; `scope scene list` lists the scenes."
+        )
     known = _OPTIONS[spec.scheme]
     for name, value in spec.options.items():
         if name not in known:
             raise UnknownNameError("camera option", name, known)
         if not value.isdecimal() or not 0 < int(value) <= 10_000:
-            raise InputError(f"The camera option {name} is a whole number from 1 to 10000, got '{value[:40]}'.")
+            raise InputError(f"The camera option {name} must be a whole number from 1 to 10000, got '{value[:40]}'.")
     is_file = spec.address.lower().endswith(_BLENDER_FILES)
     if spec.scheme == "sim" and is_file:
         raise InputError(f"'{spec.address}' is a file: write blender:{spec.address} to open it with Blender.")
     if spec.scheme == "blender":
         if is_file and not Path(spec.address).is_file():
-            raise InputError(f"There is no file {spec.address}.")
+            raise InputError(f"The file {spec.address} does not exist.")
         if not is_file:
             from scope_ptz.blender.sources import scene_names
 

@@ -1,6 +1,6 @@
-"""Run an evaluation from its options to its log, without a console.
+"""Run an evaluation and write its log, independently of any user interface.
 
-The command line and the Python interface call ``evaluate``; both watch it through an ``EvaluationProgress``.
+The command line and the Python interface call ``evaluate``, and receive its progress through an ``EvaluationProgress``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ __all__ = [
 
 
 def require_engine() -> None:
-    """Raise ``ConfigError`` when the evaluation engine is not installed."""
+    """Raise ``ConfigError`` if the evaluation engine is not installed."""
     from importlib.util import find_spec
 
     if find_spec("inspect_ai") is None:
@@ -34,15 +34,15 @@ def require_engine() -> None:
 
 
 async def evaluate(options: EvaluationOptions, *, progress: EvaluationProgress | None = None) -> EvaluationResult:
-    """Run an evaluation, resume an interrupted one, or read one that is complete; then ask for missing judgements.
+    """Run an evaluation, resume an interrupted one, or read one that is complete; then request missing judgements.
 
     Args:
         options: What to evaluate.
-        progress: Receives notes, the estimate, and every run that begins and ends.
+        progress: Receives notes, the estimate, and the start and end of every run.
 
     Returns:
-        The evaluation in the log, and the outcome of the judgements. Runs that failed because of infrastructure are
-        among its trials; the same call repeats them.
+        The evaluation as stored in its log, and a tally of the judgements. Its trials include runs that failed because of
+        infrastructure; calling this function again repeats those runs.
 
     Raises:
         ConfigError: The evaluation engine is not installed, or models are not configured.
@@ -60,7 +60,7 @@ async def evaluate(options: EvaluationOptions, *, progress: EvaluationProgress |
         stored = await session.stored_logs()
         try:
             if stored and stored[0].finished:
-                session.progress.note(f"this evaluation is complete: {stored[0].path} (--fresh runs it again)")
+                session.progress.note(f"this evaluation is already complete: {stored[0].path} (--fresh runs it again)")
                 return await session.with_judgements(stored[0].path, retry_failed=True)
             log = await session.run(stored)
             return await session.with_judgements(log, retry_failed=False)

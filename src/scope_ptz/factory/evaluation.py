@@ -33,20 +33,20 @@ from scope_ptz.simulator.pack import Scene
 if TYPE_CHECKING:
     from scope_ptz.bench.judging.judge import Complete
     from scope_ptz.bench.judging.server import JudgeServer
-    from scope_ptz.factory.validation_perception import KnownViews
+    from scope_ptz.factory.validation_perception import CachedTruth
     from scope_ptz.perception.base import Perception
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 
-MAX_KNOWN_VIEWS = 150
-"""Views whose ground truth is kept. Runs are ordered by viewpoint, so that neighbours ask for the same views."""
+MAX_CACHED_VIEWS = 150
+"""Maximum number of views whose ground truth is cached. Runs are ordered by viewpoint, so consecutive runs need the same views."""
 
 
 class ThreadedPlanner(Planner):
     """A planner whose steps run in a worker thread, so that they do not block the other runs.
 
     Args:
-        decide: Returns the next decision.
+        decide: Returns the next decision for a state.
         name: The planner's name.
     """
 
@@ -58,7 +58,7 @@ class ThreadedPlanner(Planner):
 
 
 def planner_for(resolved: ResolvedPlanner) -> Planner:
-    """Make a planner for an evaluation: it does not block other runs, and its requests are in the log."""
+    """Create a planner for an evaluation. The grammar planner runs in a worker thread, so that it does not block other runs."""
     if resolved.plugin is not None or resolved.instance is not None:
         return make_planner(resolved)
     if resolved.endpoint is None:
@@ -68,9 +68,9 @@ def planner_for(resolved: ResolvedPlanner) -> Planner:
     return make_planner(resolved)
 
 
-def perception_for(resolved: ResolvedPerception, scenes: Callable[[str], Scene], seed: int, views: KnownViews) -> Perception:
-    """Make perception for an evaluation. ``views`` reads the ground truth of each view once."""
-    return make_perception(resolved, scenes, seed, views.look)
+def perception_for(resolved: ResolvedPerception, scenes: Callable[[str], Scene], seed: int, truth: CachedTruth) -> Perception:
+    """Create perception for an evaluation. ``truth`` caches the ground truth of each view."""
+    return make_perception(resolved, scenes, seed, truth.read)
 
 
 def eval_context(
@@ -83,27 +83,28 @@ def eval_context(
 
     Args:
         seed: Seed for every random choice.
-        planner: The planner; None makes the one that the engine names.
-        perception: The perception, made at once so that errors show early; None makes the one that the engine names.
+        planner: The planner; None creates the one that the engine requests by name.
+        perception: The perception, which is created immediately so that errors are reported before the first run; None creates
+            the one that the engine requests by name.
     """
-    from scope_ptz.factory.validation_perception import KnownViews
+    from scope_ptz.factory.validation_perception import CachedTruth
 
-    scenes, views = Library(scene_search(load_settings())), KnownViews(MAX_KNOWN_VIEWS)
-    made = perception_for(perception, scenes, seed, views) if perception is not None else None
+    scenes, cache = Library(scene_search(load_settings())), CachedTruth(MAX_CACHED_VIEWS)
+    made = perception_for(perception, scenes, seed, cache) if perception is not None else None
 
     async def requested_planner(request: ModelRequest) -> Planner:
         return planner or planner_for((await resolve_models(_model_options(request, "planner"))).planner)
 
     async def requested_perception(request: ModelRequest) -> Perception:
-        return made or perception_for((await resolve_models(_model_options(request, "perception"))).perception, scenes, seed, views)
+        return made or perception_for((await resolve_models(_model_options(request, "perception"))).perception, scenes, seed, cache)
 
     async def requested_judge(request: ModelRequest, repeat: int) -> Complete:
         return (await _open_judge(request)).repeated(repeat)
 
-    truth = _ground_truth(scenes, views)
+    truth = _ground_truth(scenes, cache)
 
-    async def true_count(scene: str, look: Observation) -> int | None:
-        return await _count(truth, scene, look)
+    async def true_count(scene: str, observation: Observation) -> int | None:
+        return await _count(truth, scene, observation)
 
     return EvalContext(
         open_scene=scenes,
@@ -118,7 +119,12 @@ def eval_context(
 
 
 def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
-    """Load the tasks of a split by its name, or of a task file."""
+    """Load the tasks of a split or of a task file.
+
+    Args:
+        split: The name of a split, or the path of a task file.
+        scenes: Opens the scenes of the tasks by name.
+    """
     from scope_ptz.bench.tasks.imported import holds_imported, load_imported
     from scope_ptz.bench.tasks.splits import load_split
 
@@ -127,14 +133,17 @@ def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
     return entries_of(load_split(split), scenes)
 
 
-def _ground_truth(scenes: Callable[[str], Scene], views: KnownViews) -> GroundTruthPerception:
+def _ground_truth(scenes: Callable[[str], Scene], cache: CachedTruth) -> GroundTruthPerception:
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
-    return GroundTruthPerception(scenes, views.look)
+    return GroundTruthPerception(scenes, cache.read)
 
 
 def _model_options(request: ModelRequest, role: str) -> ModelOptions:
-    """Convert a model of the engine's own command line: ``served`` and ``key_file`` are ours, the rest are the model's options."""
+    """Convert a model request from the engine's own command line.
+
+    SCOPE interprets the options ``served`` and ``key_file``; the others are passed to the model.
+    """
     given: Mapping[str, Any] = {name: value for name, value in request.options.items() if value is not None}
     further = tuple(f"{name}={value}" for name, value in given.items() if name not in ("served", "key_file"))
     key = Path(str(given["key_file"])) if "key_file" in given else None
@@ -158,20 +167,20 @@ async def _open_judge(request: ModelRequest) -> JudgeServer:
     return await open_judge(request.url, str(served), Path(str(key)) if key else None, TIMEOUT_S, further)
 
 
-async def _count(truth: GroundTruthPerception, scene: str, look: Observation) -> int | None:
-    """Count what a perception call asked for in the view that it received; None if the description is too open to count."""
+async def _count(truth: GroundTruthPerception, scene: str, observation: Observation) -> int | None:
+    """Count the objects that a perception call asked for in its view; None if the description is too general to count."""
     from scope_ptz.factory.validation_perception import is_plain_noun
 
-    if look.viewpoint is None:
+    if observation.viewpoint is None:
         return None
-    view = look.projection
+    view = observation.projection
     pose = Pose() if isinstance(view, Equirectangular) else Pose(view.pan_deg, view.tilt_deg)
     frame = Frame(
-        image=np.zeros((1, 1, 3), np.uint8), pose=pose, hfov_deg=0.0, time_s=look.time_s, projection=view,
-        origin=FrameOrigin(scene, look.viewpoint, pose, look.time_s),
+        image=np.zeros((1, 1, 3), np.uint8), pose=pose, hfov_deg=0.0, time_s=observation.time_s, projection=view,
+        origin=FrameOrigin(scene, observation.viewpoint, pose, observation.time_s),
     )  # fmt: skip
     try:
-        found = len((await truth.detect(frame, look.asked)).boxes)
-        return found if found or is_plain_noun(truth.view(frame, look.asked), look.asked) else None
+        found = len((await truth.detect(frame, observation.asked)).boxes)
+        return found if found or is_plain_noun(truth.view(frame, observation.asked), observation.asked) else None
     except PerceptionError:
         return None

@@ -21,9 +21,15 @@ JUDGE_TIMEOUT_S = 300.0
 
 @dataclass(frozen=True, slots=True)
 class JudgeSettings:
-    """A judge's server as requested. ``options`` are ``NAME=VALUE`` strings; ``repeats`` is the number of judgements of each run.
+    """Settings of the judge and its server.
 
-    ``url``, ``model`` and ``key_file`` fall back to SCOPE_JUDGE_URL, SCOPE_JUDGE_MODEL and SCOPE_JUDGE_KEY.
+    Attributes:
+        url: Address of the server; SCOPE_JUDGE_URL if None.
+        model: The judge's served name; SCOPE_JUDGE_MODEL if None.
+        key_file: File that contains the server's key; the key in SCOPE_JUDGE_KEY if None.
+        timeout_s: Seconds for one judgement, including retries.
+        options: Further options of the judge as ``NAME=VALUE`` strings.
+        repeats: Number of judgements of each run.
     """
 
     url: str | None = None
@@ -56,15 +62,15 @@ class EvaluationOptions:
         seed: Seed for every random choice.
         agent: "scope", or ``module:Class`` of an external agent.
         max_steps: Planner steps after which a run ends.
-        time_s: Seconds after which a run ends; None for no limit.
-        concurrency: Runs at a time; None for a number that suits the models.
+        time_s: Wall-clock seconds after which a run ends; None for no limit.
+        concurrency: Number of concurrent runs; None for a default that depends on the models.
         latency: Run one task at a time, to measure latencies.
-        pictures: Render frames and log them.
-        variant: Label that distinguishes evaluations which differ by one setting.
-        fresh: Start again even if there is a log of the same evaluation.
+        pictures: Render and log frames.
+        variant: Label that distinguishes evaluations with different settings.
+        fresh: Start a new evaluation even if there is a log of the same one.
         resume: Log to resume; None for the most complete one in ``out``.
         price: Price of the planner's tokens, for the estimate and the log.
-        judge: Judge that scores each run, or None.
+        judge: Settings of the judge that scores each run; None for no judge.
     """
 
     models: ModelOptions = field(default_factory=ModelOptions)
@@ -92,8 +98,16 @@ class EvaluationOptions:
 class EvaluationPlan:
     """The plan of an evaluation that is about to start.
 
-    ``agent`` is None for the built-in loop; ``finished`` are runs taken over from an earlier log. ``asks_planner_server``
-    is False if planning costs nothing. ``origin`` names the log that is resumed, or the reason why none is; it may be empty.
+    Attributes:
+        runs: Number of runs, including finished ones.
+        planner: Name of the planner.
+        perception: Name of the perception.
+        agent: Name of the external agent; None for the built-in agent loop.
+        concurrency: Number of concurrent runs.
+        finished: Trials from the log that is resumed.
+        estimate: Estimate of duration and cost.
+        asks_planner_server: Whether the planner calls a model server. Otherwise planning costs nothing.
+        origin: A sentence about the log that is resumed, or about the reason for a new evaluation; may be empty.
     """
 
     runs: int
@@ -108,12 +122,12 @@ class EvaluationPlan:
 
     @property
     def pair(self) -> str:
-        """Planner (or external agent) and perception, as tables name them."""
+        """Names of the planner (or external agent) and the perception, as shown in tables."""
         return f"{self.agent or self.planner} + {self.perception}"
 
 
 class EvaluationProgress(Watcher):
-    """Receives the progress of an evaluation. Every method may be overridden; by default none does anything."""
+    """Receives the progress of an evaluation. Subclasses override the methods that they need; the defaults do nothing."""
 
     def note(self, text: str) -> None:
         """Receive a sentence for the user, such as that judgements are missing."""
@@ -122,12 +136,18 @@ class EvaluationProgress(Watcher):
         """Receive the plan with its estimate, once, before the first run."""
 
     def closed(self) -> None:
-        """The last run has ended, or the evaluation was interrupted. Called once for each call of ``planned``."""
+        """Receive the end of the evaluation, after the last run or an interruption. Called once for each call of ``planned``."""
 
 
 @dataclass(frozen=True, slots=True)
 class EvaluationResult:
-    """An evaluation as its log holds it. ``judge`` and ``judgements`` are empty without a judge."""
+    """An evaluation as stored in its log.
+
+    Attributes:
+        evaluation: The evaluation with its trials.
+        judge: Name of the judge; empty without a judge.
+        judgements: Tally of the judgements; None without a judge.
+    """
 
     evaluation: Evaluation
     judge: str = ""

@@ -1,4 +1,4 @@
-"""An evaluation in progress: its tasks, its models, its log, and the runs and judgements that are still missing."""
+"""An evaluation in progress: it runs the missing trials, requests the missing judgements and writes the log."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ if TYPE_CHECKING:
     from scope_ptz.bench.scoring.trials import Trial
     from scope_ptz.planner.base import Planner
 
-RUNS_AT_A_TIME_WITH_SERVERS = 8
+DEFAULT_CONCURRENCY_WITH_SERVERS = 8
+"""Default number of concurrent runs if a model server or an external agent is used."""
 PERCEPTION_CALLS_PER_STEP = 8
 """Maximum number of concurrent perception calls in one step of the agent loop."""
-MAX_BROKEN_IN_A_ROW = 12
+MAX_CONSECUTIVE_FAILURES = 12
 """An evaluation stops after this many consecutive runs that failed because of infrastructure."""
-
-
-COLLECTOR_THRESHOLDS = (20_000, 20, 50)
+GC_THRESHOLDS = (20_000, 20, 50)
+"""Arguments of ``gc.set_threshold`` during an evaluation."""
 
 
 class EvaluationSession:
-    """One call of ``evaluate``: its tasks, its models, and the connections that ``close`` closes."""
+    """The tasks, models and connections of one call of ``evaluate``. ``close`` closes the connections."""
 
     def __init__(self, options: EvaluationOptions, pair: ResolvedPair, progress: EvaluationProgress) -> None:
         from scope_ptz.bench.engine.entries import digest, select
@@ -63,8 +63,8 @@ class EvaluationSession:
         )
         _check_pictures(options, pair, self.planner)
         local = pair.planner.endpoint is None and pair.perception.spec is None and options.agent == OWN_AGENT
-        # Without servers, runs compete for the interpreter, so concurrent runs cost memory and save no time.
-        default = 1 if local else RUNS_AT_A_TIME_WITH_SERVERS
+        # Without servers, runs compete for the interpreter: concurrency would use more memory and save no time.
+        default = 1 if local else DEFAULT_CONCURRENCY_WITH_SERVERS
         self.concurrency = 1 if options.latency else options.concurrency or default
         details = self.planner.details if self.planner is not None else {}
         spec = pair.perception.spec
@@ -77,9 +77,9 @@ class EvaluationSession:
 
     async def close(self) -> None:
         """Close planner, perception and judge."""
-        for held in (self.planner, self.context.perception, self.judge):
-            if held is not None:
-                await held.close()
+        for resource in (self.planner, self.context.perception, self.judge):
+            if resource is not None:
+                await resource.close()
 
     async def stored_logs(self) -> list[StoredLog]:
         """Return the logs from which this evaluation can resume, the most complete first."""
@@ -88,14 +88,18 @@ class EvaluationSession:
         if self.options.resume is not None:
             log = stored_log(self.options.resume)
             if (log.header.eval.metadata or {}).get("identity") != self.identity:
-                raise InputError(f"{log.path} is of another evaluation: tasks, models or settings differ. Give its own options.")
+                raise InputError(
+                    f"{log.path} belongs to another evaluation: its tasks, models or settings differ. "
+                    "Use the options of that evaluation."
+                )
             return [log]
         return [] if self.options.fresh else await find_logs(self.options.out, self.identity)
 
     async def run(self, stored: Sequence[StoredLog]) -> Path:
-        """Run what is missing in the ``stored`` logs, and return the path of the complete log.
+        """Run the trials that are missing in the stored logs, and return the path of the complete log.
 
-        Raises ``ScopeError`` if too many consecutive runs failed because of infrastructure.
+        Raises:
+            ScopeError: Too many consecutive runs failed because of infrastructure.
         """
         from scope_ptz.bench.engine.failure_summary import failure_summary
         from scope_ptz.bench.engine.logs import read_evaluation
@@ -118,8 +122,8 @@ class EvaluationSession:
 
         self.progress.planned(plan)
         try:
-            # The engine catches cancellation. It runs in a separate task, so that the current task is not marked as cancelled.
-            with few_collections():
+            # The engine catches cancellation. It runs in a task of its own, so that the current task does not count as cancelled.
+            with reduced_garbage_collection():
                 async with group:
                     group.start_soon(work)
         finally:
@@ -127,18 +131,20 @@ class EvaluationSession:
         if breaker.tripped:
             why = "".join(f" {line[0].upper()}{line[1:]}" for line in failure_summary([*finished, *breaker.trials], setup.card))
             raise ScopeError(
-                f"The evaluation stopped because {MAX_BROKEN_IN_A_ROW} consecutive runs were broken by infrastructure.{why} "
-                "Check the servers; running the same command again resumes the evaluation."
+                f"The evaluation stopped because {MAX_CONSECUTIVE_FAILURES} consecutive runs failed because of infrastructure."
+                f"{why} Check the servers; running the same command again resumes the evaluation."
             )
-        (came,) = outcome
-        if isinstance(came, ScopeError):
-            raise came
-        return came
+        (result,) = outcome
+        if isinstance(result, ScopeError):
+            raise result
+        return result
 
     async def with_judgements(self, log: Path, *, retry_failed: bool) -> EvaluationResult:
         """Request the missing judgements of a log, and return the updated results.
 
-        ``retry_failed``: also retry the judgements for which the judge's server failed.
+        Args:
+            log: Log of the evaluation.
+            retry_failed: Whether to repeat the judgements for which the judge's server failed.
         """
         from scope_ptz.bench.engine.logs import read_evaluation
 
@@ -150,7 +156,7 @@ class EvaluationSession:
         )
 
     async def _opened_judge(self, settings: JudgeSettings) -> JudgeServer:
-        """Return the connection to the judge, opened on first use."""
+        """Return the connection to the judge. It is opened on first use."""
         if self.judge is None:
             self.judge = await open_requested_judge(settings)
         return self.judge
@@ -209,8 +215,8 @@ class EvaluationSession:
                 origin = f"The source of {agent} differs from that in {other}: this is a new evaluation."
         earlier = earlier_evaluations(options.out, agent or pair.planner.name, pair.perception.name)
         done = {trial.task.id for trial in finished} if options.epochs == 1 else set()
-        left = [entry for entry in self.entries if entry.facts.id not in done]
-        expected = estimate(left, options.epochs, self.concurrency, earlier, options.price, prompt_chars(self.planner))
+        remaining = [entry for entry in self.entries if entry.facts.id not in done]
+        expected = estimate(remaining, options.epochs, self.concurrency, earlier, options.price, prompt_chars(self.planner))
         return EvaluationPlan(
             runs, pair.planner.name, pair.perception.name, agent, self.concurrency, finished, expected,
             pair.planner.endpoint is not None, origin,
@@ -218,11 +224,11 @@ class EvaluationSession:
 
 
 class _CircuitBreaker(Watcher):
-    """Forwards runs to a watcher, and stops the evaluation if too many runs in a row fail because of infrastructure."""
+    """Forwards runs to a watcher, and stops the evaluation after too many consecutive failures because of infrastructure."""
 
     def __init__(self, watcher: Watcher, stop: Callable[[], None]) -> None:
         self._watcher, self._stop = watcher, stop
-        self._broken_in_a_row = 0
+        self._consecutive_failures = 0
         self.trials: list[Trial] = []
         self.tripped = False
 
@@ -232,22 +238,22 @@ class _CircuitBreaker(Watcher):
     def ended(self, sample: str, trial: Trial) -> None:
         self.trials.append(trial)
         self._watcher.ended(sample, trial)
-        self._broken_in_a_row = self._broken_in_a_row + 1 if trial.headline == "infrastructure" else 0
-        if self._broken_in_a_row >= MAX_BROKEN_IN_A_ROW and not self.tripped:
+        self._consecutive_failures = self._consecutive_failures + 1 if trial.headline == "infrastructure" else 0
+        if self._consecutive_failures >= MAX_CONSECUTIVE_FAILURES and not self.tripped:
             self.tripped = True
             self._stop()
 
 
 @contextmanager
-def few_collections() -> Iterator[None]:
-    """Make the garbage collector run less often and skip the objects that already exist.
+def reduced_garbage_collection() -> Iterator[None]:
+    """Run the garbage collector less often inside the block, and exclude the objects that already exist.
 
-    Scenes and tasks consist of many small objects. Scanning them repeatedly takes a tenth of an evaluation's time.
+    Scenes and tasks consist of many small objects. Scanning them repeatedly would take a tenth of an evaluation's time.
     """
     thresholds = gc.get_threshold()
     gc.collect()
     gc.freeze()
-    gc.set_threshold(*COLLECTOR_THRESHOLDS)
+    gc.set_threshold(*GC_THRESHOLDS)
     try:
         yield
     finally:
@@ -256,7 +262,10 @@ def few_collections() -> Iterator[None]:
 
 
 def prompt_chars(planner: Planner | None) -> int | None:
-    """Return the length of a planner's prompt and tools; None without a prompt, or if pictures dominate it."""
+    """Return the number of characters in a planner's prompt and tool schemas.
+
+    Return None for a planner without a prompt, or for one that receives pictures, which make up most of its tokens.
+    """
     from scope_ptz.planner.chat.prompts import Prompt
     from scope_ptz.tools.registry import schemas
 
@@ -267,17 +276,17 @@ def prompt_chars(planner: Planner | None) -> int | None:
 
 
 def _check_pictures(options: EvaluationOptions, pair: ResolvedPair, planner: Planner | None) -> None:
-    """Raise ``InputError`` when pictures are off and a model needs them."""
+    """Raise ``InputError`` if pictures are disabled but a model needs them."""
     if options.pictures:
         return
     if pair.perception.spec is not None:
-        raise InputError(f"The perception '{pair.perception.name}' looks at pictures: leave --no-pictures out.")
+        raise InputError(f"The perception '{pair.perception.name}' needs pictures: remove --no-pictures.")
     if planner is not None and planner.sees:
-        raise InputError(f"The planner '{planner.name}' looks at pictures: leave --no-pictures out.")
+        raise InputError(f"The planner '{planner.name}' needs pictures: remove --no-pictures.")
 
 
 def _is_built_in(pair: ResolvedPair) -> bool:
-    """Return whether both models are built in. Such runs are cheap, so a resumed evaluation may repeat the last few."""
+    """Return whether planner and perception are built in. Their runs are cheap, so a resumed evaluation may repeat some of them."""
     planner, perception = pair.planner, pair.perception
     return (
         planner.name == GRAMMAR
@@ -288,7 +297,7 @@ def _is_built_in(pair: ResolvedPair) -> bool:
 
 
 def _served_models(pair: ResolvedPair) -> list[str]:
-    """Return the names of the served models, which identify an evaluation. The address may change when it is resumed."""
+    """Return the names of the served models, which identify an evaluation. Addresses may change before it is resumed."""
     spec = pair.perception.spec
     perception = spec.endpoint.model if spec is not None and spec.endpoint is not None else ""
     return [pair.planner.endpoint.model if pair.planner.endpoint else "", perception]

@@ -1,6 +1,8 @@
 """The Inspect AI plug-in of this package: the task ``scope_ptz/bench``, its scorers, and the models ``scope_ptz/...``.
 
-inspect eval scope_ptz/bench --model-role planner=scope_ptz/grammar --model-role eyes=scope_ptz/ground-truth -T limit=5
+Example::
+
+    inspect eval scope_ptz/bench --model-role planner=scope_ptz/grammar --model-role eyes=scope_ptz/ground-truth -T limit=5
 """
 
 from __future__ import annotations
@@ -19,14 +21,14 @@ from scope_ptz.factory.evaluation import eval_context
 __all__ = ["bench", "checks", "judge", "scope_agent", "scope_ptz"]
 
 bench = benchmark_task(lambda seed: eval_context(seed=seed))
-"""The benchmark task, with a context that is built from the settings."""
+"""The benchmark task. Its context is built from the settings."""
 
 
 @solver
 def scope_agent(
     agent: str = OWN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
 ) -> Solver:
-    """The agent as a solver, under the name that logs record. The parameters are those of ``bench``."""
+    """The agent as a solver, under the name that logs store. The parameters are those of ``bench``."""
     context = eval_context(seed=seed)
     return agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed)
 

@@ -1,4 +1,4 @@
-"""The judge's server, opened from options and environment."""
+"""Connect to the judge's server that options and environment variables name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from scope_ptz.endpoints.endpoint import Endpoint
 
 TIMEOUT_S = 300.0
-"""Default time for one judgement, retries included."""
+"""Default time for one judgement, including retries."""
 
 _LOG = logging.getLogger(__name__)
 
@@ -25,8 +25,8 @@ class UnnamedJudgeError(ScopeError):
 
     def __init__(self, url: str, why: str) -> None:
         super().__init__(
-            f"The judge's server at {url} cannot be asked for its model's name, so nothing was judged: {why} "
-            "A server that has no list of models needs --judge-model (or SCOPE_JUDGE_MODEL)."
+            f"The judge's server at {url} did not report the name of its model, so nothing was judged: {why} "
+            "Name the model with --judge-model or SCOPE_JUDGE_MODEL."
         )
 
 
@@ -36,18 +36,18 @@ async def open_judge(
     """Connect to a judge's server. The caller closes the connection.
 
     Args:
-        url: Address of the server; None takes ``SCOPE_JUDGE_URL``.
-        model: The judge's served name; None takes ``SCOPE_JUDGE_MODEL``, or asks the server.
-        key_file: File with the server's key; None takes ``SCOPE_JUDGE_KEY``.
-        timeout_s: Seconds for one judgement, retries included.
+        url: Address of the server; None uses ``SCOPE_JUDGE_URL``.
+        model: The judge's served name; None uses ``SCOPE_JUDGE_MODEL``, or else the server's list of models.
+        key_file: File with the server's key; None uses the key in ``SCOPE_JUDGE_KEY``.
+        timeout_s: Seconds for one judgement, including retries.
         options: ``NAME=VALUE`` options of the judge.
 
     Returns:
         The connection. ``client.endpoint.model`` is the judge's name.
 
     Raises:
-        InputError: No server is named, an option is wrong, or the server serves several models and none is the usual judge.
-        UnnamedJudgeError: No name is given, and the server cannot be asked for one.
+        InputError: No server is named, an option is invalid, or the server serves several models without the default judge.
+        UnnamedJudgeError: No model is named, and the server does not report one.
     """
     from pydantic import ValidationError
 
@@ -58,7 +58,7 @@ async def open_judge(
     settings = load_settings()
     address = url or settings.judge_url
     if not address:
-        raise ConfigError("No judge's server is named. Give its address with --judge-url or SCOPE_JUDGE_URL.")
+        raise ConfigError("The judge needs a server. Give its address with --judge-url or SCOPE_JUDGE_URL.")
     key = key_from_file(key_file) if key_file else settings.judge_key
     try:
         judge_options = JudgeModelOptions.model_validate(parse_options(options or (), "--judge-option"))
@@ -80,16 +80,18 @@ async def _with_judge_name(endpoint: Endpoint, name: str) -> Endpoint:
         return endpoint.model_copy(update={"model": name})
     try:
         endpoint, served = await find_api(endpoint)
-    except ServerFailure as failure:  # A guessed name would mix these judgements with those of the real judge for good.
+    except ServerFailure as failure:  # A guessed name would mix the judgements of two judges permanently.
         raise UnnamedJudgeError(endpoint.url, str(failure)) from None
     if not served:
         raise UnnamedJudgeError(endpoint.url, "its list of models is empty.")
-    usual = [name for name in served if DEFAULT_JUDGE in name.lower()]
-    if not usual and len(served) > 1:
+    defaults = [name for name in served if DEFAULT_JUDGE in name.lower()]
+    if not defaults and len(served) > 1:
         names = ", ".join(served[:20])
         raise InputError(
-            f"The server at {endpoint.url} serves several models and no {DEFAULT_JUDGE}. Name one with --judge-model: {names}."
+            f"The server at {endpoint.url} serves several models, but not {DEFAULT_JUDGE}. Name one with --judge-model: {names}."
         )
-    if not usual:
-        _LOG.warning("note: the server at %s serves '%s'; it judges in place of %s.", endpoint.url, served[0], DEFAULT_JUDGE)
-    return endpoint.model_copy(update={"model": (usual or served)[0]})
+    if not defaults:
+        _LOG.warning(
+            "note: the server at %s serves '%s', which is used as the judge instead of %s.", endpoint.url, served[0], DEFAULT_JUDGE
+        )
+    return endpoint.model_copy(update={"model": (defaults or served)[0]})

@@ -1,4 +1,4 @@
-"""Names, addresses and keys from the options, the registry and the environment to one planner and one perception."""
+"""Resolve options, the model registry and environment variables to one planner and one perception."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
 CHAT_BACKEND = "openai_vision"
 
-NEED_SERVER = ("moondream", CHAT_BACKEND)
+BACKENDS_WITH_SERVER = ("moondream", CHAT_BACKEND)
 """Backends that always need a server."""
 
-NO_SERVER = ("ocr", "router", "transformers_local", "zero_shot")
-"""Backends that never use a server. Plug-ins receive an endpoint when an address is given."""
+BACKENDS_WITHOUT_SERVER = ("ocr", "router", "transformers_local", "zero_shot")
+"""Backends that never use a server. Plug-ins are in neither list: they receive an endpoint if the user gives an address."""
 
 
 class ModelResolver:
-    """Resolves one set of options.
+    """Resolves the user's model options to a planner and perception.
 
     Args:
-        options: The options of the user.
+        options: The options that the user gave.
         settings: Defaults from the environment.
     """
 
@@ -48,7 +48,7 @@ class ModelResolver:
         """Return the planner and the perception.
 
         Raises:
-            InputError: A name, an address or a combination of options is wrong.
+            InputError: A name, an address or a combination of options is invalid.
         """
         options = self.options
         planner, perception = options.planner, options.perception
@@ -66,7 +66,9 @@ class ModelResolver:
         options = self.options
         if name == GRAMMAR:
             if options.planner_url or options.planner_model or options.planner_options or options.planner_key_file:
-                raise InputError("The grammar planner has no server and no options. Leave --planner-... out, or name a model.")
+                raise InputError(
+                    "The grammar planner has no server and no options. Remove the --planner-... options, or name a model."
+                )
             return ResolvedPlanner(GRAMMAR)
         if self._is_plugin_planner(name):
             return self._plugin_planner(name)
@@ -80,7 +82,7 @@ class ModelResolver:
         return ResolvedPlanner(model.name if model else endpoint.model, endpoint, self._chat_options(model, sees=sees), model)
 
     def _is_plugin_planner(self, name: str) -> bool:
-        """Return whether the name is a plug-in's. Names of the registry and of the project take precedence."""
+        """Return whether the name is that of a plug-in. Built-in and registered names take precedence."""
         return name != CHAT and name not in self.registry.named("planner") and find(PLANNERS, name) is not None
 
     def _plugin_planner(self, name: str) -> ResolvedPlanner:
@@ -101,7 +103,7 @@ class ModelResolver:
 
         given: dict[str, Any] = {}
         if model is not None:
-            # Long reasoning makes a person wait for the camera, so it is off unless --planner-option thinking=on asks for it.
+            # Thinking delays every move of the camera, so it is off unless --planner-option thinking=on is given.
             given = {"family": model.repo, "sees": sees and model.sees}
             given |= {"thinking": "off"} if model.thinking in ("default", "always") else {}
         given |= parse_options(self.options.planner_options, "--planner-option")
@@ -112,21 +114,21 @@ class ModelResolver:
             where = ".".join(str(part) for part in first["loc"])
             raise ConfigError(f"--planner-option {where}: {first['msg']}. Known: {', '.join(ChatOptions.model_fields)}.") from None
 
-    async def _perception(self, name: str, same: ResolvedPlanner | None) -> ResolvedPerception:
+    async def _perception(self, name: str, shared: ResolvedPlanner | None) -> ResolvedPerception:
         options = self.options
         if name in BUILT_IN_PERCEPTION:
             if options.perception_url or options.perception_model or options.perception_options or options.perception_key_file:
                 raise InputError(
-                    f"The perception '{name}' has no server and no options. Leave --perception-... out, or name a model."
+                    f"The perception '{name}' has no server and no options. Remove the --perception-... options, or name a model."
                 )
             return ResolvedPerception(name)
-        if same is not None and same.endpoint is not None and not (options.perception_url or options.perception_model):
-            return self._spec(name, same.model, same.endpoint)
+        if shared is not None and shared.endpoint is not None and not (options.perception_url or options.perception_model):
+            return self._spec(name, shared.model, shared.endpoint)
         model = self._registered_perception(name)
         backend = self._backend(name, model)
-        from_environment = "" if backend in NO_SERVER else self.settings.perception_url
+        from_environment = "" if backend in BACKENDS_WITHOUT_SERVER else self.settings.perception_url
         url = options.perception_url or (model.url if model else "") or from_environment
-        if not url and backend not in NEED_SERVER:
+        if not url and backend not in BACKENDS_WITH_SERVER:
             return self._spec(name, model, None)
         key = self._key(options.perception_key_file, model, url, self.settings.perception_key)
         endpoint = self._endpoint(url, key, "perception", name, model)
@@ -144,8 +146,8 @@ class ModelResolver:
         backend = self._backend(name, model)
         coordinates = options.pop("coordinates", None) or (model.coordinates if model else "generic")
         if backend == CHAT_BACKEND and endpoint is not None and "extra" not in options:
-            quiet = switch_for(model.repo if model else endpoint.model, "off", likely_server(endpoint.url)).fields
-            options |= {"extra": dict(quiet)} if quiet else {}
+            no_thinking = switch_for(model.repo if model else endpoint.model, "off", likely_server(endpoint.url)).fields
+            options |= {"extra": dict(no_thinking)} if no_thinking else {}
         served = self.options.perception_model or (endpoint.model if endpoint else "") or (model.repo if model else "")
         label = model.name if model else (served or name)
         spec = BackendSpec(name=label, backend=backend, model=served, endpoint=endpoint, coordinates=coordinates, options=options)
@@ -156,7 +158,7 @@ class ModelResolver:
         return normalised(str(requested or (model.backend if model else name)))
 
     def _routed(self, perception: ResolvedPerception) -> ResolvedPerception:
-        """Return a router over the perception and the requested reader and detector, if any are requested."""
+        """Combine the perception with the requested reader and detector in a router. Without them, return it unchanged."""
         from scope_ptz.perception.backends.spec import BackendSpec
 
         requested = {"reader": self.options.reader, "detector": self.options.detector}
@@ -164,7 +166,9 @@ class ModelResolver:
         if not parts:
             return perception
         if perception.spec is None:
-            raise InputError(f"--reader and --detector go with a perception model; '{perception.name}' needs neither.")
+            raise InputError(
+                f"--reader and --detector need a perception model, and '{perception.name}' is none. Remove them, or name a model."
+            )
         label = "+".join((perception.name, *(part.name for part in parts.values())))
         options = {"answerer": perception.spec, **parts}
         return ResolvedPerception(label, BackendSpec(name=label, backend="router", options=options), perception.model)
@@ -183,7 +187,7 @@ class ModelResolver:
         )
 
     def _registered_planner(self, name: str) -> Model | None:
-        """Return the registry's entry, or None for a name that only the server at the given address knows."""
+        """Return the registry's entry, or None if the name is not registered and the user gave the address of its server."""
         try:
             return self.registry.model(name, "planner")
         except UnknownNameError as error:
@@ -210,14 +214,14 @@ class ModelResolver:
         from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 
         if not url:
-            how = f" `scope models serve-command {model.name}` says how to start one." if model else ""
+            how = f" `scope models serve-command {model.name}` prints the command that starts one." if model else ""
             raise ConfigError(f"'{name}' runs on a model server. Give its address with --{role}-url.{how}")
         total = self.options.timeout_s
         return Endpoint(url=url, key=key, timeouts=Timeouts() if total is None else Timeouts.within(total))
 
     @staticmethod
     def _key(file: Path | None, model: Model | None, url: str, from_environment: SecretStr | None) -> SecretStr | None:
-        """Return the key for an address. A model's key file is only used for the model's own address."""
+        """Return the API key for an address. The key file of a registered model is only used for that model's own address."""
         from scope_ptz.endpoints.endpoint import key_from_file
 
         registered = model.key_file if model is not None and model.url == url else None
@@ -230,11 +234,11 @@ def read_pair(registry: Registry, text: str) -> tuple[str, str]:
 
     Args:
         registry: The known models and pairs.
-        text: The name of a pair, ``PLANNER+PERCEPTION``, or one model that does both. The parts may be built in or plug-ins.
+        text: The name of a pair, ``PLANNER+PERCEPTION``, or one model that does both. Both parts may be built in or plug-ins.
 
     Raises:
-        UnknownNameError: A name is not known.
-        ConfigError: A model cannot play its role.
+        UnknownNameError: A name is unknown.
+        ConfigError: A model does not support its role.
     """
     planner, plus, perception = text.partition("+")
     if text in registry.pairs or not plus:
@@ -244,7 +248,7 @@ def read_pair(registry: Registry, text: str) -> tuple[str, str]:
 
 
 def _role_name(registry: Registry, name: str, role: Role) -> str:
-    """Return the name of a built-in, a registered model or a plug-in that can play a role."""
+    """Return the name of the built-in, registered model or plug-in for a role."""
     built_in, group = ((GRAMMAR,), PLANNERS) if role == "planner" else (BUILT_IN_PERCEPTION, PERCEPTION)
     if name in built_in:
         return name

@@ -1,4 +1,4 @@
-"""Options that name a planner and perception, and what they resolve to."""
+"""Options that name a planner and perception, and the resolved planner and perception."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ModelOptions:
-    """Options about planner, perception and their servers, as the user gave them.
+    """Options for planner, perception and their servers, as the user gave them.
 
-    ``own_planner`` and ``own_perception`` are objects of a Python user's own, which take the place of names.
+    ``own_planner`` and ``own_perception`` are objects that a caller from Python passes instead of names.
     """
 
     planner: str | None = None
@@ -43,15 +43,15 @@ class ModelOptions:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPlanner:
-    """A planner that can be made: the grammar, a chat model, or a plug-in.
+    """A resolved planner, from which ``make_planner`` creates one: the grammar, a chat model or a plug-in.
 
     Attributes:
         name: The name in traces and reports.
-        endpoint: The chat model's server, None for other planners.
-        options: The chat model's options, None for other planners.
-        model: The registry's entry, None for a model that it does not list.
-        plugin: What a plug-in's factory receives, None for other planners.
-        instance: A planner that exists already, such as one of a Python user's own. The other fields are empty then.
+        endpoint: The chat model's server; None for other planners.
+        options: The chat model's options; None for other planners.
+        model: The registry's entry; None for a model that is not registered.
+        plugin: The spec that the factory of a plug-in receives; None for other planners.
+        instance: An existing planner that the caller passed. All other fields except the name are then None.
     """
 
     name: str
@@ -64,13 +64,13 @@ class ResolvedPlanner:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPerception:
-    """Perception that can be made: built in, or a backend with its model.
+    """Resolved perception, from which ``make_perception`` creates one: built in, or a backend with its model.
 
     Attributes:
         name: The name in traces and reports.
-        spec: The backend's spec, None for built-in perception.
-        model: The registry's entry, None for a model that it does not list.
-        instance: Perception that exists already, such as a Python user's own. The other fields are empty then.
+        spec: The backend's spec; None for built-in perception.
+        model: The registry's entry; None for a model that is not registered.
+        instance: An existing perception that the caller passed. All other fields except the name are then None.
     """
 
     name: str
@@ -81,7 +81,7 @@ class ResolvedPerception:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPair:
-    """A planner and perception that can be made."""
+    """A resolved planner and perception."""
 
     planner: ResolvedPlanner
     perception: ResolvedPerception

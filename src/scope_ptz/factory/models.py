@@ -1,4 +1,4 @@
-"""Planners and perception from options: resolve the names first, then make the objects."""
+"""Resolve model options to names and servers, and create planners and perception from them."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ _NOTES = {GROUND_TRUTH: GROUND_TRUTH_NOTE, NOISY: NOISY_NOTE}
 async def resolve_models(options: ModelOptions) -> ResolvedPair:
     """Return the planner and the perception that the options name.
 
-    Servers are asked for their lists of models where the options leave a model's served name open.
+    If the options do not give a model's served name, it is looked up in the server's list of models.
 
     Raises:
-        InputError: A name, an address or a combination of options is wrong.
+        InputError: A name, an address or a combination of options is invalid.
     """
     if options.own_planner is not None or options.own_perception is not None:
         pair = await resolve_models(replace(options, own_planner=None, own_perception=None))
@@ -64,13 +64,13 @@ async def resolve_models(options: ModelOptions) -> ResolvedPair:
 
 
 def _only_built_in(options: ModelOptions) -> bool:
-    """Return whether the options name nothing but the grammar and built-in perception, so that no registry is needed."""
+    """Return whether the options name only the grammar and built-in perception, so that the registry need not be loaded."""
     names_only = ModelOptions(planner=options.planner, perception=options.perception)
     return options == names_only and options.planner in (None, GRAMMAR) and options.perception in (None, *BUILT_IN_PERCEPTION)
 
 
 def make_planner(resolved: ResolvedPlanner) -> Planner:
-    """Make a planner.
+    """Create a planner.
 
     Raises:
         ConfigError: A plug-in cannot be loaded or does not return a planner.
@@ -89,34 +89,34 @@ def make_planner(resolved: ResolvedPlanner) -> Planner:
 
 
 def make_plugin_planner(spec: PlannerSpec) -> Planner:
-    """Make the planner of an installed package.
+    """Create the planner of a plug-in.
 
     Raises:
-        ConfigError: The package cannot be loaded, its factory fails, or it returns something else than a planner.
+        ConfigError: The plug-in cannot be loaded, its factory fails, or it does not return a planner.
     """
     from scope_ptz.entry_points import PLANNERS, call_factory, find
     from scope_ptz.planner.base import Planner
 
     entry = find(PLANNERS, spec.name)
     if entry is None:
-        raise ConfigError(f"No installed package offers the planner '{spec.name}'.")
+        raise ConfigError(f"No installed package provides the planner '{spec.name}'. Install the plug-in, or name another planner.")
     return call_factory(entry, Planner, spec)  # type: ignore[type-abstract]
 
 
 def make_perception(
     resolved: ResolvedPerception, scenes: Callable[[str], Scene] | None, seed: int, read_truth: TruthReader | None = None
 ) -> Perception:
-    """Make perception.
+    """Create perception.
 
     Args:
-        resolved: What to make.
+        resolved: The resolved perception.
         scenes: Opens the scenes of simulated frames by name; None for a camera without ground truth.
-        seed: Seed for the mistakes of ``noisy``.
-        read_truth: Reads the ground truth of a view; the default reads it again each time.
+        seed: Seed for the random errors of ``noisy``.
+        read_truth: Reads the ground truth of a view; the default does not cache it.
 
     Raises:
         InputError: Built-in perception is requested for a camera without ground truth.
-        ConfigError: A backend's options are wrong, or a package is missing or broken.
+        ConfigError: A backend's options are invalid, or a package is missing or cannot be loaded.
     """
     if resolved.instance is not None:
         return resolved.instance
@@ -127,7 +127,7 @@ def make_perception(
     if scenes is None:
         raise InputError(
             f"The perception '{resolved.name}' reads the ground truth of a simulated scene, and this camera has none. Name a "
-            "model that looks at pictures with --perception; `scope models --role perception` lists them."
+            "vision model with --perception; `scope models --role perception` lists them."
         )
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
@@ -140,5 +140,5 @@ def make_perception(
 
 
 def perception_note(resolved: ResolvedPerception) -> str:
-    """Return the sentence that says that perception is not a model, empty for models."""
+    """Return a sentence for the user that describes built-in perception; empty for models."""
     return _NOTES.get(resolved.name, "") if resolved.spec is None and resolved.instance is None else ""

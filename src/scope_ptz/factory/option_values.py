@@ -1,4 +1,4 @@
-"""``NAME=VALUE`` options."""
+"""Parser of ``NAME=VALUE`` options."""
 
 from __future__ import annotations
 
@@ -10,11 +10,14 @@ from scope_ptz.errors import InputError
 
 
 def parse_options(pairs: Iterable[str], option: str) -> dict[str, Any]:
-    """Parse ``NAME=VALUE`` pairs. Values are JSON where they parse as JSON, and text otherwise.
+    """Parse ``NAME=VALUE`` options. A value that is valid JSON is parsed as JSON; any other value is text.
 
     Args:
-        pairs: The pairs as the user gave them.
-        option: The command-line option that error messages name.
+        pairs: The options as the user gave them.
+        option: The command-line option, for error messages.
+
+    Returns:
+        The values by name.
 
     Raises:
         InputError: A pair has no name or no equals sign.
@@ -23,7 +26,7 @@ def parse_options(pairs: Iterable[str], option: str) -> dict[str, Any]:
     for pair in pairs:
         name, equals, value = pair.partition("=")
         if not equals or not name.strip():
-            raise InputError(f"{option} wants NAME=VALUE, got '{pair[:80]}'.")
+            raise InputError(f"{option} must have the form NAME=VALUE, got '{pair[:80]}'.")
         try:
             options[name.strip()] = json.loads(value)
         except ValueError:

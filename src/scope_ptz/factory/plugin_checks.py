@@ -1,4 +1,4 @@
-"""Quick checks of plug-ins: whether one loads, and whether its product keeps the contract on one small request."""
+"""Quick checks of plug-ins: whether one can be loaded, and whether it fulfils its contract on one small request."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from scope_ptz.factory.plugins import Kind, Plugin
 from scope_ptz.geometry import Limits, Perspective, Pose
 
 CHECK_TIMEOUT_S = 20.0
-"""Time for the check of one plug-in."""
+"""Maximum time for the check of one plug-in."""
 
 Verdict = Literal["ok", "partly", "failed"]
 
 
 @dataclass(frozen=True, slots=True)
 class PluginCheck:
-    """The result of a check.
+    """The result of checking a plug-in.
 
     Attributes:
-        plugin: What was checked.
-        verdict: ``partly`` when the plug-in loads and could not be tried without options or an address.
-        detail: One line for the user.
+        plugin: The plug-in.
+        verdict: "partly" means that the plug-in was loaded but could not be tested, for example without an address.
+        detail: One line of explanation for the user.
     """
 
     plugin: Plugin
@@ -37,9 +37,9 @@ class PluginCheck:
 
 
 async def check_plugin(plugin: Plugin) -> PluginCheck:
-    """Load a plug-in and try it. Every failure is part of the result; nothing is raised.
+    """Load a plug-in and test it with one request. Failures are reported in the result, not raised.
 
-    A camera is opened only if its factory has an attribute ``example``, an address that can be opened without hardware.
+    A camera is only opened if its factory has an attribute ``example``: an address that can be opened without hardware.
     """
     if plugin.problem:
         return PluginCheck(plugin, "failed", plugin.problem)
@@ -51,12 +51,12 @@ async def check_plugin(plugin: Plugin) -> PluginCheck:
         with anyio.fail_after(CHECK_TIMEOUT_S):
             return PluginCheck(plugin, *await _CHECKS[plugin.kind](plugin))
     except ConfigError as error:
-        return PluginCheck(plugin, "partly", f"it loads, and was not tried: {error}")
+        return PluginCheck(plugin, "partly", f"it was loaded but not tested: {error}")
     except TimeoutError:
         return PluginCheck(plugin, "failed", f"it did not answer within {CHECK_TIMEOUT_S:g} s")
     except _BrokenContractError as error:
         return PluginCheck(plugin, "failed", str(error))
-    except Exception as error:  # code of another package may fail in any way
+    except Exception as error:  # the code of another package can raise anything
         return PluginCheck(plugin, "failed", one_line(error))
 
 
@@ -65,20 +65,23 @@ async def _check_camera(plugin: Plugin) -> tuple[Verdict, str]:
 
     example = getattr(plugin.entry.load(), "example", None)
     if example is None:
-        return "partly", "it loads, and was not opened: its factory names no example address"
+        return "partly", "it was loaded but not opened: its factory has no attribute `example` with an address"
     async with await open_camera(f"{plugin.name}:{example}") as opened:
         camera, info = opened.camera, opened.camera.info
         _expect(bool(info.name), "the camera has no name")
         limits = info.limits
         _expect(
-            limits.min_pan_deg < limits.max_pan_deg and limits.min_tilt_deg < limits.max_tilt_deg, "its limits are not in order"
+            limits.min_pan_deg < limits.max_pan_deg and limits.min_tilt_deg < limits.max_tilt_deg,
+            "its pan or tilt limits are in the wrong order",
         )
-        _expect(0 < limits.min_zoom <= limits.max_zoom, "its zoom limits are not in order")
+        _expect(0 < limits.min_zoom <= limits.max_zoom, "its zoom limits are in the wrong order or not positive")
         pose = await camera.pose()
-        _expect(not limits.clamp(pose)[1], f"it starts at {pose}, beyond its own limits")
+        _expect(not limits.clamp(pose)[1], f"its first pose {pose} is outside its own limits")
         frame = await camera.frame()
-        _expect((frame.width, frame.height) == (info.frame_width, info.frame_height), "a frame's size differs from its info")
-        _expect(isinstance(await camera.presets(), list), "presets() returns no list")
+        _expect(
+            (frame.width, frame.height) == (info.frame_width, info.frame_height), "the frame size differs from the size in its info"
+        )
+        _expect(isinstance(await camera.presets(), list), "presets() does not return a list")
         return "ok", f"{info.name}, {frame.width} x {frame.height}"
 
 
@@ -94,8 +97,8 @@ async def _check_planner(plugin: Plugin) -> tuple[Verdict, str]:
         decision = await planner.step(state)
     finally:
         await planner.close()
-    _expect(isinstance(decision, CallTools | Finish), f"step() returned a {type(decision).__name__}, which is no decision")
-    return "ok", f"a first step is '{decision.kind}'"
+    _expect(isinstance(decision, CallTools | Finish), f"step() returned a {type(decision).__name__}, which is not a decision")
+    return "ok", f"its first decision is '{decision.kind}'"
 
 
 async def _check_perception(plugin: Plugin) -> tuple[Verdict, str]:
@@ -113,17 +116,17 @@ async def _check_perception(plugin: Plugin) -> tuple[Verdict, str]:
     }
     try:
         unknown = sorted(set(perception.skills) - ALL_SKILLS)
-        _expect(not unknown, f"it names skills that do not exist: {', '.join(unknown)}")
-        _expect(bool(perception.skills), "it has no skill")
+        _expect(not unknown, f"it declares unknown skills: {', '.join(unknown)}")
+        _expect(bool(perception.skills), "it declares no skills")
         skill = next(name for name in tries if name in perception.skills)
         request, kind = tries[skill]
         try:
             result = await request()
         except PerceptionError as error:
-            return "partly", f"it loads; {skill} on a grey frame fails: {one_line(error)}"
+            return "partly", f"it was loaded, but {skill}() failed on a grey frame: {one_line(error)}"
     finally:
         await perception.close()
-    _expect(isinstance(result, kind), f"{skill}() returned a {type(result).__name__} and not a {kind.__name__}")
+    _expect(isinstance(result, kind), f"{skill}() returned a {type(result).__name__} instead of a {kind.__name__}")
     return "ok", f"skills: {', '.join(name for name in tries if name in perception.skills)}"
 
 
@@ -145,4 +148,4 @@ def _expect(condition: bool, problem: str) -> None:
 
 
 class _BrokenContractError(Exception):
-    """A product does not keep its contract."""
+    """A plug-in violates its contract."""

@@ -1,6 +1,6 @@
-"""Plug-ins: cameras, planners and perception that other installed packages add.
+"""Plug-ins: cameras, planners and perception that other installed packages provide.
 
-A package names a factory function in its entry points, in one of three groups:
+A package declares a factory function as an entry point in one of three groups:
 
 ========================  ==========================  ==================================================
 group                     name                        factory
@@ -10,8 +10,8 @@ group                     name                        factory
 ``scope_ptz.perception``  value of ``--perception``   ``BackendSpec -> Perception``
 ========================  ==========================  ==================================================
 
-Names of the project and of its model registry take precedence over plug-ins of the same name. A plug-in is imported when it is
-used or checked, so a broken one stops no other command.
+Built-in names and names in the model registry take precedence over plug-ins of the same name. A plug-in is only imported when
+it is used or checked, so a broken plug-in does not affect other commands.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from scope_ptz.entry_points import CAMERAS, PERCEPTION, PLANNERS, InstalledEntry, installed, normalised, repeated
+from scope_ptz.entry_points import CAMERAS, PERCEPTION, PLANNERS, InstalledEntry, duplicated_names, installed, normalised
 
 Kind = Literal["camera", "planner", "perception"]
 GROUPS: dict[Kind, str] = {"camera": CAMERAS, "planner": PLANNERS, "perception": PERCEPTION}
@@ -27,14 +27,14 @@ GROUPS: dict[Kind, str] = {"camera": CAMERAS, "planner": PLANNERS, "perception":
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """An installed plug-in, not imported yet.
+    """An installed plug-in, which may not be imported yet.
 
     Attributes:
-        kind: What it adds.
-        name: The name under which it is used.
+        kind: Whether it provides a camera, a planner or perception.
+        name: The name that selects it.
         package: The distribution and its version.
         target: The factory as ``module:attribute``.
-        problem: Why the name does not lead to this plug-in, empty when it does.
+        problem: The reason why its name does not select it; empty if it does.
         entry: The entry point.
     """
 
@@ -47,32 +47,33 @@ class Plugin:
 
 
 def list_plugins() -> tuple[Plugin, ...]:
-    """Return all installed plug-ins by kind and name. Nothing is imported."""
+    """Return all installed plug-ins, sorted by kind and name, without importing them."""
     return tuple(plugin for kind in GROUPS for plugin in plugins_of(kind))
 
 
 def plugins_of(kind: Kind) -> tuple[Plugin, ...]:
-    """Return the installed plug-ins of one kind by name. Nothing is imported."""
+    """Return the installed plug-ins of one kind, sorted by name, without importing them."""
     group = GROUPS[kind]
     entries = installed(group)
     if not entries:
         return ()
-    own, twice = _own_names(kind), repeated(group)
+    reserved, duplicates = _reserved_names(kind), duplicated_names(group)
     return tuple(
-        Plugin(kind, entry.name, entry.package, entry.target, _problem(entry, kind, own, twice), entry) for entry in entries
+        Plugin(kind, entry.name, entry.package, entry.target, _problem(entry, kind, reserved, duplicates), entry)
+        for entry in entries
     )
 
 
-def _problem(entry: InstalledEntry, kind: Kind, own: frozenset[str], twice: frozenset[str]) -> str:
-    if entry.name in own:
+def _problem(entry: InstalledEntry, kind: Kind, reserved: frozenset[str], duplicates: frozenset[str]) -> str:
+    if entry.name in reserved:
         return f"its name is that of a built-in {kind}, which is used instead. Rename the entry point"
-    if entry.name in twice:
-        return "another package offers the same name. Uninstall one of them"
+    if entry.name in duplicates:
+        return "another package provides the same name. Uninstall one of them"
     return ""
 
 
-def _own_names(kind: Kind) -> frozenset[str]:
-    """Return the names of the project and of the model registry, which plug-ins cannot take."""
+def _reserved_names(kind: Kind) -> frozenset[str]:
+    """Return the built-in names and those of the model registry, which plug-ins cannot use."""
     if kind == "camera":
         from scope_ptz.factory.cameras import BUILT_IN_SCHEMES
 

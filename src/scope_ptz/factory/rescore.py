@@ -1,4 +1,4 @@
-"""Score logs again: today's checks, a judge's verdicts, and judgements that are missing."""
+"""Add scores to existing logs: the current checks, a judge's verdicts, and missing judgements."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ if TYPE_CHECKING:
     from scope_ptz.bench.judging.server import JudgeServer
 
 Notify = Callable[[str], None]
-"""Receives a note for the user, one sentence at a time."""
+"""Callback that receives a sentence for the user."""
 
-JUDGEMENTS_AT_A_TIME = 8
-REPORT_EVERY = 25
-"""Samples between two notes about the progress of scoring."""
+CONCURRENT_JUDGEMENTS = 8
+PROGRESS_INTERVAL = 25
+"""Number of samples between two notes about the progress of scoring."""
 
 
 def with_judge(context: EvalContext, judge: JudgeServer) -> EvalContext:
-    """Return a context that provides one judge for every request."""
+    """Return a context that provides the same judge for every request."""
 
-    async def make_judge(request: ModelRequest, repeat: int) -> Complete:  # noqa: ARG001 - the engine asks by name
+    async def make_judge(request: ModelRequest, repeat: int) -> Complete:  # noqa: ARG001 - the engine passes a request
         return judge.repeated(repeat)
 
     return replace(context, make_judge=make_judge)
 
 
 async def open_requested_judge(settings: JudgeSettings) -> JudgeServer:
-    """Open the judge of an evaluation. Raises ``InputError`` or ``UnnamedJudgeError``."""
+    """Connect to the judge that the settings describe. The errors are those of ``open_judge``."""
     return await open_judge(settings.url, settings.model, settings.key_file, settings.timeout_s, settings.options)
 
 
 def judge_model(judge: JudgeServer, max_connections: int) -> Model:
-    """Return the engine's model that stands for a judge."""
+    """Return the engine's model object that represents a judge in the log."""
     from scope_ptz.bench.engine.recording.scope_model import engine_model
 
     endpoint = judge.client.endpoint
@@ -55,19 +55,20 @@ async def add_scores(
     repeats: int,
     further: bool = True,
     checks: bool = False,
-    at_a_time: int = JUDGEMENTS_AT_A_TIME,
+    at_a_time: int = CONCURRENT_JUDGEMENTS,
     notify: Notify,
 ) -> JudgementTally:
     """Add scores to a log and return the outcome of the judgements. The agent is not run again.
 
     Args:
         log: Log of a finished evaluation.
-        judge: Judge to ask, or None for checks alone.
+        judge: The judge; None to apply only the checks.
         context: Context of the evaluation.
         repeats: Number of judgements of each run.
-        further: Add ``repeats`` judgements to those in the log; otherwise complete the first ``repeats``.
-        checks: Apply today's executable checks again.
-        at_a_time: Runs that are scored concurrently.
+        further: Whether to add ``repeats`` judgements to those in the log. Otherwise, add only those that are missing from the
+            first ``repeats``.
+        checks: Whether to apply the current executable checks again.
+        at_a_time: Number of runs that are scored concurrently.
         notify: Receives notes about progress.
 
     Raises:
@@ -77,7 +78,7 @@ async def add_scores(
     from scope_ptz.bench.engine.rescoring import rescore
 
     def report(done: int, total: int) -> None:
-        if done % REPORT_EVERY == 0 or done == total:
+        if done % PROGRESS_INTERVAL == 0 or done == total:
             notify(f"{log.name}: {done} of {total}")
 
     if judge is not None:
@@ -101,14 +102,14 @@ async def complete_judgements(
 
     Args:
         log: Log of an evaluation.
-        settings: The judge, and how often it judges each run.
-        opened_judge: Connects to the judge; not called if nothing is missing and the judge's name is known.
+        settings: The judge, and the number of judgements of each run.
+        opened_judge: Connects to the judge. It is not called if no judgement is missing and the judge's name is known.
         context: Context of the evaluation.
-        retry_failed: Also request judgements again for which the judge's server failed.
+        retry_failed: Whether to repeat the judgements for which the judge's server failed.
         notify: Receives notes for the user.
 
     Raises:
-        UnnamedJudgeError: The judge has no known name, and some runs lack judgements.
+        UnnamedJudgeError: The name of the judge is unknown, and judgements are missing.
     """
     from scope_ptz.bench.engine.logs import read_evaluation
     from scope_ptz.bench.judging.judgement_tally import JudgementTally, judged_by, requested_judgements
@@ -123,7 +124,7 @@ async def complete_judgements(
             only = judged_by(evaluation.trials, "", settings.repeats)
             if only is None:
                 raise
-            notify(f"{error} Every run has been judged by {only}; its verdicts are reported here.")
+            notify(f"{error} {only} has already judged every run, and its verdicts are reported.")
             requested = only
     name = judged_by(evaluation.trials, requested, settings.repeats)
     if name is None:

@@ -1,4 +1,4 @@
-"""The run card of an evaluation that begins: who plans and who sees, as registry and servers tell it."""
+"""Create the run card of an evaluation: its models, as the registry and their servers describe them, and its settings."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from scope_ptz.factory.models import ResolvedPair, ResolvedPerception, ResolvedP
 from scope_ptz.planner.base import Planner
 from scope_ptz.version import __version__
 
-PATIENCE_S = 10.0
-"""For servers that do not say how they were set up."""
+SERVER_QUERY_TIMEOUT_S = 10.0
+"""Maximum time for asking a server about its configuration. Some servers do not answer."""
 
 
 async def run_card(
-    choice: ResolvedPair,
+    resolved: ResolvedPair,
     planner: Planner | None,
     entries: tuple[Entry, ...],
     *,
@@ -36,10 +36,22 @@ async def run_card(
     price: Price | None,
     **facts: Any,
 ) -> RunCard:
-    """The card. ``planner``: for its exact prompt and sampling; None for other agents, which have ``agent_source``, the digest of
-    their code; ``facts``: split, seed, epochs, ..."""
+    """Return the run card of an evaluation that is about to start.
+
+    Args:
+        resolved: The resolved planner and perception.
+        planner: The planner, whose prompt and sampling settings are recorded; None for an external agent.
+        entries: The tasks.
+        agent: Name of the agent.
+        agent_source: Digest of an external agent's source code; empty for the built-in agent loop.
+        concurrency: Number of concurrent runs.
+        contended: Whether concurrent runs may have increased the latencies.
+        variant: Label of the evaluation.
+        price: Price of the planner's tokens.
+        **facts: Further fields of the card, such as split, seed and epochs.
+    """
     details = planner.details if planner is not None else {}
-    spec = choice.perception.spec
+    spec = resolved.perception.spec
     sampling: dict[str, Any] = {"planner": details}
     if agent_source:
         sampling[AGENT_SOURCE] = agent_source
@@ -54,8 +66,8 @@ async def run_card(
         engine_version=engine_version(),
         dataset=datasets(entries),
         dataset_digest=digest(entries),
-        planner=await _planner_card(choice.planner) if planner is not None else ModelCard(name=agent),
-        perception=await _eyes_card(choice.perception),
+        planner=await _planner_card(resolved.planner) if planner is not None else ModelCard(name=agent),
+        perception=await _perception_card(resolved.perception),
         agent=agent,
         variant=variant,
         sampling=sampling,
@@ -67,13 +79,15 @@ async def run_card(
     )
 
 
-async def _planner_card(choice: ResolvedPlanner) -> ModelCard:
-    return await _card(choice.name, choice.model.name if choice.model else None, choice.endpoint)
+async def _planner_card(resolved: ResolvedPlanner) -> ModelCard:
+    return await _card(resolved.name, resolved.model.name if resolved.model else None, resolved.endpoint)
 
 
-async def _eyes_card(choice: ResolvedPerception) -> ModelCard:
-    card = await _card(choice.name, choice.model.name if choice.model else None, choice.spec.endpoint if choice.spec else None)
-    return card if choice.spec is None or card.provider else card.model_copy(update={"provider": choice.spec.backend})
+async def _perception_card(resolved: ResolvedPerception) -> ModelCard:
+    card = await _card(
+        resolved.name, resolved.model.name if resolved.model else None, resolved.spec.endpoint if resolved.spec else None
+    )
+    return card if resolved.spec is None or card.provider else card.model_copy(update={"provider": resolved.spec.backend})
 
 
 async def _card(name: str, registered: str | None, endpoint: Endpoint | None) -> ModelCard:
@@ -82,14 +96,14 @@ async def _card(name: str, registered: str | None, endpoint: Endpoint | None) ->
     from scope_ptz.endpoints.serving_facts import serving_facts
 
     reported: dict[str, str] = {}
-    with anyio.move_on_after(PATIENCE_S):
+    with anyio.move_on_after(SERVER_QUERY_TIMEOUT_S):
         reported = await serving_facts(endpoint)
     served = {"model": endpoint.model} if endpoint.model else {}
     return ModelCard(name=name, registry=registered, provider=endpoint.url, reported=served | reported)
 
 
 def _plain(options: dict[str, Any]) -> dict[str, Any]:
-    """Return options as plain values for a card. A perception option that is an object is replaced by its name."""
+    """Return options as JSON values. An option that is an object is replaced by its name."""
     return {
         name: value if isinstance(value, str | int | float | bool) else str(getattr(value, "name", value))
         for name, value in options.items()

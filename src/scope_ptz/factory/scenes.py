@@ -1,4 +1,4 @@
-"""Scene packs by name, from the configured folder and from the package."""
+"""Open scenes by name, from the configured folder or from the built-in ones."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
     """Return the folders that are searched for scenes before the built-in ones.
 
     Raises:
-        ConfigError: SCOPE_SCENES_DIR does not name a folder.
+        ConfigError: SCOPE_SCENES_DIR is not a folder.
     """
     if settings.scenes_dir is None:
         return ()
@@ -30,7 +30,7 @@ def open_scene(name: str) -> Scene:
 
     Raises:
         UnknownNameError: There is no such scene.
-        PackError: Its files are damaged.
+        PackError: The files of the scene are damaged.
     """
     from scope_ptz.simulator.pack import load_scene
 

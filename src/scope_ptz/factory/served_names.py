@@ -1,4 +1,4 @@
-"""The name under which a server serves a model."""
+"""Find the name under which a server serves a model."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _LOG = logging.getLogger(__name__)
 async def with_served_name(endpoint: Endpoint, name: str | None, model: Model | None, option: str) -> Endpoint:
     """Return the endpoint with the name under which its server serves a model.
 
-    A server that serves one other model is used all the same; a warning in the log says so.
+    If the server serves exactly one model and it is a different one, that model is used and a warning is logged.
 
     Args:
         endpoint: The server.
-        name: The served name, None to find it in the server's list of models.
+        name: The served name; None to look it up in the server's list of models.
         model: The requested model; None if the user named only a server.
-        option: The command-line option that the error message names.
+        option: The command-line option, for the error message.
 
     Raises:
-        InputError: The server serves several models and none of them is the requested one.
+        InputError: The server serves several models, and the user named none.
     """
     from scope_ptz.endpoints.catalogue import find_api
     from scope_ptz.endpoints.failures import ServerFailure
@@ -37,19 +37,19 @@ async def with_served_name(endpoint: Endpoint, name: str | None, model: Model | 
     try:
         endpoint, served = await find_api(endpoint)
     except ServerFailure:
-        served = ()  # Not every server has a list. The first request reports a server that is not there.
+        served = ()  # Some servers have no list of models. If the server is unreachable, the first request reports it.
     by_lower_case = {name.lower(): name for name in served}
     match = next((by_lower_case[name.lower()] for name in likely if name.lower() in by_lower_case), None)
     if match is None and len(served) == 1:
         match = served[0]
         if model is not None:
-            _LOG.warning("note: the server at %s serves '%s'; it is asked in place of %s.", endpoint.url, match, model.repo)
+            _LOG.warning("note: the server at %s serves '%s', which is used instead of %s.", endpoint.url, match, model.repo)
     if match is None and not likely and served:
         raise InputError(f"The server at {endpoint.url} serves several models. Name one with {option}: {', '.join(served[:20])}.")
     return endpoint.model_copy(update={"model": match or (likely[0] if likely else "")})
 
 
 def registered_model(registry: Registry, served: str, role: Role) -> Model | None:
-    """Return the registry's entry for a served name; None if it lists no such model."""
+    """Return the registry's entry for a served name; None if no such model is registered."""
     candidates = (model for model in registry.models.values() if role in model.roles)
     return next((model for model in candidates if served.lower() in (name.lower() for name in model.served_names())), None)

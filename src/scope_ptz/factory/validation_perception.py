@@ -1,4 +1,4 @@
-"""Perception for validation: the ground truth of blank frames, with each view read once."""
+"""Ground-truth perception for validating tasks. Frames are blank, and the ground truth of each view is cached."""
 
 from __future__ import annotations
 
@@ -23,44 +23,49 @@ from scope_ptz.taskgen.facts.robust import RobustTruth
 from scope_ptz.tools.context import ToolContext
 
 
-class NamesOnly:
-    """An image store that returns names and saves nothing."""
+class DiscardedImages:
+    """An image store that returns file names but stores no images."""
 
     def __init__(self) -> None:
-        self._taken = 0
+        self._count = 0
 
-    def _next(self) -> str:
-        self._taken += 1
-        return f"{self._taken:04d}.png"
+    def _next_name(self) -> str:
+        self._count += 1
+        return f"{self._count:04d}.png"
 
     def save_look(self, frame: Frame) -> str:  # noqa: ARG002
-        return self._next()
+        return self._next_name()
 
     def save_picture(self, frame: Frame) -> str:  # noqa: ARG002
-        return self._next()
+        return self._next_name()
 
 
-class KnownViews:
-    """The ground truth of views, cached. A view without actors has the same truth at all times."""
+class CachedTruth:
+    """A cache for the ground truth of views. A view without moving actors has one entry for all times.
+
+    Args:
+        limit: Maximum number of cached views.
+    """
 
     def __init__(self, limit: int = 400) -> None:
         self._limit = limit
-        self._known: dict[tuple[str, str, Projection, float | None], ViewTruth] = {}
+        self._cache: dict[tuple[str, str, Projection, float | None], ViewTruth] = {}
 
-    def look(self, scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
+    def read(self, scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
+        """Return the ground truth of a view, from the cache if possible."""
         moving = any(shows(a, projection) for a in appearances(scene, scene.viewpoint(viewpoint), time_s))
         key = (scene.name, viewpoint, projection, round(time_s, 3) if moving else None)
-        if key not in self._known:
-            if len(self._known) >= self._limit:
-                self._known.pop(next(iter(self._known)))
-            self._known[key] = view_truth(scene, viewpoint, projection, time_s)
-        return self._known[key]
+        if key not in self._cache:
+            if len(self._cache) >= self._limit:
+                self._cache.pop(next(iter(self._cache)))
+            self._cache[key] = view_truth(scene, viewpoint, projection, time_s)
+        return self._cache[key]
 
 
-def answered(draft: TaskDraft) -> bool:
+def is_answerable(draft: TaskDraft) -> bool:
     """Return whether ground-truth perception can answer the questions of a draft's reference program, in agreement with the draft.
 
-    Questions about a close-up are left to the proof.
+    The result is True for drafts that end with a zoom; validation checks those later.
     """
     truth = draft.place.truth
     asked = [str(call.arguments["question"]) for call in draft.perception_calls if call.tool == "query_answer"]
@@ -74,7 +79,10 @@ def answered(draft: TaskDraft) -> bool:
 
 
 def is_plain_noun(view: View, asked: str) -> bool:
-    """Return whether a description is only colours and a known noun, so that an empty result means that there is none."""
+    """Return whether a description consists only of colours and a known noun.
+
+    For other descriptions, an empty result of ground truth does not prove that the view shows no such object.
+    """
     for phrase in parse_description(asked).phrases:
         spans = nouns_in(phrase.words, view.nouns)
         plain = any(end == len(phrase.words) and set(phrase.words[:start]) <= COLOURS for start, end in spans)
@@ -88,7 +96,7 @@ def _view(truth: RobustTruth) -> View:
     return read_view(truth.first, truth.scene.file, truth.time_s)
 
 
-def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> MakeToolContext:
-    """Return a maker of tool contexts with ground-truth perception and a store that saves nothing."""
-    perception = GroundTruthPerception(lambda name: scenes[name], (views or KnownViews()).look)
-    return lambda camera: ToolContext(camera, perception, NamesOnly())
+def ground_truth_tools(scenes: Mapping[str, Scene], truth: CachedTruth | None = None) -> MakeToolContext:
+    """Return a function that creates tool contexts with ground-truth perception and without image storage."""
+    perception = GroundTruthPerception(lambda name: scenes[name], (truth or CachedTruth()).read)
+    return lambda camera: ToolContext(camera, perception, DiscardedImages())

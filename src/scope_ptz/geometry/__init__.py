@@ -1,6 +1,6 @@
-"""Poses, optics and projections. Pure functions; callers use degrees, radians stay inside this package.
+"""Poses, optics and projections, as pure functions. Callers use degrees; radians are used only inside this package.
 
-Names are loaded on first use: poses and limits need no NumPy, and commands that need only those start faster.
+Names are imported on first use, so that commands that need only poses and limits start without NumPy.
 """
 
 from importlib import import_module

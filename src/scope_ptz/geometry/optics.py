@@ -15,8 +15,8 @@ Axis = Literal["pan", "tilt", "zoom"]
 class Optics:
     """The zoom curve as a table of ``(magnification, horizontal field of view in degrees)``, widest first.
 
-    Between the rows, focal length (1 / tan(hfov / 2)) is interpolated linearly in magnification, which is close to
-    real zoom curves. No formula fits all lenses: an M5075-G is 5x by name and 5.8x by its two field angles.
+    Between the rows, focal length (1 / tan(hfov / 2)) is interpolated linearly in magnification, which is close to real zoom
+    curves. No formula fits all lenses: an AXIS M5075-G is rated 5x, but the ratio of its longest and shortest focal lengths is 5.8.
     """
 
     table: tuple[tuple[float, float], ...]
@@ -25,7 +25,7 @@ class Optics:
         zooms = [z for z, _ in self.table]
         fields = [h for _, h in self.table]
         if len(self.table) < 2 or sorted(set(zooms)) != zooms or sorted(set(fields), reverse=True) != fields:
-            raise ValueError("a zoom table needs two or more rows of rising magnification and falling field of view")
+            raise ValueError("a zoom table needs two or more rows, with increasing magnification and decreasing field of view")
 
     @property
     def min_zoom(self) -> float:
@@ -40,7 +40,7 @@ class Optics:
 
     def focal(self, zoom: float) -> float:
         """Return the focal length in units of half the image width: 1 / tan(hfov / 2)."""
-        import numpy as np  # loaded late: limits and optics are read without it
+        import numpy as np  # imported here, so that limits and optics can be loaded without it
 
         return float(np.interp(zoom, [z for z, _ in self.table], self._focals()))
 
@@ -61,7 +61,7 @@ class Optics:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """The limits of a camera's motion. With ``pan_endless``, pan has no stops and wraps."""
+    """The limits of a camera's motion. With ``pan_endless``, pan is unlimited and wraps at 180 degrees."""
 
     min_pan_deg: float = -179.0
     max_pan_deg: float = 179.0
@@ -71,25 +71,25 @@ class Limits:
     max_zoom: float = 5.0
     pan_endless: bool = False
 
-    def clamp(self, wanted: Pose) -> tuple[Pose, tuple[Axis, ...]]:
-        """Return the nearest permitted pose and which of "pan", "tilt" and "zoom" were clamped.
+    def clamp(self, pose: Pose) -> tuple[Pose, tuple[Axis, ...]]:
+        """Return the nearest pose within the limits, and the axes that were clamped.
 
-        Pan is not wrapped first: 170 + 20 = 190 stops at 179 and never turns the long way round.
+        Pan is not wrapped first: 170 + 20 = 190 is clamped to 179, and the camera does not turn the other way round.
         """
-        pan = wrap_pan_deg(wanted.pan_deg) if self.pan_endless else _cut(wanted.pan_deg, self.min_pan_deg, self.max_pan_deg)
-        tilt = _cut(wanted.tilt_deg, self.min_tilt_deg, self.max_tilt_deg)
-        zoom = _cut(wanted.zoom, self.min_zoom, self.max_zoom)
-        cut: list[Axis] = []
-        if not self.pan_endless and abs(pan - wanted.pan_deg) > 1e-9:
-            cut.append("pan")
-        if abs(tilt - wanted.tilt_deg) > 1e-9:
-            cut.append("tilt")
-        if abs(zoom - wanted.zoom) > 1e-9:
-            cut.append("zoom")
-        return Pose(pan, tilt, zoom), tuple(cut)
+        pan = wrap_pan_deg(pose.pan_deg) if self.pan_endless else _clamped(pose.pan_deg, self.min_pan_deg, self.max_pan_deg)
+        tilt = _clamped(pose.tilt_deg, self.min_tilt_deg, self.max_tilt_deg)
+        zoom = _clamped(pose.zoom, self.min_zoom, self.max_zoom)
+        clamped: list[Axis] = []
+        if not self.pan_endless and abs(pan - pose.pan_deg) > 1e-9:
+            clamped.append("pan")
+        if abs(tilt - pose.tilt_deg) > 1e-9:
+            clamped.append("tilt")
+        if abs(zoom - pose.zoom) > 1e-9:
+            clamped.append("zoom")
+        return Pose(pan, tilt, zoom), tuple(clamped)
 
     def at_stop(self, pose: Pose, axis: Axis) -> bool:
-        """Return whether a pose is at a stop of one of its axes."""
+        """Return whether a pose is at either limit of an axis."""
         value, low, high = {
             "pan": (pose.pan_deg, self.min_pan_deg, self.max_pan_deg),
             "tilt": (pose.tilt_deg, self.min_tilt_deg, self.max_tilt_deg),
@@ -98,7 +98,7 @@ class Limits:
         return not (axis == "pan" and self.pan_endless) and (value <= low + 1e-6 or value >= high - 1e-6)
 
     def aim_pan_deg(self, pan_deg: float) -> float:
-        """Return the equivalent pan of a direction, plus or minus full turns, that lies within the stops if one does."""
+        """Return a pan angle plus or minus full turns, so that it is within the limits if possible."""
         wrapped = wrap_pan_deg(pan_deg)
         for candidate in (wrapped, wrapped + 360.0, wrapped - 360.0):
             if self.min_pan_deg <= candidate <= self.max_pan_deg:
@@ -106,7 +106,7 @@ class Limits:
         return wrapped
 
 
-def _cut(value: float, low: float, high: float) -> float:
+def _clamped(value: float, low: float, high: float) -> float:
     return min(max(value, low), high)
 
 
@@ -114,4 +114,4 @@ AXIS_M5075_G = Optics(
     ((1.0, 71.0), (1.5, 48.1), (2.0, 35.9), (2.5, 28.5), (3.0, 23.6), (3.5, 20.2), (4.0, 17.6), (4.5, 15.6), (5.0, 14.0))
 )
 """Optics of the AXIS M5075-G. The fields of view at the wide and tele ends are from its data sheet; the rows between them
-interpolate a smooth curve and are not measurements."""
+are interpolated on a smooth curve, not measured."""

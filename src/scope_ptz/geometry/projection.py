@@ -1,7 +1,7 @@
 """Projections between points of a picture and directions, for perspective views and panoramas.
 
 Points are normalised to [0, 1] with the origin at the top-left corner of the picture, not at the centre of its first pixel: the
-centre of pixel ``i`` of ``n`` is at ``(i + 0.5) / n``. Arrays of points have shape ``(..., 2)``, of directions ``(..., 3)``.
+centre of pixel ``i`` of ``n`` is at ``(i + 0.5) / n``. Arrays of points have shape ``(..., 2)``, arrays of directions ``(..., 3)``.
 """
 
 from __future__ import annotations
@@ -92,7 +92,10 @@ class Perspective:
 
 @dataclass(frozen=True, slots=True)
 class Equirectangular:
-    """A panorama: columns are pan, rows are tilt, both linear. ``pan_span_deg`` up to 360, clockwise from ``left_pan_deg``."""
+    """A panorama, whose columns are linear in pan and whose rows are linear in tilt.
+
+    It covers ``pan_span_deg`` (at most 360) clockwise from ``left_pan_deg``.
+    """
 
     left_pan_deg: float
     pan_span_deg: float

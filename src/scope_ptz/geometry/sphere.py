@@ -1,6 +1,6 @@
 """Directions on the sphere around a camera.
 
-The camera's own frame: x right and y forward at pan 0, z up. A direction is a unit vector; arrays have shape ``(..., 3)``.
+At pan 0, x points right and y forward; z points up. A direction is a unit vector; arrays of directions have shape ``(..., 3)``.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ def angle_between_deg(a: ArrayLike, b: ArrayLike) -> Floats:
 
 
 def camera_axes(pan_deg: float, tilt_deg: float) -> Floats:
-    """Return the (3, 3) axes right, up, forward of a pose as rows; times a direction they give its coordinates in the view."""
+    """Return the right, up and forward axes of a view as the rows of a (3, 3) matrix.
+
+    The matrix times a direction gives the direction's coordinates in the view.
+    """
     p, t = np.radians(pan_deg), np.radians(tilt_deg)
     sp, cp, st, ct = np.sin(p), np.cos(p), np.sin(t), np.cos(t)
     return np.array([[cp, -sp, 0.0], [-sp * st, -cp * st, ct], [sp * ct, cp * ct, st]])

@@ -1,7 +1,7 @@
-"""The perception contract: what can be asked about a frame, and the typed results.
+"""The perception contract: the calls that a backend answers about a frame, and their typed results.
 
-Boxes and points are normalised to [0, 1] with the origin at the top left, whatever the model behind them reports. A failure raises
-``PerceptionError``; it is never a zero, an empty list or an invented success.
+Boxes and points are normalised to [0, 1] with the origin at the top left, regardless of what the model reports. A failure
+raises ``PerceptionError``; it never becomes a count of zero, an empty list or an invented result.
 """
 
 from __future__ import annotations
@@ -21,21 +21,20 @@ ALL_SKILLS: frozenset[Skill] = frozenset(("caption", "query", "detect", "point")
 
 
 class Agreement(BaseModel):
-    """How far a second opinion on the same question agrees.
-
-    ``share`` goes from 0 to 1; one half or more counts as agreement.
-    """
+    """The comparison of a result with a second backend's result for the same call."""
 
     model_config = ConfigDict(frozen=True)
 
     other: str
-    """The backend that was asked as well."""
+    """The second backend."""
     said: str
-    """Its answer in short; for places, how many it found."""
+    """The second backend's answer in short; for boxes and points, their number."""
     share: Unit
+    """How far the results agree, from 0 to 1."""
 
     @property
     def agrees(self) -> bool:
+        """Whether the results agree by one half or more."""
         return self.share >= 0.5
 
 
@@ -43,12 +42,12 @@ class _Result(BaseModel):
     """Common fields of all results.
 
     Attributes:
-        source: Who answered ("ground-truth", "moondream3").
-        raw: The reply as it was received.
+        source: The backend that answered ("ground-truth", "moondream3").
+        raw: The reply as received.
         latency_s: Wall time in seconds.
-        notes: What was corrected or left out of the reply, and who failed before ``source`` was asked.
+        notes: Corrections to the reply, omissions from it, and failures of backends that were asked before ``source``.
         agreement: The comparison with a second backend, if one was asked.
-        attempts: The requests to a model server.
+        attempts: The requests that were sent to a model server.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -62,7 +61,7 @@ class _Result(BaseModel):
 
 
 class Box(BaseModel):
-    """A box in a frame, normalised. ``label`` and ``score`` are set where the model gives them."""
+    """A box in a frame, in normalised coordinates. ``label`` and ``score`` are None if the model does not give them."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -93,7 +92,7 @@ class Box(BaseModel):
 
 
 class Point(BaseModel):
-    """A point in a frame, normalised."""
+    """A point in a frame, in normalised coordinates."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -109,21 +108,21 @@ class Caption(_Result):
 
 
 class Answer(_Result):
-    """The answer to a question. ``known`` is False when the honest answer is "I cannot tell"."""
+    """The answer to a question. ``known`` is False if the answer is that the picture does not tell."""
 
     text: str
     known: bool = True
 
 
 class Detections(_Result):
-    """Boxes of all matches, best first. Empty means that there is no match; ``complete`` is False when there are more."""
+    """Boxes of all matches, best first, empty if nothing matches. ``complete`` is False if there may be more matches."""
 
     boxes: tuple[Box, ...]
     complete: bool = True
 
 
 class Points(_Result):
-    """Points on all matches, best first. Empty means that there is no match; ``complete`` is False when there are more."""
+    """Points on all matches, best first, empty if nothing matches. ``complete`` is False if there may be more matches."""
 
     points: tuple[Point, ...]
     complete: bool = True
@@ -132,13 +131,13 @@ class Points(_Result):
 class Perception(ABC):
     """Base class of perception backends: a vision-language model, a detector, OCR, or the simulator's ground truth.
 
-    A skill that a backend lacks (a detector cannot answer questions) is missing from ``skills`` and raises ``PerceptionError``.
+    ``skills`` lists the calls that a backend supports; others raise ``PerceptionError``. A detector, for example, lacks "query".
     """
 
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
     handles_panoramas: bool = False
-    """Whether it finds small things in a panorama by itself. Other backends get panoramas in parts (``models.tiled_panoramas``)."""
+    """Whether it finds small objects in a whole panorama. Other backends get panoramas in parts (``models.tiled_panoramas``)."""
 
     @abstractmethod
     async def caption(self, frame: Frame) -> Caption:
@@ -150,11 +149,11 @@ class Perception(ABC):
 
     @abstractmethod
     async def detect(self, frame: Frame, description: str) -> Detections:
-        """Return boxes of everything that fits a description."""
+        """Return a box for everything that fits a description."""
 
     @abstractmethod
     async def point(self, frame: Frame, description: str) -> Points:
         """Return one point on everything that fits a description."""
 
     async def close(self) -> None:
-        """Release the backend's resources. The default has none."""
+        """Release the backend's resources. The default does nothing."""

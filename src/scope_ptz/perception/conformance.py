@@ -27,14 +27,14 @@ from scope_ptz.perception.base import Answer, Caption, Detections, Perception, P
 
 
 class PerceptionConformance(ABC):
-    """Checks of the ``Perception`` contract. They do not measure how well a backend sees."""
+    """Checks of the ``Perception`` contract. They do not measure accuracy."""
 
     present: str = "thing"
     """A description that fits something in the frame."""
     absent: str = "purple unicorn"
     """A description that fits nothing in the frame."""
     question: str | None = None
-    """A question that the backend can answer from the frame; None asks whether ``present`` is there."""
+    """A question that the backend can answer from the frame; if None, the checks ask whether ``present`` is there."""
 
     @abstractmethod
     def perception(self) -> AbstractAsyncContextManager[Perception]:
@@ -45,11 +45,11 @@ class PerceptionConformance(ABC):
         """Return a frame that the backend can read."""
 
     def unreadable_frame(self) -> Frame | None:
-        """Return a frame that the backend must refuse; None if there is no such frame."""
+        """Return a frame for which every call must fail; None if there is no such frame."""
         return None
 
     async def findings(self) -> dict[str, str]:
-        """Run all checks. Return name and reason of each failure."""
+        """Run all checks. Return the failed ones by name, each with its reason."""
         failed = {}
         for name in sorted(n for n in dir(self) if n.startswith("test_")):
             try:
@@ -58,17 +58,17 @@ class PerceptionConformance(ABC):
                 failed[name] = f"{type(error).__name__}: {error}"
         return failed
 
-    async def test_what_a_backend_cannot_do_is_an_error(self) -> None:
+    async def test_missing_skills_raise_errors(self) -> None:
         async with self.perception() as perception:
-            for skill, ask in self._questions(perception, self.frame()).items():
+            for skill, ask in self._calls(perception, self.frame()).items():
                 if skill in perception.skills:
                     continue
                 try:
                     result = await ask()
                 except PerceptionError as error:
-                    _expect(bool(str(error)), "the error says nothing")
+                    _expect(bool(str(error)), "the error has no message")
                 else:
-                    raise AssertionError(f"{skill} is none of its skills and gave {result!r} instead of a PerceptionError")
+                    raise AssertionError(f"{skill} is not in skills, but returned {result!r} instead of raising PerceptionError")
 
     async def test_caption_is_text(self) -> None:
         async with self.perception() as perception:
@@ -96,7 +96,7 @@ class PerceptionConformance(ABC):
             _expect(isinstance(found, Detections), f"detect returned a {type(found).__name__}")
             _expect(len(found.boxes) > 0, f"nothing fits '{self.present}', which is in the frame")
             for box in found.boxes:
-                _expect(0 <= box.x_min < box.x_max <= 1 and 0 <= box.y_min < box.y_max <= 1, f"{box} is no box inside the frame")
+                _expect(0 <= box.x_min < box.x_max <= 1 and 0 <= box.y_min < box.y_max <= 1, f"{box} is not a box inside the frame")
                 _expect(box.score is None or 0 <= box.score <= 1, f"score {box.score} is not between 0 and 1")
             self._expect_result(found)
 
@@ -114,41 +114,41 @@ class PerceptionConformance(ABC):
         async with self.perception() as perception:
             if "detect" in perception.skills:
                 boxes = (await perception.detect(self.frame(), self.absent)).boxes
-                _expect(boxes == (), f"'{self.absent}' was found, and is not in the frame")
+                _expect(boxes == (), f"'{self.absent}' was found, but is not in the frame")
             if "point" in perception.skills:
                 points = (await perception.point(self.frame(), self.absent)).points
-                _expect(points == (), f"'{self.absent}' was found, and is not in the frame")
+                _expect(points == (), f"'{self.absent}' was found, but is not in the frame")
 
-    async def test_the_same_question_twice_is_answered_alike(self) -> None:
+    async def test_repeated_calls_return_the_same_result(self) -> None:
         async with self.perception() as perception:
             if "detect" not in perception.skills:
                 return
             first, second = [(await perception.detect(self.frame(), self.present)).boxes for _ in range(2)]
             _expect(first == second, "the same frame and description gave two different results")
 
-    async def test_failure_is_an_error(self) -> None:
+    async def test_failures_raise_errors(self) -> None:
         frame = self.unreadable_frame()
         if frame is None:
             return
         async with self.perception() as perception:
-            for ask in self._questions(perception, frame).values():
+            for ask in self._calls(perception, frame).values():
                 try:
                     result = await ask()
                 except PerceptionError as error:
-                    _expect(bool(str(error)), "the error says nothing")
+                    _expect(bool(str(error)), "the error has no message")
                 else:
-                    raise AssertionError(f"a frame that cannot be read gave {result!r} instead of a PerceptionError")
+                    raise AssertionError(f"an unreadable frame returned {result!r} instead of raising PerceptionError")
 
-    async def test_frame_is_left_alone(self) -> None:
+    async def test_frame_is_not_changed(self) -> None:
         async with self.perception() as perception:
             frame = self.frame()
             before = frame.image.copy()
-            skill = next(s for s in self._questions(perception, frame) if s in perception.skills)
-            await self._questions(perception, frame)[skill]()
-            _expect(bool((frame.image == before).all()), "looking at a frame changed its pixels")
+            skill = next(s for s in self._calls(perception, frame) if s in perception.skills)
+            await self._calls(perception, frame)[skill]()
+            _expect(bool((frame.image == before).all()), "the call changed the frame's pixels")
 
-    def _questions(self, perception: Perception, frame: Frame) -> dict[Skill, Callable[[], Awaitable[object]]]:
-        """Return one question for each skill."""
+    def _calls(self, perception: Perception, frame: Frame) -> dict[Skill, Callable[[], Awaitable[object]]]:
+        """Return one call for each skill."""
         question = self.question or "How many things are there?"
         return {
             "detect": lambda: perception.detect(frame, self.present),
@@ -158,10 +158,13 @@ class PerceptionConformance(ABC):
         }
 
     def _expect_result(self, result: Caption | Answer | Detections | Points) -> None:
-        _expect(bool(result.source), "the result does not say who looked")
-        _expect(math.isfinite(result.latency_s) and result.latency_s > 0, f"latency {result.latency_s} s cannot be")
+        _expect(bool(result.source), "the result has no source")
+        _expect(
+            math.isfinite(result.latency_s) and result.latency_s > 0,
+            f"the latency must be finite and positive, got {result.latency_s} s",
+        )
 
 
-def _expect(condition: bool, complaint: str) -> None:
+def _expect(condition: bool, message: str) -> None:
     if not condition:
-        raise AssertionError(complaint)
+        raise AssertionError(message)

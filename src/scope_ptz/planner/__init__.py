@@ -1,1 +1,1 @@
-"""Planners behind one contract."""
+"""Planners: the contract, the grammar planner, chat models and prompt-sensitivity tests."""

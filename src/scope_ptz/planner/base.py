@@ -1,8 +1,8 @@
 """The planner contract.
 
-A planner is a pure function of the instruction U and the history H_t; it keeps nothing between steps. At each step it either ends
-the run (with an answer, a clarifying question or a refusal) or requests tool calls. Their results are appended to the history
-before it is asked again.
+A planner is a pure function of the instruction U and the history H_t; it keeps no state between steps. At each step it either ends
+the run (with an answer, a clarifying question or a refusal) or requests tool calls. The results of the calls are appended to the
+history before the next step.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ class ToolCall(_Model):
     """A tool call as the planner requests it, before validation.
 
     Attributes:
-        problem: Why the call cannot be made as it was written; such a call becomes an error.
+        problem: Why the call is malformed, for example invalid JSON arguments. Such a call is not executed and returns this text as
+            its error. None for a well-formed call.
     """
 
     id: str
@@ -36,7 +37,7 @@ class ToolCall(_Model):
 
 
 class Picture(_Model):
-    """A frame for planners that take images: a JPEG as a data URL. Traces name the image file instead."""
+    """A frame for planners that take images: a JPEG as a data URL. Traces store the name of the image file instead."""
 
     data_url: str = Field(repr=False)
     caption: str
@@ -48,7 +49,9 @@ class ToolOutcome(_Model):
     call: ToolCall
     result: dict[str, Any] | None = None
     error: str | None = None
-    picture: Picture | None = Field(default=None, exclude=True, description="of take_image, for planners that see")
+    picture: Picture | None = Field(
+        default=None, exclude=True, description="The picture of take_image, for planners that take images"
+    )
 
 
 class Exchange(_Model):
@@ -76,7 +79,7 @@ class Briefing(_Model):
 
 
 class State(_Model):
-    """The state S_t: the instruction U, the history H_t with the observations in its results, and the earlier conversation.
+    """The state S_t: the instruction U, the history H_t (whose results are the observations), and the earlier conversation.
 
     Attributes:
         view: The newest frame, for planners that take images; older frames are not kept.
@@ -86,13 +89,15 @@ class State(_Model):
     briefing: Briefing
     history: tuple[Exchange, ...] = ()
     conversation: tuple[PastTurn, ...] = ()
-    tools: tuple[dict[str, Any], ...] = Field(default=(), description="OpenAI function schemas of the tools on offer")
+    tools: tuple[dict[str, Any], ...] = Field(default=(), description="OpenAI function schemas of the available tools")
     view: Picture | None = None
 
 
 class Usage(_Model):
-    """Tokens used by a step, zero for planners without tokens. ``cached_tokens`` are the input tokens that the server had
-    cached.
+    """The tokens used by a step; zero for planners without a language model.
+
+    Attributes:
+        cached_tokens: The input tokens that the server read from its prefix cache.
     """
 
     input_tokens: int = 0
@@ -109,7 +114,7 @@ class Served(_Model):
     Attributes:
         model: The model's name as the server reports it.
         first_token_s: Seconds to the first token of a streamed reply.
-        calls_from: The notation of the calls: "native", or the name of one written into the text.
+        calls_from: Where the calls were found: "native" for the server's own field, otherwise the name of a text notation.
         attempts: All requests, including failed ones.
     """
 
@@ -127,7 +132,8 @@ class CallTools(_Model):
     Attributes:
         thought: Text that accompanies the calls.
         reasoning: The planner's reasoning, kept in traces only.
-        opened: Whether the planner took the picture that was offered; None if pictures are sent with every request.
+        opened: Whether an external agent fetched the picture that it was offered; None for planners that get the pictures with
+            each request.
     """
 
     kind: Literal["call"] = "call"
@@ -178,8 +184,8 @@ class Planner(ABC):
         """Return the next decision.
 
         Raises:
-            PlannerError: The planner has no decision.
+            PlannerError: The planner cannot make a decision.
         """
 
     async def close(self) -> None:
-        """Release the planner's resources. The default has none."""
+        """Release the planner's resources. The default implementation does nothing."""

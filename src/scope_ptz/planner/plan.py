@@ -1,6 +1,6 @@
-"""The grammar planner's plan for an instruction, without a camera.
+"""Plan an instruction with the grammar planner, without a camera.
 
-The plan is unrolled as if every tool call succeeded and every condition were met at its first test.
+The plan assumes that every tool call succeeds and that every condition is met at its first test.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from scope_ptz.planner.grammar.execution.outline import OutlineBlock
 from scope_ptz.planner.grammar.execution.outline import outline as make_outline
 from scope_ptz.planner.grammar.execution.program import Program
 
-_MOST_CALLS = 200
-_ZOOM_ON_OBJECT = 2.0
+_MAX_CALLS = 200  # longer plans are truncated
+_OBJECT_ZOOM_FACTOR = 2.0  # assumed effect of zoom_to_object
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,10 +34,10 @@ class Plan:
 
     Attributes:
         instruction: The instruction.
-        understood: Whether there is anything to do.
-        calls: The calls, as if every tool succeeded and every condition were met at its first test.
-        clarification: The question or the refusal when there is nothing to do.
-        outline: The calls with loops and conditions as such.
+        understood: Whether the instruction was understood and is not refused.
+        calls: The calls, if every tool call succeeds and every condition is met at its first test.
+        clarification: The question or refusal if ``understood`` is false; otherwise None.
+        outline: The calls grouped into loops and conditional branches.
     """
 
     instruction: str
@@ -68,31 +68,31 @@ def plan(
         instruction: What the user typed.
         presets: The camera's presets; without any, preset names are accepted as written.
         pose: The camera's pose at the start.
-        preset_poses: Poses of the presets; unknown ones count as the home pose.
+        preset_poses: Poses of the presets; a preset without a pose here is assumed to be at the home pose.
         limits: The camera's limits.
     """
     meaning = understand(instruction, tuple(presets) or None)
     if meaning.refusal or meaning.clarification:
         return Plan(instruction, False, (), meaning.clarification or meaning.refusal)
     program = Program(limits, pose, assume_met=True)
-    imagined = _Imagined(pose, limits, preset_poses or {})
+    world = _AssumedWorld(pose, limits, preset_poses or {})
     calls: list[PlannedCall] = []
     run = program.run(meaning.steps)
     try:
         name, arguments = next(run)
-        while len(calls) < _MOST_CALLS:
+        while len(calls) < _MAX_CALLS:
             calls.append(PlannedCall(name, arguments))
             call = ToolCall(id=f"call-{len(calls)}", name=name, arguments=arguments)
-            name, arguments = run.send(ToolOutcome(call=call, result=imagined.result(name, arguments)))
+            name, arguments = run.send(ToolOutcome(call=call, result=world.result(name, arguments)))
     except StopIteration:
         pass
-    imagined = _Imagined(pose, limits, preset_poses or {})
-    return Plan(instruction, True, tuple(calls), None, make_outline(meaning.steps, limits, pose, imagined.result))
+    world = _AssumedWorld(pose, limits, preset_poses or {})
+    return Plan(instruction, True, tuple(calls), None, make_outline(meaning.steps, limits, pose, world.result))
 
 
 @dataclass(slots=True)
-class _Imagined:
-    """A camera that only tracks its pose, in a scene where everything is found."""
+class _AssumedWorld:
+    """A stand-in for the camera and perception: it tracks the pose, and every object is found."""
 
     pose: Pose
     limits: Limits
@@ -106,7 +106,7 @@ class _Imagined:
         elif name == "go_to_preset":
             self.pose = self.presets.get(arguments["name"], Pose())
         elif name == "zoom_to_object":
-            self.pose, _ = self.limits.clamp(self.pose.zoomed(_ZOOM_ON_OBJECT))
+            self.pose, _ = self.limits.clamp(self.pose.zoomed(_OBJECT_ZOOM_FACTOR))
         seen = {"count": 1, "answer": "yes", "known": True, "found": True, "matches": 1, "held_share": 1.0}
         pose = {"pan_deg": self.pose.pan_deg, "tilt_deg": self.pose.tilt_deg, "zoom": self.pose.zoom}
         return {"pose": pose, "clamped": (), **seen}

@@ -10,7 +10,7 @@ from scope_ptz.endpoints.endpoint import Endpoint
 
 
 class PlannerSpec(BaseModel):
-    """A planner of another package, as it was requested.
+    """A request for a planner of an installed plug-in.
 
     Attributes:
         name: The planner's name, as traces and reports show it.

@@ -1,4 +1,4 @@
-"""Loading the registry: the packaged entries, and the user's own on top."""
+"""Load the model registry: the packaged entries and those of the user."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.registry.model_entries import Model, Pair, Role, Server
 
-SHIPPED = "models.yaml"
+PACKAGED_FILE = "models.yaml"
 
 
 class _File(BaseModel):
-    """The YAML file as it is written: names are keys."""
+    """The content of a YAML file, in which the names of servers and models are keys."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -32,39 +32,38 @@ class Registry:
         self.servers, self.models, self.pairs = dict(servers), dict(models), dict(pairs)
 
     def model(self, name: str, role: Role | None = None) -> Model:
-        """Return a model by its name or full title, in any case.
+        """Return a model by its name, title or repository, ignoring case.
 
         Raises:
             UnknownNameError: There is no such model.
-            ConfigError: The model cannot play the role.
+            ConfigError: The model does not support the role.
         """
-        wanted = name.strip().lower()
-        model = self.models.get(wanted) or next((m for m in self.models.values() if wanted in _names(m)), None)
+        key = name.strip().lower()
+        model = self.models.get(key) or next((m for m in self.models.values() if key in _names(m)), None)
         if model is None:
             raise UnknownNameError(role or "model", name, self.named(role))
         if role is not None and role not in model.roles:
             can = "plan" if role == "planner" else "be used for perception"
-            raise ConfigError(f"{model.name} cannot {can}. Those that can: {', '.join(self.named(role))}.")
+            raise ConfigError(f"{model.name} cannot {can}. Models that can: {', '.join(self.named(role))}.")
         return model
 
     def named(self, role: Role | None = None) -> list[str]:
-        """Return the names of the models that can play a role."""
+        """Return the names of the models that support a role; all names if ``role`` is None."""
         return [m.name for m in self.models.values() if role is None or role in m.roles]
 
     def pair(self, text: str) -> Pair:
-        """Return a pair by name, by ``PLANNER+PERCEPTION``, or by one model that does both.
+        """Return a pair by its name, as ``PLANNER+PERCEPTION``, or by the name of a model that supports both roles.
 
         Raises:
             UnknownNameError: There is no such model.
-            ConfigError: The model can play only one of the roles.
+            ConfigError: A model does not support its role.
         """
         if text in self.pairs:
             return self.pairs[text]
         planner, plus, perception = text.partition("+")
         if plus:
-            one, two = self.model(planner, "planner"), self.model(perception, "perception")
-            known = self.pairs.get(f"{one.name}+{two.name}")
-            return known or Pair(name=f"{one.name}+{two.name}", planner=one.name, perception=two.name)
+            plans, sees = self.model(planner, "planner").name, self.model(perception, "perception").name
+            return self.pairs.get(f"{plans}+{sees}") or Pair(name=f"{plans}+{sees}", planner=plans, perception=sees)
         model = self.model(text)
         if set(model.roles) != {"planner", "perception"}:
             raise ConfigError(f"{model.name} is only a {model.roles[0]} model. Give PLANNER+PERCEPTION, see `scope models pairs`.")
@@ -81,40 +80,40 @@ class Registry:
         return self.servers[name]
 
     def commands(self, model: Model, server: str) -> tuple[str, ...]:
-        """Return the exact commands that serve a model, one per line.
+        """Return the commands that serve a model on a server, with all placeholders filled.
 
         Raises:
             ConfigError: The server cannot run the model.
         """
         program = self.server(server)
         if server not in model.serve:
-            able = ", ".join(model.serve) or "none"
-            raise ConfigError(f"{model.name} cannot be served with {server}. Servers that can: {able}.")
+            supported = ", ".join(model.serve) or "none"
+            raise ConfigError(f"{model.name} cannot be served with {server}. Servers that can: {supported}.")
         serving = model.serve[server]
         values = {"source": serving.source or model.repo, "window": str(model.window), "flags": serving.flags}
         return tuple(_filled(line, values) for line in serving.command or program.command)
 
 
 def load_registry(user_file: Path | None = None) -> Registry:
-    """Return the packaged registry with the user's entries. An entry of the same name replaces the packaged one.
+    """Return the packaged registry with the user's entries added. An entry with the same name replaces the packaged one.
 
     Raises:
-        ConfigError: Something in the user's file is wrong; the message names the file and the field.
+        ConfigError: The user's file is unreadable or invalid. The message names the file and the field.
     """
-    shipped = files("scope_ptz").joinpath("data", SHIPPED).read_text(encoding="utf-8")
-    servers, models, pairs = _read(shipped, SHIPPED)
+    packaged = files("scope_ptz").joinpath("data", PACKAGED_FILE).read_text(encoding="utf-8")
+    servers, models, pairs = _parse(packaged, PACKAGED_FILE)
     if user_file is not None:
         try:
             added = user_file.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ConfigError(f"The models file {user_file} cannot be read: {error}.") from error
-        own_servers, own_models, own_pairs = _read(added, str(user_file))
+        own_servers, own_models, own_pairs = _parse(added, str(user_file))
         servers, models, pairs = servers | own_servers, models | own_models, pairs | own_pairs
         _check(Registry(servers, models, pairs), user_file)
     return Registry(servers, models, pairs)
 
 
-def _read(text: str, where: str) -> tuple[dict[str, Server], dict[str, Model], dict[str, Pair]]:
+def _parse(text: str, where: str) -> tuple[dict[str, Server], dict[str, Model], dict[str, Pair]]:
     import yaml
 
     try:
@@ -143,6 +142,7 @@ def _read(text: str, where: str) -> tuple[dict[str, Server], dict[str, Model], d
 
 
 def _check(registry: Registry, where: Path) -> None:
+    """Check that the servers and models that entries refer to exist."""
     for model in registry.models.values():
         for server in model.serve:
             if server not in registry.servers:
@@ -153,7 +153,7 @@ def _check(registry: Registry, where: Path) -> None:
 
 
 def _filled(line: str, values: Mapping[str, str]) -> str:
-    """Return a command with its placeholders filled. Other braces, such as JSON in a flag, stay unchanged."""
+    """Return a command with its placeholders filled. Other braces, such as JSON in a flag, remain unchanged."""
     for name, value in values.items():
         line = line.replace(f"{{{name}}}", value)
     return " ".join(line.split())

@@ -11,17 +11,18 @@ Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[a-z0-9][a-z
 Role = Literal["planner", "perception"]
 Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
 Thinking = Literal["none", "optional", "default", "always"]
-"""Whether a model reasons: never ("none"), on request ("optional"), unless switched off ("default"), or always, in which case
-only the length can be set ("always").
+"""Whether a model reasons: never ("none"), on request ("optional"), unless switched off ("default"), or always ("always"), in which
+case only the length of the reasoning can be set.
 """
 BYTES_PER_PARAMETER: dict[Precision, float] = {
     "fp32": 4.0, "fp16": 2.0, "bf16": 2.0, "fp8": 1.05, "int4": 0.6, "q4": 0.61, "mxfp4": 0.61,
 }  # fmt: skip
-"""Weights in memory. Four-bit formats store scales and some layers in more bits (Q4_K_M: 4.85 bits per weight)."""
+"""Memory of the weights, in bytes per parameter. Four-bit formats store scales and some layers in more bits
+(Q4_K_M: 4.85 bits per weight)."""
 RUNTIME_GB = 1.5
-"""Memory of a serving process in addition to weights and cache: kernels, activations, workspace of the vision tower."""
+"""GB that a serving process needs besides weights and cache: kernels, activations and the workspace of the vision tower."""
 WINDOW = 16_384
-"""Tokens of context assumed in memory figures and serve commands. A long run of the agent needs about half of it."""
+"""Tokens of context assumed in memory figures and serve commands. A long agent run needs about half of them."""
 
 
 class _Entry(BaseModel):
@@ -29,7 +30,7 @@ class _Entry(BaseModel):
 
 
 class Server(_Entry):
-    """A program that serves models.
+    """A server program, such as vLLM or Ollama.
 
     Attributes:
         command: One command per line, with the placeholders ``{source}``, ``{window}`` and ``{flags}``.
@@ -37,13 +38,13 @@ class Server(_Entry):
 
     title: str
     command: tuple[str, ...]
-    url: str = Field(description="Its default address; empty for models that run inside SCOPE.")
+    url: str = Field(description="The server's default address; empty if models run inside SCOPE.")
     install: str = ""
     notes: str = ""
 
 
 class Serving(_Entry):
-    """How one server runs one model. ``command`` replaces the server's own."""
+    """How a server program serves a model. ``command`` replaces the command of the server entry."""
 
     source: str = Field(default="", description="The model's name on the server; empty means the model's repository.")
     precision: Precision | None = None
@@ -58,8 +59,8 @@ class Model(_Entry):
     Attributes:
         size_b: Billions of parameters, as the model's makers state them.
         active_b: Billions of active parameters, as the model's makers state them.
-        parameters_b: Billions of parameters in memory, including vision tower and embeddings, where that differs.
-        kv_kib: Cache per token of context, in KiB.
+        parameters_b: Billions of parameters in memory, including vision tower and embeddings; None if equal to ``size_b``.
+        kv_kib: Size of the key-value cache per token of context, in KiB.
     """
 
     name: Name
@@ -74,13 +75,13 @@ class Model(_Entry):
     active_b: float = Field(gt=0)
     parameters_b: float | None = Field(default=None, gt=0)
     precision: Precision
-    context: int = Field(ge=0, description="Tokens; 0 where the notion does not apply.")
+    context: int = Field(ge=0, description="Context length in tokens; 0 if the model has none.")
     thinking: Thinking = "none"
-    sees: bool = Field(default=False, description="Takes images in the chat, so it can plan and perceive at once.")
-    coordinates: str = Field(default="none", description="How it writes boxes and points: a convention of perception.coordinates.")
+    sees: bool = Field(default=False, description="Whether the model takes images in the chat.")
+    coordinates: str = Field(default="none", description="Notation of boxes and points, see perception.models.coordinates.")
     licence: str
     kv_kib: float = Field(default=128.0, ge=0)
-    memory_gb: float | None = Field(default=None, gt=0, description="A measured figure that replaces the computed one.")
+    memory_gb: float | None = Field(default=None, gt=0, description="Measured memory, which replaces the computed figure.")
     url: str = ""
     key_file: Path | None = None
     serve: dict[str, Serving] = Field(default_factory=dict)
@@ -115,15 +116,15 @@ class Model(_Entry):
         """Tokens of context to serve the model with."""
         return min(self.context, WINDOW)
 
-    def smallest(self) -> tuple[str | None, float]:
-        """Return the server that needs least memory, and how much; the first of equals."""
+    def least_memory(self) -> tuple[str | None, float]:
+        """Return the server on which the model needs the least memory (the first of equals), and that memory in GB."""
         if not self.serve:
             return None, self.memory_for()
         server = min(self.serve, key=self.memory_for)
         return server, self.memory_for(server)
 
     def served_names(self) -> tuple[str, ...]:
-        """Return the names that a server may use for the model, the likeliest first."""
+        """Return the names that a server may use for the model, most likely first."""
         return tuple(dict.fromkeys([self.repo, *(s.source for s in self.serve.values() if s.source), self.title, self.name]))
 
 

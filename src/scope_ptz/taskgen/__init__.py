@@ -1,14 +1,14 @@
-"""Making of benchmark tasks, from the ground truth of scenes to the published dataset.
+"""Creation of benchmark tasks, from the ground truth of scenes to the published dataset.
 
-The packages follow one another:
+The packages, in the order in which a dataset passes through them:
 
-- ``facts`` holds what making and validation share: robust ground truth, kinds of objects, right and wrong answers in words.
+- ``facts`` is shared by authoring and validation: robust ground truth, kinds of objects, correct and wrong answer texts.
 - ``authoring`` drafts tasks from scenes, selects them and assembles a dataset.
-- ``generating`` lets a language model draft further tasks, and ``importing`` reads tasks in the paper's format.
-- ``validation`` proves that reference programs pass and adversarial attempts fail.
-- ``gold`` puts known faults into passing runs, to test the rules for error modes and the judges.
-- ``picture_audit`` compares the expected answers with those of readers who see only the pictures.
+- ``generating`` has a language model draft additional tasks, and ``importing`` reads tasks in the paper's format.
+- ``validation`` checks that reference programs pass and adversarial attempts fail.
+- ``gold`` inserts known faults into passing runs, to test the rules for error modes and the judges.
+- ``picture_audit`` compares the expected answers with those of people or models that see only the pictures.
 - ``dataset`` builds the unseen split and writes the dataset card.
 
-Perception is passed in by the caller; this package never imports it.
+Callers pass perception as an argument, so this package does not depend on it.
 """

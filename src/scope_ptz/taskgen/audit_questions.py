@@ -1,4 +1,4 @@
-"""The questions of an audit: frames on which the answer of a task rests, with a caption that says where each was taken."""
+"""The questions of a picture audit: the frames that a task's reference program sees, each with a caption about its view."""
 
 from __future__ import annotations
 
@@ -17,38 +17,49 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture
 
 POSE_TOLERANCE = 0.01
-"""Degrees, or magnification, by which a view may differ from the preset that its caption names."""
+"""Maximum difference between a view and the preset in its caption, for pan and tilt (degrees) and for zoom (magnification)."""
 
 
-async def write_question(q: str, task: Task, stage: ProgramRunner, out: Path, notify: Callable[[str], None]) -> dict[str, Any]:
-    """Write the pictures of a question into a folder, and return its row."""
-    episode = await stage.run(task, task.reference, "")
-    looks = list({(look.viewpoint, look.projection): look for call in episode.calls for look in call.observations[:1]}.values())
-    shown = []
-    for number, look in enumerate(looks, 1):
-        name = f"{q}-{number}.jpg"
-        image = picture(stage.scene, str(look.viewpoint), look.projection, look.time_s)
+async def write_question(
+    number: str, task: Task, runner: ProgramRunner, out: Path, notify: Callable[[str], None]
+) -> dict[str, Any]:
+    """Write the pictures of an audit question to a folder, and return the question as JSON data.
+
+    Args:
+        number: Number of the question, which also begins the names of its pictures.
+        task: The task.
+        runner: Runs the task's reference program in its scene.
+        out: Folder for the pictures.
+        notify: Receives a note if the reference program makes no perception call.
+    """
+    episode = await runner.run(task, task.reference, "")
+    first = [call.observations[0] for call in episode.calls if call.observations]
+    views = list({(observation.viewpoint, observation.projection): observation for observation in first}.values())
+    pictures = []
+    for index, view in enumerate(views, 1):
+        name = f"{number}-{index}.jpg"
+        image = picture(runner.scene, str(view.viewpoint), view.projection, view.time_s)
         if not cv2.imwrite(str(out / name), cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, 95]):
-            raise OutputError(f"{out / name} cannot be written.")
-        shown.append({"file": name, "caption": _caption(look, stage.scene)})
-    if not shown:
-        notify(f"{task.id} makes no perception call")
-    return {"q": q, "asked": task.instruction, "pictures": shown}
+            raise OutputError(f"{out / name} cannot be written. Check the permissions of the folder and the space on the disk.")
+        pictures.append({"file": name, "caption": _caption(view, runner.scene)})
+    if not pictures:
+        notify(f"{task.id} has no pictures, because its reference program makes no perception call")
+    return {"q": number, "asked": task.instruction, "pictures": pictures}
 
 
-def _caption(look: Observation, scene: Scene) -> str:
-    """Return where a picture was taken, as the operator of the camera would know it."""
-    view = look.projection
+def _caption(observation: Observation, scene: Scene) -> str:
+    """Return the preset or viewpoint of a picture and its pose, in words."""
+    view = observation.projection
     if not isinstance(view, Perspective):
         return "everything around the camera, from pan -180 to 180 degrees"
     zoom = AXIS_M5075_G.zoom_for_hfov(view.hfov_deg)
     at = [
         p.name
         for p in scene.file.presets
-        if p.viewpoint == look.viewpoint
+        if p.viewpoint == observation.viewpoint
         and abs(p.pan_deg - view.pan_deg) < POSE_TOLERANCE
         and abs(p.tilt_deg - view.tilt_deg) < POSE_TOLERANCE
         and abs(p.zoom - zoom) < POSE_TOLERANCE
     ]
-    place = f"preset {at[0]}" if at else f"camera at the {look.viewpoint}"
+    place = f"preset {at[0]}" if at else f"camera at the {observation.viewpoint}"
     return f"{place}: pan {view.pan_deg:.4g}, tilt {view.tilt_deg:.4g} degrees, zoom {zoom:.3g}x"

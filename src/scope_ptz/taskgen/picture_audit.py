@@ -1,7 +1,7 @@
-"""Audit by readers who see only pictures: drawing the questions, and scoring how often their answers agree.
+"""Audit the expected answers with readers who see only pictures: sample questions, and compare the readers' answers.
 
-Readers get the instruction and the frames that the reference program observes, under anonymous question numbers. The answer parser
-reads their answers, which are compared with the expected values.
+Readers receive the instruction and the frames that the reference program observes, with anonymous question numbers. Their answers
+are parsed and compared with the expected answers.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from scope_ptz.bench.tasks.files import digest_of
 from scope_ptz.bench.tasks.stratified import stratified_sample
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
 QUESTIONS, ANSWERS, FINDINGS, DRAW = "questions.jsonl", "answers.jsonl", "findings.jsonl", "draw.json"
 Outcome = Literal["agrees", "disagrees", "not readable", "not answered"]
@@ -35,12 +35,12 @@ Row = TypeVar("Row", bound=_Row)
 
 
 class QuestionDraw(_Row):
-    """How questions were drawn. The same tasks, number and seed give the same questions."""
+    """How questions were sampled. The same tasks, number and seed always give the same questions."""
 
     number: int = Field(ge=1)
     seed: int
     tasks: str
-    """SHA-256 of all tasks that the questions were drawn from."""
+    """SHA-256 digest of all tasks from which the questions were sampled."""
 
 
 class ReaderAnswer(_Row):
@@ -52,16 +52,16 @@ class ReaderAnswer(_Row):
 
 
 class DisagreementNote(_Row):
-    """The explanation of a disagreement, found by investigating it."""
+    """An explanation of why a reader's answer disagrees with the expected answer."""
 
     q: str
     finding: str
 
 
 class AuditedAnswer(_Row):
-    """An answer and whether it agrees with its task.
+    """A reader's answer to a task, and whether it agrees with the expected answer.
 
-    ``digest`` covers instruction and expected value. It shows whether the task was corrected after the audit.
+    ``digest`` is that of the instruction and the expected answer. It shows whether the task was corrected after the audit.
     """
 
     q: str
@@ -78,65 +78,70 @@ class AuditedAnswer(_Row):
 
 
 class Audit(_Row):
-    """The result of an audit, as it is published."""
+    """The result of an audit, in the form in which it is published."""
 
     draw: QuestionDraw
     rows: tuple[AuditedAnswer, ...]
 
     def share(self, rows: Iterable[AuditedAnswer] | None = None) -> tuple[int, int]:
-        """Return how many answers agree, and how many were given. Unanswered questions are left out."""
+        """Return the number of answers that agree, and the number of all answers. Unanswered questions are not counted."""
         counted = [row for row in (self.rows if rows is None else rows) if row.outcome != "not answered"]
         return sum(row.outcome == "agrees" for row in counted), len(counted)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as JSON data."""
-        right, of = self.share()
+        agree, total = self.share()
         categories = sorted({row.category for row in self.rows})
         by_category = {name: self.share(r for r in self.rows if r.category == name) for name in categories}
         return {
             **self.model_dump(mode="json"),
-            "agree": right,
-            "of": of,
+            "agree": agree,
+            "of": total,
             "outcomes": dict(Counter(row.outcome for row in self.rows)),
-            "by_category": {name: {"agree": agree, "of": total} for name, (agree, total) in by_category.items()},
+            "by_category": {name: {"agree": correct, "of": number} for name, (correct, number) in by_category.items()},
         }
 
 
 def draw_questions(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[str, Task]]:
-    """Draw questions, stratified by category, scene and difficulty.
+    """Sample questions from the core tasks with an answer, stratified by category, scene and difficulty.
 
-    Only core tasks with an answer are drawn.
+    Args:
+        tasks: The tasks.
+        number: Number of questions.
+        seed: Seed for the sampling.
 
     Returns:
-        Question numbers with their tasks. The numbers do not reveal the order of the tasks.
+        Question numbers with their tasks. The questions are shuffled, so that their numbers do not reveal the order of the tasks.
     """
     candidates = [task for task in tasks if task.stratum == "core" and not isinstance(task.expected, ActionOnly)]
     chosen = stratified_sample(candidates, number, seed)
-    mixed = sorted(chosen, key=lambda t: hashlib.sha256(f"order:{seed}:{t.id}".encode()).hexdigest())
-    return [(f"q{n:03d}", task) for n, task in enumerate(mixed, 1)]
+    shuffled = sorted(chosen, key=lambda t: hashlib.sha256(f"order:{seed}:{t.id}".encode()).hexdigest())
+    return [(f"q{n:03d}", task) for n, task in enumerate(shuffled, 1)]
 
 
 def task_digest(task: Task) -> str:
-    """Return a short digest of the instruction and the expected value of a task."""
+    """Return a short digest of the instruction and the expected answer of a task."""
     return hashlib.sha256(f"{task.instruction}|{task.expected.model_dump_json()}".encode()).hexdigest()[:16]
 
 
 def score_answers(folder: Path, tasks: Sequence[Task]) -> Audit:
-    """Compare the answers in a folder with the tasks that its questions were drawn from.
+    """Compare the answers in a folder with the tasks from which its questions were sampled.
 
     Raises:
-        InputError: A file is missing or damaged, or the questions were drawn from other tasks.
+        InputError: A file is missing or damaged, or the questions were sampled from other tasks.
     """
     (draw,) = _rows(folder / DRAW, QuestionDraw)
     if draw.tasks != digest_of(tasks):
-        raise InputError(f"The questions in {folder} were drawn from other tasks. Name those with --tasks.")
+        raise InputError(f"The questions in {folder} were sampled from other tasks. Name those tasks with --tasks.")
     given: dict[str, list[ReaderAnswer]] = {}
     for answer in _rows(folder / ANSWERS, ReaderAnswer):
         given.setdefault(answer.q, []).append(answer)
     findings = {f.q: f.finding for f in _rows(folder / FINDINGS, DisagreementNote)} if (folder / FINDINGS).is_file() else {}
     questions = dict(draw_questions(tasks, draw.number, draw.seed))
     if unknown := sorted({*given, *findings} - set(questions)):
-        raise InputError(f"{folder} holds an answer to {unknown[0]}, which was not asked.")
+        raise InputError(
+            f"{folder} contains an answer or a finding for {unknown[0]}, which is not one of its questions. Remove it."
+        )
     rows = [
         _audited(q, task, answer, findings)
         for q, task in questions.items()
@@ -155,7 +160,7 @@ def _audited(q: str, task: Task, answer: ReaderAnswer, findings: Mapping[str, st
         category=task.category,
         scene=task.scene,
         instruction=task.instruction,
-        expected=right_answers(task.expected)[0],
+        expected=correct_answers(task.expected)[0],
         reader=answer.reader,
         answer=answer.answer,
         outcome=outcome if answer.answer.strip() else "not answered",
@@ -173,10 +178,10 @@ def read_audit(path: Path) -> Audit:
         content = json.loads(path.read_text("utf-8"))
         return Audit.model_validate({name: content[name] for name in ("draw", "rows")})
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path} is not an audit: {error}.") from error
+        raise InputError(f"{path} is not a published audit: {error}.") from error
 
 
-def _rows(path: Path, kind: type[Row]) -> list[Row]:
+def _rows(path: Path, row_type: type[Row]) -> list[Row]:
     """Return the rows of a JSONL file."""
     try:
         lines = path.read_text("utf-8").splitlines()
@@ -186,7 +191,7 @@ def _rows(path: Path, kind: type[Row]) -> list[Row]:
     for number, line in enumerate(lines, 1):
         try:
             if line.strip():
-                rows.append(kind.model_validate_json(line))
+                rows.append(row_type.model_validate_json(line))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             raise InputError(f"{path}, line {number}: {'.'.join(map(str, first['loc'])) or 'row'}: {first['msg']}.") from error

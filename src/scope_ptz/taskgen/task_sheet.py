@@ -1,4 +1,4 @@
-"""Show a task to a human reader: its text, its reference run, and pictures of the start view and the evidence."""
+"""Show a task to a person: its text, its reference run, and pictures of the start view and the evidence."""
 
 from __future__ import annotations
 
@@ -19,17 +19,18 @@ from scope_ptz.errors import OutputError
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, Projection
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
 _MARGIN, _HEAD, _LINE = 28, 118, 24
-_WIDE = 2200.0
-_NEAR = (260, 146)
-"""Size in pixels of the close-ups under the picture of a sweep."""
+_SWEEP_WIDTH = 2200.0
+"""Width in pixels of the picture of a sweep."""
+_CLOSE_UP = (260, 146)
+"""Size in pixels of the close-ups below the picture of a sweep."""
 
 
 def summary(task: Task, wordings: Sequence[Task]) -> Iterator[str]:
-    """Return lines about a task. ``wordings`` are its paraphrases."""
+    """Yield lines of text about a task. ``wordings`` are its paraphrases."""
     yield f"{task.id}  ({task.category}, {task.difficulty}, {task.scope} scope; needs {', '.join(task.needs) or 'nothing'})"
     yield f"asked      {task.instruction}"
     for other in wordings:
@@ -44,11 +45,11 @@ def summary(task: Task, wordings: Sequence[Task]) -> Iterator[str]:
         yield f"twin       {task.pair}"
 
 
-def reference_run(task: Task, scene: Scene, equip: MakeToolContext) -> Iterator[str]:
-    """Return the calls of the reference program with the results of the tools, and the verdict."""
-    text, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
-    stage = ProgramRunner(scene, equip, TASK_CAMERA)
-    episode = anyio.run(stage.run, task, task.reference, text, outcome)
+def reference_run(task: Task, scene: Scene, make_context: MakeToolContext) -> Iterator[str]:
+    """Run the reference program of a task, and yield its calls with their results, its answer and its verdict."""
+    text, outcome = correct_answers(task.expected)[0], task.behaviour.outcomes[0]
+    runner = ProgramRunner(scene, make_context, TASK_CAMERA)
+    episode = anyio.run(runner.run, task, task.reference, text, outcome)
     for call in episode.calls:
         yield f"call       {call.name} {json.dumps(dict(call.arguments))} -> {call.error or (call.result or {}).get('message')}"
     yield f"answer     {text if outcome == 'answered' else f'({outcome})'}"
@@ -57,7 +58,7 @@ def reference_run(task: Task, scene: Scene, equip: MakeToolContext) -> Iterator[
 
 
 def write_frames(task: Task, scene: Scene, out: Path) -> Iterator[Path]:
-    """Write a picture of the start view, then one per evidence view with its items outlined and listed."""
+    """Write a picture of the start view and one of each evidence view with its items outlined, and yield their paths."""
     start = next(p for p in scene.file.presets if p.name == task.preset)
     at_start = TASK_CAMERA.view(Pose(start.pan_deg, start.tilt_deg, start.zoom))
     sheets = [(f"{task.id}-start.png", _sheet(task, scene, start.viewpoint, at_start, (), f"start: preset {start.name}"))]
@@ -86,13 +87,13 @@ def _projection(view: EvidenceView) -> Projection:
 
 
 def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, items: Sequence[Item], caption: str) -> Image.Image:
-    """Draw the task's text, the frame, and the list of outlined items; a sweep also shows each item in close-up."""
+    """Draw the task's text, the frame and the list of outlined items. For a sweep, also draw a close-up of each item."""
     image = Image.fromarray(picture(scene, viewpoint, projection, task.time_s))
     swept = isinstance(projection, Equirectangular)
-    width = _WIDE if swept else float(projection.width)
+    width = _SWEEP_WIDTH if swept else float(projection.width)
     height = width * projection.height / projection.width
-    columns = int(width / (_NEAR[0] + 12)) if swept else 2
-    cell = (width / columns, _NEAR[1] + _LINE + 18 if swept else _LINE)
+    columns = int(width / (_CLOSE_UP[0] + 12)) if swept else 2
+    cell = (width / columns, _CLOSE_UP[1] + _LINE + 18 if swept else _LINE)
     rows = -(-len(items) // columns)
     canvas = Canvas(width + 2 * _MARGIN, _HEAD + height + _MARGIN + (rows * cell[1] + 24 if rows else 0))
     lines = wrap(task.instruction, 24, width, 2)
@@ -105,9 +106,9 @@ def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, ite
         row, column = divmod(number - 1, columns)
         x, y = _MARGIN + column * cell[0], _HEAD + height + 34 + row * cell[1]
         if swept:
-            near = Image.fromarray(picture(scene, viewpoint, _near(item), task.time_s))
-            canvas.picture(near, x, y - 16, *_NEAR)
-            y += _NEAR[1] + 8
+            close_up = Image.fromarray(picture(scene, viewpoint, _close_up_view(item), task.time_s))
+            canvas.picture(close_up, x, y - 16, *_CLOSE_UP)
+            y += _CLOSE_UP[1] + 8
         canvas.panel(x, y - 14, 34, 20, SURFACE, radius=6, edge=EDGE)
         canvas.text(x + 17, y - 4, str(number), 14, AMBER, bold=True, anchor="mm")
         caption_text = item.instance if item.value is None or isinstance(item.value, bool) else f"{item.instance}: {item.value}"
@@ -115,12 +116,12 @@ def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, ite
     return canvas.finish()
 
 
-def _near(item: Item) -> Perspective:
-    """Return a view of an item with some of its surroundings."""
+def _close_up_view(item: Item) -> Perspective:
+    """Return a close-up view of an item and its surroundings."""
     left, bottom, right, top = item.box_deg
     across = (right - left) % 360.0
-    hfov_deg = min(max(2.5 * max(across, (top - bottom) * _NEAR[0] / _NEAR[1]), 6.0), 80.0)
-    return Perspective((left + across / 2 + 180) % 360 - 180, (bottom + top) / 2, hfov_deg, 2 * _NEAR[0], 2 * _NEAR[1])
+    hfov_deg = min(max(2.5 * max(across, (top - bottom) * _CLOSE_UP[0] / _CLOSE_UP[1]), 6.0), 80.0)
+    return Perspective((left + across / 2 + 180) % 360 - 180, (bottom + top) / 2, hfov_deg, 2 * _CLOSE_UP[0], 2 * _CLOSE_UP[1])
 
 
 def _outline(canvas: Canvas, projection: Projection, item: Item, number: int, width: float, height: float) -> None:

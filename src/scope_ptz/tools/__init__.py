@@ -1,1 +1,1 @@
-"""The nine tools of the paper, written against the camera and perception contracts only."""
+"""The nine tools of the paper. They depend only on the camera and perception contracts."""

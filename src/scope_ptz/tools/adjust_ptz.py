@@ -14,7 +14,7 @@ from scope_ptz.tools.results import MoveResult, PoseData
 from scope_ptz.tools.tool import Tool
 
 MAX_REQUESTED_ZOOM = 1e6
-"""A huge finite zoom factor would overflow to infinity; any camera stops long before this magnification."""
+"""Higher magnifications are reduced to this, so that a huge zoom factor cannot overflow. No camera reaches it."""
 
 
 class AdjustPtz(Arguments):
@@ -38,7 +38,7 @@ class AdjustPtz(Arguments):
 
 
 def requested_pose(start: Pose, arguments: AdjustPtz, limits: Limits) -> Pose:
-    """Return the pose that a relative adjustment asks for, before clamping."""
+    """Return the pose that a relative adjustment requests, before clamping."""
     turned = start.turned(arguments.pan_deg, arguments.tilt_deg)
     if arguments.zoom_factor is not None:
         return replace(turned, zoom=min(start.zoom * arguments.zoom_factor, MAX_REQUESTED_ZOOM))

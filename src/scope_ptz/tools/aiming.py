@@ -1,6 +1,7 @@
-"""Aiming on the sphere: the pose that puts a box in the middle of the frame at a requested size.
+"""Aiming: calculates the pose that shows a box in the middle of the frame at a requested size.
 
-All calculations use directions. Adding angles in the image to pan and tilt is wrong off the axis, and very wrong at steep tilts.
+All calculations use directions on the sphere. Adding angles in the image to pan and tilt would be inexact away from the middle of
+the frame, and far off at steep tilts.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 TARGET_FILL = 0.75
-"""Share of its limiting side that a framed target fills. The paper asks for 60 to 90%."""
+"""Share of the frame that a framed target fills, along its limiting side. The paper asks for 60 to 90%."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +33,8 @@ class Aim:
 
     Attributes:
         pose: The pose, within the camera's limits.
-        fill: The requested share of the limiting side, None for a pose at a given zoom.
-        limited_by: The limits that keep the target from the middle or from the requested size.
+        fill: The requested share of the limiting side; None for a pose at a given zoom.
+        limited_by: The limits that prevent the target from being centred or from reaching the requested size.
     """
 
     pose: Pose
@@ -42,7 +43,7 @@ class Aim:
 
 
 def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
-    """Return directions of shape ``(4 * per_side, 3)`` along the border of a box in a frame."""
+    """Return directions of shape ``(4 * per_side, 3)`` along the border of a box."""
     import numpy as np
 
     t = np.linspace(0.0, 1.0, per_side)
@@ -53,12 +54,12 @@ def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
 
 
 def view(info: CameraInfo, pose: Pose) -> Perspective:
-    """Return the projection of the camera's picture at a pose."""
+    """Return the projection of the camera's frame at a pose."""
     return geometry.Perspective(pose.pan_deg, pose.tilt_deg, info.optics.hfov_deg(pose.zoom), info.frame_width, info.frame_height)
 
 
-def spans(points: Floats) -> tuple[float, float, float, float]:
-    """Return left, top, right and bottom of normalised points; infinite if some lie behind the camera."""
+def bounds(points: Floats) -> tuple[float, float, float, float]:
+    """Return left, top, right and bottom of normalised points. They are infinite if any point lies behind the camera."""
     import numpy as np
 
     if np.isnan(points).any():
@@ -78,7 +79,7 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
     Returns:
         The share of the limiting side that the target fills, and the offset of its middle as shares of width and height.
     """
-    left, top, right, bottom = spans(view(info, pose).points(target))
+    left, top, right, bottom = bounds(view(info, pose).points(target))
     if not math.isfinite(left):
         return math.inf, (math.inf, math.inf)
     return max(right - left, bottom - top), ((left + right) / 2 - 0.5, (top + bottom) / 2 - 0.5)
@@ -87,7 +88,7 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
 def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL) -> Aim:
     """Return the pose within the limits that centres a target and makes it fill ``fill`` of its limiting side.
 
-    The calculation iterates because the bounding box of a target, and so its middle, changes with the view.
+    The calculation is iterative, because the bounding box of the target, and therefore its middle, changes with the view.
     """
     import numpy as np
 
@@ -100,7 +101,7 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
         requested = pose_towards(info, pan, tilt, zoom)
         pose, cut = limits.clamp(requested)
         clamped = set(cut)
-        left, top, right, bottom = spans(view(info, requested).points(target))
+        left, top, right, bottom = bounds(view(info, requested).points(target))
         if not math.isfinite(left):
             break
         middle = view(info, requested).directions(np.array([(left + right) / 2, (top + bottom) / 2]))
@@ -121,9 +122,9 @@ def in_order(axes: set[Axis]) -> tuple[Axis, ...]:
 
 
 def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> float:
-    """Return the magnification at which the target fills its share. Sizes in a centred view grow with the focal length.
+    """Return the magnification at which the target fills its share. In a centred view, sizes are proportional to the focal length.
 
-    A focal length outside the lens's range gives a zoom outside the camera's limits, so that clamping reports it.
+    A focal length outside the range of the lens gives a zoom outside the camera's limits, so that clamping reports the limit.
     """
     optics = info.optics
     reached, _ = measure(info, pose, target)
@@ -143,8 +144,8 @@ def is_cut(box: Box, margin: float = 0.004) -> bool:
 
 
 def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floats) -> Box | None:
-    """Return the box of a known target: the one nearest to its expected place, or None if that one is too far away."""
-    left, top, right, bottom = spans(frame.projection.points(target))
+    """Return the box nearest to the expected place of a known target, or None if it is too far away to be the target."""
+    left, top, right, bottom = bounds(frame.projection.points(target))
     if not boxes or not math.isfinite(left):
         return None
     x, y = (left + right) / 2, (top + bottom) / 2
@@ -157,7 +158,7 @@ def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floa
 
 
 def pose_towards(info: CameraInfo, pan_deg: float, tilt_deg: float, zoom: float) -> Pose:
-    """Return the pose that looks at a direction, with a pan between the stops if there is one."""
+    """Return the pose that looks in a direction, with a pan within the limits if possible."""
     limits = info.limits
     return Pose(pan_deg if limits.pan_endless else limits.aim_pan_deg(pan_deg), tilt_deg, zoom)
 

@@ -1,4 +1,4 @@
-"""The context of a tool call: a camera, perception, and a store for pictures."""
+"""The context of a tool call: a camera, a perception backend, and a store for pictures."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ class ImageStore(Protocol):
     """Saves pictures under unique names, which are relative to the run folder."""
 
     def save_look(self, frame: Frame) -> str:
-        """Save a frame that perception received, compressed, and return its name."""
+        """Save a frame that perception received, with lossy compression, and return its name."""
         ...
 
     def save_picture(self, frame: Frame) -> str:
-        """Save a picture that the user asked for, without loss, and return its name."""
+        """Save a picture that the user asked for, losslessly, and return its name."""
         ...
 
 
@@ -31,7 +31,7 @@ class ToolContext:
 
 
 def pose_text(arrival: Arrival) -> str:
-    """Return the camera's pose and the limits that stopped it, as the end of a sentence."""
+    """Describe the camera's pose and the limits that stopped it, as the end of a sentence."""
     pose = arrival.pose.as_dict()
     text = f"the camera is at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
     if arrival.clamped:

@@ -1,4 +1,4 @@
-"""The tool ``count_objects``, on the current view or on the full scene."""
+"""The tool ``count_objects``: count objects in the current view or in the full scene."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class CountObjects(Arguments):
 
 
 class CountResult(PerceptionResult):
-    """A count.
+    """The result of ``count_objects``.
 
     Attributes:
         description: What was counted.

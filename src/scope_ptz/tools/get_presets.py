@@ -1,4 +1,4 @@
-"""The tool ``get_presets``."""
+"""The tool ``get_presets``: list the preset views."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tool ``go_home``."""
+"""The tool ``go_home``: return to the home view."""
 
 from __future__ import annotations
 

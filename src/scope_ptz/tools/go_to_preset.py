@@ -1,4 +1,4 @@
-"""The tool ``go_to_preset``."""
+"""The tool ``go_to_preset``: go to a named preset view."""
 
 from __future__ import annotations
 

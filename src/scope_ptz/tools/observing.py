@@ -9,16 +9,16 @@ from scope_ptz.tools.context import ToolContext
 
 
 async def view_frame(context: ToolContext, view: View) -> Frame:
-    """Return the current frame, or the panorama of a sweep for the full view."""
+    """Return the current frame, or for the full view the panorama of a sweep."""
     if view == "full":
-        from scope_ptz.tools.sweep import sweep  # load OpenCV only for a sweep
+        from scope_ptz.tools.sweep import sweep  # only a sweep needs OpenCV
 
         return await sweep(context.camera)
     return await context.camera.frame()
 
 
 def remarks(observation: Detections | Answer) -> str:
-    """Return sentences about corrections and differing second opinions of an observation, with a leading space."""
+    """Return sentences about corrections of an observation and about a second backend that disagrees, with a leading space."""
     sentences = list(observation.notes)
     agreement = observation.agreement
     if agreement is not None and not agreement.agrees:

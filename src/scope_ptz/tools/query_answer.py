@@ -1,4 +1,4 @@
-"""The tool ``query_answer``, on the current view or on the full scene."""
+"""The tool ``query_answer``: answer a question about the current view or the full scene."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class QueryAnswer(Arguments):
 
 
 class AnswerResult(PerceptionResult):
-    """An answer.
+    """The result of ``query_answer``.
 
     Attributes:
         question: The question.

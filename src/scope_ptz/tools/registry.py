@@ -1,4 +1,4 @@
-"""The nine tools of the paper by name. A new tool is a file of its own and one line in ``TOOLS``."""
+"""The registry of the nine tools of the paper. A new tool needs a module of its own and a line in ``TOOLS``."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class ToolRegistry(Mapping[str, Tool]):
 
     @property
     def perceiving(self) -> tuple[str, ...]:
-        """Names of the tools that ask perception."""
+        """Names of the tools that call perception."""
         return tuple(name for name, tool in self._tools.items() if tool.perceives)
 
     def schemas(self) -> list[dict[str, Any]]:
@@ -60,7 +60,7 @@ class ToolRegistry(Mapping[str, Tool]):
         """Validate a call.
 
         Raises:
-            ToolCallError: The name or the arguments are wrong. The message tells a planner how to correct the call.
+            ToolCallError: The name or the arguments are invalid. The message tells a planner how to correct the call.
         """
         tool = self._tools.get(name)
         if tool is None:
@@ -78,9 +78,9 @@ class ToolRegistry(Mapping[str, Tool]):
         """Validate and run a call.
 
         Raises:
-            ToolCallError: The call is wrong. Nothing was done.
+            ToolCallError: The call is invalid. Nothing was done.
             UnknownNameError: A preset does not exist. Nothing was done.
-            PerceptionError: The view could not be read.
+            PerceptionError: The perception call failed.
             CameraError: The camera failed.
         """
         tool, checked = self.parse_call(name, arguments)

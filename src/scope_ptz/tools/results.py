@@ -19,15 +19,15 @@ class PoseData(BaseModel):
 
     @classmethod
     def of(cls, pose: Pose) -> PoseData:
-        """Return a pose as data."""
+        """Convert a pose."""
         return cls(**pose.as_dict())
 
 
 class Result(BaseModel):
-    """Base of all results.
+    """Base class of all tool results.
 
     Attributes:
-        message: One plain sentence for the planner and the person.
+        message: The result in plain words, for the planner and the user.
         pose: The camera's pose after the call.
         clamped: The axes that a limit stopped.
     """
@@ -43,18 +43,18 @@ class MoveResult(Result):
     """The result of ``adjust_ptz``, ``go_to_preset`` and ``go_home``.
 
     Attributes:
-        preset: The preset that the camera went to, None for other moves.
+        preset: The preset that the camera went to; None for other moves.
     """
 
     preset: str | None = None
 
 
 class PerceptionResult(Result):
-    """Base of the results that rest on perception.
+    """Base class of the results of perception calls.
 
     Attributes:
-        source: The perception that answered.
-        view: The view that it received.
+        source: The perception backend that answered.
+        view: The view that perception received.
         frames: File names of the saved pictures in the run folder.
     """
 

@@ -1,7 +1,7 @@
-"""The full scene: one deterministic sweep at the widest zoom, stitched into one panorama.
+"""Sweeps: frames of the full scene at the widest zoom, stitched into one panorama.
 
 A PTZ camera turns about its optical centre, so overlapping frames differ only by a re-projection. Each block of the panorama
-comes from the frame with the nearest middle, without blending, so that no object appears twice.
+is copied from the frame whose middle is nearest. Frames are not blended, so that no object appears twice.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from scope_ptz.camera.base import Camera, CameraInfo, Frame
 from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Equirectangular, Limits, Perspective, Pose
 
-_GRID_PX = 8  # The projection is computed on this grid and interpolated, with an error below 0.02 px at these angles.
+_GRID_PX = 8  # The projection is computed on a grid of this spacing and interpolated, with an error below 0.02 px.
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +34,12 @@ class Block:
 
 
 def plan_sweep(info: CameraInfo) -> list[Block]:
-    """Return the blocks of a sweep: their frames cover all pans and tilts that the camera reaches. Top row first, left to right."""
+    """Return the blocks of a sweep over all pans and tilts that the camera reaches, row by row from the top, left to right."""
     limits, hfov = info.limits, info.optics.hfov_deg(info.limits.min_zoom)
     half_height = math.tan(math.radians(hfov) / 2) * info.frame_height / info.frame_width
     columns = math.ceil(_pan_span_deg(limits) / (hfov * 0.85))
     step = _pan_span_deg(limits) / columns
-    # A frame covers less height off its axis. This is the reach at the edge of a column, less one degree for tilted frames.
+    # Frames cover less height towards their sides. This is the reach at the edge of a column, less 1 degree for tilted frames.
     reach = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2)))) - 1.0
     top = min(limits.max_tilt_deg + reach, 30.0)
     low, high = limits.min_tilt_deg, min(limits.max_tilt_deg, top - reach)
@@ -58,12 +58,12 @@ def plan_sweep(info: CameraInfo) -> list[Block]:
 
 def _pan_span_deg(limits: Limits) -> float:
     span = limits.max_pan_deg - limits.min_pan_deg
-    # Between stops at +-179, the frames also cover the two degrees behind the camera.
+    # With stops at +-179 degrees, for example, the frames also cover the two degrees between the stops.
     return 360.0 if limits.pan_endless or span >= 340.0 else span
 
 
 async def sweep(camera: Camera) -> Frame:
-    """Take the frames of a sweep at one instant of scene time and stitch them. The camera returns to its pose, also on failure."""
+    """Take the frames of a sweep at one instant of scene time and stitch them. The camera always returns to its pose."""
     start = await camera.pose()
     blocks = plan_sweep(camera.info)
     frames = []

@@ -1,4 +1,4 @@
-"""The tool ``take_image``."""
+"""The tool ``take_image``: save a picture of the current view."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ class TakeImage(Arguments):
 
 
 class ImageResult(Result):
-    """The file name of the saved picture in the run folder."""
+    """The result of ``take_image``, with the file name of the picture in the run folder."""
 
     file: str
 
 
 async def take_image(context: ToolContext, arguments: TakeImage) -> ImageResult:  # noqa: ARG001 - tools share one signature
-    """Save a picture without loss."""
+    """Save a picture losslessly."""
     frame = await context.camera.frame()
     name = context.images.save_picture(frame)
     return ImageResult(message=f"Saved the picture as {name}.", pose=PoseData.of(frame.pose), file=name)

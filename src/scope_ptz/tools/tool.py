@@ -1,4 +1,4 @@
-"""A tool as the registry holds it."""
+"""The definition of a tool."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from scope_ptz.tools.results import Result
 
 @cache
 def _json_schema(arguments: type[Arguments]) -> dict[str, Any]:
-    """Return the schema of a tool's arguments, which is the same for every run."""
+    """Return the JSON schema of a tool's arguments, cached because it never changes."""
     return arguments.model_json_schema()
 
 
-def _never(arguments: Any) -> bool:  # noqa: ARG001 - the default of a predicate
+def _never(arguments: Any) -> bool:  # noqa: ARG001 - the signature of ``only_reads``
     return False
 
 
@@ -30,11 +30,11 @@ class Tool:
     Attributes:
         name: The name in calls.
         arguments: The model that validates a call's arguments. Its docstring is the description that planners see.
-        run: Does what the tool does.
+        run: Carries out a call.
         moves: Whether the tool can move the camera.
-        perceives: Whether the tool asks perception.
-        only_reads: Whether a call with given arguments only reads the current view. Neighbouring calls of this kind run at the
-            same time and share one frame.
+        perceives: Whether the tool calls perception.
+        only_reads: Returns whether a call with given arguments only reads the current view. Consecutive calls of this kind run at
+            the same time and share one frame.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The tool ``track_object``: detect, correct the aim, and repeat for the requested time."""
+"""The tool ``track_object``: detect an object, correct the aim, and repeat for the requested time."""
 
 from __future__ import annotations
 
@@ -24,15 +24,17 @@ PERIOD_S = 0.5
 """Time between two detections: the paper's control loop runs at 2 Hz."""
 
 DEAD_ZONE = 0.06
-"""Offsets below this share of the frame are not corrected, which spares the motors."""
+"""Offsets below this share of the frame are not corrected, to spare the motors."""
 
 FILL_RANGE = (0.12, 0.5)
 TRACKING_FILL = 0.28
-"""Outside the range, the zoom is corrected to this fill: room to move around the target, and enough pixels to recognise it."""
+"""Outside the range, the zoom is corrected to this fill. It leaves room for motion, and enough pixels to recognise the target."""
 
-FREE_RATE_DEG_S = 25.0
-STEADY_RATE_DEG_S = 10.0
-"""The fastest deviation from the expected direction at which a match is still the target, before and after its motion is known."""
+MAX_RATE_UNKNOWN_MOTION_DEG_S = 25.0
+MAX_RATE_KNOWN_MOTION_DEG_S = 10.0
+"""Limits on how fast the target may deviate from the expected direction, before and after its motion is known. A match beyond the
+limit is a different object.
+"""
 
 LOST_DETECTIONS = 2
 LOST_ZOOM = 0.6
@@ -57,14 +59,14 @@ class TrackPoint(BaseModel):
 
 
 class TrackResult(PerceptionResult):
-    """How long a target was in view.
+    """The result of ``track_object``.
 
     Attributes:
         description: What was followed.
-        found: Whether anything fits the description.
+        found: Whether anything in view fits the description.
         duration_s: The requested time.
-        held_share: Share of that time in which the target was seen.
-        path: Where the camera looked while it followed the target.
+        held_share: Share of that time in which the target was in view.
+        path: The poses of the camera while it followed the target.
     """
 
     description: str
@@ -75,7 +77,7 @@ class TrackResult(PerceptionResult):
 
 
 class _Target:
-    """The target while it is followed: its size, and the directions of its middle at the last two sightings."""
+    """The state of a tracked target: its size, and the directions of its middle at the last two detections."""
 
     def __init__(self, frame: Frame, box: Box) -> None:
         self.size_deg = _size_deg(frame, box)
@@ -84,12 +86,12 @@ class _Target:
         self.before: tuple[Floats, float] | None = None
 
     def update(self, frame: Frame, box: Box) -> None:
-        """Add a sighting."""
+        """Add a detection."""
         self.before = (self.middle, self.time_s)
         self.size_deg, self.middle, self.time_s = _size_deg(frame, box), _middle(frame, box), frame.time_s
 
     def at(self, time_s: float) -> Floats:
-        """Extrapolate the motion between the last two sightings to a time, by two periods at most."""
+        """Return the expected direction at a time, extrapolated from the last two detections by at most two periods."""
         if self.before is None or self.time_s <= self.before[1]:
             return self.middle
         ahead = min(max(time_s - self.time_s, 0.0), 2 * PERIOD_S)
@@ -102,7 +104,7 @@ class _Target:
         if not angles:
             return None
         best = min(range(len(boxes)), key=angles.__getitem__)
-        rate = FREE_RATE_DEG_S if self.before is None else STEADY_RATE_DEG_S
+        rate = MAX_RATE_UNKNOWN_MOTION_DEG_S if self.before is None else MAX_RATE_KNOWN_MOTION_DEG_S
         return boxes[best] if angles[best] <= self.size_deg + rate * (frame.time_s - self.time_s) else None
 
 
@@ -120,7 +122,7 @@ def _size_deg(frame: Frame, box: Box) -> float:
 
 
 async def track_object(context: ToolContext, arguments: TrackObject) -> TrackResult:
-    """Keep an object in the middle. Of several matches, the first of perception's list is followed."""
+    """Keep an object in the middle of the view. If several objects fit, the first one that perception lists is followed."""
     camera, description = context.camera, arguments.description
     frame = await camera.frame()
     found = await context.perception.detect(frame, description)
@@ -199,7 +201,7 @@ def _report(
 
 
 def _held_share(path: list[TrackPoint]) -> float:
-    """Return the share of the time in which the target was seen. Each detection counts for the time since the previous one."""
+    """Return the share of the time in which the target was in view. Each detection counts for the time since the one before."""
     held = sum((now.time_s - before.time_s) for before, now in pairwise(path) if now.seen)
     span = max(path[-1].time_s, 1e-9)
     return min(held / span, 1.0) if len(path) > 1 else 1.0

@@ -1,4 +1,4 @@
-"""The tool ``zoom_to_object``: find an object, aim at it on the sphere, check, and frame it."""
+"""The tool ``zoom_to_object``: detect an object, centre it, and zoom in on it."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from scope_ptz.tools.aiming import Floats
 
 MAX_DETECTIONS = 3
-"""Perception calls per tool call."""
+"""Maximum number of perception calls per tool call."""
 
 SMALL_SHARE = 0.05
-"""A target that fills less than this share of its limiting side is detected again from closer, for a more exact box."""
+"""A target that fills less than this share of its limiting side is detected again at a closer zoom, for a more exact box."""
 
 CLOSER_FILL = 0.45
 """Share of its limiting side that a small target fills for the next detection."""
@@ -34,7 +34,7 @@ CUT_ZOOM = 0.4
 
 SETTLED_OFFSET = 0.012
 SETTLED_FILL = (0.64, 0.86)
-"""A target within this offset of the middle and in this range of sizes is framed well enough."""
+"""A target within this offset from the middle and in this range of fill needs no further move."""
 
 
 class ZoomToObject(Arguments):
@@ -44,16 +44,16 @@ class ZoomToObject(Arguments):
 
 
 class ZoomResult(PerceptionResult):
-    """A target and how it is framed.
+    """The result of ``zoom_to_object``.
 
     Attributes:
-        description: What was looked for.
-        found: Whether anything fits the description.
+        description: What to zoom in on.
+        found: Whether anything in view fits the description.
         matches: Number of matches in the first frame.
         chosen: Name of the match that the camera zoomed to.
         fill: Share of its limiting side that the target fills after the move.
         offset: Offset of the target's middle from the frame's middle, as shares of width and height.
-        limited_by: Limits that keep the target from the middle or from its size.
+        limited_by: Limits that prevent the target from being centred or from reaching its size.
         box: The target in the last frame.
     """
 
@@ -84,8 +84,8 @@ class _Detection:
 async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomResult:
     """Centre an object and make it fill its share of the frame.
 
-    Of several matches, the first of perception's list is used; the ground truth lists the largest first. After a move, the match
-    nearest to the expected place is the same object. The camera stays where it is if nothing is found.
+    If several objects fit, the first one that perception lists is used; the ground truth lists the largest first. After a move, the
+    match nearest to the expected place is taken to be the same object. The camera does not move if nothing is found.
     """
     start = await context.camera.pose()
     first = await _locate(context, arguments.description, None)
@@ -106,7 +106,7 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
             again = await _locate(context, arguments.description, target)
             detections += 1
             if isinstance(again, Frame):
-                # A close-up can be blurred or odd, so perception may lose the target there. Its direction is still known.
+                # Perception may not recognise the target in a close-up. Its direction is still known.
                 if interim:
                     await context.camera.move(aim(context.camera.info, arrival.pose, target).pose)
                 break
@@ -122,7 +122,7 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
 def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, detections: int) -> Aim:
     """Return the next move: the final framing if the box shows the whole target, otherwise a pose for a better detection."""
     if detections < MAX_DETECTIONS and is_cut(box):
-        # A large target, or one that is cut off a second time, is only sure to fit into the widest view.
+        # A large target, or one that is cut off again, may need the widest view to fit.
         large = max(box.width, box.height) > 0.25
         zoom = info.limits.min_zoom if detections > 1 or large else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
         return aim_at_zoom(info, target, zoom)
@@ -131,7 +131,7 @@ def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, detections: in
 
 
 def _framed(context: ToolContext, pose: Pose, target: Floats, plan: Aim) -> bool:
-    """Return whether the camera frames the target as well as it can."""
+    """Return whether the target is framed well enough, or as well as the limits allow."""
     fill, (dx, dy) = measure(context.camera.info, pose, target)
     if plan.limited_by:
         turn = geometry.angle_between_deg(_axis(pose), _axis(plan.pose))
@@ -154,7 +154,7 @@ async def _locate(context: ToolContext, description: str, known: Floats | None) 
 
 
 async def _nothing(context: ToolContext, description: str, frame: Frame) -> ZoomResult:
-    """Return the result for a description that nothing fits."""
+    """Return the result when nothing fits the description."""
     return ZoomResult(
         message=f"Nothing that fits '{description}' is in view; the camera stayed where it was.",
         pose=PoseData.of(frame.pose),

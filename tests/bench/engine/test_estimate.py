@@ -1,4 +1,4 @@
-"""The estimate before an evaluation: guessed, or measured on earlier runs, and labelled accordingly."""
+"""The estimate before an evaluation: guessed or measured on earlier runs, and labelled accordingly."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ENDPOINT = Endpoint(url="http://127.0.0.1:1/v1", model="m")
 PAIR: dict[str, Any] = {"planner": "m", "perception": "moondream2", "planner_is_free": False}
 
 
-def test_what_was_never_run_is_guessed_and_says_so() -> None:
+def test_an_estimate_without_earlier_runs_is_labelled_as_a_guess() -> None:
     # Four tasks of one call each: two steps, each with the prompt, the second with a call in the history.
     told = estimate(ENTRIES, 2, 4, (), Price(1.0, 2.0), opening_chars=4000)
     assert (told.runs, told.decisions, told.looks, told.seconds) == (8, 16, 4, None)
@@ -35,7 +35,7 @@ def test_what_was_never_run_is_guessed_and_says_so() -> None:
     assert "time    unknown" in text
 
 
-async def test_only_a_prompt_can_be_guessed_from() -> None:
+async def test_a_guess_is_based_on_the_prompt_only() -> None:
     planner = ChatPlanner(ENDPOINT)
     assert 4_000 < (prompt_chars(planner) or 0) < 20_000
     await planner.close()
@@ -43,7 +43,7 @@ async def test_only_a_prompt_can_be_guessed_from() -> None:
     assert "cost    unknown" in "\n".join(estimate_lines(estimate(ENTRIES, 1, 1, ()), **PAIR, concurrency=1))
 
 
-def test_what_was_run_before_is_measured(a_log: Path) -> None:
+def test_an_estimate_with_earlier_runs_is_measured(a_log: Path) -> None:
     earlier = read_evaluation(a_log)
     trials = tuple(t.model_copy(update={"input_tokens": 1000, "output_tokens": 100}) for t in earlier.trials)
     told = estimate(ENTRIES, 1, 1, [earlier.model_copy(update={"trials": trials})], opening_chars=4000)
@@ -53,7 +53,7 @@ def test_what_was_run_before_is_measured(a_log: Path) -> None:
     assert "measured on 4 earlier runs of this pair" in "\n".join(estimate_lines(told, **PAIR, concurrency=1))
 
 
-def test_a_run_that_stands_in_several_logs_counts_once(evaluated: Path) -> None:
+def test_a_run_in_several_logs_counts_once(evaluated: Path) -> None:
     shutil.copy2(evaluated, evaluated.with_name(f"{evaluated.stem}-recovered.eval"))
     known = earlier_evaluations(evaluated.parent, "grammar", "ground-truth")
     assert estimate(ENTRIES, 1, 1, known).measured_on == 4

@@ -1,4 +1,4 @@
-"""The gate: significant losses fail it, chance does not, and what cannot be compared is refused."""
+"""The gate: significant losses fail it, chance does not, and evaluations that cannot be compared are refused."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.cli.conftest import Scope
 
 
 def evaluation(like: Evaluation, right: dict[str, int], of: int = 10) -> Evaluation:
-    """So many of ten tasks of a category right, the first ones."""
+    """Return an evaluation with ``of`` trials in each category, of which ``right`` are correct."""
     trials: list[Trial] = []
     for category, number in right.items():
         for at in range(of):
@@ -63,7 +63,7 @@ def judged_by(like: Evaluation, judge: str) -> Evaluation:
     return like.model_copy(update={"trials": tuple(trials)})
 
 
-def test_one_task_is_one_and_other_judges_are_told(a_log: Path) -> None:
+def test_broken_tasks_and_changed_judges_are_reported(a_log: Path) -> None:
     like = read_evaluation(a_log)
     first, *rest = like.trials
     broken = first.model_copy(update={"headline": "infrastructure"})

@@ -1,4 +1,4 @@
-"""An evaluation that is killed and begun again: nothing lost, nothing done twice. Servers that fail: no run is lost."""
+"""Resuming a killed evaluation loses and repeats nothing, and failing servers lose no run."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PATIENCE_S = 240.0
 
 
 def turner(request: Request) -> Say:
-    """A model that turns as it is told, and says so."""
+    """Reply of a model that turns as instructed and reports it."""
     if request.data["messages"][-1]["role"] == "tool":
         return Say("I have turned.")
     angle = float(asked(request).split()[2])
@@ -51,7 +51,7 @@ def slow(behaviour: Behaviour, seconds: float) -> Behaviour:
 
 
 def in_turn(script: list[Behaviour], then: Behaviour) -> Behaviour:
-    """The script for chats alone: what else a server is asked, it answers well."""
+    """Apply the script to chat requests only; other requests get valid replies."""
     left = iter(script)
 
     async def behave(exchange: Exchange) -> None:
@@ -61,12 +61,12 @@ def in_turn(script: list[Behaviour], then: Behaviour) -> Behaviour:
 
 
 def first_steps(server: Misbehaving) -> Counter[str]:
-    """How often each task was begun."""
+    """Return how often each task was started."""
     return Counter(asked(r) for r in server.requests if r.chat and r.data["messages"][-1]["role"] == "user")
 
 
 def wait_for(begun: int, server: Misbehaving, process: subprocess.Popen[bytes]) -> None:
-    """Until so many tasks were begun."""
+    """Wait until this many tasks were started."""
     deadline = time.monotonic() + PATIENCE_S
     while len(first_steps(server)) < begun:
         assert process.poll() is None, "the evaluation ended before it was killed"
@@ -75,7 +75,7 @@ def wait_for(begun: int, server: Misbehaving, process: subprocess.Popen[bytes]) 
 
 
 @pytest.mark.full
-def test_killed_twice_and_nothing_lost_or_done_twice(
+def test_an_evaluation_killed_twice_loses_and_repeats_nothing(
     scope: Scope, scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tasks, logs, at_a_time = many(9), tmp_path / "logs", 2
@@ -108,7 +108,7 @@ def test_killed_twice_and_nothing_lost_or_done_twice(
     assert sum(begun_times.values()) - len(tasks) <= 2 * at_a_time
 
 
-def test_the_same_evaluation_does_not_run_twice_at_a_time(tmp_path: Path) -> None:
+def test_the_same_evaluation_cannot_run_twice_concurrently(tmp_path: Path) -> None:
     with exclusive(tmp_path, "one"):
         with pytest.raises(InputError, match="running already"), exclusive(tmp_path, "one"):
             pass
@@ -167,7 +167,7 @@ def test_a_dead_server_stops_the_evaluation(scope: Scope, tmp_path: Path) -> Non
         )  # fmt: skip
         assert len([r for r in server.requests if r.chat]) < 20
     assert done.code == 1
-    assert "12 consecutive runs were broken" in done.err
+    assert "12 consecutive runs failed" in done.err
     assert f"The model server at {server.url} refused the key. Set the key of this server" in done.err
     (log,) = (tmp_path / "logs").glob("*.eval")
     assert {trial.headline for trial in read_evaluation(log).trials} == {"infrastructure"}
@@ -184,7 +184,7 @@ def test_a_stalling_server_is_an_outcome(scope: Scope, tmp_path: Path) -> None:
     assert trial.tool_calls == {}
 
 
-def test_labels_go_along_with_the_runs_that_are_taken_over(scope: Scope, tmp_path: Path) -> None:
+def test_labels_are_kept_with_reused_runs(scope: Scope, tmp_path: Path) -> None:
     tasks, logs = many(11), tmp_path / "logs"
     dump_tasks(tasks, tmp_path / "tasks.jsonl")
     well = good(turner)

@@ -1,4 +1,4 @@
-"""Other people's agents: traced and checked as our own."""
+"""External agents are traced and checked like the built-in agent."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Agent:
 """
 
 
-def test_an_agent_of_somebody_else(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_external_agent(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "their_loop.py").write_text(MODULE)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
@@ -67,7 +67,7 @@ class Agent:
 
 
 @pytest.mark.parametrize(("looks", "headline"), [("session.view()", "correct"), ("pass", "incorrect")])
-def test_only_a_picture_that_was_opened_was_looked_at(
+def test_only_opened_pictures_count_as_observations(
     looks: str, headline: str, scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     module = f"seeing_loop_{looks[:4]}"
@@ -88,7 +88,7 @@ class Agent:
 """
 
 
-def test_other_source_is_another_evaluation(
+def test_changed_source_is_a_different_evaluation(
     scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -120,7 +120,7 @@ def test_other_source_is_another_evaluation(
     assert digests[1] == source_digest("quick_loop:Agent")
 
 
-def test_the_source_of_a_package_is_all_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_source_of_a_package_includes_all_its_modules(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "their_package" / "parts").mkdir(parents=True)
@@ -160,7 +160,7 @@ async def test_calls_that_are_awaited_together_are_one_step() -> None:
     assert (end.kind, end.text) == ("clarification", "2 x.jpg")
 
 
-async def test_an_agent_that_fails_is_the_agents_own_failure() -> None:
+async def test_a_failing_agent_is_not_an_infrastructure_failure() -> None:
     async def run(self: Any, session: AgentSession) -> str:
         raise ZeroDivisionError("oops")
 
@@ -169,7 +169,7 @@ async def test_an_agent_that_fails_is_the_agents_own_failure() -> None:
     assert failed.value.kind is None
 
 
-async def test_an_agent_without_a_word() -> None:
+async def test_an_agent_without_an_answer() -> None:
     async def run(self: Any, session: AgentSession) -> str:
         return " "
 

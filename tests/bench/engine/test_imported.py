@@ -1,4 +1,4 @@
-"""Tasks of another file's format run through the same engine; without a checked answer the judge decides."""
+"""Imported tasks run through the same engine; a judge decides where no check applies."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_one_judge_decides_on_all_runs_of_a_log(evaluated: Path) -> None:
     assert decided_by_one_judge([broken])[0].headline == "infrastructure" and other_judges_note([broken]) == ""
 
 
-def test_the_judge_of_a_report_is_the_one_that_decides_and_never_one_that_was_away() -> None:
+def test_a_report_uses_the_deciding_judge_and_not_an_unavailable_one() -> None:
     task = facts(1)[0]
 
     def run(*made: Judgement, by: str = "judge") -> ReportRun:
@@ -127,7 +127,7 @@ def test_the_judge_of_a_report_is_the_one_that_decides_and_never_one_that_was_aw
     assert verdicts(run(said_by("a", "failed"), late).scored_trials, "a")[0][1] == late
 
 
-def test_replies_without_a_verdict_are_in_no_share_and_in_no_gate(scope: Scope, evaluated: Path) -> None:
+def test_replies_without_a_verdict_are_excluded_from_accuracy_and_gates(scope: Scope, evaluated: Path) -> None:
     evaluation = read_evaluation(evaluated)
     said = Judgement(judge="j", prompt="p", verdict="unparseable")
     mute = evaluation.trials[0].model_copy(update={"scored_by": "judge", "headline": "unscored", "judgements": (said,)})

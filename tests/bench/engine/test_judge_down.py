@@ -1,4 +1,4 @@
-"""A judge that is away or talks nonsense never looks like success, and the same command makes good what is missing."""
+"""An unavailable judge or one with invalid replies is never a success, and repeating the command adds missing verdicts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def run(scope: Scope, tasks: Path, out: Path, *judge: str) -> tuple[int, str, st
     return done.code, done.out, done.err
 
 
-def test_rescoring_by_a_judge_that_is_away_fails_and_the_same_command_mends_it(scope: Scope, evaluated: Path) -> None:
+def test_rescoring_with_an_unavailable_judge_fails_and_can_be_repeated(scope: Scope, evaluated: Path) -> None:
     down = scope("bench", "rescore", str(evaluated), "--judge-url", AWAY, "--judge-model", "j")
     assert down.code == 1
     assert "4 judgements by j: 0 with a verdict, 0 unparseable, 4 failed" in down.out
@@ -38,14 +38,14 @@ def test_rescoring_by_a_judge_that_is_away_fails_and_the_same_command_mends_it(s
     ]  # fmt: skip
 
 
-def test_replies_that_are_no_verdict_are_counted_and_no_failure_of_servers(scope: Scope, evaluated: Path) -> None:
+def test_invalid_replies_are_counted_but_are_not_server_failures(scope: Scope, evaluated: Path) -> None:
     with Misbehaving(then=good(Say("I think it went well."))) as server:
         done = scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j")
     assert done.code == 0, done.err
     assert "4 judgements by j: 0 with a verdict, 4 unparseable, 0 failed" in done.out
 
 
-def test_a_run_whose_judge_is_away_is_not_done(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
+def test_a_run_whose_judge_is_unavailable_is_not_complete(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
     code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", AWAY, "--judge-model", "j")
     assert code == 1
     assert "judge      j: 0 with a verdict, 0 unparseable, 4 failed" in out
@@ -66,18 +66,18 @@ def test_a_run_whose_judge_is_away_is_not_done(scope: Scope, tasks_file: Path, t
         code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", server.url, "--judge-model", "j")
         assert code == 0, err
         assert len([r for r in server.requests if r.chat]) == 2
-    assert "this evaluation is complete" in err
+    assert "this evaluation is already complete" in err
     assert "judge      j: 4 with a verdict, 0 unparseable, 0 failed" in out
     # The agent was not run again, and a judge that has said everything is not asked, wherever it is.
     assert list(tmp_path.glob("*.eval")) == [log] and uuids_in(log) == runs
     for judge in (("--judge-url", AWAY, "--judge-model", "j"), ("--judge-url", AWAY)):
         code, out, err = run(scope, tasks_file, tmp_path, *judge)
         assert (code, "4 with a verdict" in out, "missing" in err) == (0, True, False)
-    assert f"The judge's server at {AWAY} cannot be asked for its model's name" in err
-    assert "Every run has been judged by j" in err
+    assert f"The judge's server at {AWAY} did not report the name of its model" in err
+    assert "j has already judged every run" in err
 
 
-def test_no_judge_is_invented_for_a_server_that_is_away(scope: Scope, evaluated: Path, tasks_file: Path, tmp_path: Path) -> None:
+def test_an_unavailable_judge_changes_no_log(scope: Scope, evaluated: Path, tasks_file: Path, tmp_path: Path) -> None:
     before = evaluated.read_bytes()
     gone = scope("bench", "rescore", str(evaluated), "--judge-url", AWAY)
     assert gone.code == 1 and "nothing was judged" in gone.err and "Start it, or check the address." in gone.err
@@ -95,7 +95,7 @@ def served(*names: str) -> Behaviour:
     return behave
 
 
-def test_another_judge_is_asked_although_one_has_said_everything(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
+def test_a_second_judge_is_asked_although_the_first_is_complete(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
     for name in ("judge-a", "judge-b"):
         with Misbehaving(then=served(name)) as server:
             code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", server.url)
@@ -120,7 +120,7 @@ def test_an_evaluation_that_was_run_without_a_judge_is_judged_by_the_same_comman
     assert [[j.repeat for j in t.judgements] for t in read_evaluation(log).trials] == [[0, 1]] * 4
 
 
-def test_what_another_judge_said_before_a_break_waits_for_its_own_command(scope: Scope, evaluated: Path) -> None:
+def test_verdicts_of_another_judge_are_resumed_by_its_own_command(scope: Scope, evaluated: Path) -> None:
     trial = read_evaluation(evaluated).trials[0]
     said = Judgement(judge="a", prompt=prompt_version(), verdict="correct", reason="Kept.")
     Journal.beside(evaluated).add(trial.sample, said)  # as a rescoring by "a" that was killed leaves it
@@ -132,7 +132,7 @@ def test_what_another_judge_said_before_a_break_waits_for_its_own_command(scope:
     assert not list(evaluated.parent.glob("*.jsonl*"))
 
 
-def test_what_is_said_of_judgements(evaluated: Path) -> None:
+def test_summaries_of_judgements(evaluated: Path) -> None:
     def judgement(verdict: str, **values: object) -> Judgement:
         return Judgement.model_validate({"judge": "j", "prompt": prompt_version(), "verdict": verdict, **values})
 

@@ -1,4 +1,4 @@
-"""Judges in the engine: during a run, afterwards, twice, and killed in between. Sweeps over pairs."""
+"""Judges in the engine: during a run, afterwards, repeatedly, and interrupted; and sweeps over pairs."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_log_is_judged_twice_and_keeps_everything(scope: Scope, evaluated: Pat
     assert not Journal.beside(evaluated).path.exists()  # type: ignore[union-attr]
 
 
-def test_judgements_made_before_a_break_are_not_made_again(scope: Scope, evaluated: Path) -> None:
+def test_judgements_before_an_interruption_are_not_repeated(scope: Scope, evaluated: Path) -> None:
     with Misbehaving(then=good(verdict)) as server:
         options = ("--judge-url", server.url, "--judge-model", "the-judge")
         assert scope("bench", "rescore", str(evaluated), *options).code == 0
@@ -62,13 +62,13 @@ def test_judgements_made_before_a_break_are_not_made_again(scope: Scope, evaluat
     assert [len(t.judgements) for t in read_evaluation(evaluated).trials] == [2, 2, 2, 2]
 
 
-def test_a_judge_that_fails_is_counted_apart(scope: Scope, evaluated: Path) -> None:
+def test_judge_failures_are_counted_separately(scope: Scope, evaluated: Path) -> None:
     with Misbehaving(then=good(Say("I think it went well."))) as server:
         assert scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j").code == 0
     assert {j.verdict for t in read_evaluation(evaluated).trials for j in t.judgements} == {"unparseable"}
 
 
-def test_what_a_judge_failed_on_is_asked_again_and_nothing_else(scope: Scope, evaluated: Path) -> None:
+def test_only_failed_judgements_are_repeated(scope: Scope, evaluated: Path) -> None:
     async def half(exchange: Exchange) -> None:
         behaviour = status(401) if "how many" in str(exchange.request.data) else good(verdict)
         await behaviour(exchange)
@@ -86,7 +86,7 @@ def test_what_a_judge_failed_on_is_asked_again_and_nothing_else(scope: Scope, ev
     assert {j.repeat for t in trials for j in t.judgements} == {0}
 
 
-def test_a_sweep_of_pairs_goes_on_and_judges(scope: Scope, tmp_path: Path) -> None:
+def test_a_sweep_of_pairs_resumes_and_judges(scope: Scope, tmp_path: Path) -> None:
     dump_tasks(TASKS[2:], tmp_path / "tasks.jsonl")
     options = ("--tasks", str(tmp_path / "tasks.jsonl"), "--out", str(tmp_path / "logs"))
     first = scope("bench", "sweep", "--pairs", "grammar+ground-truth,grammar+noisy", *options)
@@ -95,7 +95,7 @@ def test_a_sweep_of_pairs_goes_on_and_judges(scope: Scope, tmp_path: Path) -> No
     assert set(logs) == {"grammar + ground-truth", "grammar + noisy"}
     again = scope("bench", "sweep", "--pairs", "grammar+ground-truth,grammar+noisy", *options, "--json")
     assert again.code == 0
-    assert again.err.count("this evaluation is complete") == 2
+    assert again.err.count("this evaluation is already complete") == 2
     assert {name: row["micro"] for name, row in again.json.items()} == {"grammar+ground-truth": 1.0, "grammar+noisy": 1.0}
 
 
@@ -111,7 +111,7 @@ def test_a_pair_without_a_server_does_not_stop_the_others(scope: Scope, tmp_path
     assert len(list((tmp_path / "logs").glob("*.eval"))) == 1
 
 
-def test_a_sweep_wants_known_pairs(scope: Scope) -> None:
+def test_a_sweep_rejects_unknown_pairs(scope: Scope) -> None:
     for options, words in (
         (("--pairs", "nobody+moondream3"), "There is no planner 'nobody'"),
         ((), "Say which pairs"),
@@ -122,7 +122,7 @@ def test_a_sweep_wants_known_pairs(scope: Scope) -> None:
         assert words in done.err
 
 
-def test_a_sweep_keeps_exact_planners_and_eyes_off_the_ranking(evaluated: Path) -> None:
+def test_reference_planners_and_perception_are_not_ranked_in_a_sweep(evaluated: Path) -> None:
     def drawn(width: int) -> list[str]:
         console = Console(width=width, file=io.StringIO(), record=True)
         for table in sweep_tables(
@@ -148,7 +148,7 @@ def test_a_sweep_keeps_exact_planners_and_eyes_off_the_ranking(evaluated: Path) 
     assert sum("counting" in line for line in wide) == 2
 
 
-def test_the_paper_by_one_word() -> None:
+def test_the_pairs_of_the_paper_have_a_short_name() -> None:
     from scope_ptz.cli.bench.sweep import pair_names
 
     names = pair_names(None, paper=True)

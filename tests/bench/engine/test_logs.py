@@ -1,4 +1,4 @@
-"""Logs that are damaged, cut, or none of ours end in an error that says so."""
+"""Damaged, truncated and foreign logs give a clear error."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from tests.cli.conftest import Scope
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 half a zip", b'{"version": 2}', bytes(range(256)) * 40])
-def test_no_log(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_not_a_log(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "some.eval"
     path.write_bytes(content)
     with pytest.raises(TraceError, match=r"some\.eval"):
         read_evaluation(path)
 
 
-def test_no_file(tmp_path: Path) -> None:
+def test_a_missing_file(tmp_path: Path) -> None:
     with pytest.raises(TraceError, match="There is no log"):
         read_evaluation(tmp_path / "none.eval")
     with pytest.raises(TraceError, match=r"cannot be read|no log"):
         read_evaluation(tmp_path)
 
 
-def test_a_cut_log(evaluated: Path, tmp_path: Path) -> None:
+def test_a_truncated_log(evaluated: Path, tmp_path: Path) -> None:
     whole = evaluated.read_bytes()
     path = tmp_path / "cut.eval"
     for share in (0.1, 0.5, 0.99):
@@ -49,9 +49,9 @@ def test_a_log_of_another_evaluation(evaluated: Path, tmp_path: Path) -> None:
         read_evaluation(path)
 
 
-def test_a_run_that_is_not_there(evaluated: Path) -> None:
+def test_a_missing_run(evaluated: Path) -> None:
     for name in ("nothing#1", "nothing", "", "#", "../../x#1"):
-        with pytest.raises(TraceError, match="holds no run"):
+        with pytest.raises(TraceError, match="contains no run"):
             open_sample(evaluated, name)
 
 
@@ -70,7 +70,7 @@ def test_scores_are_appended_and_none_is_lost(scope: Scope, evaluated: Path) -> 
     assert open_sample(evaluated, trial.sample).picture((look.outcome.result or {})["frames"][0])
 
 
-def test_rescoring_wants_to_know_by_what(scope: Scope, evaluated: Path) -> None:
+def test_rescoring_requires_checks_or_a_judge(scope: Scope, evaluated: Path) -> None:
     done = scope("bench", "rescore", str(evaluated))
     assert done.code == 2
     assert "--judge-url" in done.err

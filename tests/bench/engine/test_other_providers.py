@@ -1,4 +1,4 @@
-"""Planner and judge as models of another provider that the engine knows: here its client for any OpenAI-compatible server."""
+"""Planner and judge as models of another provider of the engine, its client for OpenAI-compatible servers."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ PASSED = {"reason": "It turned as asked.", "verdict": "correct", "error_mode": "
 
 
 def planner(request: Request) -> Say:
-    """Turns when told to; else it calls what is no tool, and answers without having looked."""
+    """Turns when instructed to; otherwise it calls an unknown tool and answers without an observation."""
     if "pan right" in str(request.data["messages"]):
         return turner(request)
     return Say("There are 3 balls.") if request.data["messages"][-1]["role"] == "tool" else Say("", tool_calls=(("look", {}),))
 
 
 def judge(request: Request) -> Say:
-    """No verdict at first; then one about turns, and never one about anything else."""
+    """Gives no verdict first, then verdicts on turns, and none on other tasks."""
     messages = request.data["messages"]
     assert request.data["response_format"]["type"] == "json_schema"
     told_back = "no valid verdict" in str(messages[-1]["content"])

@@ -1,4 +1,4 @@
-"""`scope bench run` and what it leaves: a log with every call, look and picture, read back as data."""
+"""`scope bench run` writes a log with every tool call, perception call and picture, which can be read back as data."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_the_card_says_how_it_was_run(evaluated: Path) -> None:
     assert card.contended
 
 
-def test_the_log_shows_calls_looks_and_pictures(evaluated: Path) -> None:
+def test_the_log_shows_tool_calls_perception_calls_and_pictures(evaluated: Path) -> None:
     log = read_eval_log(str(evaluated), resolve_attachments=True)
     assert log.samples is not None
     sample = next(s for s in log.samples if "counting-001" in str(s.id))
@@ -64,7 +64,7 @@ def test_the_log_shows_calls_looks_and_pictures(evaluated: Path) -> None:
     assert {"planner", "eyes"} == set(log.eval.model_roles or {})
 
 
-def test_trace_and_pictures_of_a_run_can_be_had(evaluated: Path) -> None:
+def test_trace_and_pictures_of_a_run_can_be_extracted(evaluated: Path) -> None:
     files = open_sample(evaluated, f"scope1-{SCENE}-counting-001#1")
     assert files.trace.ended is not None
     assert files.trace.ended.outcome == "answered"
@@ -78,7 +78,7 @@ def test_trace_and_pictures_of_a_run_can_be_had(evaluated: Path) -> None:
     assert files.picture("frames/999-view.jpg") is None
 
 
-def test_what_is_done_is_not_done_again(scope: Scope, evaluated: Path, tasks_file: Path) -> None:
+def test_completed_runs_are_not_repeated(scope: Scope, evaluated: Path, tasks_file: Path) -> None:
     before = evaluated.read_bytes()
     done = scope("bench", "run", "--tasks", str(tasks_file), "--out", str(evaluated.parent), "--json")
     assert done.code == 0
@@ -131,7 +131,7 @@ def test_a_limit_spreads_over_categories_scenes_and_scopes() -> None:
     assert select(entries, limit=90) == select(entries) == entries
 
 
-def test_built_in_ones_may_be_in_a_pair(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
+def test_a_pair_may_contain_built_in_models(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
     pairs = ("grammar+ground-truth", "grammar+noisy")
     options = ("--tasks", str(tasks_file), "--category", "single_call", "--no-pictures", "--json")
     logs = [Path(scope("bench", "run", *options, "--pair", name, "--out", str(tmp_path)).json["log"]) for name in pairs]
@@ -152,9 +152,9 @@ def test_built_in_ones_may_be_in_a_pair(scope: Scope, tasks_file: Path, tmp_path
         (["--agent", "nonsense"], "module:Class"),
         (["--agent", "json:nothing"], "cannot be imported"),
         (["--agent", "json:JSONDecoder"], "is not an agent"),
-        (["--price", "cheap"], "--price wants two amounts"),
+        (["--price", "cheap"], "--price needs two amounts"),
         (["--resume", "missing.eval"], "There is no log"),
-        (["--perception", "rapidocr", "--no-pictures"], "looks at pictures"),
+        (["--perception", "rapidocr", "--no-pictures"], "needs pictures"),
     ],
 )
 def test_wrong_options_end_in_a_message(scope: Scope, tasks_file: Path, tmp_path: Path, options: list[str], words: str) -> None:
@@ -172,7 +172,7 @@ def test_resuming_another_evaluation_is_refused(scope: Scope, evaluated: Path, t
     assert "another evaluation" in done.err
 
 
-def test_a_sample_says_which_task_it_is_of(evaluated: Path) -> None:
+def test_a_sample_names_its_task(evaluated: Path) -> None:
     header = read_eval_log(str(evaluated), header_only=True)
     told = json.dumps(header.eval.metadata)
     assert "dataset_digest" in told

@@ -1,4 +1,4 @@
-"""Servers that were away are named at the end of an evaluation, with their addresses and what to do."""
+"""Unavailable servers are reported at the end of an evaluation, with their addresses and advice."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ AWAY = "http://127.0.0.1:1/v1"
 
 
 def made() -> Evaluation:
-    """Broken by the planner's server thrice; blind and wrong twice; sound once."""
+    """Six trials: three failures of the planner's server, two failures of perception, and one correct run."""
     about = card("qwen3-4b", "moondream2")
     about = about.model_copy(
         update={
@@ -37,7 +37,7 @@ def made() -> Evaluation:
     return Evaluation(card=about, trials=rows, wanted=len(rows))
 
 
-def test_what_servers_did_is_told_with_the_address_and_what_to_do() -> None:
+def test_server_failures_are_reported_with_address_and_advice() -> None:
     evaluation = made()
     planner, eyes = failure_summary(evaluation.trials, evaluation.card)
     assert planner == (
@@ -56,7 +56,7 @@ def test_what_servers_did_is_told_with_the_address_and_what_to_do() -> None:
     assert "Server failures" in told.get() and planner in told.get() and eyes in told.get()
 
 
-def test_dead_eyes_are_named_by_the_command(scope: Scope, tmp_path: Path) -> None:
+def test_unavailable_perception_is_reported_by_the_command(scope: Scope, tmp_path: Path) -> None:
     dump_tasks(TASKS, tmp_path / "tasks.jsonl")
     run = ("bench", "run", "--tasks", str(tmp_path / "tasks.jsonl"), "--perception", "moondream2", "--perception-url", AWAY)
     done = scope(*run, "--out", str(tmp_path / "logs"))
@@ -66,7 +66,7 @@ def test_dead_eyes_are_named_by_the_command(scope: Scope, tmp_path: Path) -> Non
     assert again["server_events"]["refused"] and any(AWAY in line for line in again["failure_summary"])
 
 
-def test_a_sweep_whose_servers_are_away_says_so(scope: Scope, tmp_path: Path) -> None:
+def test_a_sweep_reports_unavailable_servers(scope: Scope, tmp_path: Path) -> None:
     dump_tasks(many(1), tmp_path / "tasks.jsonl")
     where = (
         "--tasks",

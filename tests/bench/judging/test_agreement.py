@@ -1,4 +1,4 @@
-"""Who agrees with whom: judges, repeats, checks and people over evaluations; known faults over gold runs."""
+"""Agreement between judges, repeats, checks and human labels on evaluations, and with known faults on gold runs."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from scope_ptz.taskgen.gold.judge_cases import result_lines
 from scope_ptz.taskgen.gold.judge_results import (
     GoldCase,
     GoldVerdict,
+    alternating_modes,
     gold_case,
-    in_turn,
     judge_gold,
     passing_case,
     raters_of_gold,
@@ -65,7 +65,7 @@ def evaluation(*trials: Trial) -> Evaluation:
     return Evaluation(card=CARD, trials=trials, wanted=len(trials), log="a.eval")
 
 
-def test_everyone_who_rated_is_found_and_compared() -> None:
+def test_all_raters_are_found_and_compared() -> None:
     ann = (Label(by="ann", verdict="incorrect", error_mode=ErrorMode.SCOPE),)
     report = measure_agreement(
         raters_of(
@@ -126,7 +126,7 @@ def test_the_report_as_text_and_as_json() -> None:
     assert content["pairs"][0]["verdicts"]["kappa"] == pytest.approx(0.0)
     assert figures(cohen(["correct"], ["correct"], ["t"], 1)).startswith("1 run, agree on 100.0%")
     assert figures(cohen([], [], [], 1)) == "no run was rated by both"
-    assert "hold no ratings" in next(iter(agreement_lines(measure_agreement([]))))
+    assert "contain no ratings" in next(iter(agreement_lines(measure_agreement([]))))
 
 
 # Gold runs
@@ -141,12 +141,12 @@ def gold_runs() -> list[GoldRun]:
 
 
 def all_cases() -> list[GoldCase]:
-    cases = [gold_case(gold, PLACES) for gold in in_turn(gold_runs())]
+    cases = [gold_case(gold, PLACES) for gold in alternating_modes(gold_runs())]
     return [*cases, *(passing_case(task, episode, PLACES) for task, episode in samples())]
 
 
 class Oracle:
-    """A port that knows which runs are faulty, as a good judge would, and errs where it is told to."""
+    """A judge that knows which runs are faulty, with configurable errors."""
 
     def __init__(self, cases: list[GoldCase], *, accepts: str = "", fails: str = "") -> None:
         from scope_ptz.bench.judging.judge import judge_messages
@@ -178,7 +178,7 @@ def verdicts_of(cases: list[GoldCase], port: Oracle, repeat: int = 0) -> list[Go
     return found
 
 
-def test_gold_runs_are_told_apart_by_what_the_judge_reads() -> None:
+def test_gold_runs_differ_in_the_text_for_the_judge() -> None:
     cases = all_cases()
     assert len({case.key for case in cases}) == len(cases)
     assert {case.fault for case in cases} == {*MODES, None}
@@ -193,7 +193,7 @@ def test_a_perfect_judge_of_gold_runs() -> None:
     assert made.as_dict()["matrix"]["passes"] == {"correct": len(samples())}
 
 
-def test_a_judge_that_lets_something_through_and_one_that_fails() -> None:
+def test_a_judge_that_misses_a_fault_and_a_judge_that_fails() -> None:
     cases = all_cases()
     scopes = sum(case.fault is ErrorMode.SCOPE for case in cases)
     looks = sum(case.fault is ErrorMode.VLM_QUERY for case in cases)
@@ -225,7 +225,7 @@ def test_verdicts_on_disk_and_their_repeats(tmp_path: Path) -> None:
     assert repeats.verdicts.raw < 1.0
 
 
-def test_a_line_that_was_cut_off_is_no_verdict_and_does_no_harm(tmp_path: Path) -> None:
+def test_an_incomplete_line_is_ignored(tmp_path: Path) -> None:
     cases, path = all_cases()[:3], tmp_path / "gold.jsonl"
     one, two, three = verdicts_of(cases, Oracle(cases))
     append_line(path, one.model_dump_json())
@@ -237,7 +237,7 @@ def test_a_line_that_was_cut_off_is_no_verdict_and_does_no_harm(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("content", [b"{}\n", b"not json\n", b"\xff\xfe\n"])
-def test_other_files_are_no_verdicts(tmp_path: Path, content: bytes) -> None:
+def test_other_files_are_not_verdicts(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "x.jsonl"
     path.write_bytes(content)
     with pytest.raises(InputError):

@@ -1,4 +1,4 @@
-"""Judges over real HTTP: verdicts, retries, servers that constrain less or misbehave; nothing is guessed and nothing lost."""
+"""Judges over HTTP: verdicts, retries, servers without schemas, and misbehaving servers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from pydantic import SecretStr
 
 from scope_ptz.bench.judging.judge import Completion, Judge, NoReplyError
-from scope_ptz.bench.judging.rendering import LEAST_CHARS
+from scope_ptz.bench.judging.rendering import MIN_CHARS
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
 from scope_ptz.bench.scoring.error_modes import ErrorMode
@@ -25,7 +25,7 @@ KEY = "sk-judge-0123456789"
 
 
 def judged(url: str, *, timeouts: Timeouts | None = None, retries: int = 0, **options: Any) -> Judgement:
-    """The judgement of the server at an address on a run that passes."""
+    """Return the judgement of the server at a URL on a run that passes."""
     endpoint = Endpoint(url=url, model="gpt-oss-120b", key=SecretStr(KEY), timeouts=timeouts or Timeouts(), retries=retries)
 
     async def ask() -> Judgement:
@@ -42,7 +42,7 @@ def says(content: Any) -> m.Behaviour:
     return m.good(m.Say(content if isinstance(content, str) else written(content)))
 
 
-def test_a_verdict_as_asked_for() -> None:
+def test_a_verdict_in_the_requested_format() -> None:
     with m.Misbehaving([says(MISCOUNTED)]) as server:
         made = judged(server.url)
     assert (made.verdict, made.error_mode, made.attempts) == ("incorrect", ErrorMode.VLM_COUNTING, 1)
@@ -59,7 +59,7 @@ def test_a_verdict_as_asked_for() -> None:
     assert "reasoning_effort" not in request.data
 
 
-def test_what_is_wrong_is_told_back_and_the_next_reply_counts() -> None:
+def test_an_invalid_reply_is_returned_with_the_error_and_the_next_one_counts() -> None:
     with m.Misbehaving([says({**CORRECT, "error_mode": "scope"}), says("Correct!"), says(CORRECT)]) as server:
         made = judged(server.url)
     assert (made.verdict, made.error_mode, made.attempts) == ("correct", None, 3)
@@ -84,7 +84,7 @@ GARBAGE: list[tuple[str, Callable[[], m.Behaviour]]] = [
 
 
 @pytest.mark.parametrize("name", [name for name, _ in GARBAGE])
-def test_what_never_becomes_a_verdict_is_unparseable(name: str) -> None:
+def test_replies_that_stay_invalid_are_unparseable(name: str) -> None:
     with m.Misbehaving(then=dict(GARBAGE)[name]()) as server:
         made = judged(server.url)
     assert (made.verdict, made.error_mode) == ("unparseable", None)
@@ -118,25 +118,25 @@ def test_a_server_that_never_answers_is_failed(name: str) -> None:
     assert KEY not in made.model_dump_json()
 
 
-def test_nobody_listens() -> None:
+def test_an_unreachable_server() -> None:
     with m.nobody_listens() as url:
         assert judged(url).verdict == "failed"
 
 
-def test_a_passing_fault_costs_nothing() -> None:
+def test_a_temporary_failure_is_retried() -> None:
     script = [m.status(429, headers={"Retry-After": "0"}), m.reset(), says(MISCOUNTED)]
     with m.Misbehaving(script) as server:
         assert judged(server.url, retries=3).error_mode is ErrorMode.VLM_COUNTING
 
 
 def no_schema(x: m.Exchange) -> Any:
-    """A server that knows JSON mode but no schemas."""
+    """A server that supports JSON mode but not schemas."""
     form = x.request.data.get("response_format", {}).get("type")
     return m.status(400, "response_format json_schema is not supported")(x) if form == "json_schema" else says(CORRECT)(x)
 
 
 def free_only(x: m.Exchange) -> Any:
-    """A server that refuses unknown fields without a word."""
+    """A server that refuses the field ``response_format`` without naming it."""
     return m.status(422, {"detail": "extra"})(x) if "response_format" in x.request.data else says(CORRECT)(x)
 
 
@@ -156,13 +156,13 @@ def silent_when_bound(x: m.Exchange) -> Any:
 @pytest.mark.parametrize(
     ("behave", "requests"), [(no_schema, 2), (free_only, 3), (no_seed, 2), (no_system, 2), (silent_when_bound, 3)]
 )
-def test_servers_that_take_less(behave: m.Behaviour, requests: int) -> None:
+def test_servers_that_support_fewer_fields(behave: m.Behaviour, requests: int) -> None:
     with m.Misbehaving(then=behave) as server:
         assert judged(server.url).verdict == "correct"
     assert len(server.requests) == requests
 
 
-def test_what_a_server_refused_it_is_not_sent_again() -> None:
+def test_refused_fields_are_not_sent_again() -> None:
     async def twice(url: str) -> None:
         port = JudgeServer(Endpoint(url=url, model="x", retries=0))
         for repeat in range(2):
@@ -179,9 +179,9 @@ def test_what_a_server_refused_it_is_not_sent_again() -> None:
     assert [request.data["seed"] for request in server.requests] == [1, 1, 1, 2, 1]
 
 
-def test_a_window_too_small_gets_a_shorter_story() -> None:
+def test_a_small_context_gets_a_shortened_run() -> None:
     def small_window(x: m.Exchange) -> Any:
-        long = len(x.request.data["messages"][1]["content"]) > LEAST_CHARS * 2
+        long = len(x.request.data["messages"][1]["content"]) > MIN_CHARS * 2
         return m.status(400, "maximum context length is 4096 tokens")(x) if long else says(CORRECT)(x)
 
     facts, _ = facts_and_case()
@@ -201,15 +201,15 @@ def test_a_window_too_small_gets_a_shorter_story() -> None:
     assert made.attempts == len(sizes) > 1
 
 
-def test_a_window_too_small_for_anything_is_failed() -> None:
+def test_a_context_that_is_too_small_is_a_failure() -> None:
     with m.Misbehaving(then=m.status(400, "maximum context length is 16 tokens")) as server:
         made = judged(server.url)
     assert made.verdict == "failed"
     assert "context" in made.reason
 
 
-def test_a_port_of_ones_own() -> None:
-    """The evaluation engine gives judges a port that is no server of ours."""
+def test_a_custom_judge_client() -> None:
+    """The evaluation engine passes judges a client of its own."""
 
     async def port(messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
         assert schema["type"] == "object"

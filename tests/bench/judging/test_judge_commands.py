@@ -21,7 +21,7 @@ from scope_ptz.cli.app import app
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.judges import UnnamedJudgeError, open_judge
 from scope_ptz.factory.scenes import open_scene
-from scope_ptz.factory.validation_perception import equip_with_truth
+from scope_ptz.factory.validation_perception import ground_truth_tools
 from scope_ptz.taskgen.authoring.task_places import preset_at
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import write_gold
@@ -36,10 +36,10 @@ KEY = "sk-judge-0123456789"
 
 @pytest.fixture(scope="module")
 def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with two tasks of the shipped scene and their gold runs: turned the wrong way, and not at all."""
+    """A folder with two tasks of the shipped scene and their gold runs, which turn the wrong way or do not turn."""
     folder = tmp_path_factory.mktemp("gold")
     scene = open_scene("highway-works")
-    stage = ProgramRunner(scene, equip_with_truth({scene.name: scene}), TASK_CAMERA)
+    stage = ProgramRunner(scene, ground_truth_tools({scene.name: scene}), TASK_CAMERA)
     setting = FaultSetting({preset.name: preset_at(preset) for preset in scene.file.presets}, TASK_CAMERA)
     tasks = [turn_task(1, 20), turn_task(2, 30)]
 
@@ -57,7 +57,7 @@ def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def good_judge(x: m.Exchange) -> Any:
-    """Knows a run of these that is right, and the mode of one that is not, from the calls that it is told."""
+    """Recognise correct runs, and the error modes of incorrect ones, by the calls in the request."""
     told = x.request.data["messages"][1]["content"]
     if "Tool calls: none." in told:
         return m.say(written({"reason": "No call.", "verdict": "incorrect", "error_mode": "lack_of_tool_call"}))(x)
@@ -87,7 +87,7 @@ def test_a_judge_of_gold_runs_from_the_command_line(gold: Path, tmp_path: Path) 
     assert (content["runs"], content["judgements"]) == (6, 12)
     with m.Misbehaving(then=good_judge) as server:
         told = judge_gold(gold, out, server.url, "--repeats", "2").output
-    assert "6 gold runs, 12 judgements; rows: the fault put in" in told
+    assert "6 gold runs, 12 judgements; rows: inserted fault" in told
     assert all(f" {head}" in told for head in ("lack", "routing", "halluc.", "unparseable"))
     assert content["modes"]["raw"] == 1.0
     compared = CliRunner().invoke(app, ["bench", "agree", str(out)])
@@ -95,7 +95,7 @@ def test_a_judge_of_gold_runs_from_the_command_line(gold: Path, tmp_path: Path) 
     assert "repeats of gpt-oss-120b" in compared.output
 
 
-def test_what_failed_is_asked_again_and_counts_once(gold: Path, tmp_path: Path) -> None:
+def test_failed_judgements_are_repeated_and_count_once(gold: Path, tmp_path: Path) -> None:
     out = tmp_path / "verdicts.jsonl"
     with m.Misbehaving(then=m.status(401)) as server:
         failed = judge_gold(gold, out, server.url, "--json")
@@ -115,14 +115,14 @@ def test_what_failed_is_asked_again_and_counts_once(gold: Path, tmp_path: Path) 
     assert len(read_verdicts(out)) == 18
 
 
-def test_a_judge_of_gold_runs_that_is_away_is_an_error_before_anything_is_written(gold: Path, tmp_path: Path) -> None:
+def test_an_unavailable_judge_is_an_error_before_anything_is_written(gold: Path, tmp_path: Path) -> None:
     out = tmp_path / "verdicts.jsonl"
     where = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
     done = CliRunner().invoke(app, ["bench", "judge-gold", *where, "--judge-url", "http://127.0.0.1:1/v1"])
     assert done.exit_code == 1 and "nothing was judged" in done.stderr and not out.exists()
 
 
-def test_limits_take_modes_in_turn(gold: Path, tmp_path: Path) -> None:
+def test_a_limit_is_spread_over_error_modes(gold: Path, tmp_path: Path) -> None:
     out = tmp_path / "verdicts.jsonl"
     with m.Misbehaving(then=good_judge) as server:
         judge_gold(gold, out, server.url, "--limit", "2", "--passing", "0")
@@ -146,20 +146,20 @@ async def name_of(url: str, model: str | None = None) -> str:
         (lambda: models("tiny"), "tiny"),
     ],
 )
-def test_the_judge_has_the_name_that_its_server_gives_it(listing: Callable[[], m.Behaviour], name: str) -> None:
+def test_the_judge_is_named_after_the_model_of_its_server(listing: Callable[[], m.Behaviour], name: str) -> None:
     with m.Misbehaving(then=listing()) as server:
         assert anyio.run(name_of, server.url) == name
 
 
 @pytest.mark.parametrize("listing", [lambda: m.status(404), lambda: models()])
-def test_no_name_is_invented_for_a_judge_whose_server_says_none(listing: Callable[[], m.Behaviour]) -> None:
+def test_a_judge_needs_a_name_if_its_server_lists_no_model(listing: Callable[[], m.Behaviour]) -> None:
     with m.Misbehaving(then=listing()) as server:
-        with pytest.raises(UnnamedJudgeError, match=r"cannot be asked for its model's name.*--judge-model"):
+        with pytest.raises(UnnamedJudgeError, match=r"did not report the name of its model.*--judge-model"):
             anyio.run(name_of, server.url)
         assert anyio.run(name_of, server.url, "mine") == "mine"
 
 
-def test_several_models_and_no_usual_one_is_a_question(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_server_with_several_models_requires_a_choice(monkeypatch: pytest.MonkeyPatch) -> None:
     with m.Misbehaving(then=models("a", "b")) as server:
         with pytest.raises(InputError, match="--judge-model: a, b"):
             anyio.run(name_of, server.url)
@@ -168,7 +168,7 @@ def test_several_models_and_no_usual_one_is_a_question(monkeypatch: pytest.Monke
         assert anyio.run(name_of, server.url) == "a"
 
 
-def test_the_judge_comes_from_the_environment_and_its_key_goes_to_no_other(
+def test_the_judge_is_read_from_the_environment_and_its_key_is_sent_to_no_other_server(
     gold: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with m.Misbehaving(then=m.echo_key()) as server:
@@ -185,7 +185,7 @@ def test_the_judge_comes_from_the_environment_and_its_key_goes_to_no_other(
     assert KEY not in out.read_text()
 
 
-def test_no_judge_and_wrong_options_are_told() -> None:
+def test_a_missing_judge_and_wrong_options_are_reported() -> None:
     with pytest.raises(ConfigError, match="SCOPE_JUDGE_URL"):
         anyio.run(open_judge, None, None, None, 30.0)
     with pytest.raises(ConfigError, match="reasoning_effort"):

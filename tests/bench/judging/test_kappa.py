@@ -1,4 +1,4 @@
-"""Kappa against figures computed by hand and published, and against statsmodels' own."""
+"""Kappa agrees with values computed by hand, published values, and statsmodels."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FLEISS_1971 = [
 
 
 def spread(table: list[list[int]]) -> tuple[list[str], list[str]]:
-    """Ratings of two raters that give a table of counts."""
+    """Return ratings of two raters that give this table of counts."""
     cells = [(str(a), str(b)) for a, row in enumerate(table) for b, number in enumerate(row) for _ in range(number)]
     return [a for a, _ in cells], [b for _, b in cells]
 
@@ -47,8 +47,8 @@ def test_fleiss_published() -> None:
 
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.sampled_from("abc")), min_size=1, max_size=40))
 @settings(deadline=None, max_examples=60)
-def test_the_bootstrap_draws_from_the_same_figure(ratings: list[tuple[str, str]]) -> None:
-    """The formula of the draws gives statsmodels' estimate on the data themselves; two raters are Cohen's and bounded."""
+def test_bootstrap_estimates_use_the_same_formula(ratings: list[tuple[str, str]]) -> None:
+    """On the original data, the bootstrap formula gives statsmodels' estimate; for two raters, it is Cohen's kappa."""
     one, two = [a for a, _ in ratings], [b for _, b in ratings]
     made = cohen(one, two, range(len(ratings)))
     labels = sorted({*one, *two})
@@ -76,18 +76,18 @@ def test_fleiss_formula_is_statsmodels() -> None:
     assert fleiss_values(row[None])[0] == pytest.approx(0.210, abs=0.0005)
 
 
-def test_everyone_always_says_the_same() -> None:
+def test_raters_who_always_agree() -> None:
     made = cohen(["correct"] * 5, ["correct"] * 5, range(5))
     assert (made.raw, made.kappa, made.low) == (1.0, None, None)
     assert fleiss([["correct"] * 3] * 4, range(4)).kappa is None
 
 
-def test_nothing_rated() -> None:
+def test_no_ratings() -> None:
     assert cohen([], [], []).as_dict() == {"runs": 0, "raters": 2, "raw": None, "kappa": None, "low": None, "high": None}
     assert fleiss([], []).kappa is None
 
 
-def test_one_cluster_has_no_interval_and_alike_clusters_a_wide_one() -> None:
+def test_one_cluster_has_no_interval_and_equal_clusters_have_a_wide_one() -> None:
     one, two = spread([[20, 5], [10, 15]])
     assert cohen(one, two, ["same"] * 50).low is None
     alone = cohen(one, two, range(50))

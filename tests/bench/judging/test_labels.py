@@ -1,4 +1,4 @@
-"""Labels by hand: what is kept, blind to verdicts, and a sitting from end to end on a real log."""
+"""Human labels: storage, blindness to verdicts, and a complete labelling session on a real log."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Behaviour, FinalPose, Forbidden, ProgramCall, Task
 from scope_ptz.cli.app import app
-from scope_ptz.cli.bench.label import folder_name, kept_pictures
+from scope_ptz.cli.bench.label import folder_name, write_pictures
 from scope_ptz.errors import InputError, OutputError
 from tests.bench.judging.test_agreement import evaluation, trial
 
@@ -35,7 +35,7 @@ def test_the_newest_label_of_each_person_counts(tmp_path: Path) -> None:
     assert len(path.read_text().splitlines()) == 3, "nothing is rewritten"
 
 
-def test_a_line_cut_off_is_taken_away_by_the_next(tmp_path: Path) -> None:
+def test_an_incomplete_line_is_removed_by_the_next_label(tmp_path: Path) -> None:
     path = tmp_path / "a.labels.jsonl"
     add_label(path, ANN, "t#1")
     with path.open("a") as file:
@@ -45,7 +45,7 @@ def test_a_line_cut_off_is_taken_away_by_the_next(tmp_path: Path) -> None:
     assert [row.sample for row in read_labels(path)] == ["t#1", "t#3"]
 
 
-def test_damage_is_told_with_its_line(tmp_path: Path) -> None:
+def test_damage_is_reported_with_its_line(tmp_path: Path) -> None:
     path = tmp_path / "a.labels.jsonl"
     add_label(path, ANN, "t#1")
     with path.open("a") as file:
@@ -66,7 +66,7 @@ def test_labels_find_their_runs(tmp_path: Path) -> None:
 
 
 def turn_task(number: int, degrees: float) -> Task:
-    """A task of the shipped scene that the built-in planner solves."""
+    """A task of the shipped scene that the grammar planner solves."""
     return Task(
         id=f"scope1-highway-works-single-call-{number:03d}", dataset="scope1", scene="highway-works", preset="overview",
         instruction=f"Pan right {degrees:g} degrees.", category="single_call", scope="current", difficulty="easy",
@@ -96,12 +96,12 @@ def fresh(log: Path) -> Iterator[Path]:
 
 
 def label(log: Path, said: str, *options: str) -> Result:
-    """A sitting. Pictures are written once for all of them."""
+    """Run a labelling session. All sessions share one folder of pictures."""
     pictures = () if "--pictures" in options else ("--pictures", str(log.parent / "pictures"))
     return CliRunner().invoke(app, ["bench", "label", str(log), *pictures, *options], input=said)
 
 
-def test_a_sitting_is_blind_keeps_all_and_goes_on(fresh: Path) -> None:
+def test_a_session_is_blind_keeps_all_labels_and_can_be_resumed(fresh: Path) -> None:
     first = label(fresh, "?\nc9\nhello\nc fine\n", "--by", "ann")
     assert first.exit_code == 0, first.output
     assert "| Pan right" in first.output
@@ -121,7 +121,7 @@ def test_a_sitting_is_blind_keeps_all_and_goes_on(fresh: Path) -> None:
     assert label(fresh, "", "--by", "ann").output.startswith("2 of 2")
 
 
-def test_a_log_writes_nowhere_but_where_it_may(tmp_path: Path) -> None:
+def test_a_log_cannot_write_outside_its_folder(tmp_path: Path) -> None:
     class Files:
         references = dict.fromkeys(("../up.jpg", "/x.jpg", "frames/../../up.jpg", "frames/.hidden/x.jpg", "frames/x.sh"), "")
         trace = None
@@ -129,7 +129,7 @@ def test_a_log_writes_nowhere_but_where_it_may(tmp_path: Path) -> None:
         def picture(self, name: str) -> bytes:
             raise AssertionError(name)
 
-    assert kept_pictures(Files(), tmp_path / "deep") == []  # type: ignore[arg-type]
+    assert write_pictures(Files(), tmp_path / "deep") == []  # type: ignore[arg-type]
     name = folder_name(tmp_path / "a.eval", "../../etc/pass wd#1")
     assert name.startswith("etc-pass-wd-1-")
     assert "/" not in name
@@ -143,7 +143,7 @@ def test_back_skip_and_quit(fresh: Path) -> None:
     assert len(labels_file(fresh).read_text().splitlines()) == 2
 
 
-def test_one_person_does_not_see_anothers_progress(fresh: Path) -> None:
+def test_labellers_do_not_see_each_others_progress(fresh: Path) -> None:
     label(fresh, "c\nc\n", "--by", "ann")
     assert "0 of 2 runs labelled by bob" in label(fresh, "q\n", "--by", "bob").output
     assert "0 of 1 runs labelled by bob" in label(fresh, "q\n", "--by", "bob", "--sample", "1").output
@@ -164,13 +164,13 @@ def test_labels_are_compared_with_the_checks(fresh: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "told"), [((), "--by"), (("--by", "  "), "--by"), (("--compare", "--json"), "has no labels yet")]
 )
-def test_wrong_ways_to_label_are_told(fresh: Path, options: tuple[str, ...], told: str) -> None:
+def test_wrong_options_are_reported(fresh: Path, options: tuple[str, ...], told: str) -> None:
     done = label(fresh, "", *options)
     assert done.exit_code == 2
     assert told in done.output
 
 
-def test_no_log(tmp_path: Path) -> None:
+def test_a_missing_log(tmp_path: Path) -> None:
     for command in (["label", "--by", "x"], ["agree"]):
         done = CliRunner().invoke(app, ["bench", *command, str(tmp_path / "none.eval")])
         assert done.exit_code == 2

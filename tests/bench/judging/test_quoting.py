@@ -1,4 +1,4 @@
-"""Quoted text stays data, whatever is in it."""
+"""Quoted text stays data, whatever it contains."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_no_token_of_a_chat_template_survives(text: str) -> None:
 
 
 @given(st.text(alphabet=st.characters(categories=["L", "N", "P", "Zs"], exclude_characters="<>[]|｜")))
-def test_ordinary_words_are_told_as_they_are(text: str) -> None:
+def test_ordinary_words_are_unchanged(text: str) -> None:
     shown = "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in text)
     assert quoted(text) == BAR + shown
 
@@ -60,7 +60,7 @@ def test_a_name_stays_one_quoted_word(text: str, most: int) -> None:
 
 
 @given(st.text(min_size=1), st.integers(3, 50))
-def test_cutting_keeps_both_ends_and_counts_what_is_gone(text: str, most: int) -> None:
+def test_truncation_keeps_both_ends_and_counts_the_omitted_characters(text: str, most: int) -> None:
     made = cut(text, most)
     if len(text) <= most:
         assert made == text
@@ -73,5 +73,5 @@ def test_cutting_keeps_both_ends_and_counts_what_is_gone(text: str, most: int) -
 
 
 @pytest.mark.parametrize(("text", "told"), [("", "| "), ("a\tb", "| a b"), ("\x00\u200b", "| \\u0000\\u200b")])
-def test_what_does_not_show_is_shown(text: str, told: str) -> None:
+def test_invisible_characters_are_made_visible(text: str, told: str) -> None:
     assert quoted(text) == told

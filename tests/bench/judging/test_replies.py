@@ -1,4 +1,4 @@
-"""Verdicts are read strictly: nothing that is not one is taken for one."""
+"""Verdicts are parsed strictly: invalid replies are never accepted."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.judging.judge_replies import MOST_REASON_CHARS, REPLY_SCHEMA, JudgeReply, parse_judge_reply
+from scope_ptz.bench.judging.judge_replies import MAX_REASON_CHARS, REPLY_SCHEMA, JudgeReply, parse_judge_reply
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from tests.bench.judging.runs import CORRECT, MISCOUNTED, written
 
@@ -25,7 +25,7 @@ from tests.bench.judging.runs import CORRECT, MISCOUNTED, written
         f'I would not say {{this}} or {{"a": 1}}. {written(MISCOUNTED)}',
     ],
 )
-def test_verdicts_in_their_wrappings(text: str) -> None:
+def test_verdicts_with_surrounding_text(text: str) -> None:
     assert parse_judge_reply(text) == JudgeReply(
         verdict="incorrect", error_mode=ErrorMode.VLM_COUNTING, reason="The tool counted 4, expected 5."
     )
@@ -56,16 +56,16 @@ def test_verdicts_in_their_wrappings(text: str) -> None:
         ('{"verdict":' * 3000, "no JSON object"),
     ],
 )
-def test_what_is_no_verdict(text: str, problem: str) -> None:
+def test_invalid_verdicts(text: str, problem: str) -> None:
     read = parse_judge_reply(text)
     assert isinstance(read, str)
     assert problem in read
 
 
-def test_a_long_reason_is_cut() -> None:
+def test_a_long_reason_is_truncated() -> None:
     read = parse_judge_reply(written({**CORRECT, "reason": "very " * 1000}))
     assert isinstance(read, JudgeReply)
-    assert len(read.reason) == MOST_REASON_CHARS
+    assert len(read.reason) == MAX_REASON_CHARS
 
 
 @given(st.text())
@@ -74,13 +74,13 @@ def test_text_alone_never_gives_a_verdict(text: str) -> None:
 
 
 @given(st.sampled_from([*ErrorMode, None]), st.sampled_from(["correct", "incorrect"]), st.text(min_size=1))
-def test_what_the_schema_allows_is_read_or_refused_for_the_one_reason(mode: ErrorMode | None, verdict: str, reason: str) -> None:
+def test_any_reply_within_the_schema_is_parsed_or_refused_for_one_reason(mode: ErrorMode | None, verdict: str, reason: str) -> None:
     read = parse_judge_reply(json.dumps({"reason": reason, "verdict": verdict, "error_mode": mode.value if mode else "none"}))
     consistent = (mode is None) == (verdict == "correct")
     assert isinstance(read, JudgeReply) == (consistent and bool(" ".join(reason.split())))
 
 
-def test_the_schema_names_all_modes_and_forbids_more() -> None:
+def test_the_schema_lists_all_modes_and_forbids_additional_fields() -> None:
     modes = REPLY_SCHEMA["properties"]["error_mode"]["enum"]
     assert modes == [*ErrorMode, "none"]
     assert REPLY_SCHEMA["additionalProperties"] is False

@@ -1,4 +1,4 @@
-"""Trials that only a judge could score: what it said stands under its own name, and never under the checks' or the rules'."""
+"""Trials that only a judge could score are reported under the judge, not under the checks or the rules."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def made(*, by_checks: bool) -> Evaluation:
     return Evaluation(card=card("qwen3-4b", "moondream3"), trials=trials, wanted=len(trials))
 
 
-def test_a_judges_verdicts_are_not_the_checks() -> None:
+def test_verdicts_of_a_judge_are_not_reported_as_checks() -> None:
     report = build_report([made(by_checks=False)], load_registry())
     told = row(report, "judge", "qwen3-4b + moondream3")
     assert told["macro_checks"] is None and told["macro_judge"] == pytest.approx(0.5)
@@ -42,7 +42,7 @@ def test_a_judges_verdicts_are_not_the_checks() -> None:
     assert row(report, "error_modes_judge", "qwen3-4b + moondream3")["vlm_counting"] == 8
 
 
-def test_the_checks_verdicts_stand_beside_the_judges() -> None:
+def test_verdicts_of_checks_and_judge_are_shown_next_to_each_other() -> None:
     report = build_report([made(by_checks=True)], load_registry())
     told = row(report, "judge", "qwen3-4b + moondream3")
     assert told["macro_checks"] == 0.0 and told["macro_judge"] == pytest.approx(0.5)

@@ -1,4 +1,4 @@
-"""What a latency includes: the camera, which in the simulator renders, is a stage of its own and in no pair's own time."""
+"""Stages of latency: camera time, which includes rendering, is separate from the time of a planner-perception pair."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PATIENT = Timings(planner_s=1.0, perception_s=0.5, camera_s=0.25, render_s=40.0,
 
 
 def views(report: EvaluationReport, eyes: str) -> dict[str, dict[str, CellValue]]:
-    """The rows of a perception model in the table of views, by view."""
+    """Return the rows of a perception model in the table of views, by view."""
     found = table(report, "latency_views")
     start = next(number for number, name in found.groups.items() if name == eyes)
     names = [column.name for column in found.columns]
@@ -31,14 +31,14 @@ def timed(planner: str, *trials: Trial) -> Evaluation:
     return Evaluation(card=card(planner, "moondream3", contended=False), trials=trials, wanted=len(trials))
 
 
-def test_the_camera_is_apart_and_what_is_left_is_the_pairs_own() -> None:
+def test_camera_time_is_not_part_of_the_time_of_a_pair() -> None:
     assert (PATIENT.capture_s, PATIENT.own_s, PATIENT.tools_s) == pytest.approx((40.25, 1.75, 0.25))
     # Frames that were rendered while the eyes still looked at another leave no negative work of tools.
     overlapping = Timings(planner_s=1.0, perception_s=2.0, render_s=1.5, total_s=4.0)
     assert (overlapping.own_s, overlapping.tools_s) == pytest.approx((3.0, 0.0))
 
 
-def test_the_eyes_time_of_a_call_is_that_of_its_own_replies() -> None:
+def test_perception_time_of_a_call_is_that_of_its_replies() -> None:
     replies = tuple(PerceptionReply(kind="detect", result={}, frame_time_s=0, wall_s=wall_s) for wall_s in (0.02, 0.03))
     outcome = ToolOutcome(call=ToolCall(id="1", name="count_objects", arguments={}), result={})
     place = RecordedPose(pan_deg=0, tilt_deg=0, zoom=1)
@@ -46,7 +46,7 @@ def test_the_eyes_time_of_a_call_is_that_of_its_own_replies() -> None:
     assert made.perception_s == pytest.approx(0.05)
 
 
-def test_rendering_neither_counts_nor_ranks() -> None:
+def test_rendering_time_affects_neither_latency_nor_ranking() -> None:
     tasks = facts(2)
     quick = Timings(planner_s=1.5, perception_s=0.5, camera_s=0.0, render_s=0.1, total_s=2.2)
     made = build_report(
@@ -69,7 +69,7 @@ def test_rendering_neither_counts_nor_ranks() -> None:
     assert "without the camera" in chart.svg and "1.75 s" in chart.alt and "42" not in chart.alt
 
 
-def test_a_look_is_the_eyes_and_its_capture_stands_apart(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
+def test_capture_time_is_separate_from_perception_time(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     alone = scored(log(evaluations, BEST, split="lite"))
     by_view = {view: [look for t in alone for look in t.looks if look.view == view] for view in ("current", "full")}
     found = views(report, "moondream3")
@@ -86,7 +86,7 @@ def test_a_look_is_the_eyes_and_its_capture_stands_apart(report: EvaluationRepor
     assert told_eyes["capture_median"] == pytest.approx(0.25)
 
 
-def test_eyes_take_no_longer_for_a_look_than_for_the_trial_it_is_of() -> None:
+def test_perception_time_of_a_call_is_at_most_that_of_its_trial() -> None:
     looks = (ObservationTime(view="current", eyes_s=0.02, capture_s=5.3, call_s=5.4),)
     timings = Timings(planner_s=0.1, perception_s=0.02, render_s=5.3, total_s=5.5)
     rows = [trial(t, timings=timings, looks=looks) for t in facts(1)]
@@ -94,7 +94,7 @@ def test_eyes_take_no_longer_for_a_look_than_for_the_trial_it_is_of() -> None:
     assert (told["look_median"], told["trial_median"], told["capture_median"]) == pytest.approx((0.02, 0.02, 5.3))
 
 
-def test_runs_without_looks_give_no_figures_for_them() -> None:
+def test_runs_without_perception_calls_have_no_perception_times() -> None:
     made = build_report([timed("qwen3-4b", *(trial(t, timings=PATIENT) for t in facts(1)))], load_registry())
     told = row(made, "latency_eyes", "moondream3")
     assert (told["look_median"], told["look_p95"], told["capture_median"], told["trial_median"]) == (None, None, None, 0.5)

@@ -1,4 +1,4 @@
-"""What sets a run apart from the others is said wherever it stands: other tasks, another model."""
+"""Runs over other tasks or with another model are marked wherever they appear."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def charts(report: EvaluationReport) -> dict[str, str]:
     return {chart.key: chart.alt + chart.svg for section in report.sections for chart in section.charts}
 
 
-def test_what_waits_for_a_judge_is_neither_right_nor_wrong() -> None:
+def test_trials_that_wait_for_a_judge_are_neither_correct_nor_incorrect() -> None:
     own = run("qwen3-4b", "moondream3")
     waiting = own.trials[0].model_copy(update={"headline": "unscored", "scored_by": "judge", "judgements": ()})
     (before,) = report_runs([own], load_registry())
@@ -45,7 +45,7 @@ def test_what_waits_for_a_judge_is_neither_right_nor_wrong() -> None:
 
 @pytest.fixture(scope="module")
 def mixed() -> EvaluationReport:
-    """Two pairs over the same tasks; a third and the reference over others; a reference over the same."""
+    """Two pairs and a reference over the same tasks, and a third pair and a reference over other tasks."""
     pairs = [run(planner, "moondream3") for planner in PAIRS]
     elsewhere = run("grammar", "ground-truth", [*TASKS[:3], *renamed(TASKS[3:20])])
     return build_report(
@@ -57,7 +57,7 @@ FEWER = "qwen3-4b-fp8 + moondream3 [10 of the 32 tasks]"
 OTHERS = "grammar + ground-truth [20 tasks, 3 of the 32 shared]"
 
 
-def test_runs_over_other_tasks_are_named_first_and_marked_everywhere(mixed: EvaluationReport) -> None:
+def test_runs_over_other_tasks_are_listed_first_and_marked_everywhere(mixed: EvaluationReport) -> None:
     before = " ".join(mixed.warnings)
     assert f"These pairs cover other tasks than the rest: {FEWER}." in before
     assert f"These reference runs, variants and baselines cover other tasks than the model pairs: {OTHERS}." in before
@@ -90,7 +90,7 @@ def test_runs_over_the_same_tasks_are_not_marked() -> None:
     assert not any("other tasks" in line for line in alone.warnings)
 
 
-def test_reference_runs_are_told_apart_in_the_chart_of_error_modes() -> None:
+def test_reference_runs_are_distinguished_in_the_chart_of_error_modes() -> None:
     references = [run(planner, "ground-truth") for planner in (*PAIRS, "qwen3-4b-fp8", "grammar", "qwen3-32b", "qwen3-14b")]
     runs = report_runs([run("qwen3-4b", "moondream3"), *references], load_registry())
     looks = shades(runs)
@@ -106,7 +106,7 @@ def served(planner: str, model: str, **further: Any) -> Evaluation:
     )
 
 
-def test_a_server_that_named_another_model_is_said_in_rankings_and_before_them() -> None:
+def test_a_server_that_reported_another_model_is_noted_in_and_before_rankings() -> None:
     other = "qwen3-30b-a3b (served: m-9701)"
     made = build_report([served("qwen3-30b-a3b", "m-9701"), run("qwen3-4b", "moondream3")], load_registry())
     label = f"{other} + moondream3"
@@ -120,7 +120,7 @@ def test_a_server_that_named_another_model_is_said_in_rankings_and_before_them()
     assert other in line and "qwen3-4b " not in line
 
 
-def test_another_model_in_its_place_is_another_system() -> None:
+def test_a_different_served_model_is_a_different_system() -> None:
     asked, other = served("qwen3-4b", "Qwen/Qwen3-4B-Instruct-2507"), served("qwen3-4b", "m-1", contended=False)
     runs = report_runs([asked, other], load_registry())
     assert len({r.system for r in runs}) == 2
@@ -143,7 +143,7 @@ def test_another_model_in_its_place_is_another_system() -> None:
         ({"/version version": "0.9"}, None),
     ],
 )
-def test_what_counts_as_another_model(reported: dict[str, str], said: str | None) -> None:
+def test_which_names_count_as_another_model(reported: dict[str, str], said: str | None) -> None:
     model = load_registry().model("qwen3-4b")
     assert served_instead(ModelCard(name="qwen3-4b", registry="qwen3-4b", reported=reported), model) == said
     assert served_instead(ModelCard(name="mine", reported=reported), None) is None

@@ -22,7 +22,7 @@ TASKS = facts(4)
 
 
 def run(planner: str, eyes: str, wrong: int, *, judged_wrong: int | None = None, number: int = 32) -> Evaluation:
-    """A run that failed the first ``wrong`` tasks of each four, by the judge ``judged_wrong``; perception caused half of them."""
+    """A run that fails the first ``wrong`` of each four tasks (``judged_wrong`` by the judge), half of them due to perception."""
     trials = []
     for at, task in enumerate(TASKS[:number]):
         place = at % 4
@@ -52,7 +52,7 @@ def cell(found: ReportTable, first: str, name: str) -> Any:
     return next(values[at] for values in found.rows if unmarked(values[0]) == first)
 
 
-def test_each_oracle_stands_beside_the_baseline_of_its_own_verdicts() -> None:
+def test_each_oracle_is_shown_with_the_baseline_of_its_own_verdicts() -> None:
     # By the checks 75%, by the judge 50%. Relabelled: 100% by the checks' rules, 75% by the judge.
     made = build(run("qwen3-4b", "moondream3", 1, judged_wrong=2), run("qwen3-4b", "ground-truth", 0))
     told = row(made, "oracle", "qwen3-4b + moondream3")
@@ -64,12 +64,12 @@ def test_each_oracle_stands_beside_the_baseline_of_its_own_verdicts() -> None:
     assert drawn.svg.index("Macro accuracy by the checks") < drawn.svg.index("Macro accuracy by the judge")
 
 
-def test_without_a_judge_there_is_no_panel_for_one() -> None:
+def test_without_a_judge_there_is_no_judge_panel() -> None:
     drawn = chart(build(run("qwen3-4b", "moondream3", 1)))
     assert "by the checks" in drawn.svg and "by the judge" not in drawn.svg and "by the judge" not in drawn.alt
 
 
-def test_means_are_of_the_pairs_that_have_both() -> None:
+def test_means_cover_the_pairs_that_have_both_settings() -> None:
     # Two pairs judged, one not; one run again. No mean mixes them.
     made = build(
         run("qwen3-4b", "moondream3", 1, judged_wrong=1),
@@ -88,7 +88,7 @@ def test_means_are_of_the_pairs_that_have_both() -> None:
     assert "Mean" not in chart(made).alt
 
 
-def test_a_run_made_again_over_other_tasks_is_told_of_the_shared_ones_and_not_drawn() -> None:
+def test_a_repeated_run_over_other_tasks_is_reported_for_shared_tasks_and_not_plotted() -> None:
     made = build(run("qwen3-4b", "moondream3", 1), run("qwen3-4b", "ground-truth", 0, number=16))
     shown = cell(table(made, "oracle"), "qwen3-4b + moondream3", "macro_rerun")
     assert isinstance(shown, MarkedCell) and shown.note == "on 16 of its 32 tasks"

@@ -21,7 +21,7 @@ PAIRS = (("qwen3-4b", "moondream3"), ("qwen3-30b-a3b", "moondream3"))
 
 
 def whole(planner: str, eyes: str, headline: str, **further: Any) -> Evaluation:
-    """A run in which all tasks end alike."""
+    """A run in which all tasks have the same result."""
     made = card(planner, eyes, **further)
     if eyes == "noisy":
         made = made.model_copy(update={"perception": ModelCard(name="noisy", deterministic=True)})
@@ -40,7 +40,7 @@ def words(report: EvaluationReport, key: str) -> str:
     return " ".join(next(section for section in report.sections if section.key == key).text)
 
 
-def test_a_run_with_noisy_eyes_is_not_the_run_with_ground_truth_eyes() -> None:
+def test_noisy_perception_and_ground_truth_are_different_systems() -> None:
     pair = whole(*PAIRS[0], "incorrect")
     made = build(pair, whole(PAIRS[0][0], "noisy", "correct"))
     told = row(made, "oracle", "qwen3-4b + moondream3")
@@ -51,7 +51,7 @@ def test_a_run_with_noisy_eyes_is_not_the_run_with_ground_truth_eyes() -> None:
 
 
 @pytest.mark.full
-def test_the_audit_sets_beside_a_task_only_what_no_model_and_no_noise_took_part_in() -> None:
+def test_the_audit_compares_with_runs_without_models_and_noise_only() -> None:
     pairs = [whole(*pair, "incorrect") for pair in PAIRS]
     noise = [whole("grammar", "noisy", "incorrect"), whole("qwen3-4b", "ground-truth", "incorrect")]
     made = build(*pairs, *noise, whole("grammar", "ground-truth", "correct"))
@@ -61,7 +61,7 @@ def test_the_audit_sets_beside_a_task_only_what_no_model_and_no_noise_took_part_
     assert "grammar planner with ground-truth perception" in words(made, "audit") and "exact reference" not in words(made, "audit")
 
 
-def test_nothing_is_called_exact_by_construction() -> None:
+def test_no_result_is_described_as_exact_by_construction() -> None:
     text = words(build(whole(*PAIRS[0], "correct"), whole("grammar", "noisy", "correct")), "accuracy")
     assert (
         "exact by construction" not in text and "exact about what is visible" in text and "may misunderstand an instruction" in text
@@ -74,7 +74,7 @@ def timed(planner: str, seconds: float, calls: int, **further: Any) -> Evaluatio
     return Evaluation(card=card(planner, "moondream3", **further), trials=trials, wanted=len(trials))
 
 
-def test_a_variant_is_no_pair_where_latency_is_told() -> None:
+def test_variants_are_not_pairs_in_latency_tables() -> None:
     made = build(timed("qwen3-4b", 2.0, 2), timed("qwen3-4b", 50.0, 9, variant="short"), timed("qwen3-30b-a3b", 3.0, 4))
     assert "2 of 2 model pairs. They were timed only while" in words(made, "latency")
     assert "2 pairs of models" in made.summary[0]
@@ -83,7 +83,7 @@ def test_a_variant_is_no_pair_where_latency_is_told() -> None:
     assert row(made, "latency_eyes", "moondream3")["calls"] == pytest.approx(3.0)
 
 
-def test_tool_calls_are_of_all_pairs_whichever_were_timed_alone() -> None:
+def test_tool_calls_cover_all_pairs_including_contended_runs() -> None:
     logs = [timed(planner, 2.0, calls) for planner, calls in (("qwen3-4b", 2), ("qwen3-30b-a3b", 3), ("qwen3-32b", 7))]
     made = build(*logs, timed("qwen3-4b", 1.0, 2, contended=False, concurrency=1))
     told = row(made, "latency_eyes", "moondream3")
@@ -91,7 +91,7 @@ def test_tool_calls_are_of_all_pairs_whichever_were_timed_alone() -> None:
     assert told["calls"] == pytest.approx(fmean([2, 3, 7]))
 
 
-def test_incorrect_and_unscored_are_told_apart() -> None:
+def test_incorrect_and_unscored_trials_are_distinguished() -> None:
     trials = tuple(trial(t, ("incorrect", "unscored", "correct", "incorrect")[n % 4]) for n, t in enumerate(TASKS))
     made = build(Evaluation(card=card(*PAIRS[0]), trials=trials, wanted=len(trials)))
     assert any("16 of 16 incorrect trials; 8 more are unscored and have no error mode." in line for line in made.summary)
@@ -102,13 +102,13 @@ def test_incorrect_and_unscored_are_told_apart() -> None:
     assert (row(made, "failed_tasks", unscored)["failed"], row(made, "failed_tasks", unscored)["unscored"]) == (1, 1)
 
 
-def test_costs_say_whose_tokens_they_are() -> None:
+def test_costs_name_the_role_of_their_tokens() -> None:
     found = table(build(whole(*PAIRS[0], "correct")), "costs")
     assert "those of the planner, as its server" in found.notes[0]
     assert "Tokens of the perception model are not counted" in found.notes[0]
 
 
-def test_long_conditions_have_room() -> None:
+def test_long_conditions_fit() -> None:
     found = table(build(whole(*PAIRS[0], "correct")), "runs")
     kinds = {column.name: column.kind for column in found.columns}
     assert {kinds[name] for name in ("sampling", "planner_reported", "eyes_reported")} == {"prose"}
@@ -121,7 +121,7 @@ def test_a_bar_of_no_height_is_not_drawn() -> None:
     assert len(edged) == 2
 
 
-def test_a_ring_around_a_filling_is_apart_from_it() -> None:
+def test_a_ring_does_not_touch_the_marker_inside_it() -> None:
     from scope_ptz.bench.reports.candidates import candidates
 
     runs = report_runs([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())

@@ -1,4 +1,4 @@
-"""Repeats of a task are one observation of it: however often a model that always does the same is asked, nothing more is known."""
+"""Repeats of a task count as one observation: repeating a deterministic model does not add information."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TASKS = [t for t in facts(5) if t.category in ("single_call", "ocr")]
 
 
 def repeated(times: int, right: frozenset[str], planner: str = "qwen3-4b", eyes: str = "moondream3") -> Evaluation:
-    """A deterministic run: each task ``times`` over, every time with the same outcome."""
+    """A deterministic run: each task is repeated ``times`` times with the same outcome."""
     trials = tuple(
         trial(t, "correct" if t.id in right else "incorrect", epoch=epoch, sample=f"{t.id}/{epoch}")
         for t in TASKS
@@ -44,7 +44,7 @@ def run(times: int, right: frozenset[str]) -> ReportRun:
 
 
 @pytest.mark.parametrize("number", [0, 1, 4, 9, 10])
-def test_repeats_of_what_is_deterministic_narrow_no_interval(number: int) -> None:
+def test_repeats_of_a_deterministic_run_do_not_narrow_the_interval(number: int) -> None:
     right = frozenset(t.id for t in TASKS[:number])
     once, thrice, nine = (run(times, right) for times in (1, 3, 9))
     for name in ("macro", "micro"):
@@ -54,7 +54,7 @@ def test_repeats_of_what_is_deterministic_narrow_no_interval(number: int) -> Non
             assert (other.value, other.low, other.high, other.n) == pytest.approx((first.value, first.low, first.high, first.n))
 
 
-def test_tasks_that_all_vary_alike_have_a_width_too() -> None:
+def test_tasks_with_equal_variation_have_an_interval() -> None:
     # Every task right in one of three trials: no task differs from another, which must not pass for certainty.
     values, units = np.array([1.0, 0.0, 0.0] * 5), tuple(n for n in range(5) for _ in range(3))
     found = share(Scores(values, ("a",) * 15, tuple(n % 3 for n in units), units))
@@ -74,14 +74,14 @@ def test_the_floor_of_the_variance_is_over_tasks() -> None:
 
 
 @pytest.mark.parametrize("number", [3, 7, 8, 11])
-def test_what_is_all_right_is_one_whatever_the_number_of_categories(number: int) -> None:
+def test_a_perfect_score_is_one_for_any_number_of_categories(number: int) -> None:
     strata = tuple(n % number for n in range(3 * number))
     scores = Scores(np.ones(3 * number), strata, tuple(n % 4 for n in range(3 * number)))
     found = share(scores, macro_weights(scores))
     assert found is not None and found.value == 1.0
 
 
-def test_equal_values_are_all_the_best() -> None:
+def test_equal_best_values_are_all_marked() -> None:
     # The same tasks right, in trials of one, three and seven: thirds and sevenths do not add up to the last digit.
     right = frozenset(t.id for t in TASKS[:-1])
     logs = [repeated(times, right, planner) for times, planner in ((1, "qwen3-4b"), (3, "qwen3-30b-a3b"), (7, "qwen3-32b"))]
@@ -92,7 +92,7 @@ def test_equal_values_are_all_the_best() -> None:
         assert all(isinstance(cell, MarkedCell) and cell.best and cell.best_of_all for cell in cells), name
 
 
-def test_no_rounding_decides_what_is_best() -> None:
+def test_the_best_value_does_not_depend_on_rounding() -> None:
     from scope_ptz.bench.reports.accuracy import _is_best
 
     values = [0.9999999999999999, 1.0, 1.0000000000000002]
@@ -100,7 +100,7 @@ def test_no_rounding_decides_what_is_best() -> None:
     assert not _is_best(0.9999, values) and not _is_best(1.0, [1.0])
 
 
-def test_the_difference_of_two_shares_is_newcombes() -> None:
+def test_the_difference_of_two_proportions_uses_newcombes_interval() -> None:
     from statsmodels.stats.proportion import confint_proportions_2indep, proportion_confint  # type: ignore[import-untyped]
 
     # 56 of 70 and 48 of 80: Newcombe's own example (1998, table II, case a), 0.0524 to 0.3339.

@@ -1,4 +1,4 @@
-"""Answers of perception as text on the page of a failed task."""
+"""Perception replies as text on the page of a failed task."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_places_and_answers(seen: Any, said: str) -> None:
     assert _seen(dumped(seen)) == said
 
 
-def test_what_has_no_sentence_is_told_by_name_with_rounded_figures() -> None:
+def test_replies_without_a_sentence_are_listed_by_name_with_rounded_values() -> None:
     result = {
         "pose": {"pan_deg": 12.3456789012345678, "tilt_deg": -1.0},
         "clamped": [],
@@ -56,7 +56,7 @@ def test_what_has_no_sentence_is_told_by_name_with_rounded_figures() -> None:
 @pytest.mark.parametrize(
     "odd", [{"boxes": ["left"]}, {"boxes": [{"somewhere": 1}]}, {"points": [{"x": "1", "y": None}]}, {"boxes": 3}]
 )
-def test_a_reply_of_another_form_is_told_as_it_is(odd: dict[str, Any]) -> None:
+def test_a_reply_in_another_format_is_shown_unchanged(odd: dict[str, Any]) -> None:
     assert _seen(odd)
 
 

@@ -1,4 +1,4 @@
-"""The figures of a report, derived again from its trials by other means, and what a report must never claim."""
+"""The figures of a report, recomputed from its trials in another way, and claims that a report must not make."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def table(report: EvaluationReport, key: str) -> ReportTable:
 
 
 def row(report: EvaluationReport, key: str, first: str) -> dict[str, str | int | float | None]:
-    """A row by its first cell, estimates as their value."""
+    """Return a row by its first cell, with estimates as their values."""
     found = table(report, key)
     values = next(r for r in found.rows if unmarked(r[0]) == first)
     plain = {}
@@ -56,7 +56,7 @@ def macro(trials: list[Trial], right: dict[str, bool] | None = None) -> float:
     return fmean(fmean(values) for values in by_category.values())
 
 
-def test_accuracy_is_that_of_the_trials(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
+def test_accuracy_matches_the_trials(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     for pair in ("qwen3-4b + moondream2", "qwen3-4b-fp8 + moondream3", BEST):
         trials = scored(log(evaluations, pair))
         told = row(report, "accuracy", pair)
@@ -68,7 +68,7 @@ def test_accuracy_is_that_of_the_trials(report: EvaluationReport, evaluations: l
         assert told["tasks"] == 48
 
 
-def test_bounds_hold_what_could_not_be_scored(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
+def test_bounds_include_unscored_trials(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     found = Counter(t.headline for t in log(evaluations, "qwen3-4b + qwen2.5-vl-7b").trials)
     assert found["unscored"] and found["infrastructure"]
     told = row(report, "outcomes", PARTIAL)
@@ -81,7 +81,7 @@ def test_bounds_hold_what_could_not_be_scored(report: EvaluationReport, evaluati
     assert told["at_most"] == pytest.approx((total - found["incorrect"]) / total)
 
 
-def test_what_is_no_model_pair_is_ranked_nowhere(report: EvaluationReport) -> None:
+def test_only_model_pairs_are_ranked(report: EvaluationReport) -> None:
     apart = {"grammar + ground-truth", "qwen3-30b-a3b + ground-truth", "qwen3-30b-a3b + blind, blind"}
     for key in ("accuracy", "comparisons", "resolution", "design_points", "memory_fits", "quantised", "oracle"):
         cells = {str(unmarked(value)) for values in table(report, key).rows for value in values}
@@ -154,7 +154,7 @@ def test_the_oracle_setting_both_ways(report: EvaluationReport, evaluations: lis
     assert mean == pytest.approx(fmean(_value(values[5]) for values in pairs))
 
 
-def test_spreads_hold_one_side(report: EvaluationReport) -> None:
+def test_spreads_vary_one_role_only(report: EvaluationReport) -> None:
     by_pair = {str(unmarked(v[0])): _value(v[1]) for v in table(report, "accuracy").rows}
     values = [by_pair[f"{planner} + moondream2"] for planner in ("qwen3-4b", "qwen3-4b-fp8", "qwen3-30b-a3b")]
     assert row(report, "spread_planner", "moondream2")["spread"] == pytest.approx(max(values) - min(values))
@@ -227,7 +227,7 @@ def test_costs_conduct_and_audit(report: EvaluationReport, evaluations: list[Eva
     assert {unmarked(values[0]) for values in table(report, "audit").rows} == low and low
 
 
-def test_the_papers_figures_stand_apart_and_say_so(report: EvaluationReport) -> None:
+def test_figures_of_the_paper_are_separate_and_labelled(report: EvaluationReport) -> None:
     panel = report.sections[-1]
     assert panel.key == "paper" and "not comparable task by task" in panel.text[0]
     assert len(table(report, "paper_accuracy").rows) == 19
@@ -235,7 +235,7 @@ def test_the_papers_figures_stand_apart_and_say_so(report: EvaluationReport) -> 
     assert not any(t.key.startswith("paper") for section in report.sections[:-1] for t in section.tables)
 
 
-def test_what_was_not_measured_is_never_a_number() -> None:
+def test_unmeasured_quantities_are_never_numbers() -> None:
     tasks = facts(2)
     trials = tuple(trial(t, timings=Timings(), tool_calls={}) for t in tasks)
     found = Evaluation(card=card("unknown-planner", "unknown-eyes", sampling={}, seed=None), trials=trials, wanted=len(trials))
@@ -254,7 +254,7 @@ def test_what_was_not_measured_is_never_a_number() -> None:
     assert "not measured" in words and "fewer than two model pairs" in words
 
 
-def test_an_unfinished_run_is_told_and_an_empty_one_refused() -> None:
+def test_an_unfinished_run_is_reported_and_an_empty_one_is_refused() -> None:
     whole = evaluation("qwen3-4b", "moondream2", facts(2), 0.6)
     cut = whole.model_copy(update={"trials": whole.trials[:5]})
     assert any("5 of 16 trials" in warning for warning in build_report([cut], load_registry()).warnings)
@@ -262,13 +262,13 @@ def test_an_unfinished_run_is_told_and_an_empty_one_refused() -> None:
         build_report([whole.model_copy(update={"trials": ()})], load_registry())
 
 
-def test_two_logs_of_one_pair_are_told_apart() -> None:
+def test_two_logs_of_one_pair_are_distinguished() -> None:
     one, two = (evaluation("qwen3-4b", "moondream2", facts(2), 0.6, seed=seed) for seed in (1, 2))
     made = build_report([one, two], load_registry())
     assert [run.label for run in made.runs] == ["qwen3-4b + moondream2 #1", "qwen3-4b + moondream2 #2"]
 
 
-def test_labels_say_what_tells_runs_apart_and_no_more() -> None:
+def test_labels_contain_only_what_distinguishes_runs() -> None:
     tasks = facts(1)
     shared = evaluation("qwen3-4b", "moondream2", tasks, 0.6, split="lite", latency_s=(9.0, 9.0))
     alone = evaluation("qwen3-4b", "moondream2", tasks, 0.6, split="lite", contended=False, latency_s=(1.0, 1.0))
@@ -282,7 +282,7 @@ def test_labels_say_what_tells_runs_apart_and_no_more() -> None:
     assert {run.label for run in several} == {"qwen3-4b + moondream2", "qwen3-4b + moondream2, lite split"}
 
 
-def test_categories_with_one_viewpoint_are_named_where_the_macro_average_stands() -> None:
+def test_categories_with_one_viewpoint_are_named_with_the_macro_average() -> None:
     # Two categories with tasks of two viewpoints each, one with a single task.
     tasks = [t for t in facts(2) if t.category in ("counting", "ocr")] + [facts(1)[2]]
     made = build_report([evaluation("qwen3-4b", "moondream2", tasks, 0.6, seed=3, spoiled=0.0)], load_registry())

@@ -31,7 +31,7 @@ def test_the_command_writes_everything(tmp_path: Path, monkeypatch: pytest.Monke
     assert again.exit_code == 2 and "not a report" in again.stderr
 
 
-def test_a_file_that_is_no_log_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_log_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "x.eval"
     path.write_text("nothing")
     for log, message in ((path, "damaged"), (tmp_path / "none.eval", "There is no log")):
@@ -39,7 +39,7 @@ def test_a_file_that_is_no_log_is_told(tmp_path: Path) -> None:
         assert done.exit_code == 2 and message in done.stderr, done.output
 
 
-def test_a_persons_result_is_a_baseline(tmp_path: Path) -> None:
+def test_a_human_result_is_a_baseline(tmp_path: Path) -> None:
     made = evaluation("ann", "ann", facts(2), 0.9, judged=False)
     who = made.card.planner.model_copy(update={"provider": "person", "registry": None})
     card = made.card.model_copy(update={"planner": who, "perception": who})

@@ -47,7 +47,7 @@ def test_a_worked_example() -> None:
     assert weighted_mean(SMALL, {"a": 1.0, "b": -1.0}) == pytest.approx(0.25)
 
 
-def test_as_if_independent_worked_out_by_hand() -> None:
+def test_the_interval_without_clusters_matches_a_hand_computation() -> None:
     # Residuals times 1/(2 n_k), each an outcome of its own. a: 1/4, -3/4, 1/4, 1/4 over 8; b: -1/2, 1/2 over 4.
     squares = (3 * (1 / 32) ** 2 + (3 / 32) ** 2) + 2 * (1 / 8) ** 2
     assert squares == pytest.approx(11 / 256)
@@ -165,7 +165,7 @@ def test_wilson(right: int, number: int) -> None:
     assert wilson(right / number, number, 1.959963984540054) == pytest.approx(proportion_confint(right, number, method="wilson"))
 
 
-def test_quantiles_of_student() -> None:
+def test_quantiles_of_students_t() -> None:
     assert t_quantile(12) == pytest.approx(2.200985)
     assert t_quantile(2) == pytest.approx(12.706205)
     assert detectable(1.0, 12) == pytest.approx(2.200985 + 0.875530)
@@ -191,7 +191,7 @@ def test_holm(number: int) -> None:
     assert holm([None, *p_values]) == [None, *adjusted]
 
 
-def test_differences_stay_within_what_is_possible_and_feign_no_certainty() -> None:
+def test_differences_stay_in_range_and_have_an_interval() -> None:
     wide = difference(Scores(np.array([1.0, -1.0, 1.0]), ("a",) * 3, ("x", "y", "y")))
     assert wide is not None
     assert (wide.low, wide.high) == (-1.0, 1.0)
@@ -217,7 +217,7 @@ def test_bootstrap_and_linearised_interval_agree_with_many_clusters() -> None:
 
 @given(st.lists(st.booleans(), min_size=1, max_size=7), st.integers(1, 7))
 @settings(max_examples=40, deadline=None)
-def test_pass_all_is_the_share_of_choices_that_all_pass(runs: list[bool], k: int) -> None:
+def test_pass_all_is_the_share_of_selections_in_which_all_trials_pass(runs: list[bool], k: int) -> None:
     chosen = list(combinations(runs, k))
     expected = sum(all(choice) for choice in chosen) / len(chosen) if chosen else None
     found = pass_all(len(runs), sum(runs), k)
@@ -234,14 +234,14 @@ def test_pass_all_over_tasks() -> None:
 
 @given(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3), st.integers(0, 3)), max_size=9))
 @settings(max_examples=40, deadline=None)
-def test_the_front(points: list[tuple[int, int, int]]) -> None:
+def test_the_pareto_front(points: list[tuple[int, int, int]]) -> None:
     on = undominated([tuple(map(float, point)) for point in points])
     for (index, point), _ in product(enumerate(points), (0,)):
         beaten = any(other != point and all(a <= b for a, b in zip(other, point, strict=True)) for other in points)
         assert on[index] is not beaten
 
 
-def test_the_smallest_detectable_difference_is_found_four_times_in_five() -> None:
+def test_the_smallest_detectable_difference_has_a_power_of_80_percent() -> None:
     clusters = 20
     true = detectable(sqrt(1 / clusters), clusters)
     means = np.random.default_rng(5).normal(true, 1.0, (4000, clusters))

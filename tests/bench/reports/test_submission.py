@@ -1,4 +1,4 @@
-"""The file for a leaderboard: what is made is valid, and whatever is wrong is found and named with its line."""
+"""Leaderboard submissions: generated files are valid, and every error is reported with its line."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ LONG = {"planner_s": 9, "perception_s": 0, "camera_s": 0, "render_s": 0, "total_
 
 
 def made(epochs: int = 2) -> Evaluation:
-    """Runs that the checks really passed, one of them spoiled."""
+    """Runs that pass the checks, except for one."""
     trials: list[Trial] = []
     for task, episode in samples():
         known = TaskFacts(
@@ -74,7 +74,7 @@ def faults_of(rows: Rows, tmp_path: Path, tasks: tuple[Task, ...] = TASKS) -> st
     return "\n".join(check_submission(path, tasks).faults)
 
 
-def test_what_is_made_is_valid(rows: Rows, tmp_path: Path) -> None:
+def test_a_generated_submission_is_valid(rows: Rows, tmp_path: Path) -> None:
     assert faults_of(rows, tmp_path) == ""
     assert len(rows) == 1 + 2 * len(TASKS)
     for row in rows:
@@ -103,44 +103,44 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
     ("spoil", "told"),
     [
         (drop(3), "is missing (repeats"),
-        (drop(3), "line 1: totals say"),
+        (drop(3), "line 1: the totals state"),
         (lambda rows: rows.append(rows[2]), "occurs 2 times"),
-        (change(2, task="scope1-made-up-001"), "is no task of the split"),
-        (change(2, epoch=3), "repeat 3 of 2"),
+        (change(2, task="scope1-made-up-001"), "is not a task of the split"),
+        (change(2, epoch=3), "repeat 3, but the header states 2"),
         (change(2, error_mode="scope"), "error mode scope although the trial is correct"),
         (change(1, error_mode=None), "an incorrect trial has no error mode"),
         (change(1, headline="correct", error_mode=None), "correct although not every check passed"),
         (change(2, headline="incorrect", error_mode="scope"), "incorrect although no check failed"),
-        (change(2, headline="unscored"), "unscored although the checks tell"),
-        (change(2, checks={}), "no check at all"),
-        (change(2, answer="I cannot tell."), "the answer reads as wrong and its check says right"),
-        (change(2, scored_by="judge"), "but no judgement says so"),
-        (change(2, category="ocr"), "category ocr where the task's is"),
+        (change(2, headline="unscored"), "unscored although the checks decide"),
+        (change(2, checks={}), "has no checks"),
+        (change(2, answer="I cannot tell."), "the answer is wrong, but its check says right"),
+        (change(2, scored_by="judge"), "but no judgement has this verdict"),
+        (change(2, category="ocr"), "the category is ocr, but that of the task is"),
         (change(2, outcome="won"), "outcome won is none of"),
-        (change(2, steps=61), "61 steps where 60 are the most"),
+        (change(2, steps=61), "61 steps, but the limit is 60"),
         (change(2, steps=-1), "steps: Input should be greater than or equal to 0"),
         (change(2, steps=1.5), "line 3: trial.steps"),
-        (change(2, tool_calls={"hack_camera": 1}), "there are no tools hack_camera"),
+        (change(2, tool_calls={"hack_camera": 1}), "unknown tools: hack_camera"),
         (change(2, cost_usd=-1), "cost_usd"),
         (change(2, extra=1), "extra"),
         (change(2, kind="other"), "line 3"),
-        (change(2, times=LONG), "took 9 s of 1 s"),
+        (change(2, times=LONG), "took 9 s, but the whole trial took 1 s"),
         (change(2, answer="use sk-abcdefghijklmnop1234"), "line 3: answer looks like a secret"),
         (change(0, canary="none"), "canary"),
         (change(0, format=2), "format"),
-        (change(0, tasks_digest="0" * 64), "the digest of the tasks is another"),
-        (change(0, tasks=1), "it names 1 tasks"),
-        (change(0, wanted=1), "1 trials were wanted"),
-        (put_card(dataset="scope9"), "dataset scope9 is not that of the tasks"),
+        (change(0, tasks_digest="0" * 64), "the digest of the tasks differs"),
+        (change(0, tasks=1), "the header states 1 tasks"),
+        (change(0, wanted=1), "the header states 1 trials"),
+        (put_card(dataset="scope9"), "the dataset is scope9, but the tasks are of"),
         (put_card(package_version="99.0.0"), "newer than this one"),
-        (put_card(package_version="new"), "no version"),
+        (put_card(package_version="new"), "is not a version number"),
         (put_card(epochs=3), "is missing (repeats 3)"),
         (put_card(sampling={"api_key": "x"}), "card.sampling.api_key looks like a secret"),
-        (drop(0), "begins with its only header"),
-        (lambda rows: rows.insert(2, rows[0]), "this one has 2"),
+        (drop(0), "exactly one header"),
+        (lambda rows: rows.insert(2, rows[0]), "this one has 2 headers"),
     ],
 )  # fmt: skip
-def test_whatever_is_wrong_is_told(spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path) -> None:
+def test_every_error_is_reported(spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path) -> None:
     spoil(rows)
     assert told in faults_of(rows, tmp_path)
 
@@ -150,7 +150,7 @@ def broken(**values: Any) -> Callable[[Rows], None]:
 
 
 def counted(**values: Any) -> Callable[[Rows], None]:
-    """Changes the first run of a task that wants a move, a call and a count."""
+    """Change the first run of a task that requires a move, a call and a count."""
     return lambda rows: next(row for row in rows[1:] if row["task"].endswith("counting-001")).update(values)
 
 
@@ -179,35 +179,35 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
 @pytest.mark.parametrize(
     ("spoil", "told"),
     [
-        (fewer_checks, "the task's checks coverage are missing"),
-        (lambda rows: rows[2]["checks"].update(luck=True), "the task has no checks luck"),
-        (lambda rows: rows[2]["checks"].update(outcome=False), "the outcome answered and its check differ"),
+        (fewer_checks, "checks of the task are missing: coverage"),
+        (lambda rows: rows[2]["checks"].update(luck=True), "the task does not have these checks: luck"),
+        (lambda rows: rows[2]["checks"].update(outcome=False), "the outcome answered contradicts its check"),
         (broken(), "broken by infrastructure although it ended answered"),
-        (counted(checks={"outcome": True, "answer": True}), "the task's checks calls, coverage, pose are missing"),
+        (counted(checks={"outcome": True, "answer": True}), "checks of the task are missing: calls, coverage, pose"),
         (broken(outcome="step_limit"), "broken by infrastructure although it ended step_limit"),
         (broken(perception_failures=1), "broken by infrastructure although it ended answered"),
-        (change(1, headline="correct", error_mode=None, scored_by="judge", judged=JUDGED), "by a judge, and the task has checks"),
-        (change(2, tool_calls={}, steps=0), "it ended answered without a step"),
-        (change(2, tool_calls={}, steps=0), "coverage passed and nothing looked"),
-        (unlooked, "coverage passed and nothing looked"),
+        (change(1, headline="correct", error_mode=None, scored_by="judge", judged=JUDGED), "although the task has checks"),
+        (change(2, tool_calls={}, steps=0), "ended answered without a step"),
+        (change(2, tool_calls={}, steps=0), "coverage passed without a perception call"),
+        (unlooked, "coverage passed without a perception call"),
         (counted(tool_calls={"count_objects": 1}), "calls passed with 0 of 1 calls of go_to_preset"),
-        (counted(steps=0), "2 calls in no step"),
-        (counted(bad_calls=2, perception_failures=1), "3 calls failed of 2"),
-        (unmoved, "passed and nothing moved the camera"),
+        (counted(steps=0), "2 calls, but no step"),
+        (counted(bad_calls=2, perception_failures=1), "3 failed calls, but only 2 calls"),
+        (unmoved, "passed, but no call moved the camera"),
         (unpictured, "pictures passed with 0 of"),
         (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, but"),
         (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but"),
     ],
 )  # fmt: skip
-def test_what_the_file_and_the_tasks_show_to_be_untrue_is_refused(
+def test_values_that_contradict_the_file_or_the_tasks_are_refused(
     spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path
 ) -> None:
     spoil(rows)
     assert told in faults_of(rows, tmp_path)
 
 
-def test_what_really_happens_is_not_refused(rows: Rows, tmp_path: Path) -> None:
-    """Runs that never began or were broken, that were blind, and planners that see for themselves."""
+def test_unusual_but_real_runs_are_accepted(rows: Rows, tmp_path: Path) -> None:
+    """Runs that did not start or failed, runs without observations, and planners with vision."""
     never = change(1, headline="infrastructure", error_mode=None, outcome=None, checks={}, steps=0, tool_calls={}, answer="")
     failed = dict.fromkeys(rows[1]["checks"], False)
     cut = broken(outcome="planner_error", answer="", checks=failed)
@@ -216,7 +216,7 @@ def test_what_really_happens_is_not_refused(rows: Rows, tmp_path: Path) -> None:
         changed = json.loads(json.dumps(rows))
         spoil(changed)
         found = faults_of(changed, tmp_path).splitlines()
-        assert all(line.startswith("line 1: totals say") for line in found), found
+        assert all(line.startswith("line 1: the totals state") for line in found), found
     for known in ({"sees": "true"}, {}):
         changed = json.loads(json.dumps(rows))
         unlooked(changed)
@@ -225,21 +225,21 @@ def test_what_really_happens_is_not_refused(rows: Rows, tmp_path: Path) -> None:
         assert faults_of(changed, tmp_path) == ""
 
 
-def test_totals_are_counted_again(rows: Rows, tmp_path: Path) -> None:
+def test_totals_are_recomputed(rows: Rows, tmp_path: Path) -> None:
     rows[0]["totals"]["headlines"] = {"correct": 2 * len(TASKS)}
     rows[0]["totals"]["error_modes"] = {"reasoning": 4}
     found = faults_of(rows, tmp_path)
-    assert "headline correct, counted" in found and "headline incorrect, counted 1" in found
-    assert "4 times error mode reasoning, counted 0" in found and "error mode scope, counted 1" in found
+    assert "state 28 for headline correct, but the trials have 27" in found and "state 0 for headline incorrect" in found
+    assert "state 4 for error mode reasoning, but the trials have 0" in found and "state 0 for error mode scope" in found
 
 
-def test_lines_that_are_no_json_are_told_and_files_that_are_none_refused(tmp_path: Path) -> None:
+def test_invalid_json_lines_are_reported_and_unreadable_files_refused(tmp_path: Path) -> None:
     path = tmp_path / "x.jsonl"
     path.write_text('{"kind": "trial"\n[1]\n{"a": NaN}\n' + "[" * 100_000 + "\n", "utf-8")
     found = "\n".join(check_submission(path, TASKS).faults)
-    assert "line 1: no JSON" in found and "line 2" in found and "line 3: no JSON (NaN" in found and "line 4" in found
+    assert "line 1: not valid JSON" in found and "line 2" in found and "line 3: not valid JSON (NaN" in found and "line 4" in found
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match="no UTF-8"):
+    with pytest.raises(InputError, match="not UTF-8"):
         check_submission(path, TASKS)
     with pytest.raises(InputError, match="cannot be read"):
         check_submission(tmp_path / "none.jsonl", TASKS)
@@ -273,20 +273,20 @@ def test_settings_lose_their_addresses_and_keys_and_nothing_else() -> None:
     }  # fmt: skip
 
 
-def test_an_unfinished_run_is_no_submission() -> None:
+def test_an_unfinished_run_cannot_be_submitted() -> None:
     whole = made()
     with pytest.raises(InputError, match=r"unfinished: 3 of \d+ trials"):
         submission_lines(whole.model_copy(update={"trials": whole.trials[:3]}))
 
 
-def test_runs_without_models_are_said_to_be_unranked(tmp_path: Path) -> None:
+def test_runs_without_models_are_labelled_as_unranked(tmp_path: Path) -> None:
     whole = made(1)
     path = tmp_path / "reference.jsonl"
     unranked = whole.model_copy(update={"card": card("grammar", "ground-truth", split="x.jsonl")})
     write_submission(submission_lines(unranked), path)
     found = check_submission(path, TASKS)
     assert not found.faults and "not ranked" in found.summary and found.as_dict()["valid"] is True
-    with pytest.raises(InputError, match="no published split"):
+    with pytest.raises(InputError, match="not a published split"):
         check_submission(path)
 
 
@@ -318,7 +318,7 @@ def test_the_commands(rows: Rows, tmp_path: Path) -> None:
     assert run(app, ["bench", "submission", "validate", str(tmp_path / "no.jsonl")]).exit_code == 2
 
 
-def test_only_a_whole_split_is_made_into_a_submission(tmp_path: Path) -> None:
+def test_a_submission_requires_a_complete_split(tmp_path: Path) -> None:
     whole, tasks, out = made(2), tmp_path / "tasks.jsonl", tmp_path / "out.jsonl"
     dump_tasks(TASKS, tasks)
 
@@ -352,10 +352,10 @@ def test_only_a_whole_split_is_made_into_a_submission(tmp_path: Path) -> None:
     )
     trials = (reworded, reworded.model_copy(update={"epoch": 2}), *whole.trials[2:])
     other = make(whole.model_copy(update={"trials": trials}), *named)
-    assert other.exit_code == 2 and "the digest of the tasks is another" in other.stderr
+    assert other.exit_code == 2 and "the digest of the tasks differs" in other.stderr
 
 
-def test_validating_needs_nothing_that_the_extra_brings() -> None:
+def test_validating_does_not_need_the_extra() -> None:
     code = "import sys, scope_ptz.bench.reports.submission_checks; print(*sorted({n.split('.')[0] for n in sys.modules}))"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "scope_ptz" in loaded and not {"inspect_ai", "jinja2", "matplotlib", "pandas", "scipy", "statsmodels"} & set(loaded)

@@ -29,7 +29,7 @@ INTERVAL = IntervalEstimate(0.7383, 0.7, 0.8, 0.02, 100, 12)
         (replace(INTERVAL, without=("single_call", "ocr")), "share", "73.8 (70.0 to 80.0, without single call, ocr)"),
     ],
 )  # fmt: skip
-def test_cells_in_words(value: object, kind: object, words: str) -> None:
+def test_cells_as_text(value: object, kind: object, words: str) -> None:
     assert in_words(value, kind) == words  # type: ignore[arg-type]
 
 
@@ -46,7 +46,7 @@ def test_csv_has_full_figures_and_empty_fields_for_what_is_missing() -> None:
     assert rows[1] == {"group": "group", "run": "b", "macro": "0.5", "macro_low": "", "macro_high": "", "cost": "1.5"}
 
 
-def test_an_interval_that_lacks_strata_names_them_in_csv_too() -> None:
+def test_strata_missing_from_an_interval_are_named_in_csv() -> None:
     columns = (Column("run", "Run"), Column("macro", "Macro (%)", "share"))
     narrow = replace(INTERVAL, without=("single_call", "ocr"))
     rows = list(
@@ -62,7 +62,7 @@ def test_no_text_is_a_formula_in_a_spreadsheet(text: str) -> None:
     assert row["run"] == f"'{text}"
 
 
-def test_markdown_means_nothing_but_what_it_shows() -> None:
+def test_markdown_characters_are_escaped() -> None:
     text = as_markdown(small("<img src=x onerror=alert(1)> [link](http://x) | `code` **b**\n# h"))
     line = next(row for row in text.splitlines() if "img" in row)
     assert "<img" not in line and "](" not in line and line.replace("\\|", "").count("|") == 4
@@ -70,7 +70,7 @@ def test_markdown_means_nothing_but_what_it_shows() -> None:
     assert escape("plain words 12.5") == "plain words 12.5"
 
 
-def test_a_row_of_another_length_is_refused() -> None:
+def test_a_row_of_the_wrong_length_is_refused() -> None:
     with pytest.raises(ValueError, match="2 values for 1 columns"):
         ReportTable("key", "Title", (Column("a", "A"),), ((1, 2),))
 
@@ -87,7 +87,7 @@ def test_the_papers_averages_are_the_means_of_its_categories() -> None:
     assert sum(row.average for row in paper.accuracy) / 19 == pytest.approx(66.2, abs=0.05)
 
 
-def test_the_papers_shares_are_shares_of_its_tasks_but_one() -> None:
+def test_all_but_one_of_the_papers_shares_are_multiples_of_one_task() -> None:
     paper = load_paper()
     impossible = [
         (row.line, c.category)
@@ -109,7 +109,7 @@ def test_the_papers_pairs_and_models_are_those_of_the_registry() -> None:
     assert {row.name for row in paper.latency} <= set(registry.models)
 
 
-def test_the_spreads_that_the_paper_tells_follow_from_its_table() -> None:
+def test_the_spreads_in_the_paper_follow_from_its_table() -> None:
     paper = load_paper()
     by_eyes: dict[str, list[float]] = {}
     by_planner: dict[str, list[float]] = {}

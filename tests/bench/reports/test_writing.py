@@ -1,4 +1,4 @@
-"""The page on disk: whole, harmless whatever models wrote, and never mistaken for another folder."""
+"""Report pages on disk: complete, safe for any model output, and never written over another folder."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ EVIL_ID = "../../../etc/passwd<script>"
 
 
 class Page(HTMLParser):
-    """What matters of a page: its tags, ids and where it points."""
+    """The tags, ids and link targets of a page."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -54,7 +54,7 @@ def jpeg(colour: str = "red", size: tuple[int, int] = (1280, 720)) -> bytes:
 
 
 class Sample:
-    """A run's trace and pictures, with things in them that are meant to do harm."""
+    """A trace and pictures of a run with malicious content."""
 
     def __init__(self) -> None:
         place = RecordedPose(pan_deg=1, tilt_deg=2, zoom=1)
@@ -107,7 +107,7 @@ def evil() -> Evaluation:
     )
 
 
-def test_what_models_and_logs_say_is_shown_and_never_acts(evil: Evaluation, tmp_path: Path) -> None:
+def test_text_of_models_and_logs_is_shown_and_never_executed(evil: Evaluation, tmp_path: Path) -> None:
     out = tmp_path / "report"
     write_report([evil, evil], load_registry(), out, open_sample=lambda evaluation, trial: Sample())
     written = [path for path in tmp_path.rglob("*") if path.is_file()]
@@ -130,14 +130,14 @@ def test_what_models_and_logs_say_is_shown_and_never_acts(evil: Evaluation, tmp_
     assert len(list((out / "frames").iterdir())) == 2, "no picture is kept twice"
 
 
-def test_file_names_are_made_here() -> None:
+def test_file_names_do_not_come_from_logs() -> None:
     for task in (EVIL_ID, "..", "", "con", "a/b\\c", "\x00", "ü" * 400, "scope1-x-counting-001"):
         assert re.fullmatch(r"[a-z0-9-]+-[0-9a-f]{10}\.html", file_name(task)) and len(file_name(task)) < 90
     assert file_name("a.b") != file_name("a-b")
     assert file_name("scope1-x-counting-001").startswith("scope1-x-counting-001-")
 
 
-def test_a_trace_that_cannot_be_read_is_told(evil: Evaluation, tmp_path: Path) -> None:
+def test_an_unreadable_trace_is_reported(evil: Evaluation, tmp_path: Path) -> None:
     def fails(evaluation: Evaluation, trial: Trial) -> Sample:
         raise TraceError("The log holds no such run.")
 
@@ -152,7 +152,7 @@ def test_only_pictures_become_files(content: bytes | None, tmp_path: Path) -> No
     assert not (tmp_path / "frames").exists()
 
 
-def test_pictures_are_made_small(tmp_path: Path) -> None:
+def test_pictures_are_reduced(tmp_path: Path) -> None:
     store = FrameStore(tmp_path / "frames", "frames")
     kept = store.keep(jpeg(size=(4000, 700)))
     assert kept is not None
@@ -160,7 +160,7 @@ def test_pictures_are_made_small(tmp_path: Path) -> None:
         assert picture.width == 1280
 
 
-def test_the_page_stands_alone_and_is_accessible(report: EvaluationReport) -> None:
+def test_the_page_is_self_contained_and_accessible(report: EvaluationReport) -> None:
     text = html(report)
     page = Page(text)
     assert not page.of("script") and not page.of("link") and not page.of("img")
@@ -181,12 +181,12 @@ def test_the_page_stands_alone_and_is_accessible(report: EvaluationReport) -> No
     assert "prefers-color-scheme: dark" in text and "@media print" in text and "#010203" not in text
 
 
-def test_a_report_is_the_same_each_time(report: EvaluationReport) -> None:
+def test_reports_are_reproducible(report: EvaluationReport) -> None:
     assert html(report) == html(report)
     assert markdown(report).count("## ") >= len(report.sections)
 
 
-def test_an_older_report_is_replaced_and_nothing_else(evil: Evaluation, tmp_path: Path) -> None:
+def test_only_older_reports_are_replaced(evil: Evaluation, tmp_path: Path) -> None:
     out = tmp_path / "report"
     write_report([evil], load_registry(), out)
     kept = out / "notes.txt"

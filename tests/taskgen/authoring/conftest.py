@@ -8,7 +8,7 @@ import anyio
 import pytest
 
 from scope_ptz.bench.tasks.task import Category
-from scope_ptz.factory.validation_perception import answered, equip_with_truth
+from scope_ptz.factory.validation_perception import ground_truth_tools, is_answerable
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import BuiltTasks, build
 from scope_ptz.taskgen.validation.validate import validate
@@ -28,13 +28,13 @@ QUOTAS: dict[Category, int] = {
 
 @pytest.fixture(scope="session")
 def built(analytic_scene: Scene) -> BuiltTasks:
-    return build([analytic_scene], 1, QUOTAS, None, answered)
+    return build([analytic_scene], 1, QUOTAS, None, is_answerable)
 
 
 @pytest.fixture(scope="session")
 def report(built: BuiltTasks, analytic_scene: Scene) -> ValidationReport:
     scenes = {analytic_scene.name: analytic_scene}
-    return anyio.run(lambda: validate(built.tasks, scenes, equip_with_truth(scenes)))
+    return anyio.run(lambda: validate(built.tasks, scenes, ground_truth_tools(scenes)))
 
 
 @pytest.fixture(scope="session")

@@ -16,7 +16,7 @@ __all__ = ["scenes", "scope"]
 
 @pytest.fixture
 def few(built: BuiltTasks, tmp_path: Path) -> Path:
-    """A file of four tasks without twins."""
+    """A file with four tasks without twins."""
     core = [task for task in built.tasks if task.stratum == "core" and task.pair is None]
     path = tmp_path / "tasks.jsonl"
     dump_tasks([core[0], core[-1], next(t for t in core if t.category == "ocr"), next(t for t in core if not t.evidence)], path)

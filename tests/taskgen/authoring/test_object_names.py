@@ -6,7 +6,7 @@ import pytest
 
 from scope_ptz.simulator.models import SceneInstance
 from scope_ptz.taskgen.authoring.noun_phrases import the
-from scope_ptz.taskgen.authoring.object_names import colours_confusable, could_bear_name, spoken
+from scope_ptz.taskgen.authoring.object_names import colours_confusable, name_could_refer_to, name_in_instruction
 
 
 def thing(category: str, name: str, **attributes: str) -> SceneInstance:
@@ -28,7 +28,7 @@ def thing(category: str, name: str, **attributes: str) -> SceneInstance:
     ],
 )
 def test_names_that_could_mean_another_object(named: tuple[str, str], other: tuple[str, str]) -> None:
-    assert could_bear_name(thing(*other), named[1], thing(*named))
+    assert name_could_refer_to(thing(*other), named[1], thing(*named))
 
 
 @pytest.mark.parametrize(
@@ -42,20 +42,22 @@ def test_names_that_could_mean_another_object(named: tuple[str, str], other: tup
     ],
 )
 def test_names_that_mean_one_object_only(named: tuple[str, str], other: tuple[str, str]) -> None:
-    assert not could_bear_name(thing(*other), named[1], thing(*named))
+    assert not name_could_refer_to(thing(*other), named[1], thing(*named))
 
 
 def test_attributes_count_as_part_of_a_name() -> None:
-    assert could_bear_name(thing("worker", "kneeling worker", vest="orange"), "worker in an orange vest", thing("worker", "x"))
-    assert not could_bear_name(thing("worker", "kneeling worker", vest="green"), "worker in an orange vest", thing("worker", "x"))
+    assert name_could_refer_to(thing("worker", "kneeling worker", vest="orange"), "worker in an orange vest", thing("worker", "x"))
+    assert not name_could_refer_to(
+        thing("worker", "kneeling worker", vest="green"), "worker in an orange vest", thing("worker", "x")
+    )
 
 
 def test_articles_before_names() -> None:
     assert the("bakery sign") == "the bakery sign"
     assert the("dock door 5") == "dock door 5"
-    assert the(spoken("The Copper Kettle sign")) == "the Copper Kettle sign"
-    assert spoken("price of apples") == "price card for apples"
-    assert spoken("pedestrian waiting") == "waiting pedestrian"
+    assert the(name_in_instruction("The Copper Kettle sign")) == "the Copper Kettle sign"
+    assert name_in_instruction("price of apples") == "price card for apples"
+    assert name_in_instruction("pedestrian waiting") == "waiting pedestrian"
 
 
 @pytest.mark.parametrize(("one", "other"), [("navy", "blue"), ("dark red", "red"), ("grey", "silver"), ("black", None)])

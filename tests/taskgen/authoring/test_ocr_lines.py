@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from scope_ptz.simulator.models import SceneText
 from scope_ptz.simulator.truth import BoxTuple, TextSighting
-from scope_ptz.taskgen.authoring.categories.ocr_tasks import lines, on_it, priced
+from scope_ptz.taskgen.authoring.categories.ocr_tasks import lines, on_it, prices
 
 
 def written(text: str, box: BoxTuple) -> TextSighting:
@@ -44,10 +44,10 @@ def test_a_repeated_text_counts_once() -> None:
 
 def test_only_the_price_of_a_price_card_is_read() -> None:
     price = written("5.00", (0.4, 0.46, 0.6, 0.5))
-    assert priced((written("ROSES", (0.4, 0.4, 0.6, 0.44)), price)) == (price,)
+    assert prices((written("ROSES", (0.4, 0.4, 0.6, 0.44)), price)) == (price,)
 
 
-def test_a_plate_beside_an_object_is_not_a_text_on_it() -> None:
+def test_a_plate_next_to_an_object_is_not_a_text_on_it() -> None:
     box = (0.4, 0.45, 0.6, 0.9)
     assert on_it(box, AHEAD)
     assert not on_it(box, ROAD)

@@ -1,4 +1,4 @@
-"""Robust ground truth: certain statements only."""
+"""Robust ground truth contains only certain facts."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_barely_visible_object_makes_its_kind_uncertain(analytic_scene: Scene)
 
 
 def test_a_passing_actor_is_neither_counted_nor_absent(yard: RobustTruth) -> None:
-    assert yard.passing
+    assert yard.passing_actors
     assert yard.all_of(Kind("roller")) is None
     assert not yard.lacks(Kind("roller"))
 
@@ -79,7 +79,7 @@ def test_nothing_is_stated_about_categories_in_the_backdrop(
     yard: RobustTruth, analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert yard.all_of(Kind("block")) and yard.lacks(Kind("zebra"))
-    monkeypatch.setattr(robust, "BACKDROP", {analytic_scene.name: frozenset({"block", "zebra"})})
+    monkeypatch.setattr(robust, "INCOMPLETE_CATEGORIES", {analytic_scene.name: frozenset({"block", "zebra"})})
     truth = RobustTruth(analytic_scene, "mast", YARD, 0.0)
     assert truth.all_of(Kind("block")) is None and not truth.lacks(Kind("zebra"))
     assert not any(s.instance.category == "block" for s in truth.clear)

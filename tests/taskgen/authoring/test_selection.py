@@ -12,7 +12,14 @@ from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NoneThere, Numbe
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft
-from scope_ptz.taskgen.authoring.selection import AT_ONE_POSITION, POLAR, SAME, Selection, SharedLimits, offered_positions
+from scope_ptz.taskgen.authoring.selection import (
+    MAX_AT_ONE_POSITION,
+    MAX_SAME_QUESTION,
+    MAX_SAME_YES_NO,
+    Selection,
+    SharedLimits,
+    offered_positions,
+)
 from scope_ptz.taskgen.authoring.task_places import TaskPlace, go, preset_at
 
 
@@ -45,7 +52,7 @@ def test_a_question_is_asked_of_few_views_with_the_same_answer(place: TaskPlace)
     views = [replace(place, at=CameraPosition(place.at.viewpoint, Pose(float(pan), -10.0, 1.0))) for pan in range(0, 90, 15)]
     same = [draft(view, "cars", Number(value=3), "3") for view in views]
     others = [draft(place, f"thing {n}", Number(value=n % 5), str(n % 5)) for n in range(10)]
-    assert sum(d.key == "cars" for d in chosen([*same, *others], 10)) <= SAME
+    assert sum(d.key == "cars" for d in chosen([*same, *others], 10)) <= MAX_SAME_QUESTION
 
 
 def test_limits_are_widened_when_there_are_no_other_drafts(place: TaskPlace) -> None:
@@ -56,7 +63,7 @@ def test_yes_and_no_are_equally_frequent(place: TaskPlace) -> None:
     drafts = [
         draft(place, f"{said} {n}", YesNo(value=said), "yes" if said else "no", "is") for said in (True, False) for n in range(9)
     ]
-    assert Counter(d.answer_key for d in chosen(drafts, 8)) == {"yes": POLAR, "no": POLAR}
+    assert Counter(d.answer_key for d in chosen(drafts, 8)) == {"yes": MAX_SAME_YES_NO, "no": MAX_SAME_YES_NO}
 
 
 def test_both_tasks_of_a_pair_are_taken_or_neither(place: TaskPlace) -> None:
@@ -103,7 +110,7 @@ def test_no_offered_position_is_right_too_often(place: TaskPlace) -> None:
     rows = Selection("comparative", 10, SharedLimits(), 1).fill([*last, *first])
     assert Counter(at for row in rows for at in offered_positions(row.draft, row.text) if at != "1") == {
         "0": 5,
-        "last": AT_ONE_POSITION["comparative"],
+        "last": MAX_AT_ONE_POSITION["comparative"],
     }
 
 

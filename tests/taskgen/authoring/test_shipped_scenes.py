@@ -10,7 +10,7 @@ import pytest
 
 from scope_ptz.bench.tasks.expected import NoneThere
 from scope_ptz.bench.tasks.task import Category
-from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
+from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
 from scope_ptz.simulator.pack import Scene, load_scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS, BuiltTasks, build
 from scope_ptz.taskgen.validation.report_text import report_lines
@@ -39,8 +39,8 @@ def test_tasks_are_spread_over_both_scenes(made: BuiltTasks, two_scenes: dict[st
 
 
 def test_the_dataset_is_sound(made: BuiltTasks, two_scenes: dict[str, Scene]) -> None:
-    views = KnownViews()
-    report = anyio.run(lambda: validate(made.tasks, two_scenes, equip_with_truth(two_scenes, views), read_truth=views.look))
+    truth = CachedTruth()
+    report = anyio.run(lambda: validate(made.tasks, two_scenes, ground_truth_tools(two_scenes, truth), read_truth=truth.read))
     assert report.sound, "\n".join(report_lines(report))
     assert not report.disagreements
     assert report.absences == sum(isinstance(t.expected, NoneThere) for t in made.tasks if t.stratum == "core")

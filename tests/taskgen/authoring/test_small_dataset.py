@@ -16,14 +16,14 @@ import pytest
 from scope_ptz.bench.tasks.expected import Choice, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.factory.validation_perception import equip_with_truth
+from scope_ptz.factory.validation_perception import ground_truth_tools
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS as PUBLISHED
 from scope_ptz.taskgen.authoring.assembly import BuiltTasks
 from scope_ptz.taskgen.authoring.reactions import reactions
 from scope_ptz.taskgen.facts.answer_phrasing import offered
 from scope_ptz.taskgen.validation.adversarial import common_answers
-from scope_ptz.taskgen.validation.dataset_checks import structure
+from scope_ptz.taskgen.validation.dataset_checks import structural_faults
 from scope_ptz.taskgen.validation.report_text import report_lines
 from scope_ptz.taskgen.validation.validate import validate
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
@@ -36,7 +36,7 @@ def core(built: BuiltTasks) -> list[Task]:
 
 def run_validation(tasks: list[Task], scene: Scene) -> ValidationReport:
     scenes = {scene.name: scene}
-    return anyio.run(lambda: validate(tasks, scenes, equip_with_truth(scenes)))
+    return anyio.run(lambda: validate(tasks, scenes, ground_truth_tools(scenes)))
 
 
 def test_published_quotas_add_up_to_the_536_tasks_of_the_paper() -> None:
@@ -54,11 +54,11 @@ import sys
 from pathlib import Path
 from scope_ptz.taskgen.authoring.assembly import build
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.factory.validation_perception import answered
+from scope_ptz.factory.validation_perception import is_answerable
 from scope_ptz.simulator.pack import Scene
 from tests.taskgen.authoring.conftest import QUOTAS
 folder, seed, out = sys.argv[1:]
-dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS, None, answered).tasks, Path(out))
+dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS, None, is_answerable).tasks, Path(out))
 """
 
 
@@ -77,12 +77,12 @@ def test_same_seed_gives_the_same_bytes_and_another_seed_does_not(built: BuiltTa
 
 def test_the_twin_of_a_selected_task_may_be_in_the_rest_of_the_dataset(built: BuiltTasks) -> None:
     alone = [task for task in built.tasks if task.pair is not None][:1]
-    assert [fault.attempt for fault in structure(alone)] == ["pair"]
-    assert not structure(alone, dataset=built.tasks)
+    assert [fault.attempt for fault in structural_faults(alone)] == ["pair"]
+    assert not structural_faults(alone, dataset=built.tasks)
 
 
 def test_no_two_tasks_ask_the_same(built: BuiltTasks) -> None:
-    assert not structure(built.tasks)
+    assert not structural_faults(built.tasks)
     views = Counter((t.evidence[0].aim, t.evidence[0].scope, t.expected, t.tags) for t in core(built) if t.category == "counting")
     assert max(views.values()) == 1
     assert len({task.id for task in built.tasks}) == len(built.tasks)
@@ -148,7 +148,7 @@ def test_answers_that_a_question_offers() -> None:
 def test_most_common_answer_does_not_contain_words_of_its_question(built: BuiltTasks) -> None:
     counts = [task.expected for task in core(built) if task.category == "counting" and task.pair is None]
     common = Counter(f"{e.value:g}" for e in counts if isinstance(e, Number)).most_common(1)[0][0]
-    assert common_answers(built.tasks, presences=True)["counting"] == common
+    assert common_answers(built.tasks, exclude_pairs=True)["counting"] == common
 
 
 def wrong_count(task: Task) -> Task:
@@ -187,7 +187,7 @@ def test_a_wrong_expected_count_is_reported(built: BuiltTasks, analytic_scene: S
 
 def test_a_missing_twin_is_reported(built: BuiltTasks) -> None:
     task = next(t for t in core(built) if t.pair)
-    assert [fault.attempt for fault in structure([task])] == ["pair"]
+    assert [fault.attempt for fault in structural_faults([task])] == ["pair"]
 
 
 def test_reactions_require_that_the_camera_does_not_move(analytic_scene: Scene) -> None:

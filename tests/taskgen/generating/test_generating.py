@@ -142,7 +142,7 @@ def test_unusable_replies_end_generation_without_losing_tasks(scope: Scope, tmp_
             "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--model", "drafter", "--out", str(out),
             "--want", "counting=5",
         )  # fmt: skip
-    assert done.code == 1 and "3 requests in a row brought no drafts" in done.err
+    assert done.code == 1 and "3 consecutive requests returned no drafts" in done.err
     assert len(load_tasks(out / "tasks.jsonl")) == 1
 
 

@@ -74,7 +74,7 @@ def test_an_open_quotation_mark_is_reported(tmp_path: Path) -> None:
         (b"\n \n", "is empty"),
         (b"a,b\n1,2\n", "no column question"),
         (b"PK\x03\x04\0\0\0", "null bytes"),
-        (b"\xff\xfe\xd8", "claims to be utf-16"),
+        (b"\xff\xfe\xd8", "not valid utf-16"),
         (b"question,expected_answer\n" + b"x" * (5 * 2**20) + b",y\n", "line 2"),
     ],
 )

@@ -354,7 +354,7 @@ def test_arbitrary_rows_are_neither_lost_nor_break_the_import(
     folder = tmp_path_factory.mktemp("odd")
     done = imported(folder, *rows)
     assert len(done.rows) == len(rows)
-    assert len(done.tasks) + len(done.left_out) == len(rows)
+    assert len(done.tasks) + len(done.not_runnable) == len(rows)
     assert all(character.isprintable() for line in report_lines(done) for character in line)
     dump_imported(done.tasks, folder / "tasks.jsonl")
     assert load_imported(folder / "tasks.jsonl") == done.tasks

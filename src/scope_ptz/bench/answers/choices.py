@@ -6,12 +6,12 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from scope_ptz.bench.answers.comparisons import bearer_of, comparators, reference_of, ways
+from scope_ptz.bench.answers.comparisons import comparatives, described_thing, directions, reference_of
 from scope_ptz.bench.answers.denials import says_none, says_yes
 from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.options import option_mentions
 from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
-from scope_ptz.bench.answers.presence import says_that_none
+from scope_ptz.bench.answers.presence import absence_verdicts
 from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.answers.tokenizer import all_wordings
 from scope_ptz.bench.tasks.expected import Choice, Description, Fact, NameSet
@@ -20,9 +20,9 @@ SAME = (
     "the same", "same number", "same", "equal", "equally", "equals", "tie", "tied", "draw", "identical", "no difference",
     "not differ", "as many", "as much", "even", "evenly", "both",
 )  # fmt: skip
-"""Wordings of equality. They are also wordings of an option that is called "same"."""
+"""Wordings of equality. They also name an option that is called "same"."""
 
-_CONCLUDES = frozenset({"so", "therefore", "thus", "hence", "answer", "overall", "conclusion"})
+_CONCLUDING_WORDS = frozenset({"so", "therefore", "thus", "hence", "answer", "overall", "conclusion"})
 _MARKED_NONE = ("none", "0", "zero")
 _ALL = re.compile(r"\b(all|everything|both|each|every)\b")
 
@@ -32,10 +32,10 @@ def parse_choice(expected: Choice, text: AnswerText) -> ParsedAnswer:
 
     If several options are named, the one that a comparison picks or that the answer concludes with is returned.
     """
-    if expected.subject and True in says_that_none(text, expected.subject):
+    if expected.subject and True in absence_verdicts(text, expected.subject):
         return Unreadable("it says that there is none")
     stated = _stated_options(expected, text)
-    mentions = [m for m in stated if not after_than(text, m)]
+    mentions = [m for m in stated if not is_reference(text, m)]
     equality = _parse_equality(expected, text, mentions)
     if equality is not None:
         return equality
@@ -47,7 +47,7 @@ def parse_choice(expected: Choice, text: AnswerText) -> ParsedAnswer:
 
 
 def _stated_options(expected: Choice, text: AnswerText) -> list[NameMention]:
-    """Return every place that names an option and neither denies it nor names it as a contrast."""
+    """Return the mentions of options that the answer neither denies nor names only as a contrast."""
     options = dict(expected.options)
     if "same" in options:
         options["same"] = (*options["same"], *SAME)
@@ -55,7 +55,7 @@ def _stated_options(expected: Choice, text: AnswerText) -> list[NameMention]:
 
 
 def _parse_equality(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer | None:
-    """Parse an answer that says that the options are alike; None if it does not say so."""
+    """Parse an answer that says that the options are equal; return None if it does not say so."""
     alike = [m for m in mentions if m.name == "same"]
     if not alike:
         return None
@@ -63,8 +63,8 @@ def _parse_equality(expected: Choice, text: AnswerText, mentions: Sequence[NameM
     only_both = all(text.words[m.start].text == "both" for m in alike)
     if not only_both or len({m.name for m in later}) != 1:
         return ParsedValue("same")
-    if not _compared(expected, text, later)[0]:
-        # Unlike "I looked at both presets. The gate has more."
+    if not _compare_options(expected, text, later)[0]:
+        # No comparison follows, unlike in "I looked at both presets. The gate has more."
         return Unreadable("whether both are meant is not clear")
     return None
 
@@ -78,9 +78,14 @@ def _parse_comparison(
 ) -> ParsedAnswer:
     """Parse an answer to a question that asks for the most, the closest and so on.
 
-    ``compared`` are the stated options, ``mentions`` those of them that are not only compared with. ``stated`` adds equality.
+    Args:
+        expected: The expected choice.
+        text: The answer.
+        compared: Mentions of options, without equality.
+        mentions: Those of ``compared`` that are not only the reference of a comparison.
+        stated: ``compared`` with the mentions of equality.
     """
-    picked, excluded = _compared(expected, text, compared)
+    picked, excluded = _compare_options(expected, text, compared)
     if picked & excluded:
         return Unreadable("the comparisons contradict each other")
     if len(picked) == 1:
@@ -88,7 +93,7 @@ def _parse_comparison(
     if picked or excluded:
         kept = picked or {m.name for m in mentions} - excluded
         return _single_option(text, [m for m in mentions if m.name in kept])
-    has_reference = any(after_than(text, m) for m in stated)
+    has_reference = any(is_reference(text, m) for m in stated)
     chosen = [
         m for m in mentions if (has_reference and _is_heading(text, m)) or not _is_only_counted(text, m, expected.options[m.name])
     ]
@@ -96,36 +101,39 @@ def _parse_comparison(
 
 
 def _single_option(text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer:
-    """Return the only option that is named, after additions, parts and premises are set aside where several are."""
+    """Return the only option that is named.
+
+    If several are named, bracketed remarks, parts of things and text before the conclusion are disregarded, in this order.
+    """
     named = {m.name for m in mentions}
     if len(named) > 1:
-        named = {m.name for m in mentions if not _is_added(text, m)} or named
+        named = {m.name for m in mentions if not _is_remark(text, m)} or named
     if len(named) > 1:
-        parts = _of_parts(text, mentions)
+        parts = _part_mentions(text, mentions)
         named = {m.name for m in mentions if m not in parts} or named
     if len(named) > 1:
-        conclusion = max((i for i, w in enumerate(text.words) if w.text in _CONCLUDES), default=len(text.words))
+        conclusion = max((i for i, w in enumerate(text.words) if w.text in _CONCLUDING_WORDS), default=len(text.words))
         named = {m.name for m in mentions if m.start > conclusion} or named
     if len(named) == 1:
         return ParsedValue(named.pop())
     return Unreadable("several options: " + ", ".join(sorted(named)) if named else "no option is named")
 
 
-def _compared(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> tuple[set[str], set[str]]:
+def _compare_options(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> tuple[set[str], set[str]]:
     """Return the options that comparisons pick, and those that they exclude.
 
-    Of two options, excluding one picks the other: if the gate is not farther, it is closer.
+    With only two options, excluding one picks the other: if the gate is farther, the other option is closer.
     """
     picked, excluded = set[str](), set[str]()
     pair = {name for name in expected.options if name != "same"}
-    for comparator in comparators(text, ways(expected.picks)):
-        bearer = bearer_of(text, comparator, mentions)
-        reference = reference_of(text, comparator, mentions)
-        one = {bearer.name} if bearer else pair - {reference.name} if reference and len(pair) == 2 else set[str]()
+    for comparative in comparatives(text, directions(expected.picks)):
+        described = described_thing(text, comparative, mentions)
+        reference = reference_of(text, comparative, mentions)
+        one = {described.name} if described else pair - {reference.name} if reference and len(pair) == 2 else set[str]()
         other = {reference.name} if reference else pair - one if one and len(pair) == 2 else set[str]()
-        if comparator.denied:
-            excluded |= one if comparator.name == "forward" else set()
-        elif comparator.name == "forward":
+        if comparative.denied:
+            excluded |= one if comparative.name == "forward" else set()
+        elif comparative.name == "forward":
             picked |= one
             excluded |= {reference.name} if reference else set()
         else:
@@ -146,8 +154,8 @@ def _is_only_counted(text: AnswerText, mention: NameMention, further: Sequence[s
     return any(0 <= mention.start - q.end <= 3 or q.start == mention.end for q in own)
 
 
-def _is_added(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether an option is a remark in brackets, as in "green (the wall above is red)" but not in "green (or red)"."""
+def _is_remark(text: AnswerText, mention: NameMention) -> bool:
+    """Return whether an option is named only in a remark, as in "green (the wall above is red)" but not in "green (or red)"."""
     before = text.words[mention.start - 1].text if mention.start else ""
     return text.in_brackets(mention.start) and before not in _ALTERNATIVES
 
@@ -155,26 +163,26 @@ def _is_added(text: AnswerText, mention: NameMention) -> bool:
 _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "rather", "actually"})
 
 
-def _of_parts(text: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
+def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
     """Return the mentions that describe only a part of a thing or its base, such as the yellow of "blue, with a yellow top"."""
     found = list[NameMention]()
     for at, mention in enumerate(mentions):
         after = text.words[mention.end : mention.end + 1]
-        goes_on = bool(after) and after[0].clause == text.words[mention.start].clause and after[0].text not in _JOINS
+        continues = bool(after) and after[0].clause == text.words[mention.start].clause and after[0].text not in _CONNECTING_WORDS
         more = bool(after) and after[0].text == "and"
         before = " ".join(word.text for word in text.words[max(0, mention.start - 2) : mention.start])
         listed = at > 0 and found[-1:] == [mentions[at - 1]] and before.endswith("and")
-        if (_ATTACHED.search(before) and (goes_on or more)) or (listed and goes_on):
+        if (_ATTACHED.search(before) and (continues or more)) or (listed and continues):
             found.append(mention)
     return found
 
 
 _ATTACHED = re.compile(r"\b(with( an?| the| its)?|on an?)$")
-_JOINS = frozenset({"and", "or", "with", "on", "in", "at", "is", "are", "but"})
+_CONNECTING_WORDS = frozenset({"and", "or", "with", "on", "in", "at", "is", "are", "but"})
 
 
-def after_than(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether something is named only as the reference of a comparison."""
+def is_reference(text: AnswerText, mention: NameMention) -> bool:
+    """Return whether a mention is the reference of a comparison, as in "more than the gate"."""
     clause = text.words[mention.start].clause
     before = [w.text for w in text.words[max(0, mention.start - 6) : mention.start] if w.clause == clause]
     return "than" in before[-4:] or bool({"compared", "versus", "against"} & set(before))

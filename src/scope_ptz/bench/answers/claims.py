@@ -12,8 +12,8 @@ from scope_ptz.bench.answers.tokenizer import Word
 class Claim(Enum):
     """The claim that an answer makes by naming a thing.
 
-    ``STATED``: the sentence itself decides. ``FOUND`` and ``MISSED``: the result of a search. ``NOTHING``: the thing is only
-    searched for or asked about.
+    ``STATED``: the sentence states something about the thing; whether it is denied is determined separately. ``FOUND`` and
+    ``MISSED``: the result of a search. ``NOTHING``: the thing is only searched for or asked about.
     """
 
     STATED = auto()
@@ -28,27 +28,28 @@ def claim_of(words: Sequence[Word], start: int, end: int) -> Claim:
     before = "".join(f"{w.text} " for w in words[max(0, start - 30) : start] if w.clause == clause)
     after = "".join(f"{w.text} " for w in words[end : end + 30] if w.clause == clause)
     after_noun = words[end : end + 1]
-    if after_noun and after_noun[0].text in _OF_TOOLS and not after_noun[0].gap.strip():
+    if after_noun and after_noun[0].text in _TOOL_WORDS and not after_noun[0].gap.strip():
         return Claim.NOTHING
-    if _UNTOLD.search(before) or _UNDONE.match(after):
+    if _NO_KNOWLEDGE.search(before) or _ONLY_CHECKED.match(after):
         return Claim.NOTHING
     if not _is_sought(before, after):
         return Claim.STATED
-    onward = after + "".join(f"{w.text} " for w in words[end : end + 60] if w.clause == clause + 1)
-    if _MISSED.search(onward):
+    following = after + "".join(f"{w.text} " for w in words[end : end + 60] if w.clause == clause + 1)
+    if _MISSED.search(following):
         return Claim.MISSED
-    return Claim.FOUND if _FOUND.search(onward) else Claim.NOTHING
+    return Claim.FOUND if _FOUND.search(following) else Claim.NOTHING
 
 
 def _is_sought(before: str, after: str) -> bool:
+    """Return whether the thing is only searched for or asked about, as in "I looked for cones"."""
     asked = list(_WHETHER.finditer(before))
-    if asked and not _GOES_ON.intersection(before[asked[-1].end() :].split()):
+    if asked and not _RESULT_WORDS.intersection(before[asked[-1].end() :].split()):
         return True
     sought = list(_SOUGHT.finditer(before))
     if not sought or _SEEN.match(after):
         return False
     since = {*before[sought[-1].start() :].split()} - {"see", "find"} | {*before[sought[-1].end() :].split()}
-    return not since & (_GOES_ON | _STATES)
+    return not since & (_RESULT_WORDS | _STATING_VERBS)
 
 
 _WHETHER = re.compile(r"\b(whether|if)\b")
@@ -59,12 +60,12 @@ _SOUGHT = re.compile(
     r"\b(try|tried|trying|attempt|attempted|need|needed|want|wanted|going|order|asked|told|instructed|wish) to "
     r"(find|locate|spot|see|detect|count|look at)\b"
 )
-_GOES_ON = frozenset({
+_RESULT_WORDS = frozenset({
     "found", "saw", "sees", "spotted", "detected", "but", "so", "then", "yes", "no", "however", "shows", "revealed", "identified",
 })  # fmt: skip
 """Words that end the description of a search and begin its result."""
 
-_STATES = frozenset({"see", "find", "is", "are", "was", "were", "has", "have", "there", "reads", "says"})
+_STATING_VERBS = frozenset({"see", "find", "is", "are", "was", "were", "has", "have", "there", "reads", "says"})
 _SEEN = re.compile(r"(\w+ ){0,3}?(is|are|was|were) (not )?(visible|present|found|seen|detected|there)\b")
 _FOUND = re.compile(
     r"(?<!not )\b(found|find|see|saw|spotted|detected|located) (it|one|them|some|both|several|two|three|four|five|six|[1-9]\d*)\b"
@@ -74,11 +75,11 @@ _MISSED = re.compile(
     r"|\bnot (find|found|see|seen|spot|detect|locate)( (it|one|any|them|either)\b| $)"
     r"|\bwithout (success|finding (it|one|any|them))|\bin vain\b|\bto no avail\b|\bthere (is|are|was|were) none\b"
 )
-_OF_TOOLS = frozenset({"tool", "tools", "detector", "function", "query", "request", "search"})
-_UNTOLD = re.compile(
+_TOOL_WORDS = frozenset({"tool", "tools", "detector", "function", "query", "request", "search"})
+_NO_KNOWLEDGE = re.compile(
     r"\b(no|without|not (?:have|get|got|receive|received|return|returned|give|given|provide|provided)|without any) (?:\w+ ){0,2}?"
     r"(?:information|info|data|results?|answers?|counts?|records?|knowledge|outputs?|response|reports?|details?|idea|reply|figures?|"
     r"detections?|readings?|measurements?) (?:\w+ ){0,5}?(?:about|of|on|for|regarding|concerning) (?:\w+ ){0,3}$"
 )
 """Phrases that deny knowledge and not presence, such as "no information about"."""
-_UNDONE = re.compile(r"(has|have) (not )?(yet )?been (counted|checked|searched|queried|measured)\b")
+_ONLY_CHECKED = re.compile(r"(has|have) (not )?(yet )?been (counted|checked|searched|queried|measured)\b")

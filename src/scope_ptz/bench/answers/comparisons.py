@@ -1,4 +1,4 @@
-"""Comparative words ("more", "closer"): their direction, what they describe, and what it is compared with."""
+"""Find comparatives ("more", "closer"): their direction, the thing that they describe, and its reference."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _OPPOSITES = (
      {"rightmost", "right most", "furthest right", "farthest right", "furthest to the right", "farthest to the right"}),
 )  # fmt: skip
 _COUNTING = frozenset({"more", "most", "fewer", "fewest", "less", "least"})
-_REFERENCES = frozenset({"than", "versus", "vs", "against"})
-_AT_REFERENCE = frozenset({"of", "from", "to"})
+_REFERENCE_WORDS = frozenset({"than", "versus", "vs", "against"})
+_PREPOSITIONS = frozenset({"of", "from", "to"})
 
 
-def ways(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
+def directions(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
     """Return the comparatives that mean the same as the given words ("forward") and the opposite ("backward")."""
     forward, backward = set(picks), set[str]()
     for ones, others in _OPPOSITES:
@@ -32,8 +32,8 @@ def ways(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
     return {"forward": tuple(sorted(forward)), "backward": tuple(sorted(backward - forward))}
 
 
-def comparators(text: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list[NameMention]:
-    """Return every comparative in an answer. "At least", "at most" and "more or less" compare nothing."""
+def comparatives(text: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list[NameMention]:
+    """Return the comparatives in an answer. "At least", "at most" and "more or less" are left out."""
     found = list[NameMention]()
     for mention in text.mentions(wordings):
         before = text.words[mention.start - 1].text if mention.start else ""
@@ -43,31 +43,32 @@ def comparators(text: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list[
     return found
 
 
-def bearer_of(text: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> NameMention | None:
-    """Return what a comparative describes.
+def described_thing(text: AnswerText, comparative: NameMention, things: Sequence[NameMention]) -> NameMention | None:
+    """Return the thing that a comparative describes.
 
-    It is the noun that the comparative counts ("fewer skips"), else the last thing named before it, else the first one after it.
+    It is the noun that the comparative counts ("fewer skips"), else the last thing named before the comparative, else the first one
+    after it.
     """
-    words, reference = text.words, reference_of(text, comparator, things)
-    clause = [m for m in things if words[m.start].clause == words[comparator.start].clause and m != reference]
-    if words[comparator.end - 1].text in _COUNTING:
-        counted = [m for m in clause if m.start == comparator.end and not words[m.start].gap.strip()]
+    words, reference = text.words, reference_of(text, comparative, things)
+    clause = [m for m in things if words[m.start].clause == words[comparative.start].clause and m != reference]
+    if words[comparative.end - 1].text in _COUNTING:
+        counted = [m for m in clause if m.start == comparative.end and not words[m.start].gap.strip()]
         if counted:
             return counted[0]
-    near = [m for m in clause if words[m.start].segment == words[comparator.start].segment] or clause
-    before = [m for m in near if m.start < comparator.start]
+    near = [m for m in clause if words[m.start].segment == words[comparative.start].segment] or clause
+    before = [m for m in near if m.start < comparative.start]
     return before[-1] if before else near[0] if near else None
 
 
-def reference_of(text: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> NameMention | None:
+def reference_of(text: AnswerText, comparative: NameMention, things: Sequence[NameMention]) -> NameMention | None:
     """Return the reference of a comparative, such as B in "more than B", "left of B" and "compared with B"."""
-    for mention in (m for m in things if text.words[m.start].clause == text.words[comparator.start].clause):
-        between = [w.text for w in text.words[comparator.end : mention.start]] if mention.start > comparator.end - 1 else []
-        if set(between) & _REFERENCES:
+    for mention in (m for m in things if text.words[m.start].clause == text.words[comparative.start].clause):
+        between = [w.text for w in text.words[comparative.end : mention.start]] if mention.start > comparative.end - 1 else []
+        if set(between) & _REFERENCE_WORDS:
             return mention
         lead = [w.text for w in text.words[max(0, mention.start - 3) : mention.start]]
         if "compared" in lead:
             return mention
-        if between and set(between[:2]) & _AT_REFERENCE and len(between) <= 3:
+        if between and set(between[:2]) & _PREPOSITIONS and len(between) <= 3:
             return mention
     return None

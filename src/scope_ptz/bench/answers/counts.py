@@ -1,4 +1,4 @@
-"""Parse a count: find which number of an answer is the count that it states."""
+"""Parse the count that an answer states, which may be one of several numbers in it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from scope_ptz.bench.answers.denials import denies_flatly, says_none, says_yes
+from scope_ptz.bench.answers.denials import denies_entirely, says_none, says_yes
 from scope_ptz.bench.answers.numbers import NumberMention, find_numbers
 from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.answers.tokenizer import plain_words
@@ -24,7 +24,7 @@ def parse_number(text: AnswerText, unit: Sequence[str], *, part: bool = False) -
         The number, or the reason why there is none.
     """
     number = _stated_number(text, unit, part=part)
-    if isinstance(number, float) and number > 0 and denies_flatly(text, unit):
+    if isinstance(number, float) and number > 0 and denies_entirely(text, unit):
         return "both that there are some and that there are none"
     return number
 
@@ -85,7 +85,7 @@ def _number_in_words(text: AnswerText, unit: Sequence[str]) -> float | str:
 
 def _is_denied(text: AnswerText, unit: Sequence[str]) -> bool:
     """Return whether the answer denies the thing itself and not only a number of it."""
-    return bool(unit) and any(m.denied and not is_miscounted(text, m, unit) for m in text.mentions({"own": unit}))
+    return bool(unit) and any(m.denied and not is_only_number_denied(text, m, unit) for m in text.mentions({"own": unit}))
 
 
 def _wholes(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMention]:
@@ -96,19 +96,19 @@ def _wholes(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMe
 
 
 def _breakdown(text: AnswerText, numbers: Sequence[NumberMention]) -> bool | None:
-    """Return whether the numbers after the first one, behind a colon or in brackets, add up to it.
+    """Return whether the numbers after a colon or in brackets add up to the first number, or differ by it.
 
     Examples: "7: 5 bollards, 2 cones", "4 more (7 to 3)", "4 more: 7 cones, 3 bollards", "by 4: 7 cones against 3".
 
     Returns:
-        None if the answer breaks down no number.
+        None if the answer contains no breakdown.
     """
     if len(numbers) < 3 or any(q.bound for q in numbers):
         return None
     whole, *parts = numbers
     gaps = "".join(word.gap for word in text.words[whole.end : parts[0].start + 1])
     if not re.match(r"[^\S\n]*[:(]", gaps):
-        return None  # "Skips: 7, bins: 2" is a list and breaks down no number.
+        return None  # "Skips: 7, bins: 2" is a list, not a breakdown.
     if "(" not in gaps:  # "4: 2 skips (1 blue, 1 yellow) and 2 posts"
         parts = [q for q in parts if not text.in_brackets(q.start)]
     lead = [word.text for word in text.words[max(0, whole.start - 3) : whole.start]]
@@ -136,7 +136,7 @@ def _is_absent(text: AnswerText, unit: Sequence[str], number: NumberMention) -> 
     return any(text.denied_after(m.end) for m in near[:1])
 
 
-def is_miscounted(text: AnswerText, mention: NameMention, unit: Sequence[str]) -> bool:
+def is_only_number_denied(text: AnswerText, mention: NameMention, unit: Sequence[str]) -> bool:
     """Return whether only a number of a thing is denied and not its presence: "not 5 cones", "5 cones are missing"."""
     numbers = [q for q in find_numbers(text, unit) if q.own and 0 <= mention.start - q.end <= 4 and q.value > 0]
     return any(q.value > 1 or not q.denied for q in numbers)

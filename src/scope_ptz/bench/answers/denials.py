@@ -1,4 +1,4 @@
-"""Answers that say that there is none: "no", "none", "there are no cones at all"."""
+"""Detect answers that say that there is none: "no", "none", "there are no cones at all"."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def says_yes(text: AnswerText) -> bool:
     return any(word.text in ("yes", "yeah", "yep", "yup") for word in text.words)
 
 
-def denies_flatly(text: AnswerText, subject: Sequence[str]) -> bool:
+def denies_entirely(text: AnswerText, subject: Sequence[str]) -> bool:
     """Return whether a clause denies the subject as a whole, without a place ("at the gate") or a kind ("red ones")."""
     mentions = text.mentions({"subject": subject}) if subject else []
     numbers = find_numbers(text, subject)
@@ -43,7 +43,7 @@ def denies_flatly(text: AnswerText, subject: Sequence[str]) -> bool:
     covered = {i for m in mentions for i in range(m.start, m.end)} | {i for n in numbers for i in range(n.start, n.end)}
     return any(
         (denials.intersection(clause) or _says_none_in(text, clause))
-        and all(text.words[i].text in _FLAT for i in clause if i not in covered)
+        and all(text.words[i].text in _UNRESTRICTING_WORDS for i in clause if i not in covered)
         for clause in text.clauses()
     )
 
@@ -54,7 +54,7 @@ def _says_none_in(text: AnswerText, clause: Sequence[int]) -> bool:
     return any(_is_none(" ".join(text.words[i].text for i in group)) for group in groups)
 
 
-_FLAT = frozenset({
+_UNRESTRICTING_WORDS = frozenset({
     "no", "not", "none", "nothing", "nobody", "zero", "0", "never", "nope", "without", "neither", "nor", "there", "is", "are",
     "was", "were", "be", "been", "i", "we", "you", "it", "they", "them", "that", "this", "these", "those", "see", "sees", "saw",
     "seen", "can", "could", "do", "does", "did", "find", "found", "count", "counted", "visible", "present", "absent", "missing",

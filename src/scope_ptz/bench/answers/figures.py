@@ -1,4 +1,4 @@
-"""Parse a price or another written figure: the only number that an answer gives."""
+"""Parse a price or another written figure, which must be the only number in an answer."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
     numbers = find_numbers(statement, ())
     stated = [q for q in numbers if not _is_denied(statement, q)]
     if not numbers or _MIXED.search(_MEASURE.sub("", text)):
-        return None  # "O.95" needs the comparison of look-alike characters, and "5.C0" is not 5.
+        return None  # "O.95" is compared as text with look-alike characters, and "5.C0" is not 5.
     if any(q.bound for q in stated):
         return Unreadable("a bound, not a figure")
     values = {q.value for q in stated}

@@ -1,4 +1,7 @@
-"""Answers that only say in which half of the picture something is. They do not answer for the half that was asked about."""
+"""Detect answers that only say in which half of the picture something is.
+
+Such an answer does not show whether it means the half that the question asks about.
+"""
 
 from __future__ import annotations
 
@@ -22,10 +25,11 @@ _DEFINITE = re.compile(
 )
 
 
-def leaves_the_half_open(text: AnswerText, subject: Sequence[str]) -> bool:
-    """Return whether an answer leaves open whether the subject is in the half that was asked about.
+def is_half_unclear(text: AnswerText, subject: Sequence[str]) -> bool:
+    """Return whether it is unclear if an answer is about the half that the question asks about.
 
-    Such an answer says something different of each half ("one on the left, none on the right"), or places all of them in one half.
+    Such an answer makes different statements about the two halves ("one on the left, none on the right"), or places everything in
+    one half.
     """
     mentions = text.mentions({"subject": subject}) if subject else []
     present, absent = False, False
@@ -45,7 +49,7 @@ def leaves_the_half_open(text: AnswerText, subject: Sequence[str]) -> bool:
 
 
 def _is_definite(text: AnswerText, group: Sequence[int], mention: NameMention) -> bool:
-    """Return whether a segment places all of the subject at one side, as in "the cones are on the left"."""
+    """Return whether a segment places every instance of the subject on one side, as in "the cones are on the left"."""
     before = " ".join(text.words[i].text for i in group if i < mention.start)
     after = " ".join(text.words[i].text for i in group if i >= mention.end)
     return re.search(r"\b(the|these|those)( \w+)?$", before) is not None and _DEFINITE.match(after) is not None

@@ -1,4 +1,4 @@
-"""Helpers of the answer parser for texts that are not answers, such as what a tool reported."""
+"""Find numbers and names in texts that are not answers, such as tool results."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def numbers_in(text: str) -> set[float]:
         text: Any English text.
 
     Returns:
-        The numbers as values. Measures ("15 degrees"), ordinals and labels ("preset 3") are left out.
+        The values of the numbers. Measures ("15 degrees"), ordinals and labels ("preset 3") are left out.
     """
     return {number.value for number in find_numbers(answer_text(text), ())}
 

@@ -13,6 +13,7 @@ _BEFORE_ONE = frozenset({
     "show", "only", "just", "exactly", "about", "of", "total", "make", "makes", "has", "have", "there", "contains",
     "equals", "answer", "with", "precisely", "and", "least", "most", "than", "by",
 })  # fmt: skip
+"""Words after which "one" is a number and not a pronoun."""
 
 
 def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
@@ -37,6 +38,7 @@ def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
 
 
 def _number_words(words: Sequence[Word], at: int) -> tuple[float | None, int]:
+    """Return the number that consecutive number words form, or None, and the position after it."""
     start, total, part = at, 0, 0
     while at < len(words):
         text = words[at].text

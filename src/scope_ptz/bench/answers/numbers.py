@@ -29,7 +29,7 @@ _OR_MORE = re.compile(r"(\w+ ){0,4}or (more|fewer|less|so)\b|(ish|plus)\b")
 _FRACTION = re.compile(r"(and )?a (half|third|quarter)\b|(halves|thirds|quarters|fifths|tenths|squared|cubed|factorial)\b")
 _COMPARED_BEFORE = re.compile(r"(<|(?<![-=])>|[≤≥≦≧≪≫≲≳⩽⩾±≠])[=\s]*$")
 _COMPARED_AFTER = re.compile(r"\s*(<|>|[≤≥≦≧≪≫≲≳⩽⩾±])")
-_NOT_WRITTEN_OUT = frozenset({
+_BETWEEN_NOT_AND_NUMBER = frozenset({
     "a", "an", "the", "total", "of", "exactly", "quite", "really", "just", "even", "there", "is", "are", "be", "was", "were", "to",
     "see", "seen", "count", "counted", "find", "found", "any", "answer", "number", "it", "that", "true", "correct", "right",
     "about", "precisely", "as", "many",
@@ -40,11 +40,11 @@ _TOTALS = re.compile(
     r"\b(total|altogether|together|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b"
 )
 
-_ANNOUNCES = re.compile(
+_ANNOUNCES_TOTAL = re.compile(
     r"\b(total( [^\W\d]\w*){0,2}|difference( (is|equals|makes|being|therefore|thus))*|(final )?answer( is)?|sum( is)?)$"
 )
-_ANYTHING = frozenset({"object", "objects", "item", "items", "thing", "things"})
-"""Words for anything countable. A total of these counts what was asked for."""
+_GENERAL_NOUNS = frozenset({"object", "objects", "item", "items", "thing", "things"})
+"""General words for countable things. A total of "items" counts as a total of what was asked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ class NumberMention:
         other: Whether it counts something else.
         bound: Whether it only limits the exact number ("at least 3", "<3", "3 and a half").
         denied: Whether it is denied ("not 3").
-        total: Whether it is given as a total or a result.
+        total: Whether the text states it as a total or a result.
     """
 
     value: float
@@ -75,7 +75,8 @@ class NumberMention:
 def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
     """Return every number that could be a count, in order.
 
-    Ordinals, labels, numbers glued to letters ("0x3", "A4") and measures that were not asked for ("15 degrees", "2x") are left out.
+    Ordinals, labels, numbers joined to letters ("0x3", "A4") and measures that were not asked for ("15 degrees", "2x") are left
+    out.
 
     Args:
         text: The text.
@@ -88,7 +89,7 @@ def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
             at += 1
             continue
         is_glued = at > 0 and words[at].gap == ""
-        if not is_glued and (_followed_by(words, end, unit) or not _is_no_count(words, at, end)):
+        if not is_glued and (_followed_by(words, end, unit) or not _is_measure_or_label(words, at, end)):
             found.append(_number_mention(text, value, at, end, unit))
         at = end
     return found
@@ -96,14 +97,14 @@ def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
 
 def _number_mention(text: AnswerText, value: float, start: int, end: int, unit: Sequence[str]) -> NumberMention:
     words = text.words
-    owned = _followed_by(words, end, unit) or _announced(words, start, unit)
+    owned = _followed_by(words, end, unit) or _preceded_by(words, start, unit)
     after = words[end].text if end < len(words) and words[end].segment == words[end - 1].segment else ""
     ones = re.match(r"(\w+ ){0,2}(ones|others)\b", " ".join(w.text for w in words[end : end + 3]))
     bare = not after or ones is not None or after in _BARE_AFTER or number_at(words, end)[0] is not None or ")" in words[end].gap
     before = " ".join(w.text for w in words[max(0, start - 4) : start])
     segment = " ".join(w.text for w in words if w.segment == words[start].segment)
-    announced_total = _ANNOUNCES.search(before) is not None
-    bare = bare or (announced_total and after in _ANYTHING)
+    announced_total = _ANNOUNCES_TOTAL.search(before) is not None
+    bare = bare or (announced_total and after in _GENERAL_NOUNS)
     return NumberMention(
         value=value,
         start=start,
@@ -116,7 +117,7 @@ def _number_mention(text: AnswerText, value: float, start: int, end: int, unit: 
     )
 
 
-def _is_no_count(words: Sequence[Word], start: int, end: int) -> bool:
+def _is_measure_or_label(words: Sequence[Word], start: int, end: int) -> bool:
     after = words[end] if end < len(words) else None
     if after is not None and after.segment == words[end - 1].segment:
         if any(same_word(after.text, measure) for measure in _MEASURES):
@@ -151,7 +152,7 @@ def _is_denied(words: Sequence[Word], start: int) -> bool:
     while at >= 0 and words[at].segment == words[start].segment:
         if words[at].text in ("not", "never", "neither", "nor"):
             return True
-        if words[at].text not in _NOT_WRITTEN_OUT and words[at].text != "case":
+        if words[at].text not in _BETWEEN_NOT_AND_NUMBER and words[at].text != "case":
             return False
         at -= 1
     return False
@@ -172,7 +173,7 @@ def _followed_by(words: Sequence[Word], end: int, unit: Sequence[str]) -> bool:
     return False
 
 
-def _announced(words: Sequence[Word], start: int, unit: Sequence[str]) -> bool:
+def _preceded_by(words: Sequence[Word], start: int, unit: Sequence[str]) -> bool:
     """Return whether the counted thing precedes the number, as in "Cones: 5"."""
     if start == 0 or not re.fullmatch(r"\s*[:=]\s*|\s+-\s+", words[start].gap):
         return False

@@ -8,47 +8,52 @@ from itertools import combinations
 from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.answers.tokenizer import all_wordings, plain_words, same_word
 
-_LINKS = frozenset({"with", "in", "of", "on", "at", "from", "who", "carrying", "and"})
-_BEFORE = frozenset({
+_CONNECTING_WORDS = frozenset({"with", "in", "of", "on", "at", "from", "who", "carrying", "and"})
+_ALLOWED_BEFORE = frozenset({
     "the", "a", "an", "then", "is", "are", "and", "or", "than", "more", "most", "fewer", "fewest", "order", "so", "therefore",
     "thus", "answer", "finally", "first", "last", "second", "third", "next", "lastly", "nearest", "closest", "farthest",
     "furthest", "largest", "biggest", "smallest", "leftmost", "rightmost",
 })  # fmt: skip
-_AFTER = frozenset({
+"""Words that may precede a short form."""
+_ALLOWED_AFTER = frozenset({
     "is", "are", "was", "were", "has", "have", "and", "or", "then", "than", "comes", "come", "appears", "appear", "seems", "looks",
     "stands", "takes", "being", "followed", "because", "since", "as", "while", "next", "last", "first", "second", "third", "by",
     "to",
 })  # fmt: skip
-"""Words that may stand next to a short form. Another word makes it the name of something else ("the Whitlock sign", "bus stop")."""
+"""Words that may follow a short form. Before any other word it names something else ("the Whitlock sign", "bus stop")."""
 
 
 def option_mentions(text: AnswerText, options: Mapping[str, Sequence[str]]) -> list[NameMention]:
-    """Return every place that names an option. "The bus" names the red double-decker bus if no other option is a bus."""
-    whole = {name: all_wordings(name, further) for name, further in options.items()}
-    short = _shortenings(whole)
-    found = text.mentions({name: (*wordings, *short[name]) for name, wordings in whole.items()})
-    return [m for m in found if _is_one_of(text, m, whole[m.name]) or _stands_alone(text, m)]
+    """Return the mentions of options. "The bus" names the red double-decker bus if no other option is a bus."""
+    full_names = {name: all_wordings(name, further) for name, further in options.items()}
+    short = _unambiguous_short_forms(full_names)
+    found = text.mentions({name: (*wordings, *short[name]) for name, wordings in full_names.items()})
+    return [m for m in found if _is_full_name(text, m, full_names[m.name]) or _stands_alone(text, m)]
 
 
-def _is_one_of(text: AnswerText, mention: NameMention, wordings: Sequence[str]) -> bool:
+def _is_full_name(text: AnswerText, mention: NameMention, wordings: Sequence[str]) -> bool:
     named = [w.text for w in text.words[mention.start : mention.end]]
-    return any(len(words) == len(named) and _begins(words, named) for words in map(plain_words, wordings))
+    return any(len(words) == len(named) and _same_words(words, named) for words in map(plain_words, wordings))
 
 
-def _begins(words: Sequence[str], named: Sequence[str]) -> bool:
+def _same_words(words: Sequence[str], named: Sequence[str]) -> bool:
     articles = ({"a", "the"}, {"an", "the"}, {"a", "an"})
     return all(same_word(one, other) or {one, other} in articles for one, other in zip(words, named, strict=True))
 
 
 def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
+    """Return whether a short form is a name on its own and not part of the name of something else."""
     words = text.words
     before = words[mention.start - 1 : mention.start] if mention.start else ()
     plural = words[mention.end - 1].text.endswith("s")
     opens = (
-        not before or bool(words[mention.start].gap.strip()) or before[0].text in _BEFORE or (plural and before[0].text.isdigit())
+        not before
+        or bool(words[mention.start].gap.strip())
+        or before[0].text in _ALLOWED_BEFORE
+        or (plural and before[0].text.isdigit())
     )
     after = words[mention.end : mention.end + 1]
-    closes = not after or bool(after[0].gap.strip()) or after[0].text in _AFTER
+    closes = not after or bool(after[0].gap.strip()) or after[0].text in _ALLOWED_AFTER
     if not closes:
         closes = " ".join(w.text for w in words[mention.end : mention.end + 3]) in _PLACES
     return opens and closes
@@ -57,22 +62,25 @@ def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
 _PLACES = frozenset({"in the middle", "on the left", "on the right", "in the centre", "in between them"})
 
 
-def _shortenings(whole: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:
+def _unambiguous_short_forms(full_names: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:
     """Return the short forms of each option that fit no other option.
 
     A short form is the noun with some of the words before it, or the proper name at the beginning of the option.
     """
     found = dict[str, tuple[str, ...]]()
-    for name in whole:
-        others = [plain_words(wording) for other, wordings in whole.items() if other != name for wording in wordings]
-        found[name] = tuple(" ".join(words) for words in _shorter(name) if not any(_is_within(words, other) for other in others))
+    for name in full_names:
+        others = [plain_words(wording) for other, wordings in full_names.items() if other != name for wording in wordings]
+        found[name] = tuple(
+            " ".join(words) for words in _short_forms(name) if not any(_is_within(words, other) for other in others)
+        )
     return found
 
 
-def _shorter(name: str) -> list[tuple[str, ...]]:
+def _short_forms(name: str) -> list[tuple[str, ...]]:
+    """Return the possible short forms of a name."""
     words = plain_words(name)
-    links = [at for at, word in enumerate(words) if word in _LINKS]
-    core = words[: links[0]] if links else words
+    connections = [at for at, word in enumerate(words) if word in _CONNECTING_WORDS]
+    core = words[: connections[0]] if connections else words
     if not core or len(core) > 5:
         return []
     nouns = [(*before, core[-1]) for size in range(len(core)) for before in combinations(core[:-1], size)]

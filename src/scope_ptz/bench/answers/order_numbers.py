@@ -1,4 +1,4 @@
-"""The numbers next to the items of an ordered list, and the place where the final order of an answer begins."""
+"""Find the numbers next to the items of an ordered list, and the place where the final order of an answer begins."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from itertools import pairwise
 from scope_ptz.bench.answers.number_words import number_at
 from scope_ptz.bench.answers.text import AnswerText, NameMention
 
-_CONCLUDES = frozenset(
+_CONCLUDING_WORDS = frozenset(
     {"so", "therefore", "thus", "hence", "order", "ordering", "ranking", "ranked", "answer", "sorted", "conclusion", "from"}
 )
-_NEAR_FIRST = frozenset({"nearest", "closest", "fewest", "smallest", "least", "lowest", "shortest"})
-_FAR_FIRST = frozenset({"farthest", "furthest", "most", "largest", "biggest", "highest", "tallest"})
-_NUMBER_NEXT = re.compile(r"\s*([:=(|~≈]|\s[-–—]\s|→)[\s(~≈]*")
+_ASCENDING = frozenset({"nearest", "closest", "fewest", "smallest", "least", "lowest", "shortest"})
+_DESCENDING = frozenset({"farthest", "furthest", "most", "largest", "biggest", "highest", "tallest"})
+_BEFORE_NUMBER = re.compile(r"\s*([:=(|~≈]|\s[-–—]\s|→)[\s(~≈]*")
 _LINKING_WORDS = frozenset(
     {"is", "are", "at", "about", "approximately", "roughly", "with", "stands", "has", "have", "only", "just", "around"}
 )
 
 
-def concluding(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
-    """Return the position of the word from which the final order counts.
+def final_order_start(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
+    """Return the position of the word where the final order of the answer begins.
 
-    It is the last concluding word ("so", "therefore") that all names still follow. Otherwise it is the list without numbers after a
-    table of numbers, if there is one. Otherwise it is 0.
+    It is the last concluding word ("so", "therefore") that all names follow, else the beginning of a list without numbers that
+    follows a list with numbers, else 0.
     """
     last = 0
     for at, word in enumerate(text.words):
         after = [w.text for w in text.words[at + 1 : at + 5]]
-        is_one = "to" in after if word.text == "from" else not (word.text == "order" and after[:1] == ["to"])
-        if word.text in _CONCLUDES and is_one and {m.name for m in mentions if m.start > at} == names:
+        is_conclusion = "to" in after if word.text == "from" else not (word.text == "order" and after[:1] == ["to"])
+        if word.text in _CONCLUDING_WORDS and is_conclusion and {m.name for m in mentions if m.start > at} == names:
             last = at
     return last or _listed_after_numbers(text, mentions, names)
 
@@ -45,16 +45,16 @@ def _listed_after_numbers(text: AnswerText, mentions: Sequence[NameMention], nam
     return next(at for at, word in enumerate(text.words) if word.clause in clauses)
 
 
-def contradicts_its_numbers(text: AnswerText, mentions: Sequence[NameMention], order: Sequence[str], first: Sequence[str]) -> bool:
+def numbers_contradict(text: AnswerText, mentions: Sequence[NameMention], order: Sequence[str], first: Sequence[str]) -> bool:
     """Return whether the counts or distances in an answer contradict its order.
 
     Args:
         text: The answer.
         mentions: The places where things are named.
         order: The stated order.
-        first: The words for the first end, such as "most" or "nearest".
+        first: The words for the first place in the order, such as "most" or "nearest".
     """
-    falling, rising = bool(_FAR_FIRST.intersection(first)), bool(_NEAR_FIRST.intersection(first))
+    falling, rising = bool(_DESCENDING.intersection(first)), bool(_ASCENDING.intersection(first))
     if falling == rising:
         return False
     numbers = _numbers(text, mentions)
@@ -63,11 +63,11 @@ def contradicts_its_numbers(text: AnswerText, mentions: Sequence[NameMention], o
 
 
 def _numbers(text: AnswerText, mentions: Sequence[NameMention]) -> dict[str, set[float]]:
-    """Return the numbers of each thing: "4 skips", "skips (4)", "skips: 4", "the skip is 11 m away"."""
+    """Return the numbers that the answer gives for each thing: "4 skips", "skips (4)", "skips: 4", "the skip is 11 m away"."""
     numbers = dict[str, set[float]]()
     words = text.words
     for mention in mentions:
-        value = _after(text, mention)
+        value = _number_after(text, mention)
         if value is None:
             for start in range(max(0, mention.start - 3), mention.start):
                 number, end = number_at(words, start)
@@ -81,11 +81,11 @@ def _numbers(text: AnswerText, mentions: Sequence[NameMention]) -> dict[str, set
     return numbers
 
 
-def _after(text: AnswerText, mention: NameMention) -> float | None:
+def _number_after(text: AnswerText, mention: NameMention) -> float | None:
     words, at = text.words, mention.end
     if at >= len(words):
         return None
-    marked = _NUMBER_NEXT.fullmatch(words[at].gap) is not None
+    marked = _BEFORE_NUMBER.fullmatch(words[at].gap) is not None
     while at < len(words) and words[at].text in _LINKING_WORDS and at < mention.end + 3 and (marked or not words[at].gap.strip()):
         marked, at = True, at + 1
     value, end = number_at(words, at)

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from scope_ptz.bench.answers.choices import SAME
-from scope_ptz.bench.answers.comparisons import bearer_of, reference_of
+from scope_ptz.bench.answers.comparisons import described_thing, reference_of
 from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.options import option_mentions
-from scope_ptz.bench.answers.order_numbers import concluding, contradicts_its_numbers
+from scope_ptz.bench.answers.order_numbers import final_order_start, numbers_contradict
 from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
 from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.tasks.expected import Ordering, Relation
@@ -18,17 +18,17 @@ from scope_ptz.bench.tasks.expected import Ordering, Relation
 _FILLERS = frozenset({
     "it", "is", "its", "on", "to", "the", "at", "in", "side", "of", "hand", "a", "bit", "slightly", "much", "them", "lies",
 })  # fmt: skip
-_NAMING = frozenset({
+_NAMING_WORDS = frozenset({
     "the", "a", "at", "preset", "view", "by", "it", "is", "answer", "i", "would", "say", "that", "definitely", "clearly",
     "one", "to", "versus", "against",
 })  # fmt: skip
-_TURNED = {"forward": "backward", "backward": "forward"}
+_OPPOSITE = {"forward": "backward", "backward": "forward"}
 
 
 def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
     """Parse the order that an answer gives, reversed if the answer begins at the other end."""
-    everything = [m for m in option_mentions(text, expected.options) if not m.denied or _is_counted(text, m)]
-    begins = concluding(text, everything, set(expected.options))
+    everything = [m for m in option_mentions(text, expected.options) if not m.denied or _is_counted_as_zero(text, m)]
+    begins = final_order_start(text, everything, set(expected.options))
     mentions = [m for m in everything if m.start >= begins]
     order = list(dict.fromkeys(m.name for m in mentions))
     if set(order) != set(expected.options):
@@ -37,7 +37,7 @@ def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
     stated = _stated_order(text, mentions, ends, order, begins)
     if isinstance(stated, str):
         return Unreadable(stated)
-    if contradicts_its_numbers(text, everything, stated, expected.first):
+    if numbers_contradict(text, everything, stated, expected.first):
         return Unreadable("its own numbers contradict the order")
     return ParsedValue(stated)
 
@@ -46,8 +46,8 @@ def _stated_order(
     text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention], order: list[str], begins: int
 ) -> tuple[str, ...] | str:
     """Return the stated order, or the reason why there is none."""
-    thans = sum(w.text == "than" for w in text.words[begins:])
-    if 0 < thans < len(order) - 1:
+    than_count = sum(w.text == "than" for w in text.words[begins:])
+    if 0 < than_count < len(order) - 1:
         return "only some of them are compared"
     placed = _placed(text, mentions, ends)
     if placed.get("first") is not None and placed.get("last") is not None and placed["first"] != placed["last"]:
@@ -57,7 +57,7 @@ def _stated_order(
         if order[0] == placed["last"] and order[-1] == placed["first"]:
             between.reverse()
         return (str(placed["first"]), *between, str(placed["last"]))
-    starts_at_last = placed.get("last") == order[0] or _heading_is_turned(mentions, ends)
+    starts_at_last = placed.get("last") == order[0] or _announces_opposite_order(mentions, ends)
     if starts_at_last or any("<" in w.gap for w in text.words[begins:]):
         order.reverse()
     elif placed.get("first") not in (None, order[0]) or placed.get("last") not in (None, order[-1]):
@@ -65,8 +65,8 @@ def _stated_order(
     return tuple(order)
 
 
-def _is_counted(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether a thing is counted as zero. "Cabinets (none)" has a place in an order and denies nothing."""
+def _is_counted_as_zero(text: AnswerText, mention: NameMention) -> bool:
+    """Return whether a thing is counted as zero. "Cabinets (none)" takes its place in an order and is not a denial."""
     after = text.words[mention.end] if mention.end < len(text.words) else None
     return after is not None and after.text in ("none", "0", "zero") and re.search(r"[(:=]", after.gap) is not None
 
@@ -74,14 +74,15 @@ def _is_counted(text: AnswerText, mention: NameMention) -> bool:
 def _placed(text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> dict[str, str | None]:
     """Return the option that the answer places at each end.
 
-    In a segment it is the option named before the word for the end. If the segment names only one end, it may follow that word.
+    In a segment it is the option named before the word for the end. If the segment names only one end, the option may also follow
+    that word.
     """
     placed: dict[str, str | None] = {}
     for group in text.segments():
         here = [m for m in mentions if group[0] <= m.start <= group[-1]]
         end = [m for m in ends if group[0] <= m.start <= group[-1] and not m.denied]
         if any([w.text for w in text.words[one.end : two.start]] == ["to"] for one, two in pairwise(end)):
-            continue  # "from most to fewest" places nothing.
+            continue  # "from most to fewest" names the direction of the order and places no option.
         since = group[0]
         for one in end:
             before = [m for m in here if since <= m.start < one.start]
@@ -91,7 +92,7 @@ def _placed(text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[Na
     return placed
 
 
-def _heading_is_turned(mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> bool:
+def _announces_opposite_order(mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> bool:
     """Return whether the answer announces the opposite order, as in "From fewest to most: ..."."""
     before = [m.name for m in ends if m.start < mentions[0].start]
     return before[:2] == ["last", "first"] or before == ["last"]
@@ -101,19 +102,19 @@ def parse_relation(expected: Relation, text: AnswerText) -> ParsedAnswer:
     """Parse the relation between subject and object. All clauses that state one must agree."""
     relations = set[str]()
     names = {"subject": expected.subject, "object": expected.object}
-    ways = {"forward": expected.forward, "backward": expected.backward}
+    directions = {"forward": expected.forward, "backward": expected.backward}
     things = text.mentions(names)
-    comparators = [m for m in text.mentions(ways) if not m.denied]
-    for comparator in comparators:
-        way = _way(text, comparator, things)
-        if way is None:
+    comparatives = [m for m in text.mentions(directions) if not m.denied]
+    for comparative in comparatives:
+        direction = _direction(text, comparative, things)
+        if direction is None:
             return Unreadable("it does not say which of them")
-        relations.add(way)
+        relations.add(direction)
     alike = [m for m in text.mentions({"same": (*expected.same, *SAME)}) if not m.denied]
-    if alike and not comparators:
+    if alike and not comparatives:
         return ParsedValue("same")
-    denied = any(m.denied for m in text.mentions({**ways, "same": SAME}))
-    if not comparators and not denied and not any(w.text == "or" for w in text.words):
+    denied = any(m.denied for m in text.mentions({**directions, "same": SAME}))
+    if not comparatives and not denied and not any(w.text == "or" for w in text.words):
         named = {m.name for m in things if not m.denied}
         if len(named) == 1 and _is_bare(text, things):
             relations.add("forward" if named == {"subject"} else "backward")
@@ -126,17 +127,17 @@ def _is_bare(text: AnswerText, things: Sequence[NameMention]) -> bool:
     """Return whether an answer only names a thing ("The gate.", "At the gate, by two")."""
     named = {i for m in things for i in range(m.start, m.end)}
     counted = {i for q in find_numbers(text, ()) for i in range(q.start, q.end)}
-    return all(w.text in _NAMING for i, w in enumerate(text.words) if i not in named | counted)
+    return all(w.text in _NAMING_WORDS for i, w in enumerate(text.words) if i not in named | counted)
 
 
-def _way(text: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> str | None:
-    """Return the relation that one comparative states; None if it does not say which thing it describes."""
-    reference = reference_of(text, comparator, things)
+def _direction(text: AnswerText, comparative: NameMention, things: Sequence[NameMention]) -> str | None:
+    """Return the relation that a comparative states; None if it is unclear which thing the comparative describes."""
+    reference = reference_of(text, comparative, things)
     if reference is not None:
-        return comparator.name if reference.name == "object" else _TURNED[comparator.name]
-    bearer = bearer_of(text, comparator, things)
-    if bearer is not None:
-        return comparator.name if bearer.name == "subject" else _TURNED[comparator.name]
-    clause = text.words[comparator.start].clause
-    words = {w.text for i, w in enumerate(text.words) if w.clause == clause and not comparator.start <= i < comparator.end}
-    return comparator.name if words <= _FILLERS else None
+        return comparative.name if reference.name == "object" else _OPPOSITE[comparative.name]
+    described = described_thing(text, comparative, things)
+    if described is not None:
+        return comparative.name if described.name == "subject" else _OPPOSITE[comparative.name]
+    clause = text.words[comparative.start].clause
+    words = {w.text for i, w in enumerate(text.words) if w.clause == clause and not comparative.start <= i < comparative.end}
+    return comparative.name if words <= _FILLERS else None

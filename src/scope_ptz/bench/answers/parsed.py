@@ -24,7 +24,7 @@ class Declined:
 
 @dataclass(frozen=True, slots=True)
 class Unreadable:
-    """An answer that is not clearly one value, with the reason. It is never guessed."""
+    """An answer that does not state exactly one value, with the reason."""
 
     reason: str
 

@@ -1,4 +1,4 @@
-"""The entry of the answer parser: it selects the parser for the type of the expected answer, and compares the result with it."""
+"""Entry points of the answer parser: parse an answer as the type that a task expects, and compare the two."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _EPSILON = 1e-9
 def parse_answer(expected: AnyExpected, answer: str) -> ParsedAnswer:
     """Parse an answer as a value of the type that a task expects.
 
-    The expected value itself plays no part, so a wrong answer is parsed as well as a right one. The parser never guesses.
+    The expected value itself is not used, so correct and wrong answers are parsed alike. The parser never guesses.
 
     Args:
         expected: The task's expected answer. Its type and its wordings are used.

@@ -1,13 +1,13 @@
-"""Parse whether something is so, and whether there is any of it."""
+"""Parse yes-or-no answers, and answers that say whether there is any of something."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.counts import is_miscounted, parse_number
-from scope_ptz.bench.answers.denials import denies_flatly, says_none, says_yes
-from scope_ptz.bench.answers.halves import leaves_the_half_open
+from scope_ptz.bench.answers.counts import is_only_number_denied, parse_number
+from scope_ptz.bench.answers.denials import denies_entirely, says_none, says_yes
+from scope_ptz.bench.answers.halves import is_half_unclear
 from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
 from scope_ptz.bench.answers.text import AnswerText, NameMention
@@ -17,11 +17,11 @@ from scope_ptz.bench.tasks.expected import NoneThere, YesNo
 _YES = frozenset({"yes", "yeah", "yep", "yup", "correct", "affirmative", "true", "indeed"})
 _NO = frozenset({"no", "nope", "nah", "negative", "false", "incorrect"})
 _NO_LAST = frozenset({"no", "nope", "nah"})
-"""Words that are a verdict of their own at the end of a segment: "I say no", "it is a no"."""
+"""Words that are a verdict on their own at the end of a segment: "I say no", "it is a no"."""
 
 
 def verdict_words(text: AnswerText) -> set[bool]:
-    """Return the yes and no that stand on their own: at the beginning of the answer, or as a whole segment.
+    """Return the verdicts of every yes or no that stands on its own: at the beginning of the answer, or as a whole segment.
 
     Returns:
         True for yes, False for no; both if the answer contradicts itself.
@@ -50,7 +50,7 @@ _REFUTED = re.compile(r"^((and|so|but) )*(it|this|that|the (claim|statement)) (i
 
 
 def _short_answers(text: AnswerText) -> set[bool]:
-    """Return the yes and no of short answers: "It is not.", "They do.", "That is not the case"."""
+    """Return the verdicts of short answers: "It is not.", "They do.", "That is not the case"."""
     verdicts = set[bool]()
     for group in text.segments():
         piece = _text_of(text, group)
@@ -62,9 +62,9 @@ def _short_answers(text: AnswerText) -> set[bool]:
 
 
 def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
-    """Parse a yes or no, and what is stated about the thing. The two must not contradict each other."""
+    """Parse an answer as yes or no, from these words and from statements about the thing. Contradictions are unreadable."""
     verdicts = verdict_words(text) | _short_answers(text)
-    if not verdicts and leaves_the_half_open(text, expected.affirms):
+    if not verdicts and is_half_unclear(text, expected.affirms):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
     mentions = text.mentions({"yes": expected.affirms, "no": expected.denies})
     stated = {(mention.name == "yes") != (mention.denied or mention.aside) for mention in mentions}
@@ -73,7 +73,7 @@ def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
     verdicts |= stated
     if not verdicts and says_none(text):
         verdicts = {False}
-    if denies_flatly(text, ()) and True in verdicts:
+    if denies_entirely(text, ()) and True in verdicts:
         verdicts.add(False)
     for clause in text.clauses():
         if re.search(r"\bthere (is|are) (none|not any)( here| there| visible| in view)?$", _text_of(text, clause)):
@@ -97,8 +97,8 @@ def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
     """
     if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", text.joined()):
         return Unreadable("an alternative")
-    verdicts = says_that_none(text, expected.subject)
-    if not verdict_words(text) and leaves_the_half_open(text, expected.subject):
+    verdicts = absence_verdicts(text, expected.subject)
+    if not verdict_words(text) and is_half_unclear(text, expected.subject):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
     if True in verdicts and (_counts_some(text, expected.subject) or _claims(text, expected)):
         verdicts = {True, False}
@@ -109,11 +109,11 @@ def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
     )
 
 
-def says_that_none(text: AnswerText, subject: Sequence[str]) -> set[bool]:
-    """Return what an answer says about the subject: True for "there is none", False for "there is one", or both."""
+def absence_verdicts(text: AnswerText, subject: Sequence[str]) -> set[bool]:
+    """Return what an answer says about absence of the subject: True for "there is none", False for "there is one", or both."""
     mentions = text.mentions({"subject": subject})
     verdicts = {not v for v in verdict_words(text)}
-    mentions = [m for m in mentions if m.denied or not _is_another(text, m, subject)]
+    mentions = [m for m in mentions if m.denied or not _is_another_thing(text, m, subject)]
     verdicts |= {m.denied for m in mentions if not (m.aside or (m.denied and _is_partial(text, m, subject)))}
     numbers = [q for q in find_numbers(text, subject) if not (q.other or q.bound or q.denied)]
     verdicts |= {q.value == 0 for q in numbers if not mentions or q.value == 0}
@@ -122,7 +122,7 @@ def says_that_none(text: AnswerText, subject: Sequence[str]) -> set[bool]:
     return verdicts
 
 
-def _is_another(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
+def _is_another_thing(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
     """Return whether a mention means another thing, as in "the only van is red" when the question is about green vans."""
     before = text.words[max(0, mention.start - 1) : mention.start]
     is_short = mention.end - mention.start < len(plain_words(subject[0]))
@@ -134,7 +134,7 @@ def _is_partial(text: AnswerText, mention: NameMention, subject: Sequence[str]) 
     clause = text.words[mention.start].clause
     after = " ".join(w.text for w in text.words[mention.end : mention.end + 8] if w.clause == clause)
     elsewhere = re.match(r"(\w+ ){0,4}?((in|at|on|from|of) (the|any) others?|elsewhere)\b", after)
-    return elsewhere is not None or is_miscounted(text, mention, subject)
+    return elsewhere is not None or is_only_number_denied(text, mention, subject)
 
 
 def _counts_some(text: AnswerText, subject: Sequence[str]) -> bool:
@@ -149,14 +149,14 @@ def _claims(text: AnswerText, expected: NoneThere) -> bool:
     mentions = text.mentions({"claim": expected.claims, "subject": expected.subject})
     denials = [m for m in mentions if m.name == "subject" and m.denied]
     return any(
-        not (m.denied or m.aside or _is_of_another(text, m) or any(_is_where(text, m, denial) for denial in denials))
+        not (m.denied or m.aside or _is_of_another(text, m) or any(_limits_denial(text, m, denial) for denial in denials))
         for m in mentions
         if m.name == "claim"
     )
 
 
 def _is_of_another(text: AnswerText, claim: NameMention) -> bool:
-    """Return whether a claim belongs to another thing in its segment: "a green van", "a van stands top left"."""
+    """Return whether a claim describes another thing in its segment: "a green van", "a van stands top left"."""
     segment = text.words[claim.start].segment
     before = "".join(f"{w.text} " for w in text.words[: claim.start] if w.segment == segment)
     if _ANOTHER.search(before) and not _ITS_OWN.search(before):
@@ -167,18 +167,18 @@ def _is_of_another(text: AnswerText, claim: NameMention) -> bool:
     return not (after[0].text in _OF_THE_SUBJECT or after[0].text.endswith("ly"))
 
 
-def _is_where(text: AnswerText, claim: NameMention, denial: NameMention) -> bool:
+def _limits_denial(text: AnswerText, claim: NameMention, denial: NameMention) -> bool:
     """Return whether a claim only limits a denial, as in "top left: no kite" and "the kite is absent from the top left"."""
     words, between = text.words, text.words[min(claim.end, denial.end) : max(claim.start, denial.start)]
     if claim.start < denial.start and words[claim.end].gap.strip() == ":" and words[claim.end].clause == words[denial.start].clause:
         return True
     one_piece = words[claim.start].segment == words[denial.start].segment
-    return one_piece and not any(w.text in _GOES_ON for w in (between if claim.start > denial.start else ()))
+    return one_piece and not any(w.text in _NEW_STATEMENT_WORDS for w in (between if claim.start > denial.start else ()))
 
 
 _ANOTHER = re.compile(r"\b(an?|two|three|four|five|some|several) (\w+ ){2,}")
 _ITS_OWN = re.compile(r"\b(it|its|they|this|that|one|ones|thing|object|colour|shade|hue|tone|tint)\b")
-_GOES_ON = frozenset({"it", "they", "this", "that", "but", "and", "so", "its"})
+_NEW_STATEMENT_WORDS = frozenset({"it", "they", "this", "that", "but", "and", "so", "its"})
 _OF_THE_SUBJECT = frozenset({
     "one", "ones", "thing", "things", "object", "item", "colour", "coloured", "shade", "in", "on", "at", "of", "and", "or",
     "is", "are", "was", "it", "they", "the", "a", "an", "to", "with", "by", "too", "also", "indeed", "overall", "then",

@@ -1,4 +1,4 @@
-"""Find the quotes in a text, and which of them are lettering and not names or denied readings."""
+"""Find the quotes in a text, and select those that report lettering and are not names or denied readings."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 _PLAIN = re.compile(r'"([^"]+)"|(?<!\w)\'([^\']+(?:\'\w[^\']*)*)\'(?!\w)')
 _READ = r"(?:reads?|says?|states?|displays?|shows?|spells?)"
-_SPEAKS = re.compile(rf"\b{_READ}\b|\btext\b|\bwritten\b", re.IGNORECASE)
+_READING_WORDS = re.compile(rf"\b{_READ}\b|\btext\b|\bwritten\b", re.IGNORECASE)
 _DENIED_BEFORE = re.compile(
     r"(?:\bnot|n't|\bnever|\brather than|\binstead of)(?:\s+(?:actually|really|clearly|in fact|read|say|state|display|show|"
     r"spell|contain|bear|have|carry|the|an?|words?|text|lettering|letters|be|simply|quite|exactly|sign|anything|like))*\s*:?\s*$"
@@ -36,7 +36,7 @@ class Quote:
 def quotes_of(text: str) -> list[Quote]:
     """Return the quotes of a cleaned text in order.
 
-    If a quote is a whole sentence that itself quotes what something reads, the inner quotes are returned instead.
+    If a quoted sentence itself quotes lettering ("The sign reads 'STOP'"), the inner quotes are returned instead.
     """
     opened, found = list[tuple[str, int]](), list[Quote]()
     for at, mark in enumerate(text):
@@ -55,11 +55,12 @@ def quotes_of(text: str) -> list[Quote]:
 
 
 def _close(text: str, start: int, end: int, found: list[Quote]) -> None:
+    """Add a quote in place of the quotes inside it, or keep those if the quote is a sentence about lettering."""
     within = [quote for quote in found if quote.start > start]
     rest = text[start + 1 : end - 1]
     for quote in within:
         rest = rest.replace(text[quote.start : quote.end], " ")
-    if within and _SPEAKS.search(rest):
+    if within and _READING_WORDS.search(rest):
         return
     found[:] = [quote for quote in found if quote not in within]
     if text[start + 1 : end - 1].strip():

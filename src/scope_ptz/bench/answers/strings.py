@@ -24,9 +24,9 @@ _CUES = (
     (re.compile(r"\b(?:shows?|called|named)\b\s*", re.IGNORECASE), 14),
     (re.compile(r"\b(?:(?<![Tt]here )is|(?<![Tt]here )are)\b\s*"), 6),
 )
-"""Patterns that introduce a text, the most reliable first, and how many words may follow.
+"""Patterns that introduce a text, the most reliable first, each with the maximum number of words that may follow.
 
-For the last pattern its last match counts. An "IS" in capitals is lettering and does not match."""
+Of the last pattern, the last match counts; of the others, the first one. An "IS" in capitals is lettering and does not match."""
 _WRITTEN = re.compile(
     r"^\W*(?!it\b|what\b|the (?:text|words?)\b)(.{1,80}?)\s+(?:is|are)\s+(?:written|painted|printed|displayed)\b", re.IGNORECASE
 )
@@ -51,8 +51,9 @@ _FINISHED = re.compile(
 )
 """Prose that reports a finished task and no lettering."""
 
-_MOST_ALONE = 8
-_MOST_IN_CAPITALS = 16
+_MAX_WORDS_ALONE = 8
+_MAX_WORDS_IN_CAPITALS = 16
+"""Maximum numbers of words of lettering that no pattern introduces, and of lettering in capitals."""
 
 
 def same_text(one: str, other: str, *, ocr: bool) -> bool:
@@ -77,7 +78,7 @@ def normalized_text(text: str, ocr: bool) -> str:
 def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnswer:
     """Parse the lettering that an answer reports.
 
-    It is the quoted text; else the text after "reads", "says" or "is"; else the whole of a short answer.
+    It is the quoted text, else the text after "reads", "says" or "is", else a short answer as a whole.
     """
     text = clean(answer)
     quotes = quotes_of(text)
@@ -90,19 +91,19 @@ def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnsw
     if re.search(r"\b(?:no (?:text|letters|writing)|blank|nothing (?:is )?written)\b", text, re.IGNORECASE):
         return ParsedValue("")
     begins = _WRITTEN.match(text)
-    candidate, most = (begins.group(1), _MOST_ALONE) if begins else _after_cue(text)
-    if most == 0:
+    candidate, max_words = (begins.group(1), _MAX_WORDS_ALONE) if begins else _after_cue(text)
+    if max_words == 0:
         return Unreadable("it only states what the text is not")
     candidate = _NEXT_SENTENCE.split(candidate)[0]
     candidate = _TRAILERS.sub("", candidate.strip().strip(".!,")).strip()
     candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", TEXT_SEPARATOR, candidate))
     words = [word for word in candidate.split() if word != TEXT_SEPARATOR.strip()]
     if candidate.isupper():
-        # Nobody writes prose in capitals: this is the lettering itself.
-        most = max(most, _MOST_IN_CAPITALS)
+        # Text in capitals is lettering and not prose.
+        max_words = max(max_words, _MAX_WORDS_IN_CAPITALS)
     if not candidate.isupper() and (_NO_LETTERING.match(candidate) or any(map(_FINISHED.fullmatch, (candidate, text)))):
         return Unreadable("no text is quoted")
-    if len(words) > most:
+    if len(words) > max_words:
         return Unreadable("no text is quoted")
     if "or" in [w.lower() for w in words] and not any("or" in a.lower().split() for a in expected.accepted):
         return Unreadable("an alternative")
@@ -110,18 +111,18 @@ def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnsw
 
 
 def _after_cue(text: str) -> tuple[str, int]:
-    """Return what follows the most reliable cue, and how many words it may have.
+    """Return the text that follows the most reliable cue, and the maximum number of its words.
 
-    Without a cue it is the whole text. If every cue is denied ("does not read"), no word is allowed.
+    Without a cue the whole text is returned. If every match of the cue is denied ("does not read"), the maximum is 0.
     """
-    for cue, most in _CUES:
+    for cue, max_words in _CUES:
         found = [match for match in cue.finditer(text) if match.end() < len(text)]
         ends = [match.end() for match in found if not _DENIED.search(text[: match.start()])]
         if ends:
-            return text[ends[-1] if cue is _CUES[-1][0] else ends[0] :], most
+            return text[ends[-1] if cue is _CUES[-1][0] else ends[0] :], max_words
         if found:
             return "", 0
-    return text, _MOST_ALONE
+    return text, _MAX_WORDS_ALONE
 
 
 def _from_quotes(quotes: list[Quote], text: str) -> ParsedAnswer:

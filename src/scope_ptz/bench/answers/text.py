@@ -1,4 +1,4 @@
-"""An answer as clauses of words, with the parts that are denied, guessed, asked or declined marked or left out."""
+"""An answer as clauses of words. Denials are marked; questions, guesses and clauses that decline are left out."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from scope_ptz.bench.answers.absences import MARK, is_denied_jointly, is_listed_as_absent, uncrossed
+from scope_ptz.bench.answers.absences import MARK, is_denied_jointly, is_listed_as_absent, replace_crosses
 from scope_ptz.bench.answers.claims import Claim, claim_of
 from scope_ptz.bench.answers.tokenizer import Word, clean, plain_words, same_word, words_of
 
@@ -15,6 +15,7 @@ _ASIDE = (
     ("rather", "than"), ("instead", "of"), ("other", "than"), ("apart", "from"), ("as", "opposed", "to"), ("unlike",),
     ("except",), ("except", "for"), ("besides",), ("excluding",),
 )  # fmt: skip
+"""Phrases that name something only as a contrast."""
 _A_OR_THE = frozenset({"a", "an", "the"})
 """Articles that are interchangeable inside a name."""
 
@@ -49,22 +50,23 @@ _NOT_NO = re.compile(
 )
 """Double negations, such as "not without" and "no lack of"."""
 
-_WHO_CAN = frozenset({"i", "we", "you", "they", "it", "that", "who", "nobody", "one"})
-_CAN_WHAT = frozenset({
+_BEFORE_VERB_CAN = frozenset({"i", "we", "you", "they", "it", "that", "who", "nobody", "one"})
+_AFTER_VERB_CAN = frozenset({
     "not", "see", "be", "find", "only", "also", "make", "tell", "count", "spot", "confirm", "say", "identify", "read", "clearly",
     "just", "still", "barely", "definitely", "hardly", "detect", "recognise", "notice", "determine",
 })  # fmt: skip
+"""Words before and after "can" that show that it is the verb and not a drinks can."""
 
 
 @dataclass(frozen=True, slots=True)
 class NameMention:
-    """A place in an answer that names something.
+    """A mention of something in an answer.
 
     Attributes:
         name: The name that the words stand for.
         start: Position of the first word.
         end: Position after the last word.
-        denied: Whether the answer says that it is not so or not there.
+        denied: Whether the answer denies it or says that it is absent.
         aside: Whether it is named only as a contrast ("unlike the van").
     """
 
@@ -90,10 +92,10 @@ class AnswerText:
     hedged: bool
 
     def mentions(self, names: Mapping[str, Sequence[str]]) -> list[NameMention]:
-        """Return every place that names something.
+        """Return the mentions of things.
 
-        If wordings overlap, the longest one counts. Places that claim nothing are left out: "no cone is missing" and "I looked for
-        cones" say nothing about cones.
+        If wordings overlap, the longest one counts. Mentions that claim nothing are left out: "no cone is missing" and "I looked
+        for cones" say nothing about cones.
 
         Args:
             names: The wordings of each name.
@@ -131,7 +133,7 @@ class AnswerText:
     def _is_verb(self, at: int) -> bool:
         """Return whether "can" is the verb and not the object."""
         before, after = self.words[max(0, at - 1) : at], self.words[at + 1 : at + 2]
-        return any(w.text in _WHO_CAN for w in before) or any(w.text in _CAN_WHAT for w in after)
+        return any(w.text in _BEFORE_VERB_CAN for w in before) or any(w.text in _AFTER_VERB_CAN for w in after)
 
     def _aside(self, start: int) -> bool:
         before = [w.text for w in self.words[max(0, start - 4) : start] if w.clause == self.words[start].clause]
@@ -158,6 +160,7 @@ class AnswerText:
         return at >= 0 and self._continues_list(segment) and self._opens_denied_list(at)
 
     def _denied_twice(self, start: int, end: int) -> bool:
+        """Return whether the words are part of a double negation, as in "no cone is missing"."""
         segment, clause = self.words[start].segment, self.words[end - 1].clause
         before = [w.text for w in self.words[max(0, start - 9) : start] if w.segment == segment]
         ends = [at for at in range(len(before) + 1) if before[at - 1 : at] and _NOT_NO.search(" ".join(before[:at]))]
@@ -225,7 +228,7 @@ def answer_text(text: str) -> AnswerText:
 
     Questions, withdrawn statements, guesses and clauses that decline are left out, because they claim nothing.
     """
-    cleaned = re.sub(r"\s*\(with [^()]*\)", "", uncrossed(clean(text)))  # "white (with black letters)" is white
+    cleaned = re.sub(r"\s*\(with [^()]*\)", "", replace_crosses(clean(text)))  # "white (with black letters)" is white
     cleaned = cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
     kept, declined, hedged = list[Word](), False, False

@@ -32,7 +32,7 @@ _CONTRACTIONS = (
 _WORD = re.compile(r"\d+(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?|[^\W\d_]+(?:'[^\W\d_]+)*|[°%]")
 _TAGS = re.compile(r"</?(?:b|i|u|em|strong|p|br|code|answer)\s*/?>", re.IGNORECASE)
 _LIST_NUMBER = re.compile(r"^\s*(\d{1,3})[.)]\s+", re.MULTILINE)
-_HARD = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
+_CLAUSE_END = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ def _plain_letter(letter: str) -> str:
 
 
 def plain_words(text: str) -> list[str]:
-    """Return the normalised words of a text, as they are compared."""
+    """Return the normalised words of a text."""
     return list(_plain_words(text))
 
 
@@ -107,16 +107,16 @@ def words_of(text: str) -> list[Word]:
         if words and words[-1].text[0].isdigit() and not gap.strip():
             word = _MEASURES.get(word, word)
         end = match.end()
-        if words and _HARD.search(gap):
+        if words and _CLAUSE_END.search(gap):
             clause += 1
-        if words and (_HARD.search(gap) or re.search(r"[,:]", gap) or word in ("but", "whereas", "while", "although", "so")):
+        if words and (_CLAUSE_END.search(gap) or re.search(r"[,:]", gap) or word in ("but", "whereas", "while", "although", "so")):
             segment += 1
         words.append(Word(_british(word), gap, clause, segment))
     return words
 
 
 def names_any(text: str, wordings: Iterable[str]) -> bool:
-    """Return whether a text contains one of the wordings, no matter what it says about it."""
+    """Return whether a text contains one of the wordings, even in a denial."""
     words = plain_words(text)
     for phrase in (plain_words(w) for w in wordings):
         for at in range(len(words) - len(phrase) + 1):

@@ -1,4 +1,4 @@
-"""The adapter between the engine and the agent loop: it runs the loop on a sample and stores the run in the sample."""
+"""The solver for Inspect: it runs the agent loop on a sample and stores the run in the sample."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WIDTH, HEIGHT = 1280, 720
 
 
 class BrokenRunError(Exception):
-    """A run that says nothing about the agent. The engine keeps it out of the scores, and runs it again on resuming."""
+    """A run that failed for a reason outside the agent. Inspect excludes it from scores and repeats it on resuming."""
 
 
 def agent_solver(
@@ -45,7 +45,7 @@ def agent_solver(
     """Return the solver that runs an agent on each sample.
 
     Args:
-        context: Scenes, models and watcher.
+        context: Provides scenes, models and the watcher.
         agent: "scope" for the built-in loop with its planner, or ``module:Class`` of an external agent.
         pictures: Render frames and log them; without pictures, only ground-truth perception works.
         max_steps: Planner steps after which a run ends (T_max).
@@ -67,7 +67,7 @@ def agent_solver(
             )
             run = _SampleRun(context, entry, planner, pictures=pictures, seed=seed)
             try:
-                result = await run.go(Budgets(max_steps=max_steps, time_s=time_s))
+                result = await run.run(Budgets(max_steps=max_steps, time_s=time_s))
             finally:
                 if isinstance(planner, ExternalPlanner):
                     await planner.close()
@@ -85,7 +85,7 @@ def agent_solver(
 
 
 class _SampleRun:
-    """One run: its camera, perception, pictures and trace."""
+    """One run of a sample, with its camera, pictures and trace."""
 
     def __init__(self, context: EvalContext, entry: Entry, planner: Planner, *, pictures: bool, seed: int) -> None:
         self.context, self.entry, self.planner, self.seed = context, entry, planner, seed
@@ -96,8 +96,8 @@ class _SampleRun:
         self.pictures = PictureStore() if pictures else None
         self._records: list[Record] = []
 
-    async def go(self, budgets: Budgets) -> RunResult:
-        """Run the agent loop from the task's preset to its end."""
+    async def run(self, budgets: Budgets) -> RunResult:
+        """Run the agent loop from the task's preset until it ends."""
         model = get_model(role="eyes", required=True)
         perception = await LoggedPerception.of(model, self.context, pictures=self.pictures is not None)
         with self.clock.hold():
@@ -115,7 +115,7 @@ class _SampleRun:
         return await loop.run(self.entry.facts.instruction, listener=self._records.append)
 
     async def store(self, state: TaskState) -> None:
-        """Put into the sample what checks and judges need, also after an interrupted run."""
+        """Store in the sample what checks and judges need, even if the run was interrupted."""
         shown = dict[str, str]()
         if self.pictures is not None:
             await self.pictures.settle()

@@ -1,4 +1,4 @@
-"""Human labels and judgements in files next to a log. They are moved when another log takes over the runs."""
+"""Move the files next to a log, which contain human labels and judgements, when another log takes over its runs."""
 
 from __future__ import annotations
 
@@ -14,27 +14,24 @@ from scope_ptz.bench.judging.json_lines import append_line, whole_lines
 
 
 def check_beside(logs: Sequence[Path]) -> None:
-    """Check that the labels next to logs can be read, before any run starts. Raises ``InputError``."""
+    """Check that the human labels of logs can be read. Raises ``InputError``."""
     for log in logs:
         read_labels(labels_file(log))
 
 
 def put_away(logs: Sequence[Path], new: Path, folder: Path) -> None:
-    """Move logs whose runs are all in ``new`` into a folder, with the files next to them.
+    """Move logs that ``new`` supersedes into a folder, with their labels and journals.
 
-    Nothing is deleted, and no report counts a run twice. Labels and judgements of runs that were taken over are copied to ``new``.
-    Those of runs that were repeated stay with the old log.
+    Reports then count no run twice. Labels and judgements of runs that were taken over are copied to the files of ``new``.
+    Labels and judgements of runs that were repeated stay with the old log.
     """
     logs = [log for log in logs if log.is_file()]
     _carry_labels(logs, new)
     _carry_journals(logs, new)
     for log in logs:
         folder.mkdir(exist_ok=True)
-        for path in (
-            labels_file(log),
-            journal_file(log),
-            log,
-        ):  # The log last, so that an interrupted move is repeated
+        # The log is moved last, so that an interrupted move is repeated.
+        for path in (labels_file(log), journal_file(log), log):
             if path.is_file():
                 path.replace(folder / path.name)
 
@@ -44,7 +41,7 @@ def _names(log: Path) -> Mapping[str, str | None]:
 
 
 def _taken_over(log: Path, now: Mapping[str, str | None]) -> set[str]:
-    """Return the names of runs of a log that were taken over unchanged into another."""
+    """Return the names of the runs of a log that another log took over unchanged."""
     return {name for name, uuid in _names(log).items() if uuid is not None and now.get(name) == uuid}
 
 
@@ -66,7 +63,7 @@ def _carry_labels(logs: Sequence[Path], new: Path) -> None:
 
 
 def _carry_journals(logs: Sequence[Path], new: Path) -> None:
-    """Carry judgements of an interrupted rescoring that are not in the log yet."""
+    """Copy the judgements of an interrupted rescoring that are not in the log yet."""
     if not any(journal_file(log).is_file() for log in logs):
         return
     now, target = _names(new), journal_file(new)

@@ -1,4 +1,4 @@
-"""The benchmark as a task of the engine."""
+"""The benchmark as an Inspect task."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from scope_ptz.version import __version__
 __all__ = ["Task", "benchmark_task"]
 
 MAX_BROKEN_SHARE = 0.1
-"""Share of runs that infrastructure may break before the evaluation as a whole counts as failed."""
+"""Share of runs that infrastructure may break. Above it, the evaluation as a whole fails."""
 
 
 def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..., Task]:
-    """Return the task ``bench``, which runs in a given context.
+    """Return the Inspect task ``bench`` for a given context.
 
     Args:
-        provide_context: Returns the context of an evaluation with a given seed.
+        provide_context: Returns the context of an evaluation for a seed.
     """
 
     @task
@@ -84,7 +84,7 @@ def _names(given: str | list[str] | None) -> list[str]:
 
 
 def _log_metadata(entries: Sequence[Entry], split: str, *, agent: str, max_steps: int, seed: int) -> dict[str, Any]:
-    """Return the metadata that a log records about its tasks and the loop, independent of who started it."""
+    """Return the metadata that a log records about its tasks and the agent loop."""
     return {
         "scope": {
             "package_version": __version__,

@@ -1,4 +1,4 @@
-"""The executable checks as a scorer of the engine. They read only what a run stored, so they can be repeated offline."""
+"""The executable checks as an Inspect scorer. They read only what a run stored, so they can be repeated offline."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def checks_scorer(context: EvalContext | None = None) -> Scorer:
 
 
 async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
-    """Return the judged run of a sample. The true counts of an incorrect run are looked up once, and stay in its store."""
+    """Return the trial of a sample. True counts of an incorrect run are looked up once and stored in the sample."""
     entry = Entry.of_metadata(state.metadata)
     where = Path(entry.facts.scene)
     stored = state.store.get(STORE)
@@ -94,20 +94,20 @@ async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
 
 
 async def _with_truths(entry: Entry, kept: Kept, true_count: TrueCount) -> Kept:
-    """Return a run with the true number added to every count."""
+    """Return the data of a run with the true count for every counting call."""
     trace = trace_of(kept.trace, Path(entry.facts.scene))
     if trace is None:
         return kept
     truths = dict[str, int | None]()
     for number, call in enumerate(kept.episode(trace).calls):
-        for look in call.observations:
-            if look.how == "count":
-                truths[str(number)] = await true_count(entry.world, look)
+        for observation in call.observations:
+            if observation.how == "count":
+                truths[str(number)] = await true_count(entry.world, observation)
     return replace(kept, truths=truths)
 
 
 def score_of(trial: Trial) -> Score:
-    """Return a judged run as a score of the engine. The whole trial is in its metadata."""
+    """Return a trial as an Inspect score, with the whole trial in its metadata."""
     metadata = {
         "headline": trial.headline,
         "error_mode": trial.error_mode.value if trial.error_mode else None,

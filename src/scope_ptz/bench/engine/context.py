@@ -1,6 +1,6 @@
 """The context that the caller of an evaluation provides to the engine: scenes, planners, perception, true counts, a watcher.
 
-The engine makes its own objects from names. Objects that a name cannot describe reach solvers and scorers through this context.
+Inspect creates solvers and scorers from names. The context gives them the objects that a name cannot describe.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ class ModelRequest:
 
 
 TrueCount = Callable[[str, Observation], Awaitable[int | None]]
-"""Returns how many of the things that a perception call asked for are visible; None if this cannot be known."""
+"""Returns how many of the things that a perception call asked for are visible; None if the ground truth cannot tell."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
-"""Returns the tasks of a split by its name, or of a file."""
+"""Returns the tasks of a split, given by its name, or of a file, given by its path."""
 
 
 class Watcher:
-    """Receives every run that begins and ends. The default ignores them."""
+    """Observer of an evaluation, notified when a run begins or ends. The default does nothing."""
 
     def began(self, sample: str, entry: Entry) -> None:
-        """A run began."""
+        """Called when a run begins."""
 
     def ended(self, sample: str, trial: Trial) -> None:
-        """A run ended, and its checks were applied."""
+        """Called when a run has ended and its checks were applied."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +52,10 @@ class EvalContext:
         open_scene: Opens a scene, or a variation of one, by name.
         make_planner: Makes a planner by name.
         make_perception: Makes perception by name.
-        make_judge: Connects to a judge for its n-th judgement of a run.
+        make_judge: Connects to a judge for its judgement with the given index, from 0.
         load_tasks: Loads tasks by split or file.
         true_count: Ground truth for perception calls; None if there is none.
-        watcher: Receives runs as they begin and end.
+        watcher: Notified when a run begins or ends.
         perception_note: Note for the trace about the origin of the perception.
         perception: The perception, if it was made in advance; its creator closes it.
     """

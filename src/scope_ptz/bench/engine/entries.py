@@ -1,6 +1,6 @@
-"""Entries to run: one instruction at one place in a scene, with the facts that reports group by.
+"""Entries of an evaluation: each is one instruction in one view of a scene, with the facts by which reports group runs.
 
-Most entries have a task with executable checks. An entry without one comes from a file of another format; only a judge scores it.
+Most entries have a task with executable checks. Entries imported from other formats have none, and only a judge can score them.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ class Entry(BaseModel):
     """One instruction to run.
 
     Attributes:
-        facts: What reports group by.
+        facts: The facts about the task, by which reports group runs.
         world: Name under which the scene, or its variation, is opened.
         time_s: Scene time at the start.
         task: The task with its checks; None if only a judge can score the run.
-        imported: The calls that a file of another format expects.
+        imported: The imported task, if it comes from a file of another format.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -65,7 +65,7 @@ class Entry(BaseModel):
                 {"facts": facts, **{name: metadata[name] for name in ("world", "time_s", "task", "imported")}}
             )
         except (KeyError, ValidationError) as error:
-            raise TraceError("A sample of this log does not say which task it is of: it is no log of this benchmark.") from error
+            raise TraceError("A sample of this log names no task. The log is not one of this benchmark.") from error
 
 
 def entry_of(task: Task, scene: Scene) -> Entry:
@@ -82,19 +82,19 @@ def entries_of(tasks: Iterable[Task], open_scene: OpenScene) -> tuple[Entry, ...
 
 
 def imported_entries(tasks: Iterable[ImportedTask]) -> tuple[Entry, ...]:
-    """Return the entries of imported tasks. A judge scores them; their expected calls are the only check."""
+    """Return the entries of imported tasks. A judge scores them; the only check is that of their expected calls."""
     return tuple(Entry(facts=t.facts, world=t.facts.scene, time_s=t.start_s, imported=t) for t in tasks)
 
 
 def select(
     entries: Sequence[Entry], categories: Sequence[str] = (), scenes: Sequence[str] = (), limit: int | None = None
 ) -> tuple[Entry, ...]:
-    """Return the entries of some categories and scenes, at most ``limit`` of them.
+    """Return at most ``limit`` entries of the given categories and scenes; without categories or scenes, of all.
 
-    They are sampled evenly across the categories, scenes and scopes that are selected, and always in the same way.
+    They are sampled evenly across the selected categories, scenes and scopes. The sample is always the same.
 
     Raises:
-        UnknownNameError: No entry has such a category or scene.
+        UnknownNameError: No entry has one of the categories or scenes.
         InputError: The selection is empty.
     """
     for kind, names, have in (
@@ -106,7 +106,7 @@ def select(
                 raise UnknownNameError(f"{kind} among these tasks", name, have)
     kept = [e for e in entries if (not categories or e.facts.category in categories) and (not scenes or e.facts.scene in scenes)]
     if not kept:
-        raise InputError("No task is left to run. Ask for other categories or scenes.")
+        raise InputError("No task matches the selection. Select other categories or scenes.")
     if limit is None or limit >= len(kept):
         return tuple(kept)
     return _sample_evenly(kept, limit)
@@ -115,8 +115,8 @@ def select(
 def _sample_evenly(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
     """Sample entries evenly, keeping their order.
 
-    Each step takes one from the group (category, scene, scope) that is least represented, relative to how many entries have each of
-    the three. Within a group, entries are taken at equal distances.
+    Each step takes an entry from the group (category, scene, scope) that is least represented so far, relative to the numbers of
+    entries with its category, its scene and its scope. Within a group, entries are taken at equal distances.
     """
     groups: dict[tuple[str, str, str], list[Entry]] = {}
     for entry in entries:
@@ -134,11 +134,11 @@ def _sample_evenly(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
 
 
 def digest(entries: Iterable[Entry]) -> str:
-    """Return a digest of these tasks that does not depend on their order."""
+    """Return a digest of entries that does not depend on their order."""
     rows = sorted(json.dumps(entry.metadata(), sort_keys=True) for entry in entries)
     return hashlib.sha256("\n".join(rows).encode()).hexdigest()[:DIGEST_CHARS]
 
 
 def datasets(entries: Iterable[Entry]) -> str:
-    """Return the versions of the tasks' datasets, joined where there are several."""
+    """Return the dataset versions of entries, joined by "+"."""
     return "+".join(sorted({entry.facts.dataset for entry in entries}))

@@ -1,4 +1,4 @@
-"""The estimate of calls, duration and cost before an evaluation, from its tasks and from earlier runs of the same models."""
+"""Estimate the calls, duration and cost of an evaluation from its tasks and from earlier runs of the same models."""
 
 from __future__ import annotations
 
@@ -12,9 +12,13 @@ from scope_ptz.tools.registry import TOOLS
 
 _PERCEPTION_TOOLS = frozenset(TOOLS.perceiving)
 TYPICAL_CALLS = 2.0
-"""Calls assumed for a task without a reference program."""
-CHARS_PER_TOKEN, STEP_TOKENS, REPLY_TOKENS = 4.0, 100, 40
-"""Assumptions where nothing was measured: text and JSON, a call with its result in the history, a planner's reply."""
+"""Tool calls assumed for a task without a reference program."""
+CHARS_PER_TOKEN = 4.0
+"""Assumed characters per token of a prompt, if nothing was measured."""
+STEP_TOKENS = 100
+"""Assumed tokens of a call with its result in the history, if nothing was measured."""
+REPLY_TOKENS = 40
+"""Assumed tokens of a planner's reply, if nothing was measured."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,12 +29,13 @@ class Price:
     output_usd: float
 
     def of(self, input_tokens: float, output_tokens: float) -> float:
+        """Return the cost of tokens in US dollars."""
         return (input_tokens * self.input_usd + output_tokens * self.output_usd) / 1e6
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The estimate of an evaluation. Unmeasured quantities are None.
+    """An estimate of calls, duration and cost. Unknown quantities are None.
 
     Attributes:
         runs: Number of runs.
@@ -40,7 +45,7 @@ class Estimate:
         input_tokens: Tokens that the planner reads.
         output_tokens: Tokens that the planner writes.
         cost_usd: Cost of these tokens.
-        measured_on: Number of earlier runs that the estimate rests on.
+        measured_on: Number of earlier runs on which the estimate is based.
         guessed: Whether tokens are guessed from the length of the prompt.
     """
 
@@ -66,12 +71,12 @@ def estimate(
     """Estimate calls from the reference programs, and duration and tokens from earlier runs, scaled by the number of calls.
 
     Args:
-        entries: What is run.
+        entries: The entries to run.
         epochs: Number of runs of each entry.
-        concurrency: Runs at a time.
-        earlier: Evaluations of the same pair.
+        concurrency: Number of concurrent runs.
+        earlier: Earlier evaluations of the same pair.
         price: Price of the planner's tokens.
-        opening_chars: Length of prompt and tools, which begin every request; None if tokens cannot be guessed from it.
+        opening_chars: Characters of prompt and tool schemas, with which every request begins; None if tokens cannot be guessed.
     """
     calls = [_calls(entry) for entry in entries]
     runs, decisions = len(entries) * epochs, round(sum(calls) + len(calls)) * epochs
@@ -84,11 +89,11 @@ def estimate(
         tokens = round(read * epochs), round(written * epochs)
         return Estimate(runs, decisions, looks, None, *tokens, price.of(*tokens) if price is not None else None, guessed=True)
     steps = sum(trial.steps for trial in trials) or 1
-    each = decisions / steps
-    tokens_in, tokens_out = (round(each * sum(getattr(t, n) for t in trials)) for n in ("input_tokens", "output_tokens"))
+    scale = decisions / steps
+    tokens_in, tokens_out = (round(scale * sum(getattr(t, n) for t in trials)) for n in ("input_tokens", "output_tokens"))
     # Concurrent runs slow each other down about in proportion to their number; the number of runs per second stays the same.
-    busy = fmean(evaluation.card.concurrency for evaluation in earlier)
-    seconds = each * sum(t.timings.total_s for t in trials) / (busy if busy < concurrency else concurrency)
+    measured_concurrency = fmean(evaluation.card.concurrency for evaluation in earlier)
+    seconds = scale * sum(t.timings.total_s for t in trials) / min(measured_concurrency, concurrency)
     return Estimate(
         runs, decisions, looks, seconds, tokens_in, tokens_out,
         price.of(tokens_in, tokens_out) if price is not None else None, len(trials),

@@ -1,4 +1,4 @@
-"""The estimate before an evaluation, as lines of text. Unmeasured quantities are reported as unknown."""
+"""Format an estimate as lines of text. Unmeasured quantities are reported as unknown."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from scope_ptz.bench.engine.estimate import Estimate
 def estimate_lines(
     estimate: Estimate, *, planner: str, perception: str, concurrency: int, agent: str | None = None, planner_is_free: bool
 ) -> Iterator[str]:
-    """Return runs, calls, duration and cost, one a line.
+    """Yield runs, calls, duration and cost, one per line.
 
     Args:
         estimate: The estimate.
         planner: Name of the planner.
         perception: Name of the perception.
-        concurrency: Runs at a time.
-        agent: External agent that plans in place of the planner.
-        planner_is_free: Whether planning needs no server.
+        concurrency: Number of concurrent runs.
+        agent: External agent that replaces the planner, if any.
+        planner_is_free: Whether planning uses no paid server.
     """
     runs, subject = f"{estimate.runs} run{'s' if estimate.runs != 1 else ''}", "this agent" if agent else "this pair"
     yield f"{runs} of {agent or planner} + {perception}, {concurrency} at a time"
@@ -49,14 +49,14 @@ def estimate_lines(
 
 
 def tokens_text(tokens: int) -> str:
-    """Return a number of tokens for reading: 340, 12 thousand, 3.4 million."""
+    """Format a number of tokens: 340, 12 thousand, 3.4 million."""
     if tokens < 1000:
         return str(tokens)
     return f"{tokens / 1e3:.0f} thousand" if tokens < 999_500 else f"{tokens / 1e6:.1f} million"
 
 
 def duration_text(seconds: float) -> str:
-    """Return a duration for reading: 40 s, 12 min, 3 h 05 min."""
+    """Format a duration: 40 s, 12 min, 3 h 05 min."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60)

@@ -1,4 +1,4 @@
-"""External agents: any loop that calls tools, run on the same tasks, and traced and checked as the built-in one.
+"""External agents: agents other than the built-in loop that run on the same tasks, with the same tools, traces and checks.
 
     class Agent:
         sees = False
@@ -7,7 +7,7 @@
             seen = await session.call("count_objects", {"description": "cars", "view": "full"})
             return f"I count {seen['count']} cars."
 
-Each run gets a new object. ``run`` returns the answer, or an ``AgentReply`` for a question or a refusal.
+Each run creates a new agent. ``run`` returns the answer, or an ``AgentReply`` for a question or a refusal.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class AgentReply:
 
 
 class AgentSession:
-    """The environment of an external agent: the instruction, the tools, facts about the camera, and a way to call tools.
+    """The session of an external agent in one run: the instruction, the tools, the state of the camera, and a method to call tools.
 
     ``tools`` are JSON schemas in the OpenAI function format; ``presets`` are names of views.
     """
@@ -73,24 +73,24 @@ def load_external_agent(name: str) -> Callable[[], ExternalAgent]:
     """Import the class ``module:Class``, also from the current folder. Raises ``ConfigError``."""
     module, colon, attribute = name.partition(":")
     if not colon or not module or not attribute:
-        raise ConfigError(f"--agent wants module:Class, got '{name}'.")
+        raise ConfigError(f"--agent needs module:Class, got '{name}'.")
     here = str(Path.cwd())
     if here not in sys.path:
         sys.path.insert(0, here)
     try:
-        made = getattr(importlib.import_module(module), attribute)
+        agent_class = getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError, SyntaxError) as error:
         raise ConfigError(f"The agent {name} cannot be imported: {error}.") from error
-    if not callable(made) or not callable(getattr(made, "run", None)):
+    if not callable(agent_class) or not callable(getattr(agent_class, "run", None)):
         raise ConfigError(f"{name} is not an agent: it needs a method `async def run(self, session)`.")
-    agent: Callable[[], ExternalAgent] = made
+    agent: Callable[[], ExternalAgent] = agent_class
     return agent
 
 
 def source_digest(name: str) -> str:
     """Return a digest of the source of ``module:Class``, with all Python files of its package if it is in one.
 
-    Empty when there is no source to read. Raises ``ConfigError``.
+    The digest is empty if there is no source file. Raises ``ConfigError``.
     """
     load_external_agent(name)
     module = sys.modules[name.partition(":")[0]]
@@ -108,9 +108,9 @@ def source_digest(name: str) -> str:
 
 
 class ExternalPlanner(Planner):
-    """A planner whose decisions are the tool calls of an external agent; results go back to the agent.
+    """A planner whose decisions are the tool calls and the final reply of an external agent.
 
-    An object serves one run, because the agent keeps state of its own.
+    It serves a single run, because the agent keeps state of its own.
     """
 
     def __init__(self, make: Callable[[], ExternalAgent], name: str) -> None:
@@ -144,7 +144,7 @@ class ExternalPlanner(Planner):
         return _ending(self._task, opened=self._opened)
 
     def _view(self) -> bytes | None:
-        """Return the newest view, and note that the agent looked at it."""
+        """Return the newest view, and record that the agent requested it."""
         self._opened = self._newest is not None
         return self._newest
 

@@ -1,4 +1,4 @@
-"""Summary of what model servers did to the runs of an evaluation: which failures, how often, at which address, and the remedy."""
+"""Summarize the runs of an evaluation that failures of model servers broke or affected, with a remedy for each."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
 
 def failure_summary(trials: Sequence[Trial], card: RunCard) -> list[str]:
-    """Return a sentence for each way in which runs were broken, and one for failed perception calls in runs that still count."""
+    """Return a sentence for each reason for which runs broke, and one for failed perception calls in runs that still count."""
     broken = [trial for trial in trials if trial.headline == "infrastructure"]
     lines = []
     for reason in dict.fromkeys(_without_kind(trial.reason) for trial in broken):
@@ -20,13 +20,13 @@ def failure_summary(trials: Sequence[Trial], card: RunCard) -> list[str]:
         kinds = f" ({counts_text(ended)})" if ended else ""
         advice = _advice(model, _most_frequent(ended or server_events(own)))
         lines.append(f"{len(own)} of {_runs(len(trials))} broken: {reason}{kinds}.{advice}")
-    blind = [trial for trial in trials if trial.headline != "infrastructure" and trial.perception_failures]
-    if blind:
-        failures, events = sum(trial.perception_failures for trial in blind), server_events(blind)
+    affected = [trial for trial in trials if trial.headline != "infrastructure" and trial.perception_failures]
+    if affected:
+        failures, events = sum(trial.perception_failures for trial in affected), server_events(affected)
         times = "1 perception call" if failures == 1 else f"{failures} perception calls"
         kinds = f" ({counts_text(events)})" if events else ""
-        still = "which still counts" if len(blind) == 1 else "which still count"
-        line = f"{times} failed in {len(blind)} of {_runs(len(trials))}, {still}{kinds}."
+        still = "which still counts" if len(affected) == 1 else "which still count"
+        line = f"{times} failed in {len(affected)} of {_runs(len(trials))}, {still}{kinds}."
         lines.append(f"{line}{_advice(card.perception, _most_frequent(events))}")
     return lines
 
@@ -45,7 +45,7 @@ def counts_text(events: Counter[str]) -> str:
 
 
 def _most_frequent(events: Counter[str]) -> FailureKind | None:
-    """Return the most frequent kind. An open circuit only follows from other failures."""
+    """Return the most frequent kind. An open circuit counts only if there is no other, because it follows from other failures."""
     kinds = [kind for name, _ in events.most_common() if (kind := _kind(name)) is not None]
     return next((kind for kind in kinds if kind is not FailureKind.CIRCUIT_OPEN), kinds[0] if kinds else None)
 
@@ -67,7 +67,7 @@ def _kind(name: str) -> FailureKind | None:
 
 
 def _advice(model: ModelCard, kind: FailureKind | None) -> str:
-    """Return what is wrong with a model's server and the remedy; empty if it has no server or the kind is unknown."""
+    """Return a sentence about the fault of a model's server and the remedy; empty if it has no server or the kind is unknown."""
     address = model.provider if "://" in model.provider else ""
     return f" {ServerFailure(kind, where=address)}" if kind is not None and address else ""
 

@@ -1,4 +1,4 @@
-"""A lock on a file that works on every system. Closing the file, or the end of the process, releases it."""
+"""A lock on a file that works on every operating system. Closing the file, or the end of the process, releases it."""
 
 from __future__ import annotations
 

@@ -1,15 +1,15 @@
-"""The parts of Inspect AI that have no public name, wrapped in one place.
+"""Wrappers for the private functions of Inspect AI that this package uses.
 
-The version of Inspect AI is pinned exactly. When it is raised, check these:
+The version of Inspect AI is pinned exactly. Before raising it, check whether these reasons for each wrapper still apply:
 
-- ``silence_display``: ``eval_async`` has no argument for the display; the program draws its own table.
+- ``silence_display``: ``eval_async`` has no argument that turns off its display, and SCOPE draws its own table.
 - ``header_context``: pydantic must not give new ids to messages of a stored header. The public readers of logs replace parts of
   asyncio for the whole program when an event loop runs.
-- ``attachment_reference``: a picture is stored once in a sample, under the hash of its data URL.
+- ``attachment_reference``: a sample stores each picture once, under the hash of its data URL.
 - ``recover_log``: the public ``recover_eval_log`` starts an event loop of its own.
 - ``resumed_task``: ``eval_async`` takes over samples of an earlier log only through a ``PreviousTask``; ``eval_retry`` would make
   task and models from their names, without our context.
-- ``recorder``: reads and writes a log sample by sample; the public functions hold a whole log in memory.
+- ``recorder``: the public functions hold a whole log in memory; the recorder reads and writes sample by sample.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ __all__ = [
 
 
 def silence_display() -> None:
-    """Turn the engine's own display off."""
+    """Turn off Inspect's own display."""
     init_display_type("none")
 
 
@@ -47,7 +47,7 @@ def header_context() -> dict[str, Any]:
 
 
 def attachment_reference(content: str) -> str:
-    """Return how a stored sample refers to a text or picture that is kept once for all its messages."""
+    """Return the reference that a stored sample uses for a text or picture that it stores once for all its messages."""
     return ATTACHMENT_PROTOCOL + mm3_hash(content)
 
 
@@ -63,7 +63,7 @@ def resumed_task(task: Task, header: EvalLog, info: EvalLogInfo | None) -> Previ
     Args:
         task: The task to run.
         header: The earlier log; its samples may be in memory.
-        info: Where the earlier log is, when its samples are not in memory.
+        info: Location of the earlier log, if its samples are not in memory.
     """
     return PreviousTask(
         id=header.eval.task_id, task=task, task_args=resolve_task_args(task), model=None, model_roles=None, sandbox=None,
@@ -72,5 +72,5 @@ def resumed_task(task: Task, header: EvalLog, info: EvalLogInfo | None) -> Previ
 
 
 def recorder(log: Path, folder: Path) -> Recorder:
-    """Return what reads or writes a log sample by sample."""
+    """Return the recorder that reads or writes a log sample by sample."""
     return create_recorder_for_location(str(log), str(folder))

@@ -1,4 +1,4 @@
-"""The judge as a scorer of the engine: it reads a whole run and gives verdict, error mode and reason."""
+"""The judge as an Inspect scorer: it reads a whole run and returns a verdict, an error mode and a reason."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def judge_scorer(context: EvalContext, repeat: int = 0, journal: Journal | None 
 
     Args:
         context: Provides the connection to the judge.
-        repeat: Number of the judgement, where one judge gives several.
-        journal: Judgements that are known already, and where new ones are kept; None for a journal in memory.
+        repeat: Index of the judgement, from 0, if the judge gives several.
+        journal: Contains known judgements and receives new ones; None for a journal in memory.
     """
     known = journal or Journal()
 
@@ -88,17 +88,17 @@ class LoggedJudge:
     async def __call__(self, messages: list[JudgeMessage], schema: dict[str, Any]) -> Completion:
         chat = [_ROLES[message["role"]](content=message["content"]) for message in messages]
         if not isinstance(self._model.api, ScopeModel):
-            return await self._foreign(chat, schema)
+            return await self._ask_other_provider(chat, schema)
         port = await self._model.api.judge(self._context, self._repeat)
         return await self._model.api.logged_call(self._model, chat, lambda: port(messages, schema))
 
-    async def _foreign(self, chat: list[ChatMessage], schema: dict[str, Any]) -> Completion:
+    async def _ask_other_provider(self, chat: list[ChatMessage], schema: dict[str, Any]) -> Completion:
         """Ask a model of another provider."""
         shape = ResponseSchema(name="verdict", json_schema=JSONSchema.model_validate(schema))
         config = GenerateConfig(response_schema=shape, temperature=0.0, seed=FIRST_SEED + self._repeat)
         try:
             output = await self._model.generate(chat, config=config)
-        except Exception as error:  # Providers raise errors of their own: the judge's server gave no reply
+        except Exception as error:  # Each provider raises its own error types.
             raise NoReplyError(f"The judge {self._model} failed: {error}") from error
         if output.stop_reason == "model_length":
             raise NoReplyError(f"The run is too long for the judge {self._model}.", overflow=True)

@@ -1,4 +1,7 @@
-"""A file next to a log that stores new judgements until they are in the log, so that an interrupted rescoring loses none."""
+"""The journal of a log: a file next to it that stores new judgements until the log contains them.
+
+An interrupted rescoring therefore loses no judgement.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ def journal_file(log: Path) -> Path:
 
 
 class Journal:
-    """Judgements by run, judge and number. ``made`` are those that were added. Without a path, the journal is in memory."""
+    """Judgements by run, judge and index. ``made`` lists the added ones. Without a path, the journal is in memory."""
 
     def __init__(self, path: Path | None = None) -> None:
         self.path = path
@@ -33,7 +36,7 @@ class Journal:
                 self._known[(row["sample"], made.judge, made.repeat)] = made
                 self._waiting[(row["sample"], made.judge, made.repeat)] = made
             except (ValueError, KeyError, TypeError, ValidationError) as error:
-                raise TraceError(f"{path}, line {number} is not a judgement: remove the line, or the file. ({error})") from error
+                raise TraceError(f"{path}, line {number} is not a judgement ({error}). Remove the line or the file.") from error
 
     @classmethod
     def beside(cls, log: Path) -> Journal:
@@ -41,7 +44,7 @@ class Journal:
         return cls(journal_file(log))
 
     def find(self, sample: str, judge: str, repeat: int) -> Judgement | None:
-        """Return a judgement by the current prompt, or None where it is missing or failed."""
+        """Return a judgement made with the current prompt; None if there is none or if it failed."""
         made = self._known.get((sample, judge, repeat))
         if made is None or made.prompt != prompt_version() or made.verdict == "failed":
             return None
@@ -49,7 +52,7 @@ class Journal:
         return made
 
     def know(self, sample: str, judgement: Judgement) -> None:
-        """Add a judgement that the log has already."""
+        """Register a judgement that the log already contains."""
         key = (sample, judgement.judge, judgement.repeat)
         self._known.setdefault(key, judgement)
         if self._waiting.get(key) == judgement:
@@ -65,7 +68,7 @@ class Journal:
             append_line(self.path, _line(sample, judgement))
 
     def done(self) -> None:
-        """Remove the judgements that the log has now. Those of an interrupted rescoring by another judge stay."""
+        """Remove from the file the judgements that the log now contains. Those of another judge's interrupted rescoring stay."""
         if self.path is None:
             return
         left = [_line(sample, made) for (sample, _, _), made in self._waiting.items() if made.verdict != "failed"]

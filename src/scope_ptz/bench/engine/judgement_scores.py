@@ -1,4 +1,4 @@
-"""Store judgements in a log. Each one is a separate score, named after the judge and the index of the judgement."""
+"""Convert judgements to the scores of a sample and back. Each judgement is a score of its own."""
 
 from __future__ import annotations
 

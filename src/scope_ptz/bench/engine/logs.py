@@ -1,4 +1,4 @@
-"""Reading of logs, for reports, gates and judges. Logs of unfinished evaluations can be read, too."""
+"""Read the logs of finished and unfinished evaluations."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from scope_ptz.errors import TraceError
 
 ATTACHMENT = "attachment://"
 DECIDES = "decides"
-"""Metadata key for the judge that decides where only a judge can score."""
+"""Metadata key for the name of the judge whose verdicts count where only a judge can score."""
 HEADER, START = "header.json", "_journal/start.json"
 SUMMARIES, JOURNALED = "summaries.json", "_journal/summaries/"
 _SAMPLES = "samples/"
@@ -51,7 +51,10 @@ class SampleFiles:
 
 
 def read_evaluation(path: Path) -> Evaluation:
-    """Read a log as data. Trials are in the order of tasks and epochs; where several judges scored them, one decides on all.
+    """Read a log as an evaluation. Its trials are in the order of tasks and epochs.
+
+    If several judges judged the runs that only a judge can score, one of them decides all these runs.
+
 
     Raises:
         TraceError: There is no log, it is damaged, or it is not a log of this benchmark.
@@ -59,8 +62,8 @@ def read_evaluation(path: Path) -> Evaluation:
     with reading(path):
         header = read_header(path)
         wanted = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
-        named = (header.eval.metadata or {}).get(DECIDES, "")
-        trials = decided_by_one_judge([trial_in(sample, path) for sample in samples(path)], named)
+        decider = (header.eval.metadata or {}).get(DECIDES, "")
+        trials = decided_by_one_judge([trial_in(sample, path) for sample in samples(path)], decider)
         first = next((kept_in(sample) for sample in samples(path)), None)
         card = card_of(header, trace_of(first.trace, path) if first is not None else None)
     order = {str(name): at for at, name in enumerate(header.eval.dataset.sample_ids or ())}
@@ -82,11 +85,11 @@ def open_sample(path: Path, sample: str) -> SampleFiles:
             (row for row in samples(path, f"{task}_epoch_{epoch}") if sample_name(row["id"], row["epoch"]) == sample), None
         )
         if found is None:
-            raise TraceError(f"The log {path} holds no run {sample}.")
+            raise TraceError(f"The log {path} contains no run {sample}.")
         kept = kept_in(found)
         trace = trace_of(kept.trace, path) if kept is not None else None
         if kept is None or trace is None:
-            raise TraceError(f"The run {sample} of {path} never began: there is nothing to see.")
+            raise TraceError(f"The run {sample} of {path} never began, so it has no trace.")
         return SampleFiles(trace, kept.places, kept.pictures, found.get("attachments", {}))
 
 
@@ -103,14 +106,14 @@ def reading(path: Path) -> Iterator[None]:
         raise TraceError(f"The log {path} cannot be read: {error.strerror or error}.") from error
     except (BadZipFile, ValidationError, ValueError, KeyError, EOFError, TypeError, AttributeError, NotImplementedError) as error:
         raise TraceError(
-            f"{path} is no log of an evaluation, or it is damaged ({type(error).__name__}: {str(error)[:200]})."
+            f"{path} is not the log of an evaluation, or it is damaged ({type(error).__name__}: {str(error)[:200]})."
         ) from error
 
 
 def read_header(path: Path) -> EvalLog:
-    """Return the header of a log; of an interrupted evaluation, the header written at its start. Raises ``TraceError``."""
+    """Return the header of a log. For an interrupted evaluation it is the header written at the start. Raises ``TraceError``."""
     with reading(path):
-        # The engine's own reader changes asyncio for the whole program when an event loop runs.
+        # Inspect's own reader changes asyncio for the whole program when an event loop runs.
         with ZipFile(path) as archive:
             whole = HEADER in archive.namelist()
             header_data = from_json(archive.read(HEADER if whole else START))
@@ -122,12 +125,12 @@ def read_header(path: Path) -> EvalLog:
 
 
 def runs_in(path: Path) -> dict[tuple[str, int], bool]:
-    """Return the runs of a log by task and epoch, with False for those that were broken. Raises ``TraceError``."""
+    """Return whether each run of a log, by task and epoch, is complete and not broken. Raises ``TraceError``."""
     return {run: not row.get("error") for run, row in _summaries(path).items()}
 
 
 def uuids_in(path: Path) -> dict[tuple[str, int], str | None]:
-    """Return the unique ids of the runs of a log, by task and epoch. They stay the same in every log that takes a run over.
+    """Return the unique ids of the runs of a log, by task and epoch. A run keeps its id in every log that takes it over.
 
     Raises ``TraceError``.
     """
@@ -147,9 +150,9 @@ def _number(name: str) -> int:
 
 
 def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:
-    """Iterate over the samples of a log as plain data: all of them, or one by the name of its file.
+    """Iterate over the samples of a log as JSON data: all of them, or one by the name of its file.
 
-    Of several with one name the last counts.
+    If several files have the same name, the last one is read.
     """
     with ZipFile(path) as archive:
         wanted = f"{_SAMPLES}{name}.json" if name else None
@@ -157,20 +160,23 @@ def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:
             if wanted is None or member == wanted:
                 sample = from_json(archive.read(member))
                 if not isinstance(sample, dict):
-                    raise TraceError(f"{path}: {member} is no sample.")
+                    raise TraceError(f"{path}: {member} is not a sample.")
                 yield sample
 
 
 def kept_in(sample: Mapping[str, Any]) -> Kept | None:
-    """Return what the run of a sample stored; after a crash, it is in the last event that changed the store."""
+    """Return the data that the run of a sample stored; None if it stored none.
+
+    After a crash, the data are read from the last event that changed the store.
+    """
     attachments = sample.get("attachments", {})
-    left = (sample.get("store") or {}).get(STORE)
-    if left is None:
+    stored = (sample.get("store") or {}).get(STORE)
+    if stored is None:
         changes = (c for e in sample.get("events") or () if e.get("event") == "store" for c in e.get("changes") or ())
-        left = next((c["value"] for c in reversed(list(changes)) if c.get("path") == f"/{STORE}"), None)
-    if left is None:
+        stored = next((c["value"] for c in reversed(list(changes)) if c.get("path") == f"/{STORE}"), None)
+    if stored is None:
         return None
-    kept = Kept.of_store(left)
+    kept = Kept.of_store(stored)
     if kept.trace.startswith(ATTACHMENT):
         whole = attachments[kept.trace.removeprefix(ATTACHMENT)]
         return Kept(whole, kept.presets, kept.home, kept.sees, kept.pictures, kept.truths)

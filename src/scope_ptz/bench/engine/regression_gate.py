@@ -1,4 +1,4 @@
-"""A gate for continuous integration: is an evaluation significantly worse than an earlier one, task by task?"""
+"""A regression gate for continuous integration: compare an evaluation task by task with an earlier one."""
 
 from __future__ import annotations
 
@@ -31,12 +31,13 @@ class Comparison:
     p: float
 
     def regressed(self, alpha: float) -> bool:
+        """Return whether the share of correct runs fell significantly at level ``alpha``."""
         return self.now < self.before and self.p < alpha
 
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """The comparison as a whole. ``left_out`` are tasks that were broken or not judged in either evaluation."""
+    """The result of the gate. ``left_out`` lists the tasks that were broken or not judged in one of the evaluations."""
 
     overall: Comparison
     categories: tuple[Comparison, ...]
@@ -45,10 +46,12 @@ class Gate:
 
     @property
     def regressions(self) -> tuple[Comparison, ...]:
+        """The groups of tasks that became significantly worse."""
         return tuple(c for c in (self.overall, *self.categories) if c.regressed(self.alpha))
 
     @property
     def passed(self) -> bool:
+        """Whether no group of tasks became significantly worse."""
         return not self.regressions
 
 
@@ -56,7 +59,7 @@ def gate(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> G
     """Compare two evaluations over the same tasks. Raises ``InputError`` when they cannot be compared."""
     for name, log in (("log", evaluation), ("baseline", baseline)):
         if not log.finished:
-            raise InputError(f"The {name} {log.log} holds {len(log.trials)} of {log.wanted} runs: finish it first.")
+            raise InputError(f"The {name} {log.log} has {len(log.trials)} of {log.wanted} runs: finish it first.")
     if (evaluation.card.dataset, evaluation.card.dataset_digest) != (baseline.card.dataset, baseline.card.dataset_digest):
         raise InputError(
             f"The logs are of different tasks ({_tasks(evaluation)}; baseline {_tasks(baseline)}), so they cannot be compared. "
@@ -66,7 +69,8 @@ def gate(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> G
     both = sorted(before.keys() & now.keys())
     if not both:
         raise InputError(
-            "Infrastructure broke every task in one of the logs, or no judge gave a verdict on them: there is nothing to compare."
+            "The logs have no scored task in common, so there is nothing to compare: infrastructure broke the runs, or no judge "
+            "gave a verdict on them."
         )
     categories = {trial.task.id: trial.task.category for trial in baseline.trials}
     groups = {name: [task for task in both if categories[task] == name] for name in dict.fromkeys(categories.values())}

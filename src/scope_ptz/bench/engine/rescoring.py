@@ -1,4 +1,4 @@
-"""Score logs again without running the agent: checks on the stored traces, and judges. Earlier scores stay."""
+"""Rescore logs with checks and judges, without running the agent again. Earlier scores are kept."""
 
 from __future__ import annotations
 
@@ -28,8 +28,9 @@ from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import InputError, OutputError
 
 AT_A_TIME = 8
+"""Default number of samples that are scored concurrently."""
 FLUSH_EVERY = 50
-"""Samples held in memory between two writes. Each write copies the whole new log."""
+"""Number of samples held in memory between two writes. Each write copies the whole new log."""
 
 Report = Callable[[int, int], None]
 
@@ -50,12 +51,12 @@ async def rescore(
     Args:
         log: Log of a finished evaluation.
         context: Provides the judge and ground truth.
-        judge_model: Judge to ask; None for checks alone.
+        judge_model: The judge; None to apply only the checks.
         repeats: Number of judgements of each run.
         further: Add ``repeats`` judgements to those in the log; otherwise complete the first ``repeats``.
         with_checks: Apply the executable checks again.
         at_a_time: Samples that are scored concurrently.
-        report: Receives the number of written samples and their total.
+        report: Called with the number of written samples and the number of all samples.
 
     Raises:
         TraceError: There is no log, or it is damaged.
@@ -64,7 +65,7 @@ async def rescore(
     """
     header = read_header(log)
     if header.status == "started":
-        raise InputError(f"{log} is not finished: run it to its end first, with the command that began it.")
+        raise InputError(f"The evaluation in {log} is not finished. Resume it with the command that started it.")
     scorers: list[Scorer] = [checks_scorer(context)] if with_checks else []
     journal = Journal.beside(log)
     if judge_model is not None:
@@ -90,13 +91,13 @@ async def rescore(
 
 
 def let_decide(log: Path, judge: str) -> None:
-    """Write into a log which of its judges decides on runs that only a judge can score.
+    """Record in a log which of its judges decides on runs that only a judge can score.
 
     Raises ``TraceError`` for a damaged log, and ``InputError`` when that judge has given no verdict on such a run.
     """
     check_decides(read_evaluation(log).trials, judge)
     if read_header(log).status == "started":
-        raise InputError(f"{log} is not finished: run it to its end first, with the command that began it.")
+        raise InputError(f"The evaluation in {log} is not finished. Resume it with the command that started it.")
     scratch = log.with_name(f".{log.stem}.decided.eval")
     try:
         with reading(log), ZipFile(log) as old, ZipFile(scratch, "w", ZIP_DEFLATED) as new:
@@ -115,7 +116,7 @@ def let_decide(log: Path, judge: str) -> None:
 
 
 def _further(before: Mapping[str, Trial], judge_name: str, repeats: int) -> range:
-    """Return the numbers of the judgements to make: after those by this judge and prompt, beginning with the first that failed."""
+    """Return the indices of the judgements to make. They begin after the last one by this judge and prompt, or at a failed one."""
     own = [j for t in before.values() for j in t.judgements if (j.judge, j.prompt) == (judge_name, prompt_version())]
     failed = [j.repeat for j in own if j.verdict == "failed"]
     first = min(failed) if failed else max((j.repeat + 1 for j in own), default=0)

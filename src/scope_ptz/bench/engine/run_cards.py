@@ -1,4 +1,4 @@
-"""The run card of a log: the conditions of its runs, as models and servers report themselves."""
+"""The run card of a log, which records the conditions of its runs."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ AGENT_SOURCE = "agent_source"
 
 
 def engine_version() -> str:
-    """Return name and version of the installed engine, as logs record them."""
+    """Return the name and version of the installed engine, in the form that logs record."""
     return f"{ENGINE} {version(ENGINE.replace('-', '_'))}"
 
 
 def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
-    """Return the card that this program wrote, or one derived from a log of the engine's own command line.
+    """Return the run card stored in a log. For a log that Inspect's own command wrote, derive it from the header.
 
     Args:
-        header: The log.
-        trace: Trace of any run of the log; it describes the planner.
+        header: The header of the log.
+        trace: The trace of any run of the log, which describes the planner.
 
     Raises:
         TraceError: The card is damaged.

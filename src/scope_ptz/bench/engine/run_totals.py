@@ -1,4 +1,4 @@
-"""Shares of correct runs, and the summary of an evaluation as JSON data."""
+"""Compute shares of correct runs, and summarize an evaluation as JSON data."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def macro_accuracy(trials: Sequence[Trial]) -> float | None:
 
 
 def evaluation_summary(evaluation: Evaluation) -> dict[str, object]:
-    """Return what ``--json`` prints about an evaluation."""
+    """Return the summary of an evaluation that ``--json`` prints."""
     trials = evaluation.trials
     groups = {name: [t for t in trials if t.task.category == name] for name in CATEGORIES}
     return {

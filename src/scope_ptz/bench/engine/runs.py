@@ -1,7 +1,7 @@
 """Run an evaluation, and resume it after interruptions.
 
-The log of an evaluation is the record of what is done. The log of an interrupted one is found by its identity, a digest of
-everything that decides its results. Its runs are taken over, and only the rest is run.
+An interrupted evaluation is resumed from its log, which is found by its identity: a digest of everything that affects the results.
+The completed runs of the log are taken over, and only the others are run.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ IDENTITY = "identity"
 SUPERSEDED = "superseded"
 """Folder for logs whose runs another log has taken over."""
 
-QUIET = "error"
+LOG_LEVEL = "error"
 
 
 @dataclass(frozen=True, slots=True)
 class StoredLog:
-    """A log of the requested evaluation. ``runs`` says by task and epoch whether a run is complete."""
+    """A log of the requested evaluation. ``runs`` maps task and epoch to whether the run is complete."""
 
     path: Path
     header: EvalLog
@@ -44,11 +44,12 @@ class StoredLog:
 
     @property
     def done(self) -> int:
+        """Number of complete runs."""
         return sum(self.runs.values())
 
     @property
     def finished(self) -> bool:
-        """Whether nothing is left to run. A log with a few broken runs has status "success", but must still repeat them."""
+        """Whether nothing is left to run. Status "success" is not enough, because a log with it may contain broken runs."""
         return self.header.status == "success" and all(self.runs.values())
 
 
@@ -61,11 +62,11 @@ class EngineSetup:
         planner: The planner's model; None for external agents.
         perception: The perception's model.
         judge: The judge's model; None to apply only the checks.
-        concurrency: Runs at a time.
-        identity: Digest of everything that decides the results.
+        concurrency: Number of concurrent runs.
+        identity: The identity of the evaluation.
         card: Run card for the log.
-        realtime: Record events while a run is in progress, so that a killed evaluation loses no finished run. It costs time, and
-            pays where runs are expensive.
+        realtime: Record events while a run is in progress, so that a killed evaluation loses no finished run. This slows runs
+            down, so it is worthwhile only for expensive runs.
     """
 
     log_dir: Path
@@ -79,7 +80,7 @@ class EngineSetup:
 
 
 def identity_of(*parts: Any) -> str:
-    """Return the identity of an evaluation: a digest of everything that decides its results."""
+    """Return the identity of an evaluation: a digest of everything that affects its results."""
     return hashlib.sha256(json.dumps(parts, sort_keys=True, default=str).encode()).hexdigest()[:16]
 
 
@@ -100,7 +101,7 @@ def _logs_of(log_dir: Path, identity: str) -> list[StoredLog]:
         try:
             log = stored_log(path)
         except TraceError:
-            continue  # It cannot be resumed.
+            continue  # A damaged log cannot be resumed.
         if (log.header.eval.metadata or {}).get(IDENTITY) == identity:
             logs.append(log)
     return logs
@@ -112,7 +113,7 @@ def stored_log(path: Path) -> StoredLog:
 
 
 def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Evaluation]:
-    """Return the evaluations of a pair in a folder. A run that several logs hold is in the first of them only."""
+    """Return the evaluations of a pair in a folder. A run that several logs contain is returned only once."""
     found, seen = [], set[str]()
     for path in sorted(log_dir.glob("*.eval")):
         try:
@@ -131,7 +132,7 @@ def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Ev
 
 
 def log_of_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> Path | None:
-    """Return the newest log of the same tasks and agent with another version of the agent's source; None without any.
+    """Return the newest log of the same tasks and agent with another version of the agent's source; None if there is none.
 
     ``source`` and ``tasks`` are digests.
     """
@@ -155,7 +156,7 @@ def exclusive(log_dir: Path, identity: str) -> Iterator[None]:
         raise OutputError(f"The log folder {log_dir} cannot be written: {error.strerror}. Choose another with --out.") from error
     with lock:
         if not lock_file(lock):
-            raise InputError(f"This very evaluation is running already, into {log_dir}.")
+            raise InputError(f"This evaluation is running already and writes to {log_dir}.")
         yield
 
 
@@ -186,7 +187,7 @@ async def run(task: Task, setup: EngineSetup, before: Sequence[StoredLog]) -> Pa
         log_images=True,
         log_header_only=True,
         log_realtime=setup.realtime,
-        log_level=QUIET,
+        log_level=LOG_LEVEL,
         max_samples=setup.concurrency,
         score_display=False,
         ctl_server=False,
@@ -194,7 +195,7 @@ async def run(task: Task, setup: EngineSetup, before: Sequence[StoredLog]) -> Pa
     if not logs:  # The evaluation was cancelled.
         left = _logs_of(setup.log_dir, setup.identity)
         if not left:
-            raise OutputError(f"The evaluation was stopped before it had written a log into {setup.log_dir}.")
+            raise OutputError(f"The evaluation was stopped before it wrote a log to {setup.log_dir}.")
         return max(left, key=lambda log: log.done).path
     (log,) = logs
     if log.error is not None and not (log.results and log.results.completed_samples):
@@ -206,14 +207,14 @@ async def run(task: Task, setup: EngineSetup, before: Sequence[StoredLog]) -> Pa
 
 
 async def _resumed(task: Task, before: Sequence[StoredLog]) -> PreviousTask:
-    """Return the task with the runs to take over. If several logs hold runs, all of them are read into memory."""
-    best, *lesser = before
-    known = {run for run, stays in best.runs.items() if stays}
-    further = [(log, run) for log in lesser for run, stays in log.runs.items() if stays and run not in known]
+    """Return a task that takes over the complete runs of earlier logs. Runs of several logs are read into memory."""
+    best, *others = before
+    known = {run for run, complete in best.runs.items() if complete}
+    further = [(log, run) for log in others for run, complete in log.runs.items() if complete and run not in known]
     header, info = best.header, _info(best.path, best.header)
     if further:
-        places = dict([*((run, best) for run in known), *((run, log) for log, run in further)])
-        whole = [await read_eval_log_sample_async(str(log.path), name, epoch) for (name, epoch), log in places.items()]
+        sources = dict([*((run, best) for run in known), *((run, log) for log, run in further)])
+        whole = [await read_eval_log_sample_async(str(log.path), name, epoch) for (name, epoch), log in sources.items()]
         header = header.model_copy(update={"samples": whole})
     return resumed_task(task, header, None if further else info)
 

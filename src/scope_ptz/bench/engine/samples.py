@@ -1,4 +1,4 @@
-"""Entries as samples of the engine, and what a run stores in its sample to be checked and judged again."""
+"""Convert entries to Inspect samples, and define the data that a run stores in its sample for checks and judges."""
 
 from __future__ import annotations
 
@@ -17,12 +17,13 @@ from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints, episode_o
 from scope_ptz.errors import TraceError
 
 MAX_SHARED_VIEWPOINTS = 2
+"""Entries that use more viewpoints are placed last in their scene."""
 STORE = "scope"
-"""The key in a sample's store that belongs to this project."""
+"""Key of SCOPE's data in the store of a sample."""
 
 
 def viewpoint_order(entries: Iterable[Entry], open_scene: OpenScene) -> list[Entry]:
-    """Sort entries so that few viewpoints are in use at a time: reading the layers of one takes as long as many runs.
+    """Sort entries so that few viewpoints are in use at a time, because loading a viewpoint takes as long as many runs.
 
     Within a scene, entries that use one or two viewpoints follow each other so that neighbours share a viewpoint. Those that use
     more come last.
@@ -49,7 +50,7 @@ def _viewpoints_of(entry: Entry, open_scene: OpenScene) -> set[str]:
 
 
 def dataset_of(entries: Iterable[Entry], name: str) -> MemoryDataset:
-    """Return the entries, in their order, as a dataset of the engine."""
+    """Return entries as an Inspect dataset, in the same order."""
     samples = [Sample(id=e.facts.id, input=e.facts.instruction, target=e.facts.expected, metadata=e.metadata()) for e in entries]
     return MemoryDataset(samples, name=name)
 
@@ -69,7 +70,7 @@ class Kept:
         home: Viewpoint of the home preset.
         sees: Whether the planner was shown frames.
         pictures: References to pictures in the log, by their names in the trace.
-        truths: True counts by number of the call, where they were looked up.
+        truths: True counts by the index of the call, if they were looked up.
     """
 
     trace: str
@@ -80,6 +81,7 @@ class Kept:
     truths: Mapping[str, int | None] = field(default_factory=dict)
 
     def as_store(self) -> dict[str, Any]:
+        """Return the data in the form that a sample stores."""
         return {
             "trace": self.trace, "presets": dict(self.presets), "home": self.home, "sees": self.sees,
             "pictures": dict(self.pictures), "truths": dict(self.truths),
@@ -87,11 +89,11 @@ class Kept:
 
     @classmethod
     def of_store(cls, store: Any) -> Kept:
-        """Return the run in a sample's store. Raises ``TraceError`` when there is none."""
+        """Return the data of the run in a sample's store. Raises ``TraceError`` if there are none."""
         try:
             return cls(**{name: store[name] for name in ("trace", "presets", "home", "sees", "pictures", "truths")})
         except (KeyError, TypeError) as error:
-            raise TraceError("A sample of this log holds no run of this benchmark.") from error
+            raise TraceError("A sample of this log contains no run of this benchmark.") from error
 
     @property
     def places(self) -> PresetViewpoints:
@@ -99,7 +101,7 @@ class Kept:
         return PresetViewpoints(self.presets, self.home)
 
     def episode(self, trace: Trace) -> Episode:
-        """Return the run as the checks see it."""
+        """Return the run as an episode, on which the checks run."""
         return episode_of(trace, self.places, planner_sees=self.sees, keeps_files=False)
 
 

@@ -1,4 +1,4 @@
-"""Build trials from the data that runs stored."""
+"""Build trials from the stored data of runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _TIMED_TOOLS = ("count_objects", "query_answer")
 
 
 def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
-    """Return the trial of a run: scored by its task's checks, or without checks by the first verdict of a judge.
+    """Return the trial of a run, scored by the checks of its task. Without checks, the first verdict of a judge decides.
 
     If a log has several judges, ``judging.deciding_judge`` selects the one that decides.
     """
@@ -38,7 +38,7 @@ def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tupl
     if entry.imported is not None:
         verdict["checks"] = (check_imported_calls(entry.imported, kept.episode(trace)),)
     return Trial.model_validate(
-        {"task": entry.facts, "epoch": epoch, "sample": name, "judgements": judgements} | verdict | _run(trace)
+        {"task": entry.facts, "epoch": epoch, "sample": name, "judgements": judgements} | verdict | _trace_fields(trace)
     )
 
 
@@ -58,15 +58,17 @@ def _by_checks(entry: Entry, kept: Kept, trace: Trace) -> dict[str, Any]:
 
 
 class _Truths:
-    """The true counts of a run's perception calls, looked up when the run had ended."""
+    """The true counts of a run's perception calls, which were looked up after the run."""
 
     def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
-        looks = [(look, truths.get(str(number))) for number, call in enumerate(episode.calls) for look in call.observations]
-        self._known = {id(look): really for look, really in looks}
-        self._looks = [look for look, _ in looks]
+        observations = [
+            (observation, truths.get(str(number))) for number, call in enumerate(episode.calls) for observation in call.observations
+        ]
+        self._known = {id(observation): count for observation, count in observations}
+        self._observations = [observation for observation, _ in observations]
 
-    def __call__(self, look: Observation) -> int | None:
-        return next((self._known[id(own)] for own in self._looks if own == look), None)
+    def __call__(self, observation: Observation) -> int | None:
+        return next((self._known[id(own)] for own in self._observations if own == observation), None)
 
 
 def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]:
@@ -77,7 +79,7 @@ def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]
 
 
 def broken_by(ended: Ended | None) -> str | None:
-    """Return how infrastructure broke a run, judging by its end; None if it did not."""
+    """Return how infrastructure broke a run, as its last record shows; None if it did not."""
     if ended is None:
         return "the run was cut off"
     if ended.outcome in ("camera_error", "cancelled"):
@@ -87,8 +89,8 @@ def broken_by(ended: Ended | None) -> str | None:
     return None
 
 
-def _look_times(trace: Trace) -> tuple[ObservationTime, ...]:
-    """Return where the time of each perception call went."""
+def _observation_times(trace: Trace) -> tuple[ObservationTime, ...]:
+    """Return the times of perception, camera and tool of each perception call."""
     looked = [c for c in trace.calls if c.outcome.call.name in _TIMED_TOOLS and c.outcome.error is None]
     return tuple(
         ObservationTime(
@@ -101,8 +103,8 @@ def _look_times(trace: Trace) -> tuple[ObservationTime, ...]:
     )
 
 
-def _run(trace: Trace) -> dict[str, Any]:
-    """Return the facts of a trial that come from its trace."""
+def _trace_fields(trace: Trace) -> dict[str, Any]:
+    """Return the fields of a trial that come from its trace."""
     ended = trace.ended
     return {
         "outcome": ended.outcome if ended else None,
@@ -115,5 +117,5 @@ def _run(trace: Trace) -> dict[str, Any]:
         "input_tokens": ended.usage.input_tokens if ended else 0,
         "output_tokens": ended.usage.output_tokens if ended else 0,
         "timings": ended.timings if ended else {},
-        "looks": _look_times(trace),
+        "looks": _observation_times(trace),
     }

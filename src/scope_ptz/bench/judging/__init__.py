@@ -1,1 +1,1 @@
-"""Language models as judges of runs, human labels, and the agreement between all raters."""
+"""Judging of runs by language models, human labels, and the agreement of all raters."""

@@ -1,4 +1,4 @@
-"""Agreement between raters of runs: the executable checks, judges and their repeats, people, and the known faults of gold runs."""
+"""Measure the agreement of raters of runs: executable checks, judges and their repeats, people, and gold runs with known faults."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class Rating:
 
     @property
     def verdict(self) -> str:
-        """The rating in words."""
+        """The rating as a verdict: "correct" or "incorrect"."""
         return CORRECT if self.correct else INCORRECT
 
 
 @dataclass(frozen=True, slots=True)
 class RatedRun:
-    """A run that is rated. ``cluster`` is its task, because runs of one task are alike."""
+    """A run that is rated. ``cluster`` is its task, because runs of one task are not independent."""
 
     log: str
     sample: str
@@ -44,10 +44,10 @@ class Rater:
 
     Attributes:
         name: Name of the rater.
-        kind: What the rater is.
-        group: Shared by raters that are repeats of one another.
+        kind: Kind of rater.
+        group: Name of the group. Repeats of one judge share it.
         ratings: The rating of each run.
-        apart: How many verdicts are not ratings, by verdict ("unscored", "failed", ...).
+        apart: Number of verdicts that are not ratings, by verdict ("unscored", "failed", ...).
     """
 
     name: str
@@ -72,7 +72,10 @@ class RaterPair:
 
 @dataclass(frozen=True)
 class RaterGroup:
-    """The agreement of several raters on the runs that all of them rated. ``left_out`` counts the runs that only some rated."""
+    """The agreement of several raters on the runs that all of them rated.
+
+    ``what`` describes the group, such as "people". ``left_out`` is the number of runs that only some of them rated.
+    """
 
     raters: tuple[str, ...]
     what: str
@@ -138,45 +141,45 @@ def measure_agreement(raters: Sequence[Rater], seed: int = 1) -> AgreementReport
 def _pair(one: Rater, two: Rater, seed: int) -> RaterPair:
     shared = [item for item in one.ratings if item in two.ratings]
     both = [(item, one.ratings[item], two.ratings[item]) for item in shared]
-    blamed = [(item, a.mode.value, b.mode.value) for item, a, b in both if a.mode is not None and b.mode is not None]
+    with_modes = [(item, a.mode.value, b.mode.value) for item, a, b in both if a.mode is not None and b.mode is not None]
     return RaterPair(
         one.name,
         two.name,
         cohen([a.verdict for _, a, _ in both], [b.verdict for _, _, b in both], [item.cluster for item, _, _ in both], seed),
-        cohen([a for _, a, _ in blamed], [b for _, _, b in blamed], [item.cluster for item, _, _ in blamed], seed),
+        cohen([a for _, a, _ in with_modes], [b for _, _, b in with_modes], [item.cluster for item, _, _ in with_modes], seed),
     )
 
 
 def _group(raters: Sequence[Rater], what: str, seed: int) -> RaterGroup:
-    anyone = {item for rater in raters for item in rater.ratings}
+    rated_by_any = {item for rater in raters for item in rater.ratings}
     shared = [item for item in raters[0].ratings if all(item in rater.ratings for rater in raters)]
     rows = [[rater.ratings[item].verdict for rater in raters] for item in shared]
     agreed = fleiss(rows, [item.cluster for item in shared], seed)
-    return RaterGroup(tuple(rater.name for rater in raters), what, agreed, len(anyone) - len(shared))
+    return RaterGroup(tuple(rater.name for rater in raters), what, agreed, len(rated_by_any) - len(shared))
 
 
 def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
-    """Return everyone who rated runs of these evaluations: the checks first, then judges, then people."""
-    found = _Found()
+    """Return the raters of evaluations: the checks first, then judges, then people."""
+    found = _RaterCollector()
     for evaluation in evaluations:
         for trial in evaluation.trials:
-            found.take(trial, evaluation.log or evaluation.card.run_id)
+            found.add(trial, evaluation.log or evaluation.card.run_id)
     order = {"checks": 0, "judge": 1, "person": 2, "gold": 3}
     return sorted(found.raters.values(), key=lambda rater: (order[rater.kind], rater.group, rater.name))
 
 
-class _Found:
-    """Collects raters and their ratings."""
+class _RaterCollector:
+    """Collects the raters of trials and their ratings."""
 
     def __init__(self) -> None:
         self.raters: dict[str, Rater] = {}
 
-    def take(self, trial: Trial, log: str) -> None:
+    def add(self, trial: Trial, log: str) -> None:
         """Add the ratings of one trial."""
         item = RatedRun(log, trial.sample, trial.task.paraphrase_of or trial.task.id)
         if trial.scored_by == "checks":
             self._rate("the checks", "checks", "the checks", item, trial.headline, trial.error_mode)
-        for name, group, judgement in numbered(trial.judgements):
+        for name, group, judgement in judgements_with_raters(trial.judgements):
             self._rate(name, "judge", group, item, judgement.verdict, judgement.error_mode)
         for label in trial.labels:
             self._rate(label.by, "person", label.by, item, label.verdict, label.error_mode)
@@ -194,8 +197,8 @@ def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | Non
         rater.apart[verdict] += 1
 
 
-def numbered(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
-    """Yield the judgements of one run with the names of their raters.
+def judgements_with_raters(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
+    """Yield the judgements of one run with their raters.
 
     One model with two prompts counts as two judges.
 

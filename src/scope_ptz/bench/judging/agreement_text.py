@@ -1,4 +1,4 @@
-"""The agreement of judges, checks, human labels and known faults, as lines of text."""
+"""Format the agreement of raters as lines of text."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ _DIGITS = 3
 
 
 def agreement_lines(report: AgreementReport) -> Iterator[str]:
-    """Return the raters, then the agreement of each pair of raters, then that of each group."""
+    """Yield the raters, the agreement of each pair of raters, and the agreement of each group."""
     if not report.raters:
-        yield "These files hold no ratings. Judge runs with 'scope bench rescore', or label them with 'scope bench label'."
+        yield "These files contain no ratings. Judge runs with 'scope bench rescore', or label them with 'scope bench label'."
         return
     yield "raters"
     for rater in report.raters:
@@ -39,7 +39,7 @@ def agreement_lines(report: AgreementReport) -> Iterator[str]:
 
 
 def figures(agreed: KappaResult) -> str:
-    """Return raw agreement and kappa on one line. Kappa has no value where all ratings are the same."""
+    """Return raw agreement and kappa on one line. Kappa has no value if all ratings are the same."""
     if not agreed.runs:
         return "no run was rated by both"
     raw = f"{agreed.raw:.1%}" if agreed.raw is not None else "-"

@@ -1,4 +1,4 @@
-"""A run as a judge sees it: the instruction, the calls with their results, and the final answer."""
+"""The description of a run for a judge: the instruction, the calls with their results, and the final answer."""
 
 from __future__ import annotations
 

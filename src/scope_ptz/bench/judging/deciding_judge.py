@@ -1,7 +1,7 @@
-"""The deciding judge: the one whose verdicts count when several judges have judged the runs that only a judge can score.
+"""The deciding judge: the judge whose verdicts count if several judges have judged the runs that only a judge can score.
 
-One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge requested by name, or else
-the one that gave the first verdict on most of the runs. Adding another judge does not change it.
+One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge requested by name, otherwise
+the judge that gave the first verdict on most of the runs. Judgements that another judge adds later do not change it.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def check_decides(trials: Sequence[Trial], requested: str) -> None:
         known = dict.fromkeys(judge_of(j) for t in trials if t.scored_by == "judge" for j in t.judgements if j.verdict in VERDICTS)
         raise InputError(
             f"'{requested}' has given no verdict on a run that only a judge can score, so it cannot decide. "
-            f"Those that have: {', '.join(known) or 'none'}."
+            f"Judges with such verdicts: {', '.join(known) or 'none'}."
         )
 
 

@@ -1,6 +1,7 @@
-"""Human labels of runs: one JSON line each, in a file next to the log.
+"""Human labels of runs, stored as JSON lines in a file next to the log.
 
-A later line by the same person about the same run replaces an earlier one. Lines are only appended: an interruption loses nothing.
+A later line by the same person about the same run replaces an earlier one. Lines are only appended, so an interruption loses no
+label.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ SUFFIX = ".labels.jsonl"
 
 
 class LabelRow(BaseModel):
-    """A label as a line of the file. ``sample`` is the run's name in its log, ``at`` is when the label was given."""
+    """A label as a line of the file. ``sample`` is the name of the run in its log, ``at`` is the time of the label."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -39,7 +40,7 @@ class LabelRow(BaseModel):
 
 
 def labels_file(log: Path) -> Path:
-    """Return the path of the labels of a log."""
+    """Return the path of the file with the labels of a log."""
     return log.with_name(log.name + SUFFIX)
 
 

@@ -1,4 +1,4 @@
-"""Append-only files of JSON lines. A line that an interruption left incomplete counts as never written."""
+"""Append-only files of JSON lines. A line that an interruption left incomplete is ignored."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def whole_lines(path: Path) -> list[tuple[int, str]]:
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"{path} is no text: {error.reason} at byte {error.start}.") from error
+        raise InputError(f"{path} is not UTF-8 text: {error.reason} at byte {error.start}.") from error
     return [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
 
 
@@ -33,14 +33,14 @@ def append_line(path: Path, line: str) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a+b") as file:
-            file.truncate(_finished(file.seek(0, 2), path))
+            file.truncate(_complete_bytes(file.seek(0, 2), path))
             file.write(line.encode("utf-8") + b"\n")
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror}.") from error
 
 
-def _finished(size: int, path: Path, step: int = 4096) -> int:
-    """Return how many bytes at the start of a file are complete lines."""
+def _complete_bytes(size: int, path: Path, step: int = 4096) -> int:
+    """Return the size of the complete lines of a file, in bytes."""
     with path.open("rb") as file:
         at = size
         while at > 0:

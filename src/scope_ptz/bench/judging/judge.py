@@ -1,4 +1,4 @@
-"""A judge turns a run into a judgement. It depends on neither the evaluation engine nor a server, only on a completion function."""
+"""The judge, which turns a run into a judgement. It needs only a completion function, no server and no evaluation engine."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.judging.case import JudgeCase, case_of
 from scope_ptz.bench.judging.judge_replies import REPLY_SCHEMA, JudgeReply, parse_judge_reply
 from scope_ptz.bench.judging.quoting import cut
-from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
+from scope_ptz.bench.judging.rendering import MIN_CHARS, render
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
 from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.trials import Judgement
@@ -21,12 +21,13 @@ from scope_ptz.errors import ScopeError
 
 DEFAULT_JUDGE = "gpt-oss-120b"
 ATTEMPTS = 3
-"""Replies that a judge may give before its verdict counts as unparseable."""
+"""Number of invalid replies after which a judgement counts as unparseable."""
 
 BUDGET_CHARS = 60_000
 """Maximum length of the description of a run; about 15,000 tokens."""
 
 _ECHO_CHARS = 2_000
+"""Maximum length of an invalid reply that is sent back to the judge."""
 JudgeMessage = dict[str, Any]
 
 
@@ -59,7 +60,7 @@ class Judge:
     Args:
         name: Name of its model, as recorded in judgements.
         complete: Completes messages.
-        attempts: Replies that it may give for one judgement.
+        attempts: Maximum number of replies for one judgement.
         budget_chars: Maximum length of the description of a run.
     """
 
@@ -67,18 +68,18 @@ class Judge:
         self.name, self.complete, self.attempts, self.budget_chars = name, complete, attempts, budget_chars
 
     async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, places: PresetViewpoints | None = None) -> Judgement:
-        """Judge a recorded run. Errors of models and servers are part of the judgement and never raised.
+        """Judge a recorded run. Errors of models and servers are recorded in the judgement and not raised.
 
         Args:
             facts: The facts about the task.
             trace: The recorded run.
-            repeat: Number of the judgement, if one judge gives several.
+            repeat: Index of the judgement, from 0, if the judge gives several.
             places: The viewpoints of the presets, so that the judge knows where the camera stood.
         """
         return await self.judge_case(facts, case_of(trace, places), repeat=repeat)
 
     async def judge_case(self, facts: TaskFacts, case: JudgeCase, *, repeat: int = 0) -> Judgement:
-        """Judge a run. ``repeat`` is the number of the judgement, if one judge gives several."""
+        """Judge a run. ``repeat`` is the index of the judgement, from 0."""
         session = _Session(self, repeat)
         began = perf_counter()
         judgement = await session.run(facts, case)
@@ -95,16 +96,16 @@ class _Session:
     async def run(self, facts: TaskFacts, case: JudgeCase) -> Judgement:
         """Ask until a reply is valid, the attempts are used up, or the server fails."""
         budget, problem = self.judge.budget_chars, ""
-        begun = judge_messages(facts, case, budget)
-        now, answers = begun, 0
+        opening = judge_messages(facts, case, budget)
+        messages, answers = opening, 0
         while answers < self.judge.attempts:
             self.asked += 1
             try:
-                reply = await self.judge.complete(now, REPLY_SCHEMA)
+                reply = await self.judge.complete(messages, REPLY_SCHEMA)
             except NoReplyError as failure:
-                if failure.overflow and budget > LEAST_CHARS:
-                    budget = max(budget // 2, LEAST_CHARS)
-                    now = begun = judge_messages(facts, case, budget)
+                if failure.overflow and budget > MIN_CHARS:
+                    budget = max(budget // 2, MIN_CHARS)
+                    messages = opening = judge_messages(facts, case, budget)
                     continue
                 return self._made("failed", str(failure))
             answers += 1
@@ -115,7 +116,7 @@ class _Session:
                 made = self._made(read.verdict, read.reason)
                 return made.model_copy(update={"error_mode": read.error_mode})
             problem = read
-            now = [*begun, *_correction(reply.text, problem)]
+            messages = [*opening, *_correction(reply.text, problem)]
         return self._made("unparseable", problem)
 
     def _made(self, verdict: str, reason: str) -> Judgement:

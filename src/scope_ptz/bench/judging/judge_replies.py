@@ -1,4 +1,4 @@
-"""The schema of a judge's reply, and its strict parser. An invalid reply is reported back to the judge and never guessed."""
+"""The schema and the strict parser of a judge's reply. The parser never guesses: an invalid reply is reported to the judge."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 
 NO_MODE = "none"
-MOST_REASON_CHARS = 1_000
-_MOST_BRACES = 100
-"""Maximum number of braces that open no valid JSON. A text with more of them is degenerate."""
+MAX_REASON_CHARS = 1_000
+_MAX_FAILED_BRACES = 100
+"""Maximum number of opening braces without valid JSON after which the parser stops."""
 
 REPLY_SCHEMA: dict[str, Any] = {
     "type": "object",
@@ -53,7 +53,7 @@ class JudgeReply(BaseModel):
         line = " ".join(reason.split())
         if not line:
             raise ValueError("it is blank")
-        return line if len(line) <= MOST_REASON_CHARS else line[: MOST_REASON_CHARS - 1] + "…"
+        return line if len(line) <= MAX_REASON_CHARS else line[: MAX_REASON_CHARS - 1] + "…"
 
     @model_validator(mode="after")
     def _consistent(self) -> JudgeReply:
@@ -70,7 +70,7 @@ def parse_judge_reply(text: str) -> JudgeReply | str:
     The reply must contain one JSON object, possibly surrounded by words or a code fence. Several objects must agree.
 
     Returns:
-        The verdict, or what is wrong with the reply, in words for the judge.
+        The verdict, or a description of the error, which is sent to the judge.
     """
     found = [content for content in _objects(text) if isinstance(content, dict) and "verdict" in content]
     if not found:
@@ -91,7 +91,7 @@ def parse_judge_reply(text: str) -> JudgeReply | str:
 def _objects(text: str) -> Iterator[Any]:
     """Yield every JSON object in a text that is not inside another one. Objects with repeated names are invalid."""
     decoder, at, failed = json.JSONDecoder(object_pairs_hook=_once), text.find("{"), 0
-    while at != -1 and failed < _MOST_BRACES:
+    while at != -1 and failed < _MAX_FAILED_BRACES:
         try:
             content, end = decoder.raw_decode(text, at)
         except (ValueError, RecursionError):

@@ -9,12 +9,12 @@ from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 VERDICTS = ("correct", "incorrect")
-_MOST_CHARS = 300
+_MAX_FAILURE_CHARS = 300
 
 
 @dataclass(frozen=True, slots=True)
 class JudgementTally:
-    """Numbers of judgements by result. ``failure`` is the reason of the first failed one, on one line."""
+    """The numbers of judgements by result. ``failure`` is the reason for the first failure, on one line."""
 
     verdicts: int = 0
     unparseable: int = 0
@@ -30,7 +30,7 @@ class JudgementTally:
             verdicts=sum(judgement.verdict in VERDICTS for judgement in made),
             unparseable=sum(judgement.verdict == "unparseable" for judgement in made),
             failed=len(failed),
-            failure=" ".join(failed[0].split())[:_MOST_CHARS] if failed else "",
+            failure=" ".join(failed[0].split())[:_MAX_FAILURE_CHARS] if failed else "",
         )
 
     def __add__(self, other: JudgementTally) -> JudgementTally:
@@ -46,19 +46,19 @@ class JudgementTally:
 
     @property
     def summary(self) -> str:
-        """The numbers in words."""
+        """The numbers as text."""
         return f"{self.verdicts} with a verdict, {self.unparseable} unparseable, {self.failed} failed"
 
 
 def without_verdict(trial: Trial) -> bool:
-    """Return whether only a judge can score a run and none has given a verdict. Such a run counts neither as right nor as wrong."""
+    """Return whether only a judge can score a run and no judge has given a verdict. Such a run is excluded from accuracies."""
     return trial.scored_by == "judge" and trial.headline == "unscored"
 
 
 def not_judged(trial: Trial) -> bool:
     """Return whether a run without a verdict still needs a judgement.
 
-    It was not judged at all, its judge's server failed, or only judges that do not decide have judged it.
+    This holds if it was not judged, if the judge's server failed, or if only judges other than the deciding one have judged it.
     """
     return without_verdict(trial) and not any(judgement.verdict == "unparseable" for judgement in trial.judgements)
 
@@ -70,7 +70,7 @@ def requested_judgements(trials: Iterable[Trial], judge: str, repeats: int) -> l
 
     Args:
         trials: The runs.
-        judge: The judge.
+        judge: Name of the judge.
         repeats: Number of judgements per run.
 
     Returns:

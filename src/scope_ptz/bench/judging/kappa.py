@@ -1,8 +1,8 @@
 """Agreement of raters beyond chance: Cohen's kappa for two raters (1960), Fleiss' kappa for more (1971), with bootstrap intervals.
 
 Point estimates are computed by statsmodels. Intervals are percentile bootstraps over clusters (Efron and Tibshirani 1993, section
-13.3): ratings of runs of one task are alike, so whole tasks are drawn. kappa = (p_o - p_e) / (1 - p_e) is undefined if all ratings
-are the same (p_e = 1).
+13.3). Whole tasks are drawn, because ratings of runs of one task are not independent. kappa = (p_o - p_e) / (1 - p_e) is undefined
+if all ratings are the same (p_e = 1).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 LEVEL = 0.95
 DRAWS = 2000
-_LEAST_DEFINED = 0.5
-"""Minimum share of draws in which kappa is defined. With fewer, no interval is given."""
+_MIN_DEFINED = 0.5
+"""Minimum share of draws in which kappa must be defined. Below it, no interval is given."""
 
 Numbers = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed:
     """Measure the agreement of several raters by Fleiss' kappa.
 
     Args:
-        ratings: The labels of each run, as many for every run.
+        ratings: The labels of each run. Every run needs the same number of labels.
         clusters: The cluster of each run.
         seed: Seed of the bootstrap.
 
@@ -133,8 +133,8 @@ def fleiss_values(sums: Numbers) -> Numbers:
 
 
 def _beyond_chance(observed: Numbers, by_chance: Numbers) -> Numbers:
-    room = 1 - by_chance
-    return np.where(room > 1e-12, (observed - by_chance) / np.where(room > 1e-12, room, 1.0), np.nan)
+    above_chance = 1 - by_chance
+    return np.where(above_chance > 1e-12, (observed - by_chance) / np.where(above_chance > 1e-12, above_chance, 1.0), np.nan)
 
 
 def _by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size: int) -> Numbers:
@@ -147,14 +147,14 @@ def _by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size: int) -
 
 
 def _interval(by_cluster: Numbers, value: Callable[[Numbers], Numbers], seed: int) -> dict[str, Any]:
-    """Return the percentile interval of a statistic of summed rows, with clusters drawn with replacement; None if unknown."""
+    """Return the percentile interval of a statistic of summed rows, with clusters drawn with replacement; limits may be None."""
     clusters = len(by_cluster)
     if clusters < 2:
         return {"low": None, "high": None}
     drawn = np.random.default_rng(seed).multinomial(clusters, np.full(clusters, 1 / clusters), size=DRAWS)
     values = value(drawn @ by_cluster)
     values = values[~np.isnan(values)]
-    if len(values) < DRAWS * _LEAST_DEFINED:
+    if len(values) < DRAWS * _MIN_DEFINED:
         return {"low": None, "high": None}
     tail = (1 - LEVEL) / 2
     low, high = np.quantile(values, (tail, 1 - tail))

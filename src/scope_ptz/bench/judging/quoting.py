@@ -1,7 +1,7 @@
 """Quote untrusted text in judge prompts, so that a judge cannot mistake it for its own instructions.
 
-Every line of the text begins with a bar, so nothing in the text can end the quotation. Control tokens of chat templates are broken
-up, because many servers interpret them in any message.
+Every line of the text begins with a bar, so nothing in the text can end the quotation. Control tokens of chat templates are split,
+because many servers interpret them in any message.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ def quoted(text: str) -> str:
     return "\n".join(BAR + _harmless(line) for line in _LINE_ENDS.split(text))
 
 
-def inline(text: str, most: int) -> str:
-    """Return a name for use within a line: on one line, at most ``most`` characters, in quotation marks that it cannot close."""
+def inline(text: str, max_chars: int) -> str:
+    """Return a name of at most ``max_chars`` characters for use within a line, in quotation marks that it cannot close."""
     line = _harmless(" ".join(_LINE_ENDS.sub(" ", text).split())).replace('"', "'")
-    return f'"{line if len(line) <= most else line[: most - 1] + "…"}"'
+    return f'"{line if len(line) <= max_chars else line[: max_chars - 1] + "…"}"'
 
 
-def cut(text: str, most: int) -> str:
-    """Return a text of at most about ``most`` characters. The middle of a longer text is replaced by a note."""
-    if len(text) <= most:
+def cut(text: str, max_chars: int) -> str:
+    """Return a text of at most about ``max_chars`` characters. A note replaces the middle of a longer text."""
+    if len(text) <= max_chars:
         return text
-    head, tail = most * 2 // 3, most // 3
+    head, tail = max_chars * 2 // 3, max_chars // 3
     return f"{text[:head]} [... {len(text) - head - tail} characters left out ...] {text[len(text) - tail :]}"
 
 
@@ -41,10 +41,10 @@ def _harmless(line: str) -> str:
     line = line.replace("\t", " ")
     if not line.isprintable():
         line = "".join(character if character.isprintable() else _escape(character) for character in line)
-    return _TOKENS.sub(_apart, line)
+    return _TOKENS.sub(_split_token, line)
 
 
-def _apart(token: re.Match[str]) -> str:
+def _split_token(token: re.Match[str]) -> str:
     """Separate a bracket from the rest of its control token."""
     return f" {token[0]}" if token[0] == ">" else f"{token[0]} "
 

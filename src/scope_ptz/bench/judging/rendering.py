@@ -19,18 +19,18 @@ from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.geometry import Pose
 
-LEAST_CHARS = 6_000
-"""Minimum budget in characters. A shorter description could not be judged."""
+MIN_CHARS = 6_000
+"""Minimum budget in characters. A shorter description could not be judged reliably."""
 
 _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
 _RESULT_CHARS = (4_000, 1_200, 300)
-"""Maximum lengths of one tool result, tried in this order."""
+"""Maximum lengths of a tool result in characters. The first one with which all calls fit is used."""
 
-_NAME_CHARS, _MOST_PRESETS, _NOTE_CHARS = 60, 40, 300
-_BULK = frozenset({"boxes", "box", "path", "frames", "source"})
-"""Parts of results that are left out: they do not help a judge, or they would reveal the perception model."""
+_NAME_CHARS, _MAX_PRESETS, _NOTE_CHARS = 60, 40, 300
+_OMITTED_FIELDS = frozenset({"boxes", "box", "path", "frames", "source"})
+"""Fields of results that are left out, because they do not help a judge or would reveal the perception model."""
 
-_LOOKER = re.compile(r" ?\(seen by [^()]*\)")
+_PERCEPTION_NAME = re.compile(r" ?\(seen by [^()]*\)")
 
 _ENDINGS = {
     "answered": "the agent gave a final answer",
@@ -50,15 +50,15 @@ def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:
     Args:
         facts: The facts about the task.
         case: The run.
-        budget: Maximum length in characters. A budget below ``LEAST_CHARS`` counts as ``LEAST_CHARS``.
+        budget: Maximum length in characters. A budget below ``MIN_CHARS`` counts as ``MIN_CHARS``.
     """
     head, tail = _task_part(facts, case), _end_part(case)
-    room = max(budget, LEAST_CHARS) - len(head) - len(tail)
-    return f"{head}\n\n{_calls_part(case.calls, max(room, LEAST_CHARS // 4))}\n\n{tail}"
+    budget_left = max(budget, MIN_CHARS) - len(head) - len(tail)
+    return f"{head}\n\n{_calls_part(case.calls, max(budget_left, MIN_CHARS // 4))}\n\n{tail}"
 
 
 def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
-    names = [_preset(name, case) for name in case.presets[:_MOST_PRESETS]]
+    names = [_preset(name, case) for name in case.presets[:_MAX_PRESETS]]
     more = len(case.presets) - len(names)
     presets = ", ".join(names) + (f" and {more} more" if more > 0 else "") if names else "none"
     where = f" at viewpoint {inline(case.viewpoint, _NAME_CHARS)}" if case.viewpoint else ""
@@ -104,32 +104,32 @@ def _end_part(case: JudgeCase) -> str:
     )
 
 
-def _calls_part(calls: Sequence[CaseCall], room: int) -> str:
+def _calls_part(calls: Sequence[CaseCall], budget_left: int) -> str:
     if not calls:
         return "Tool calls: none."
     title = f"Tool calls, in order ({len(calls)}):"
-    for most in _RESULT_CHARS:
-        texts = _all_calls(calls, most, room)
+    for max_chars in _RESULT_CHARS:
+        texts = _all_calls(calls, max_chars, budget_left)
         if texts is not None:
             return "\n".join((title, *texts))
-    return "\n".join((title, *_ends_kept(calls, room)))
+    return "\n".join((title, *_ends_kept(calls, budget_left)))
 
 
-def _all_calls(calls: Sequence[CaseCall], most: int, room: int) -> list[str] | None:
-    """Return the text of every call, or None if they do not fit into ``room`` characters."""
-    texts, left = list[str](), room
+def _all_calls(calls: Sequence[CaseCall], max_chars: int, budget_left: int) -> list[str] | None:
+    """Return the text of every call, or None if they do not fit into ``budget_left`` characters."""
+    texts, left = list[str](), budget_left
     for number, call in enumerate(calls, 1):
-        texts.append(_call_text(number, call, most))
+        texts.append(_call_text(number, call, max_chars))
         left -= len(texts[-1]) + 1
         if left < 0:
             return None
     return texts
 
 
-def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
-    """Return as many of the first and last calls as fit, taken alternately from both ends, and a note about the others."""
+def _ends_kept(calls: Sequence[CaseCall], budget_left: int) -> list[str]:
+    """Return as many calls from both ends as fit, taken alternately, and a note about the calls in the middle."""
     front, back = list[str](), list[str]()
-    left = room - _NOTE_CHARS
+    left = budget_left - _NOTE_CHARS
     while len(front) + len(back) < len(calls):
         at = len(front) if len(front) <= len(back) else len(calls) - 1 - len(back)
         text = _call_text(at + 1, calls[at], _RESULT_CHARS[-1])
@@ -140,15 +140,17 @@ def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
     first, last = len(front), len(calls) - len(back)
     tools = Counter(inline(call.name, 30) for call in calls[first:last])
     failed = sum(call.error is not None for call in calls[first:last])
-    most = ", ".join(f"{name} {number} times" for name, number in tools.most_common(9))
-    note = f"[Calls {first + 1} to {last} are left out because the run is long: {most}; {failed} of them failed.]"
+    counts = ", ".join(f"{name} {number} times" for name, number in tools.most_common(9))
+    note = f"[Calls {first + 1} to {last} are left out because the run is long: {counts}; {failed} of them failed.]"
     return [*front, note, *reversed(back)]
 
 
-def _call_text(number: int, call: CaseCall, most: int) -> str:
-    arguments = cut(_json(call.arguments), most)
+def _call_text(number: int, call: CaseCall, max_chars: int) -> str:
+    arguments = cut(_json(call.arguments), max_chars)
     result = (
-        f"error: {cut(call.error, most)}" if call.error is not None else f"result: {cut(_json(_kept(call.result or {})), most)}"
+        f"error: {cut(call.error, max_chars)}"
+        if call.error is not None
+        else f"result: {cut(_json(_shown_fields(call.result or {})), max_chars)}"
     )
     body = quoted(f"{cut(call.name, 80)} {arguments}\n{result}")
     return f"Call {number}:\n{body}\nCamera afterwards:{_at(call.viewpoint)} {in_words(call.pose)}."
@@ -158,10 +160,10 @@ def _at(viewpoint: str | None) -> str:
     return f" at viewpoint {inline(viewpoint, _NAME_CHARS)}," if viewpoint else ""
 
 
-def _kept(result: Mapping[str, Any]) -> dict[str, Any]:
-    kept = {name: value for name, value in result.items() if name not in _BULK and name != "pose"}
+def _shown_fields(result: Mapping[str, Any]) -> dict[str, Any]:
+    kept = {name: value for name, value in result.items() if name not in _OMITTED_FIELDS and name != "pose"}
     if isinstance(kept.get("message"), str):
-        kept["message"] = _LOOKER.sub("", kept["message"])
+        kept["message"] = _PERCEPTION_NAME.sub("", kept["message"])
     return kept
 
 
@@ -175,15 +177,18 @@ def in_words(pose: Pose) -> str:
 
 
 def specimen() -> str:
-    """Return the description of an invented run with every part once. The prompt version includes it, so it covers the layout."""
+    """Return the description of an invented run that contains every part of the layout.
+
+    The prompt version includes it, so a change of the layout changes the version.
+    """
     pose = Pose(10.0, -5.0, 2.0)
     facts = TaskFacts(
         id="id", dataset="dataset", stratum="core", scene="scene", viewpoint="mast", preset="gate", instruction="Look.",
         category="counting", scope="current", difficulty="easy", expected="5", demands=("go_home()",),
     )  # fmt: skip
     calls = [CaseCall("tool", {"a": 1}, {"message": "Done.", "box": [0]}, None, pose, "mast")]
-    calls += [CaseCall("tool", {}, None, "It failed.", pose)] * LEAST_CHARS
+    calls += [CaseCall("tool", {}, None, "It failed.", pose)] * MIN_CHARS
     case = JudgeCase(
         "Look.", pose, "mast", ("gate",), tuple(calls), pose, "Five.", "answered", True, PresetViewpoints({"gate": "mast"}, "mast")
     )
-    return "\n\n".join(render(facts, shown, LEAST_CHARS) for shown in (case, replace(case, calls=(), outcome=None, answer="")))
+    return "\n\n".join(render(facts, shown, MIN_CHARS) for shown in (case, replace(case, calls=(), outcome=None, answer="")))

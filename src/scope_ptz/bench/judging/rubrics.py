@@ -1,7 +1,7 @@
-"""The published prompt of judges, which is a file.
+"""The published prompt for judges, which is stored in a file.
 
-Another wording needs another file, because verdicts are comparable only under the same prompt. Every judgement records the name of
-the file and a digest of its text.
+Put another wording into another file, because verdicts are comparable only under the same prompt. Every judgement records the name
+of the file and a digest of its text.
 """
 
 from __future__ import annotations

@@ -15,15 +15,14 @@ from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.planner.chat.dialect import Dialect
-from scope_ptz.planner.chat.reasoning_text import part
+from scope_ptz.planner.chat.reasoning_text import separate_reasoning
 
-K = FailureKind
 Form = Literal["json_schema", "json_object", "free"]
 _FORMS: tuple[Form, ...] = ("json_schema", "json_object", "free")
-_REFUSALS = (K.BAD_REQUEST, K.SERVER_ERROR, K.NOT_FOUND, K.ERROR_BODY)
+_REFUSALS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
 _ABOUT_FORM = re.compile(r"response_format|json_?(schema|object)|schema|grammar|guided|structured|xgrammar|outlines", re.IGNORECASE)
-_MOST_LESSONS = 6
-"""Maximum number of requests with fewer and fewer options. After that the server refuses something else."""
+_MAX_REQUESTS = 6
+"""Maximum number of requests for one reply. Each drops an option that the server refused."""
 
 
 class JudgeModelOptions(BaseModel):
@@ -32,8 +31,8 @@ class JudgeModelOptions(BaseModel):
     Attributes:
         temperature: Sampling temperature.
         seed: Seed of the sampling.
-        max_tokens: Maximum tokens of a reply, reasoning included.
-        reasoning_effort: For models that support it.
+        max_tokens: Maximum number of tokens of a reply, including reasoning.
+        reasoning_effort: Reasoning effort, for models that support it.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -46,14 +45,17 @@ class JudgeModelOptions(BaseModel):
 
 @dataclass
 class _Known:
-    """What a server accepts, as learned from its replies. Shared by all connections to it."""
+    """The options that a server accepts, as learned from its replies. All connections to the server share it."""
 
     dialect: Dialect = field(default_factory=lambda: Dialect("native", fixed=True))
     form: int = 0
 
 
 class JudgeServer:
-    """Completes a judge's messages on a server. Concurrent judgements may share it. It remembers what the server refuses."""
+    """Completes a judge's messages on a server.
+
+    Concurrent judgements may share it. It remembers which options the server refuses.
+    """
 
     def __init__(self, endpoint: Endpoint, options: JudgeModelOptions | None = None) -> None:
         self.options, self.client, self._known = options or JudgeModelOptions(), ChatClient(endpoint), _Known()
@@ -70,23 +72,23 @@ class JudgeServer:
         Raises:
             NoReplyError: The server failed or refuses every form of request.
         """
-        form, quiet, dialect = self._known.form, False, self._known.dialect
-        for _ in range(_MOST_LESSONS):
+        form, after_empty, dialect = self._known.form, False, self._known.dialect
+        for _ in range(_MAX_REQUESTS):
             fields = dialect.fields(self.options.model_dump())
             try:
                 reply = await self.client.complete(
                     dialect.messages(messages), extra={**fields, **_response_format(_FORMS[form], schema)}
                 )
             except ServerFailure as failure:
-                if dialect.learn(failure, fields, with_tools=False):
+                if dialect.adapt(failure, fields, with_tools=False):
                     continue
-                if form + 1 < len(_FORMS) and (failure.kind is K.EMPTY or _refuses_form(failure)):
-                    form, quiet = form + 1, quiet or failure.kind is K.EMPTY
+                if form + 1 < len(_FORMS) and (failure.kind is FailureKind.EMPTY or _refuses_form(failure)):
+                    form, after_empty = form + 1, after_empty or failure.kind is FailureKind.EMPTY
                     continue
-                if failure.kind is K.EMPTY:
+                if failure.kind is FailureKind.EMPTY:
                     return Completion(text="")
-                raise NoReplyError(str(failure), overflow=failure.kind is K.CONTEXT_OVERFLOW) from None
-            if not quiet:  # An empty reply may be temporary; a refusal is not.
+                raise NoReplyError(str(failure), overflow=failure.kind is FailureKind.CONTEXT_OVERFLOW) from None
+            if not after_empty:  # An empty reply may be temporary; a refusal is not.
                 self._known.form = max(self._known.form, form)
             return _read(reply)
         raise NoReplyError(f"The judge's server at {self.client.endpoint.url} refuses every form of request.")
@@ -97,8 +99,8 @@ class JudgeServer:
 
 
 def _refuses_form(failure: ServerFailure) -> bool:
-    """Return whether a server may have refused the response format: it says so, or rejects the request without a reason."""
-    return failure.kind in _REFUSALS and (failure.kind is K.BAD_REQUEST or _ABOUT_FORM.search(failure.detail) is not None)
+    """Return whether a server may have refused the response format: it names it, or calls the request bad."""
+    return failure.kind in _REFUSALS and (failure.kind is FailureKind.BAD_REQUEST or _ABOUT_FORM.search(failure.detail) is not None)
 
 
 def _response_format(form: Form, schema: dict[str, Any]) -> dict[str, Any]:
@@ -111,7 +113,7 @@ def _response_format(form: Form, schema: dict[str, Any]) -> dict[str, Any]:
 
 def _read(reply: ChatReply) -> Completion:
     return Completion(
-        text=part(reply.text, reply.reasoning).text,
+        text=separate_reasoning(reply.text, reply.reasoning).text,
         input_tokens=reply.input_tokens,
         output_tokens=reply.output_tokens,
         cut_off=reply.finish_reason == "length",

@@ -1,1 +1,1 @@
-"""Reports on evaluations: tables, charts, pages of failed tasks, and submissions."""
+"""Reports on evaluations, with tables, charts and pages of failed tasks, and submissions to the leaderboard."""

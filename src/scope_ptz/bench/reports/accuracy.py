@@ -21,6 +21,7 @@ KIND_WORDS = {
     "person": "person",
 }
 ROUNDING = 1e-9
+"""Values that differ by less are equal."""
 INTERVALS = (
     "Each value has a 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree of freedom "
     "fewer than there are viewpoints, Wilson's form at the effective sample size). Repeats of a task count as one observation. "
@@ -30,7 +31,7 @@ INTERVALS = (
 
 
 def accuracy_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the accuracy of every run with core tasks. Model pairs and other runs have separate tables."""
+    """Return the section on the accuracy of every run with core tasks. Model pairs and other runs have separate tables."""
     having = [run for run in runs if run.scored_trials]
     ranked, others = [r for r in having if r.ranked], [r for r in having if not r.ranked]
     tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, rank=True)]
@@ -126,8 +127,9 @@ def _bounds(runs: Sequence[ReportRun]) -> ReportTable:
         Column("at_least", "At least (%)", "share"), Column("at_most", "At most (%)", "share"),
     )  # fmt: skip
     notes = (
-        "Unscored: no check failed, but the answer could not be parsed. Infrastructure: a server or the camera failed, which says "
-        "nothing about the agent. At least and at most: the share if all of these trials were wrong, or all of them right.",
+        "Unscored: no check failed, but the answer could not be parsed. Infrastructure: a server or the camera failed, so "
+        "the trial cannot be used to score the agent. At least and at most: the share if all of these trials were incorrect, or "
+        "all of them correct.",
     )
     return ReportTable("outcomes", "Outcomes of the trials, with bounds", columns, tuple(_counted(run) for run in runs), notes)
 
@@ -150,7 +152,7 @@ def _by_judge(runs: Sequence[ReportRun]) -> ReportTable:
         Column("agreement", "Same verdict (%)", "share"),
     )  # fmt: skip
     notes = (
-        "The paper's accuracy is by a judge. Both macro averages cover the trials with a verdict of the judge; unparseable and "
+        "The paper reports accuracy by a judge. Both macro averages cover the trials with a verdict of the judge; unparseable and "
         "failed judgements are left out. Trials without a check of the answer, which a judge scored, count neither in the macro "
         "average by checks nor in the agreement.",
     )

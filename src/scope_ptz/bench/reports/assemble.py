@@ -1,4 +1,4 @@
-"""Assemble a report from evaluations: which runs each section covers, the summary and the warnings."""
+"""Assemble a report from evaluations: select the runs of each section, and write the summary and the warnings."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ class EvaluationReport:
 
     Attributes:
         runs: The runs in the order of the report.
-        summary: The main results, one sentence each.
-        warnings: Limits of the results, one sentence each.
+        summary: The main results.
+        warnings: Limitations of the results.
         sections: The sections.
     """
 
@@ -60,7 +60,7 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
 
     Args:
         evaluations: The evaluations.
-        registry: The models that the report may look up.
+        registry: The registry that describes the models.
         pages: The page of each failed task, by the task's id.
 
     Raises:
@@ -68,7 +68,7 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     """
     runs = report_runs(evaluations, registry)
     if not any(run.evaluation.trials for run in runs):
-        raise InputError("These logs hold no finished run of a task. Finish one with 'scope bench run' first.")
+        raise InputError("These logs contain no finished run of a task. Finish one with 'scope bench run' first.")
     main = of_main_set(runs)
     ranked = pairs_of(main)
     alike = on_the_same_tasks(ranked)
@@ -201,7 +201,7 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Seq
             f"These reference runs, variants and baselines cover other tasks than the model pairs: {'; '.join(further)}. Their "
             "labels say so. Their averages are not comparable with those of the pairs."
         )
-    warnings += _served_otherwise(runs)
+    warnings += _served_models_warning(runs)
     if len({run.task_set for run in runs if run.main_trials}) > 1:
         chosen = main_task_set(runs)
         warnings.append(
@@ -216,7 +216,7 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Seq
     return tuple(warnings)
 
 
-def _served_otherwise(runs: Sequence[ReportRun]) -> list[str]:
+def _served_models_warning(runs: Sequence[ReportRun]) -> list[str]:
     """Return a warning if a server reported another model than the requested one."""
     found: dict[str, str] = {}
     for run in runs:
@@ -276,7 +276,7 @@ def _number(count: int, one: str, many: str = "") -> str:
 
 
 def _failed_tasks(runs: Sequence[ReportRun], pages: Mapping[str, str]) -> Section:
-    """Return every task that at least one run failed, with its page."""
+    """Return the section with every task that at least one run failed, linked to its page."""
     columns = (
         Column("task", "Task"),
         Column("category", "Category"),

@@ -1,4 +1,4 @@
-"""The style of charts: colour-blind-safe colours, and inline SVG that adopts the page's light or dark colours and its fonts."""
+"""The style of charts: colours safe for colour blindness, and inline SVG with the colours and fonts of the page."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INK, FAINT, PAPER = "#010203", "#040506", "#070809"
-"""Placeholder colours that the page's own colours replace."""
+"""Placeholder colours, which ``as_chart`` replaces with the CSS colours of the page."""
 HUES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
 """The colour-blind-safe palette of Okabe and Ito (2008)."""
 GREY = "#8a8f98"
 GREYS, HATCHES = ("#c9ccd1", "#9a9fa8", "#757b85", "#b3b7bd"), ("////", "....", "xxxx", "----", "\\\\\\\\")
 """Fills of runs that are not ranked. Four greys and five hatches give twenty combinations."""
 PX = 96.0
+"""Pixels per inch."""
 _SETTINGS: Any = {
     "svg.fonttype": "none", "svg.hashsalt": "scope",
     "text.parse_math": False, "font.family": "DejaVu Sans", "font.size": 10.5, "text.color": INK,
@@ -50,7 +51,7 @@ def panels(width_px: int, height_px: int, number: int) -> Iterator[tuple[Figure,
     from matplotlib.figure import Figure
 
     with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph")  # The browser has the glyphs; here they only affect estimated widths.
+        warnings.filterwarnings("ignore", "Glyph")  # Missing glyphs only affect estimated widths; the browser has them.
         figure = Figure(figsize=(width_px / PX, height_px / PX), dpi=PX, layout="constrained")
         FigureCanvasSVG(figure)
         yield figure, list(figure.subplots(1, number, sharey=True, squeeze=False)[0])
@@ -105,24 +106,24 @@ def shades(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
     return found
 
 
-def short(label: str, most: int = 46) -> str:
-    """Return a label shortened to ``most`` characters, without unprintable characters."""
+def shorten_label(label: str, max_chars: int = 46) -> str:
+    """Return a label shortened to ``max_chars`` characters, without unprintable characters."""
     shown = "".join(mark if mark.isprintable() else " " for mark in label)
-    return shown if len(shown) <= most else shown[: most - 1] + "…"
+    return shown if len(shown) <= max_chars else shown[: max_chars - 1] + "…"
 
 
-def lines(label: str, most: int = 42) -> str:
+def wrap_label(label: str, max_chars: int = 42) -> str:
     """Return a label wrapped to at most three lines."""
-    return "\n".join(wrap(short(label, 3 * most - 8), most) or [""])
+    return "\n".join(wrap(shorten_label(label, 3 * max_chars - 8), max_chars) or [""])
 
 
-def legend_columns(labels: Sequence[str], most: int = 52) -> int:
+def legend_columns(labels: Sequence[str], max_chars: int = 52) -> int:
     """Return the number of legend columns: two if every label fits half the width, else one."""
-    return 2 if len(labels) > 1 and max(map(len, labels)) <= most else 1
+    return 2 if len(labels) > 1 and max(map(len, labels)) <= max_chars else 1
 
 
 def legend_below(figure: Figure, labels: Sequence[str], keys: Sequence[Artist] = ()) -> None:
-    """Draw a legend below the axes. ``keys`` are its handles if the drawn artists carry no labels."""
+    """Draw a legend below the axes. ``keys`` are its handles if the drawn artists have no labels."""
     columns = legend_columns(labels)
     loc: Any = "outside lower center" if columns == 2 else "outside lower left"
     figure.legend(**({"handles": keys} if keys else {}), loc=loc, ncols=columns, fontsize=9.5)
@@ -133,6 +134,6 @@ def legend_px(labels: Sequence[str]) -> int:
     return 20 * -(-len(labels) // legend_columns(labels))
 
 
-def row_px(labels: Sequence[str], least: int = 26) -> int:
+def row_px(labels: Sequence[str], min_px: int = 26) -> int:
     """Return the height in pixels of a row that fits every label."""
-    return max([least, *(8 + 16 * (1 + words.count("\n")) for words in labels)])
+    return max([min_px, *(8 + 16 * (1 + words.count("\n")) for words in labels)])

@@ -19,11 +19,11 @@ from scope_ptz.bench.reports.chart_style import (
     colours,
     legend_below,
     legend_px,
-    lines,
     panels,
     row_px,
     shades,
-    short,
+    shorten_label,
+    wrap_label,
 )
 from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.reports.sections import Chart
@@ -42,11 +42,11 @@ if TYPE_CHECKING:
 def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
     """Draw macro accuracy with its intervals, best first.
 
-    Runs over other tasks are hollow and below the others. Runs that are not ranked are last and grey.
+    Runs over other tasks have hollow markers and are below the others. Runs that are not ranked are grey and last.
     """
     ordered = sorted(runs, key=lambda r: (r.ranked, not r.other_tasks, r.macro.value if r.macro else 0.0))
     tint = colours(runs)
-    labels = [lines(r.label + ("" if r.ranked else " (not ranked)")) for r in ordered]
+    labels = [wrap_label(r.label + ("" if r.ranked else " (not ranked)")) for r in ordered]
     with canvas(880, 110 + row_px(labels) * len(ordered)) as (figure, axes):
         for y, run in enumerate(ordered):
             found = run.macro
@@ -80,16 +80,16 @@ def mode_chart(
         key: Key of the chart.
         title: Title of the chart.
         runs: The runs in the chart.
-        counted: The error modes of each run.
-        of: The number of trials of each run.
+        counted: The error modes of each run, by its label.
+        of: The number of trials of each run, by its label.
         titles: The titles of the error modes.
-        among: The runs of all such charts, so that a run has the same fill in each.
+        among: The runs of all such charts of a report, so that a run has the same fill in each chart.
     """
     from matplotlib.patches import Patch
 
     keys: list[Artist] = []
     fills = dict(zip((run.label for run in among), shades(among), strict=True))
-    labels = [short(run.label + ("" if run.ranked else " (not ranked)"), 120) for run in runs]
+    labels = [shorten_label(run.label + ("" if run.ranked else " (not ranked)"), 120) for run in runs]
     with canvas(980, 370 + legend_px(labels)) as (figure, axes):
         width = 0.84 / max(1, len(runs))
         for number, (run, words) in enumerate(zip(runs, labels, strict=True)):
@@ -113,13 +113,13 @@ def mode_chart(
         return as_chart(f"chart-{key.replace('_', '-')}", title, alt, figure)
 
 
-AS_IS, LIFTED, AGAIN = ("o", HUES[0]), ("s", HUES[1]), ("D", HUES[2])
+MEASURED, CORRECTED, RERUN = ("o", HUES[0]), ("s", HUES[1]), ("D", HUES[2])
 ORACLE_PANELS = (
     ("by the checks", (
-        ("macro_checks", "measured", AS_IS), ("oracle_rules", "VLM errors counted as correct", LIFTED),
-        ("macro_rerun", "rerun with ground-truth perception", AGAIN),
+        ("macro_checks", "measured", MEASURED), ("oracle_rules", "VLM errors counted as correct", CORRECTED),
+        ("macro_rerun", "rerun with ground-truth perception", RERUN),
     )),
-    ("by the judge", (("macro_judge", "measured", AS_IS), ("oracle_judge", "VLM errors counted as correct", LIFTED))),
+    ("by the judge", (("macro_judge", "measured", MEASURED), ("oracle_judge", "VLM errors counted as correct", CORRECTED))),
 )  # fmt: skip
 """The panels of the oracle chart. Each panel uses verdicts of one kind only."""
 
@@ -133,7 +133,7 @@ def oracle_chart(table: ReportTable) -> Chart:
     names = [column.name for column in table.columns]
     rows = [(str(row[0]), {name: _whole(cell) for name, cell in zip(names, row, strict=True)}) for row in reversed(table.rows)]
     drawn = [(words, series) for words, series in ORACLE_PANELS if any(v[name] is not None for _, v in rows for name, *_ in series)]
-    labels, parts, known = [lines(label) for label, _ in rows], [], dict[str, Any]()
+    labels, parts, known = [wrap_label(label) for label, _ in rows], [], dict[str, Any]()
     with panels(1080, 150 + row_px(labels, 34) * len(rows), max(1, len(drawn))) as (figure, grid):
         for axes, (words, series) in zip(grid, drawn, strict=False):
             for y, (label, values) in enumerate(rows):
@@ -171,7 +171,7 @@ def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
     timed = [(run, [t.timings for t in run.scored_trials if t.timings.total_s > 0]) for run in runs]
     rows = [(run, {s: fmean(getattr(t, s) for t in own) for s in titles}) for run, own in reversed(timed) if own]
     notes = [("" if r.ranked else " (not ranked)") + (" (contended)" if r.evaluation.card.contended else "") for r, _ in rows]
-    labels = [lines(run.label + note) for (run, _), note in zip(rows, notes, strict=True)]
+    labels = [wrap_label(run.label + note) for (run, _), note in zip(rows, notes, strict=True)]
     with canvas(980, 150 + row_px(labels, 30) * len(rows)) as (figure, axes):
         left = [0.0] * len(rows)
         for stage, colour in zip(stages, (HUES[0], HUES[1], HUES[2]), strict=True):
@@ -192,9 +192,9 @@ def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
 
 
 def front_chart(found: Sequence[Candidate]) -> Chart:
-    """Draw accuracy against latency. The area of a ring is memory, filled rings are on the Pareto front.
+    """Draw accuracy against latency. The area of a ring is the memory of the pair; filled rings are on the Pareto front.
 
-    Numbers in the rings refer to the legend. The filling leaves a gap, so that a dashed ring remains visible around it.
+    Numbers in the rings refer to the legend. There is a gap between fill and ring, so that a dashed ring remains visible.
     """
     from matplotlib.legend_handler import HandlerTuple
     from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
@@ -209,7 +209,7 @@ def front_chart(found: Sequence[Candidate]) -> Chart:
             area = max(280.0, 12.0 * (c.memory_gb or 0.0))
             _point(axes, at, area, shade, c)
             keys.append(_point(axes, (), 150.0, shade, c))
-            names.append(lines(f"{number}  {c.run.label}, {c.memory_gb:.0f} GB"))
+            names.append(wrap_label(f"{number}  {c.run.label}, {c.memory_gb:.0f} GB"))
             axes.annotate(
                 str(number), at, ha="center", va="center", fontsize=9.5, fontweight="bold", color="#000" if c.on_front else INK
             )
@@ -243,9 +243,9 @@ def _point(axes: Axes, at: tuple[float, ...], area: float, shade: str, of: Candi
     return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=shade, edgecolor="none", alpha=0.85)
 
 
-def repeats_chart(table: ReportTable, most: int) -> Chart:
-    """Draw pass^k against k."""
-    labels = [short(str(row[0]), 100) for row in table.rows]
+def repeats_chart(table: ReportTable, max_trials: int) -> Chart:
+    """Draw pass^k for k from 1 to ``max_trials``."""
+    labels = [shorten_label(str(row[0]), 100) for row in table.rows]
     with canvas(880, 330 + legend_px(labels)) as (figure, axes):
         parts = []
         for number, (row, words) in enumerate(zip(table.rows, labels, strict=True)):
@@ -254,7 +254,7 @@ def repeats_chart(table: ReportTable, most: int) -> Chart:
                 hue, marker = HUES[number % len(HUES)], "os^Dvp*"[number % 7]
                 axes.plot(*zip(*points, strict=True), marker=marker, color=hue, label=words, lw=2, ms=7)
                 parts.append(f"{row[0]} from {points[0][1]:.1f}% to {points[-1][1]:.1f}%")
-        axes.set_xticks(range(1, most + 1))
+        axes.set_xticks(range(1, max_trials + 1))
         axes.set_ylim(0, 102)
         axes.set_xlabel("k")
         axes.set_ylabel("pass^k (%)")

@@ -1,4 +1,4 @@
-"""Names of splits and models as reports show them."""
+"""The names of splits and models that reports show."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import PurePath
 from scope_ptz.bench.scoring.trials import ModelCard
 from scope_ptz.registry import Model
 
-ASKED, LISTED = "model", ("/v1/models id", "/v1/models root")
-"""Keys of what a server reported: the requested name, and the entries of its list of models."""
+REPLY_KEY, LIST_KEYS = "model", ("/v1/models id", "/v1/models root")
+"""Keys of ``ModelCard.reported``: the model that replies name, and the entries of the server's list of models."""
 
 
 def split_name(split: str) -> str:
@@ -19,17 +19,17 @@ def split_name(split: str) -> str:
 def served_instead(card: ModelCard, model: Model | None) -> str | None:
     """Return the name of the model that a server served instead of the requested one.
 
-    An alias is not another model if the server's list says which model it stands for.
+    An alias is not another model if the server's list shows that it is an alias of the requested one.
 
     Returns:
         None if the requested model was served or the served model is unknown.
     """
-    reported = [card.reported[key] for key in (ASKED, *LISTED) if card.reported.get(key)]
+    reported = [card.reported[key] for key in (REPLY_KEY, *LIST_KEYS) if card.reported.get(key)]
     if model is None or not reported:
         return None
     requested = {_plain(name) for name in (*model.served_names(), card.name)}
     served = reported[0]
-    is_alias = card.reported.get(LISTED[0]) == served and _plain(card.reported.get(LISTED[1], "")) in requested
+    is_alias = card.reported.get(LIST_KEYS[0]) == served and _plain(card.reported.get(LIST_KEYS[1], "")) in requested
     return None if _plain(served) in requested or is_alias else served
 
 

@@ -1,4 +1,4 @@
-"""The sections about failed trials: error modes by the rules and by the judge, and accuracy with perfect perception."""
+"""The sections about failed trials: error modes by the rules and by the judge, and accuracy if perception never failed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MODE_TITLES = {
     ErrorMode.HALLUCINATION: "Hallucination", ErrorMode.LACK_OF_TOOL_CALL: "Lack of tool call", ErrorMode.TOOL_ARGS: "Tool args",
     ErrorMode.SCOPE: "Scope", ErrorMode.TOOL_ROUTING: "Tool routing",
 }  # fmt: skip
-"""In the order of the paper's table."""
+"""Titles of the error modes, in the order of the paper's table."""
 BY_RULES = "Incorrect trials by error mode, by the rules"
 PERCEPTION = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
 
@@ -33,13 +33,13 @@ def by_rules(run: ReportRun) -> Counter[ErrorMode]:
 
 
 def by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
-    """Count the trials that a judge failed by the error mode that it named."""
+    """Count the trials that a judge found incorrect, by the error mode that it named."""
     judged = [j for _, j in verdicts(run.scored_trials, judge) if j.verdict == "incorrect"]
     return Counter(j.error_mode for j in judged if j.error_mode is not None)
 
 
 def error_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the error modes of runs of the main task set."""
+    """Return the section on the error modes of runs of the main task set."""
     checked = [run for run in runs if run.checked_trials]
     rules = {run.label: by_rules(run) for run in checked}
     tables = [_mode_table("error_modes", BY_RULES, rules)]
@@ -86,7 +86,7 @@ def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]])
 
 
 def oracle_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
-    """Return the oracle setting: accuracy if perception never failed.
+    """Return the section on the oracle setting: accuracy if perception never failed.
 
     Args:
         ranked: The runs of model pairs over the same tasks.

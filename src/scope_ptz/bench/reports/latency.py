@@ -1,4 +1,4 @@
-"""The latency section: seconds by stage, by planner, by perception model, and for the current view against the panorama.
+"""The latency section: seconds by stage, by planner, by perception model, and by view (current view or panorama).
 
 The camera is a separate stage. Its moves and frames cost time in the simulator and depend on the views that a pair requests. A
 pair's own latency is the sum of the other stages.
@@ -25,22 +25,25 @@ STAGE_TITLES = {
     "capture_s": "Camera",
     "total_s": "Whole trial",
 }
-"""Titles by the fields of ``Timings``. The first three add up to ``own_s``; with the camera they are the whole trial."""
+"""Titles of the stages by their fields in ``Timings``.
+
+The first three add up to ``own_s``; with the camera they are the whole trial.
+"""
 VIEWS: tuple[tuple[Scope, str], ...] = (("current", "Current view"), ("full", "Panorama"))
-INCLUDED = (
+STAGES_NOTE = (
     "Planner: replies of its server, retries included. Perception: answers to the tools' questions. Tools and loop: the rest of a "
     "trial without the camera, such as stitching panoramas and writing pictures. Camera: moves and frames. In the simulator this "
     "is rendering, including frames that are only kept for the log; it depends on the views that were asked for. A pair's own "
     "latency is all stages without the camera."
 )
-PERCEPTION_CALLS = (
+PERCEPTION_NOTE = (
     "A perception call is a call of count_objects or query_answer that returned a result. Perception: seconds without the camera. "
     "Capture: seconds of camera moves and frames, rendering included; concurrent calls share a frame."
 )
 
 
 def latency_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the latency of all runs. The tables by model cover ranked runs only."""
+    """Return the section on the latency of all runs. The tables by model cover only ranked runs."""
     having = [run for run in runs if run.scored_trials]
     pairs = [(run, timing_run(run, having)) for run in pairs_of(having)]
     sources = [source for _, source in pairs]
@@ -49,7 +52,7 @@ def latency_section(runs: Sequence[ReportRun]) -> Section:
     text = [
         "All values are wall seconds; concurrent work counts once. The values of a stage cover the trials that used it. If a pair "
         "was also run without contention, its latency is taken from that run.",
-        INCLUDED,
+        STAGES_NOTE,
     ]
     if shared:
         text.append(
@@ -65,7 +68,7 @@ def _contended(runs: Sequence[ReportRun]) -> str:
     return "some contended" if len(states) > 1 else "contended" if states == {True} else "alone"
 
 
-def _alone(runs: Sequence[ReportRun]) -> Sequence[ReportRun]:
+def _uncontended(runs: Sequence[ReportRun]) -> Sequence[ReportRun]:
     """Return the runs without contention; if there are none, all runs."""
     return [run for run in runs if not run.evaluation.card.contended] or runs
 
@@ -116,11 +119,11 @@ def _by_perception(pairs: Sequence[Timed]) -> ReportTable:
     )
 
     def cells(own: Sequence[ReportRun]) -> tuple[CellValue, ...]:
-        made = _looks(own)
+        made = _perception_calls(own)
         perception, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
         return median(perception), p95(perception), median(capture), p95(capture)
 
-    notes = (f"Seconds per trial: all perception in a trial. {PERCEPTION_CALLS} {_pooled('perception model')}",)
+    notes = (f"Seconds per trial: all perception in a trial. {PERCEPTION_NOTE} {_pooled('perception model')}",)
     return _by_model("latency_eyes", "By perception model", pairs, lambda r: r.perception_name, "perception_s", looks, cells, notes)
 
 
@@ -150,14 +153,14 @@ def _by_model(
     rows = []
     for model in dict.fromkeys(name(run) for run, _ in pairs):
         whole = [run for run, _ in pairs if name(run) == model]
-        own = _alone([source for run, source in pairs if name(run) == model])
+        own = _uncontended([source for run, source in pairs if name(run) == model])
         seconds = [s for run in own for s in stage_seconds(run, stage)]
         calls = fmean(made for run in whole if (made := calls_made(run.scored_trials)) is not None)
         rows.append((model, _contended(own), len(own), len(whole), median(seconds), p95(seconds), *cells(own), calls))
     return ReportTable(key, title, columns, tuple(rows), notes)
 
 
-def _looks(runs: Sequence[ReportRun], view: Scope | None = None) -> list[ObservationTime]:
+def _perception_calls(runs: Sequence[ReportRun], view: Scope | None = None) -> list[ObservationTime]:
     return [look for run in runs for t in run.scored_trials for look in t.looks if view in (None, look.view)]
 
 
@@ -175,18 +178,18 @@ def _views(runs: Sequence[ReportRun]) -> ReportTable:
         Column("call_median", "Whole call, median (s)", "seconds"),
     )
     names = list(dict.fromkeys(run.perception_name for run in runs))
-    parts = [(name, _alone([r for r in runs if r.perception_name == name])) for name in names]
+    parts = [(name, _uncontended([r for r in runs if r.perception_name == name])) for name in names]
     if len(parts) > 1:
         parts.append(("all eyes", [run for _, own in parts for run in own]))
     rows = [_view_row(view, words, own) for _, own in parts for view, words in VIEWS]
     groups = {len(VIEWS) * number: name for number, (name, _) in enumerate(parts)}
-    notes = (f"{PERCEPTION_CALLS} Whole call: both of them and the tool's own work.",)
+    notes = (f"{PERCEPTION_NOTE} Whole call: both of them and the tool's own work.",)
     return ReportTable("latency_views", "Current view against panorama", columns, tuple(rows), notes, groups)
 
 
 def _view_row(view: Scope, words: str, runs: Sequence[ReportRun]) -> tuple[CellValue, ...]:
-    made = _looks(runs, view)
+    made = _perception_calls(runs, view)
     perception, capture, whole = ([getattr(look, part) for look in made] for part in ("eyes_s", "capture_s", "call_s"))
-    base, own = median([look.eyes_s for look in _looks(runs, "current")]), median(perception)
+    base, own = median([look.eyes_s for look in _perception_calls(runs, "current")]), median(perception)
     ratio = own / base if base and own else None
     return words, _contended(runs), len(made), own, p95(perception), ratio, median(capture), p95(capture), median(whole)

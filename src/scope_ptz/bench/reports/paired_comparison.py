@@ -34,7 +34,7 @@ class PairedComparison:
         only_second: Tasks on which the second run is better.
         p_mcnemar: P value of McNemar's exact test.
         p_clustered: P value of the clustered test.
-        least: The smallest difference that is detected with 80% power.
+        least: The smallest true difference that is detected with 80% power.
     """
 
     first: str
@@ -67,7 +67,7 @@ def _task_means(run: ReportRun) -> TaskMeans:
 
 
 def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) -> PairedComparison | None:
-    """Compare two runs given by the category, the viewpoint and the mean outcome of each task."""
+    """Compare two runs, each given by the category, the viewpoint and the mean outcome of each task."""
     shared = sorted(one.keys() & other.keys())
     if not shared:
         return None
@@ -116,7 +116,7 @@ def _interval(bounds: tuple[float, float] | None) -> str | None:
 
 
 def comparison_section(runs: Sequence[ReportRun]) -> Section:
-    """Compare every two ranked runs of the main task set."""
+    """Return the section that compares every two of the runs."""
     found = [c for one, two in combinations(runs, 2) if (c := compare(one, two)) is not None]
     text = [
         "Two runs are compared task by task on their shared tasks; repeats of a task are averaged first. McNemar's exact test asks "
@@ -153,7 +153,7 @@ def comparison_section(runs: Sequence[ReportRun]) -> Section:
 
 
 def _resolution(runs: Sequence[ReportRun]) -> ReportTable:
-    """Return the smallest differences that unpaired comparisons with equally precise runs detect."""
+    """Return the smallest difference that each run can show in an unpaired comparison with an equally precise run."""
     columns = (
         Column("run", "Run"), Column("se", "Standard error of macro (points)", "width"),
         Column("viewpoints", "Viewpoints", "count"), Column("least", "Smallest detectable difference, unpaired (points)", "width"),

@@ -1,4 +1,4 @@
-"""The paper's published results in a panel of their own, marked as the paper's."""
+"""The section with the published results of the paper."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class _Row(BaseModel):
 
 
 class PaperSource(BaseModel):
-    """The paper itself and its judge."""
+    """The paper's title and DOI, and its judge."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
     title: str
@@ -109,7 +109,7 @@ class Paper(BaseModel):
 
 @cache
 def load_paper() -> Paper:
-    """Load the paper's results, which come with the package."""
+    """Load the paper's results, which are part of the package."""
     import yaml
 
     text = files("scope_ptz").joinpath("data", "paper.yaml").read_text(encoding="utf-8")
@@ -117,7 +117,7 @@ def load_paper() -> Paper:
 
 
 def paper_section() -> Section:
-    """Return the panel with the paper's results."""
+    """Return the section with the paper's results."""
     paper = load_paper()
     text = (
         f"All values in this panel are copied from the paper ({paper.paper.title}, doi {paper.paper.doi}). None was measured here. "

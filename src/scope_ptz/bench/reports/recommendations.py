@@ -16,11 +16,11 @@ from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
 SIZES_GB = (8, 16, 24, 48, 80, 160)
-"""Common sizes of accelerator memory; the last one is two of the largest."""
+"""Common sizes of accelerator memory. The last one is two accelerators of 80 GB."""
 
 
 def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
-    """Return accuracy, latency and memory of each pair, and the best pair for each size of memory."""
+    """Return the section on accuracy, latency and memory of each pair, with the best pair for each memory size."""
     found = candidates(ranked, every)
     columns = (
         Column("run", "Run"),
@@ -72,12 +72,12 @@ def _fitting(found: Sequence[Candidate]) -> ReportTable:
         if fitting:
             best = max(fitting, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
             rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
-    notes = (f"Sizes: {', '.join(map(str, SIZES_GB))} GB. No pair fits into a size that is not listed.",)
+    notes = (f"Sizes: {', '.join(map(str, SIZES_GB))} GB. Sizes into which no pair fits are left out.",)
     return ReportTable("memory_fits", "Best pair by memory size", columns, tuple(rows), notes)
 
 
 def spread_section(ranked: Sequence[ReportRun]) -> Section:
-    """Return how much accuracy depends on the planner, and how much on the perception model."""
+    """Return the section on how much accuracy depends on the planner and on the perception model."""
     tables = (
         _spread(
             "spread_planner",
@@ -134,7 +134,7 @@ def _spread(
 
 
 def scope_section(runs: Sequence[ReportRun]) -> Section:
-    """Return accuracy on tasks about the current view against tasks about the full scene."""
+    """Return the section that compares tasks about the current view with tasks about the full scene."""
     columns = (
         Column("run", "Run"),
         Column("current_trials", "Trials, current", "count"),
@@ -168,7 +168,7 @@ def _mean(rows: Sequence[tuple[CellValue, ...]], index: int) -> float | None:
 
 
 def architecture_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
-    """Compare mixtures of experts with dense models, and quantised models with full precision, for models in the registry."""
+    """Return the section that compares mixtures of experts with dense models, and quantised models with full precision."""
     pairs = [(q, f) for q in ranked for f in ranked if _is_quantised_of(q, f)]
     found = [c for quantised, full in pairs if (c := compare(quantised, full)) is not None]
     notes = (

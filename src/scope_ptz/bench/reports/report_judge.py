@@ -14,8 +14,8 @@ from scope_ptz.bench.scoring.trials import Judgement, Trial
 def judge_name(runs: Sequence[ReportRun]) -> str | None:
     """Return the judge whose verdicts a report shows; None if there is no judge.
 
-    It is the judge that decides most trials that only a judge can score, else the one with verdicts on most trials. Ties are
-    resolved by name. A judge whose server always failed is chosen only if there is no other.
+    It is the judge that decides most of the trials that only a judge can score, else the judge with verdicts on most trials. Ties
+    are resolved by name. A judge whose server always failed is chosen only if there is no other.
     """
     decides, gave, asked = Counter[str](), Counter[str](), Counter[str]()
     for trial in (trial for run in runs for trial in run.scored_trials):

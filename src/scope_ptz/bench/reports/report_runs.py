@@ -1,4 +1,4 @@
-"""Runs as a report sees them: labelled, joined with the registry's models, and grouped into comparable task sets."""
+"""The runs of a report: labelled, joined with the registry's models, and grouped into comparable task sets."""
 
 from __future__ import annotations
 
@@ -21,28 +21,29 @@ from scope_ptz.registry import Model, Registry
 RunKind = Literal["models", "reference", "blind", "person"]
 """Kinds of runs. "reference": with the grammar planner or ground-truth perception; "blind": without perception; "person": human."""
 PERSON = "person"
-"""Names of the exact built-in planner and perception. Noisy ground truth is not among them."""
+"""Provider of the planner in the run card of a person."""
 MAIN_STRATA = ("core", "imported")
+"""Strata of the tasks that accuracy covers."""
 FULL_PRECISION = ("fp32", "fp16", "bf16")
 CATEGORY_TITLES = {
     "comparative": "Comparative", "counting": "Counting", "descriptor": "Descriptor", "location": "Location",
     "multi_step_command": "Multi-step command", "multi_step_reasoning": "Multi-step reasoning", "ocr": "OCR",
     "single_call": "Single call",
 }  # fmt: skip
-"""In the order of the paper's table."""
+"""Titles of the categories, in the order of the paper's table."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReportRun:
-    """One evaluation in a report. A trial is one run of one task in it.
+    """One evaluation in a report.
 
     Attributes:
         number: Position in the report, from 1.
         evaluation: The evaluation.
-        label: Unique name in the report. It says how the run differs from others.
+        label: Unique name in the report, which shows how the run differs from others.
         planner: The planner's model; None if it is not in the registry.
         perception: The perception model; None if it is not in the registry.
-        other_tasks: How its tasks differ from those of most pairs of the main task set, in words; empty if they do not.
+        other_tasks: How its tasks differ from those of most pairs of the main task set; empty if they do not.
     """
 
     number: int
@@ -75,7 +76,7 @@ class ReportRun:
 
     @property
     def is_exact_reference(self) -> bool:
-        """Whether it is the grammar planner with exact ground-truth perception."""
+        """Whether the pair is the grammar planner with exact ground-truth perception."""
         planner = self.evaluation.card.planner
         return planner.deterministic and planner.name == GRAMMAR and self.uses_exact_ground_truth and self.kind == "reference"
 
@@ -167,7 +168,8 @@ def viewpoint(trial: Trial) -> str:
 def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[ReportRun, ...]:
     """Return the runs of a report in the order of the paper's table.
 
-    They are ordered by perception model, then by the planner's size. Other splits and runs that are not ranked come last.
+    They are ordered by perception model, then by the size of the planner. Runs of other splits than core and runs that are not
+    ranked come last.
     """
     splits = {split_name(e.card.split) for e in evaluations}
     bare = [ReportRun(0, e, "", _known(e.card.planner, registry), _known(e.card.perception, registry)) for e in evaluations]
@@ -197,7 +199,7 @@ def _named(card: ModelCard, model: Model | None) -> str:
 
 
 def _other_tasks(run: ReportRun, common: frozenset[str]) -> str:
-    """Return how the tasks of a run differ from the common tasks, in words; empty if they do not."""
+    """Describe how the tasks of a run differ from the common tasks; empty if they do not."""
     if run.tasks == common:
         return ""
     if run.tasks < common:
@@ -252,7 +254,7 @@ def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
 
 
 def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """Return one run per system: the one with the most scored trials, the first of several."""
+    """Return one run per system: the first of those with the most scored trials."""
     best: dict[tuple[str, str, str, str], ReportRun] = {}
     for run in runs:
         if run.system not in best or len(run.scored_trials) > len(best[run.system].scored_trials):

@@ -1,4 +1,4 @@
-"""The sections for review: tasks that nearly all pairs fail, costs, side effects and incidents."""
+"""The sections on tasks that nearly all pairs fail, on costs, and on side effects and incidents."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable
 from scope_ptz.bench.scoring.trials import Trial
 
-LOW = 0.25
-"""Tasks with at most this success rate are listed."""
-MOST_LISTED = 60
+MAX_SUCCESS = 0.25
+"""Tasks with at most this success rate are listed in the audit."""
+MAX_LISTED = 60
+"""Maximum number of tasks in the audit."""
 
 
 def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], pages: Mapping[str, str]) -> Section:
-    """List the tasks with a low success rate over all pairs.
+    """Return the section that lists the tasks with a low success rate over all pairs.
 
     Args:
         ranked: The runs of model pairs.
@@ -26,17 +27,17 @@ def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], p
         pages: The page of each failed task, by the task's id.
     """
     text = [
-        f"The tasks on which all pairs together succeed in at most {LOW:.0%} of their trials. Such a task is hard or wrong, so an "
-        "audit of the benchmark starts here. The last column is the result of the grammar planner with ground-truth perception. A "
-        "task that they pass can be done as it is worded. They understand only a limited language, so their failure alone proves "
-        "nothing."
+        f"The tasks on which all pairs together succeed in at most {MAX_SUCCESS:.0%} of their trials. Such a task is hard or "
+        "wrong, so an audit of the benchmark starts here. The last column is the result of the grammar planner with ground-truth "
+        "perception. A task that they pass can be done as it is worded. They understand only a limited language, so their failure "
+        "alone proves nothing."
     ]
     if len(ranked) < 2:
         text.append("There are fewer than two model pairs, so this is not measured.")
         return Section("audit", "Tasks that nearly every pair fails", tuple(text))
     by_task = _by_task(ranked)
     low = sorted((fmean(t.headline == "correct" for _, t in runs), task) for task, runs in by_task.items())
-    chosen = [(value, task) for value, task in low if value <= LOW]
+    chosen = [(value, task) for value, task in low if value <= MAX_SUCCESS]
     exact = _by_task(reference)
     columns = (
         Column("task", "Task"),
@@ -50,9 +51,9 @@ def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], p
         Column("modes", "Error modes (rules)"),
         Column("reference", "Grammar planner, ground-truth perception (%)", "share"),
     )
-    rows = tuple(_audit_row(task, value, by_task[task], exact.get(task, []), pages) for value, task in chosen[:MOST_LISTED])
+    rows = tuple(_audit_row(task, value, by_task[task], exact.get(task, []), pages) for value, task in chosen[:MAX_LISTED])
     text.append(
-        f"{len(chosen)} of {len(by_task)} tasks." + (f" The first {MOST_LISTED} are listed." if len(chosen) > MOST_LISTED else "")
+        f"{len(chosen)} of {len(by_task)} tasks." + (f" The first {MAX_LISTED} are listed." if len(chosen) > MAX_LISTED else "")
     )
     return Section(
         "audit", "Tasks that nearly every pair fails", tuple(text), (), (ReportTable("audit", "Tasks to audit", columns, rows),)
@@ -94,7 +95,7 @@ def _audit_row(
 
 
 def costs_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the tokens and the cost of each run."""
+    """Return the section on the tokens and the cost of each run."""
     columns = (
         Column("run", "Run"),
         Column("trials", "Trials", "count"),
@@ -139,7 +140,7 @@ def _cost_row(run: ReportRun) -> tuple[CellValue, ...]:
 
 
 def conduct_section(runs: Sequence[ReportRun]) -> Section:
-    """Return collateral changes, wrong calls, failures of perception and failures of servers."""
+    """Return the section on collateral changes, wrong calls, failures of perception and failures of servers."""
     columns = (
         Column("run", "Run"),
         Column("collateral", "Collateral change (%)", "share"),
@@ -150,7 +151,7 @@ def conduct_section(runs: Sequence[ReportRun]) -> Section:
         Column("server_events", "Server failures, including recovered ones"),
     )
     notes = (
-        "Collateral change: the camera ended elsewhere although neither the instruction nor the way to the answer required a move. "
+        "Collateral change: the camera ended elsewhere although neither the instruction nor finding the answer required a move. "
         "It does not affect accuracy.",
     )
     having = [run for run in runs if run.evaluation.trials]

@@ -1,4 +1,4 @@
-"""The parts of a report: sections with charts and tables."""
+"""The sections and charts of a report."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scope_ptz.bench.reports.tables import ReportTable
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """A chart as SVG. ``alt`` is its text alternative. In a window narrower than ``width_px`` it is scrolled."""
+    """A chart as SVG. ``alt`` is its text alternative. It scrolls in windows narrower than ``width_px``."""
 
     key: str
     title: str
@@ -20,7 +20,7 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A section. ``text`` holds the paragraphs before charts and tables; ``folded`` names the tables that are collapsed."""
+    """A section. ``text`` are the paragraphs before charts and tables; ``folded`` are the keys of collapsed tables."""
 
     key: str
     title: str

@@ -1,4 +1,4 @@
-"""The sections about sensitivity to wording, prompt and chance, about unclear or forbidden requests, and about baselines."""
+"""The sections on sensitivity to wording and prompt, repeats, unclear or forbidden requests, and baselines."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ System = tuple[str, str, str, str]
 
 
 def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the sensitivity to paraphrases and to prompts."""
+    """Return the section on sensitivity to paraphrases and to prompts."""
     text = ["A scenario is a task with all its wordings. It succeeds if every wording succeeds in its first trial."]
     paraphrases = _wordings(runs)
     variants = _variants(runs)
@@ -32,7 +32,7 @@ def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
 
 
 def _by_system(runs: Sequence[ReportRun]) -> dict[System, list[Trial]]:
-    """Return the first trial of each task of a system over all logs, without trials that infrastructure broke."""
+    """Return each system's first trial of each task over all logs, without trials that infrastructure broke."""
     found: dict[System, dict[str, Trial]] = defaultdict(dict)
     for run in runs:
         for trial in run.evaluation.trials:
@@ -88,24 +88,24 @@ def _variants(runs: Sequence[ReportRun]) -> ReportTable:
 
 
 def repeats_section(runs: Sequence[ReportRun]) -> Section:
-    """Return pass^k for runs with repeated tasks."""
-    repeated = [run for run in runs if _most(run) > 1]
-    most = max((_most(run) for run in repeated), default=0)
+    """Return the section on pass^k for runs with repeated tasks."""
+    repeated = [run for run in runs if _max_trials(run) > 1]
+    max_trials = max((_max_trials(run) for run in repeated), default=0)
     if not repeated:
         return Section("repeats", "Repeats", ("Every task was run once, so pass^k is not measured for k above 1.",))
     columns = [Column("run", "Run"), Column("tasks", "Tasks", "count")]
-    columns += [Column(f"pass_{k}", f"pass^{k} (%)", "share") for k in range(1, most + 1)]
+    columns += [Column(f"pass_{k}", f"pass^{k} (%)", "share") for k in range(1, max_trials + 1)]
     rows = []
     for run in repeated:
         tasks = _passed(run)
-        rows.append((run.label, len(tasks), *(mean_pass_all(tasks, k)[0] for k in range(1, most + 1))))
+        rows.append((run.label, len(tasks), *(mean_pass_all(tasks, k)[0] for k in range(1, max_trials + 1))))
     text = (
         "pass^k is the probability that k trials of a task all succeed. It is C(c, k) / C(n, k) for c correct of n trials, "
         "averaged over the tasks with at least k trials that infrastructure did not break. pass^1 is the mean over tasks. Runs "
         "without repeats are left out.",
     )
     table = ReportTable("repeats", "pass^k", tuple(columns), tuple(rows))
-    return Section("repeats", "Repeats", text, (drawing.repeats_chart(table, most),), (table,))
+    return Section("repeats", "Repeats", text, (drawing.repeats_chart(table, max_trials),), (table,))
 
 
 def _passed(run: ReportRun) -> list[tuple[int, int]]:
@@ -116,12 +116,12 @@ def _passed(run: ReportRun) -> list[tuple[int, int]]:
     return [(len(values), sum(values)) for values in found.values()]
 
 
-def _most(run: ReportRun) -> int:
+def _max_trials(run: ReportRun) -> int:
     return max((runs for runs, _ in _passed(run)), default=0)
 
 
 def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
-    """Return how runs react to requests that call for a question or a refusal; None if no run contains any."""
+    """Return the section on requests that call for a question or a refusal; None if no run contains any."""
     having = [(run, own) for run in runs if (own := _reactions(run))]
     if not having:
         return None
@@ -155,7 +155,7 @@ def _reactions(run: ReportRun) -> list[Trial]:
 
 
 def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
-    """Return the accuracy of blind and human baselines; None if there is no such run."""
+    """Return the section on the accuracy of blind and human baselines; None if there is no such run."""
     having = [run for run in runs if run.kind in ("blind", "person") and run.scored_trials]
     if not having:
         return None

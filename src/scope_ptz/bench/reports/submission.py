@@ -24,9 +24,10 @@ from scope_ptz.errors import InputError, OutputError
 
 MOST_ANSWER = 8_000
 CUT = " [cut]"
+"""Ending of a published answer that was cut at ``MOST_ANSWER`` characters."""
 TOOLS = frozenset(get_args(ToolName))
 UNKNOWN_TOOL = "unknown"
-_SAME = (
+_UNCHANGED_FIELDS = (
     "epoch", "headline", "scored_by", "error_mode", "outcome", "steps", "bad_calls", "perception_failures", "collateral",
     "input_tokens", "output_tokens", "cost_usd",
 )  # fmt: skip
@@ -110,8 +111,8 @@ class TrialLine(_Part):
 LINE: TypeAdapter[Header | TrialLine] = TypeAdapter(Annotated[Header | TrialLine, Field(discriminator="kind")])
 
 
-class Described(Protocol):
-    """A task, or the facts about one."""
+class DigestedTask(Protocol):
+    """The attributes of a task that its digest covers."""
 
     @property
     def id(self) -> str: ...
@@ -128,7 +129,7 @@ def submission_schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A line of a submission", **LINE.json_schema()}
 
 
-def tasks_digest(tasks: Iterable[Described]) -> str:
+def tasks_digest(tasks: Iterable[DigestedTask]) -> str:
     """Return a digest of a set of tasks. Order and repetitions do not matter."""
     rows = sorted({f"{task.id}\t{task.category}\t{task.scope}\t{task.instruction}" for task in tasks})
     return hashlib.sha256("\n".join(rows).encode()).hexdigest()
@@ -148,14 +149,14 @@ def submission_lines(evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
     """
     card = evaluation.card
     if not evaluation.finished or not evaluation.trials:
-        raise InputError(f"This run is unfinished: {len(evaluation.trials)} of {evaluation.wanted} trials. Resume it first.")
+        raise InputError(f"The evaluation is unfinished: {len(evaluation.trials)} of {evaluation.wanted} trials. Resume it first.")
     lines = [_line(trial) for trial in sorted(evaluation.trials, key=lambda t: (t.task.id, t.epoch))]
     facts = {t.task.id: t.task for t in evaluation.trials}
     public = card.model_copy(
         update={
-            "planner": _public(card.planner),
-            "perception": _public(card.perception),
-            "sampling": _harmless(card.sampling),
+            "planner": _public_card(card.planner),
+            "perception": _public_card(card.perception),
+            "sampling": _public_settings(card.sampling),
             "host": "",
             "split": split_name(card.split),
         }
@@ -209,7 +210,7 @@ def _line(trial: Trial) -> TrialLine:
         tool_calls=_tools(trial.tool_calls),
         times=times,
         judged=judgements,
-        **{name: getattr(trial, name) for name in _SAME},
+        **{name: getattr(trial, name) for name in _UNCHANGED_FIELDS},
     )
 
 
@@ -218,32 +219,32 @@ def _verdicts(checks: Sequence[CheckRecord]) -> dict[str, bool | None]:
 
 
 def _tools(calls: Mapping[str, int]) -> dict[str, int]:
-    """Return calls by tool. Tools that a model invented are counted together as "unknown"."""
+    """Return the number of calls by tool. Calls of tools that do not exist are counted as "unknown"."""
     known = Counter({name: number for name, number in calls.items() if name in TOOLS})
     invented = sum(number for name, number in calls.items() if name not in TOOLS)
     return dict(known | Counter({UNKNOWN_TOOL: invented})) if invented else dict(known)
 
 
-def _public(model: ModelCard) -> ModelCard:
-    """Return a model without the address of its server."""
+def _public_card(model: ModelCard) -> ModelCard:
+    """Return a model card without secrets and addresses."""
     provider = "" if "://" in model.provider else model.provider
-    return model.model_copy(update={"reported": _harmless(model.reported), "provider": provider})
+    return model.model_copy(update={"reported": _public_settings(model.reported), "provider": provider})
 
 
-def _harmless(settings: Mapping[str, Any]) -> dict[str, Any]:
+def _public_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return settings without values that look like a secret or an address."""
-    return {name: _stripped(value) for name, value in settings.items() if not _harmful(name, value)}
+    return {name: _public_value(value) for name, value in settings.items() if not _is_private(name, value)}
 
 
-def _stripped(value: Any) -> Any:
+def _public_value(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return _harmless(value)
+        return _public_settings(value)
     if isinstance(value, list | tuple):
-        return [_stripped(one) for one in value if not _harmful("", one)]
+        return [_public_value(one) for one in value if not _is_private("", one)]
     return value
 
 
-def _harmful(name: str, value: Any) -> bool:
+def _is_private(name: str, value: Any) -> bool:
     """Return whether a value must not be published. The parts of a nested value are checked separately."""
     if "://" in name or _SECRET.search(name):
         return True

@@ -1,4 +1,4 @@
-"""Validate a submission: every line is checked against the schema, the other lines and the tasks."""
+"""Validate a submission. Every line is checked against the schema, the other lines and the tasks."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.errors import InputError
 from scope_ptz.version import __version__
 
-MOST_BYTES = 200_000_000
+MAX_BYTES = 200_000_000
+"""Maximum size of a submission file."""
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
-"""Built-in planners and perception backends. They are not models, whatever a header says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Submiss
     headers = [(number, row) for number, row in rows if isinstance(row, Header)]
     lines = [(number, row) for number, row in rows if isinstance(row, TrialLine)]
     if len(headers) != 1 or headers[0][0] != 1:
-        faults.append(f"line 1: a submission begins with its only header; this one has {len(headers)}")
+        faults.append(f"a submission has exactly one header, in line 1; this one has {len(headers)} headers")
     if not headers:
         return SubmissionFindings(path.name, tuple(faults))
     header = headers[0][1]
@@ -85,13 +85,13 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Submiss
     unranked = not header.card.ranked or any(_built_in(model.name) for model in (header.card.planner, header.card.perception))
     notes = [NOT_RANKED.format(pair=header.card.pair)] if unranked else []
     if broken := counted.headlines.get("infrastructure", 0):
-        notes.append(f"{broken} of {counted.trials} trials were broken by infrastructure and are in no share")
+        notes.append(f"{broken} of {counted.trials} trials were broken by infrastructure and are excluded from accuracy")
     counts = {"trials": counted.trials, **{str(name): number for name, number in counted.headlines.items()}}
     return SubmissionFindings(path.name, tuple(faults), counts, tuple(notes))
 
 
 def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:
-    """Return why trials do not cover a whole split: missing, repeated, unknown or differently worded tasks.
+    """Return the reasons why trials do not cover a whole split: missing, repeated, unknown or differently worded tasks.
 
     Raises:
         InputError: The split is unknown and no tasks are given.
@@ -103,13 +103,13 @@ def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] |
 
 def _rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[str]]:
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"{path} is larger than {MOST_BYTES // 1_000_000} MB: it is no submission.")
+        if path.stat().st_size > MAX_BYTES:
+            raise InputError(f"{path} is larger than {MAX_BYTES // 1_000_000} MB, so it is not a submission.")
         content = path.read_text("utf-8")
     except OSError as error:
         raise InputError(f"The submission {path} cannot be read: {error.strerror}.") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"The submission {path} is no UTF-8 text.") from error
+        raise InputError(f"The submission {path} is not UTF-8 text.") from error
     rows: list[tuple[int, Header | TrialLine]] = []
     faults = []
     for number, text in enumerate(content.split("\n"), 1):
@@ -122,45 +122,47 @@ def _rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[str]]:
                 first = error.errors(include_url=False, include_input=False)[0]
                 faults.append(f"line {number}: {'.'.join(map(str, first['loc'])) or 'as a whole'}: {first['msg']}")
             except (ValueError, RecursionError) as error:
-                faults.append(f"line {number}: no JSON ({error})")
+                faults.append(f"line {number}: not valid JSON ({error})")
     return rows, faults
 
 
 def _no_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number")
+    raise ValueError(f"{name} is not a number")
 
 
 def _published(header: Header) -> Sequence[Task]:
     if header.card.split not in SPLITS:
-        raise InputError(f"The submission is of '{header.card.split}', which is no published split. Give its tasks with --tasks.")
+        raise InputError(
+            f"The submission is for '{header.card.split}', which is not a published split. Give its tasks with --tasks."
+        )
     return load_split(header.card.split)
 
 
 def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[str, Task]) -> Iterator[str]:
     counted = totals_of(lines)
     if header.totals.trials != counted.trials:
-        yield f"totals say {header.totals.trials} trials, there are {counted.trials}"
+        yield f"the totals state {header.totals.trials} trials, but there are {counted.trials}"
     for kind, reported, found in (
         ("headline", header.totals.headlines, counted.headlines),
         ("error mode", header.totals.error_modes, counted.error_modes),
     ):
         for name in sorted({*reported, *found}):
             if reported.get(name, 0) != found.get(name, 0):
-                yield f"totals say {reported.get(name, 0)} times {kind} {name}, counted {found.get(name, 0)}"
+                yield f"the totals state {reported.get(name, 0)} for {kind} {name}, but the trials have {found.get(name, 0)}"
     datasets = {task.dataset for task in known.values()}
     if header.card.dataset not in {"+".join(sorted(datasets)), *datasets}:
-        yield f"dataset {header.card.dataset} is not that of the tasks ({', '.join(sorted(datasets))})"
+        yield f"the dataset is {header.card.dataset}, but the tasks are of {', '.join(sorted(datasets))}"
     yield from _digest_faults(header, known)
     if header.tasks != len(known):
-        yield f"it names {header.tasks} tasks, the split has {len(known)}"
+        yield f"the header states {header.tasks} tasks, but the split has {len(known)}"
     if header.wanted != len(known) * header.card.epochs:
         whole = len(known) * header.card.epochs
-        yield f"{header.wanted} trials were wanted where {len(known)} tasks times {header.card.epochs} are {whole}"
+        yield f"the header states {header.wanted} trials, but {len(known)} tasks with {header.card.epochs} repeats need {whole}"
     for model in (header.card.planner, header.card.perception):
         if _built_in(model.name) and not model.deterministic:
             yield f"{model.name} is built in, but the header says that it is a model ('deterministic' is false)"
     if (version := _version(header.card.package_version)) is None:
-        yield f"package version {header.card.package_version} is no version"
+        yield f"the package version {header.card.package_version} is not a version number"
     elif version > (_version(__version__) or ()):
         yield f"made with scope-ptz {header.card.package_version}, which is newer than this one ({__version__}): update first"
 
@@ -171,7 +173,7 @@ def _built_in(name: str) -> bool:
 
 def _digest_faults(header: Header, known: Mapping[str, Task]) -> Iterator[str]:
     if header.tasks_digest != tasks_digest(known.values()):
-        yield "the digest of the tasks is another: wordings, categories or the choice of tasks differ"
+        yield "the digest of the tasks differs: wordings, categories or the selection of tasks are not those of the split"
 
 
 def _version(text: str) -> tuple[int, ...] | None:
@@ -184,7 +186,7 @@ def _completeness(header: Header, lines: Sequence[TrialLine], known: Mapping[str
     for task, epoch in sorted(key for key, number in counted.items() if number > 1):
         yield f"{task}, repeat {epoch}, occurs {counted[task, epoch]} times"
     for task in sorted({task for task, _ in counted} - set(known)):
-        yield f"{task} is no task of the split"
+        yield f"{task} is not a task of the split"
     for task in sorted(known):
         missing = [epoch for epoch in range(1, header.card.epochs + 1) if (task, epoch) not in counted]
         if missing:

@@ -15,18 +15,18 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.tools.registry import TOOLS as REGISTRY
 
 SLACK_S = 0.5
-"""Seconds by which a part may exceed the whole, because clocks are read one after the other."""
+"""Seconds by which a stage may exceed the whole trial, because the clock is read several times."""
 BREAKING = ("camera_error", "cancelled", "planner_error")
 """Outcomes of runs that infrastructure may have broken. A planner error may also be the model's own."""
-LOOKERS = REGISTRY.perceiving
+PERCEPTION_TOOLS = REGISTRY.perceiving
 MOVING = frozenset({"move", "zoom", "preset"})
-"""Needs of a task that change the camera's viewpoint or pose."""
+"""Needs of a task that require a change of the camera's viewpoint or pose."""
 
 
 def trial_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator[str]:
     """Yield the faults of a trial. ``task`` is None if it is not a task of the split."""
     if line.epoch > header.card.epochs:
-        yield f"repeat {line.epoch} of {header.card.epochs}"
+        yield f"this is repeat {line.epoch}, but the header states {header.card.epochs} repeats"
     if line.error_mode is not None and line.headline != "incorrect":
         yield f"error mode {line.error_mode} although the trial is {line.headline}"
     if line.error_mode is None and line.headline == "incorrect" and line.scored_by == "checks":
@@ -35,16 +35,16 @@ def trial_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator
     if line.outcome is not None and line.outcome not in OUTCOMES:
         yield f"outcome {line.outcome} is none of {', '.join(OUTCOMES)}"
     if strange := sorted(set(line.tool_calls) - TOOLS - {UNKNOWN_TOOL}):
-        yield f"there are no tools {', '.join(strange)[:200]}"
+        yield f"unknown tools: {', '.join(strange)[:200]}"
     if line.steps > header.card.max_steps:
-        yield f"{line.steps} steps where {header.card.max_steps} are the most"
+        yield f"{line.steps} steps, but the limit is {header.card.max_steps}"
     times = line.times
     longest = max(times.planner_s, times.perception_s, times.camera_s, times.render_s)
     if longest > times.total_s + SLACK_S:
-        yield f"a stage took {longest:g} s of {times.total_s:g} s in all"
+        yield f"a stage took {longest:g} s, but the whole trial took {times.total_s:g} s"
     if task is not None:
         if line.category != task.category:
-            yield f"category {line.category} where the task's is {task.category}"
+            yield f"the category is {line.category}, but that of the task is {task.category}"
         yield from _check_faults(line, task)
         yield from _broken_faults(line, task)
         yield from _answer_faults(line, task)
@@ -55,17 +55,17 @@ def _verdict_faults(line: TrialLine) -> Iterator[str]:
     """Yield faults of the headline, which must follow from the checks."""
     if line.scored_by == "judge":
         if line.headline in ("correct", "incorrect") and line.headline not in {judgement.verdict for judgement in line.judged}:
-            yield f"{line.headline} by the judge, but no judgement says so"
+            yield f"{line.headline} by the judge, but no judgement has this verdict"
         return
     passed = list(line.checks.values())
     if line.headline in ("correct", "incorrect", "unscored") and not passed:
-        yield "no check at all"
+        yield "the trial has no checks"
     elif line.headline == "correct" and not all(p is True for p in passed):
         yield "correct although not every check passed"
     elif line.headline == "incorrect" and False not in passed:
         yield "incorrect although no check failed"
     elif line.headline == "unscored" and (False in passed or None not in passed):
-        yield "unscored although the checks tell"
+        yield "unscored although the checks decide"
 
 
 def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
@@ -74,12 +74,12 @@ def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
         return
     if "answer" not in line.checks:
         if line.headline != "infrastructure":
-            yield "the task wants an answer and there is no answer check"
+            yield "the task expects an answer, but the trial has no answer check"
         return
     ended = line.outcome in ("answered", "clarification", "refused")
     found = agrees(task.expected, parse_answer(task.expected, line.answer)) if ended else False
     if found != line.checks["answer"]:
-        yield f"the answer reads as {_words(found)} and its check says {_words(line.checks['answer'])}"
+        yield f"the answer is {_words(found)}, but its check says {_words(line.checks['answer'])}"
 
 
 def _words(passed: bool | None) -> str:
@@ -103,18 +103,18 @@ def checks_of(task: Task) -> set[str]:
 
 
 def _check_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """Yield faults of the checks: missing or unknown ones, or a verdict that is not theirs."""
+    """Yield faults of the checks: missing or unknown checks, or a check that contradicts the outcome."""
     if line.scored_by == "judge":
-        yield "scored by a judge, and the task has checks"
+        yield "scored by a judge, although the task has checks"
     if line.headline == "infrastructure" and line.outcome is None and not line.checks:
         return  # The run never began.
     required = checks_of(task)
     if lacking := sorted(required - set(line.checks)):
-        yield f"the task's checks {', '.join(lacking)} are missing"
+        yield f"checks of the task are missing: {', '.join(lacking)}"
     if further := sorted(set(line.checks) - required):
-        yield f"the task has no checks {', '.join(further)[:200]}"
+        yield f"the task does not have these checks: {', '.join(further)[:200]}"
     if "outcome" in line.checks and line.checks["outcome"] is not (line.outcome in task.behaviour.outcomes):
-        yield f"the outcome {line.outcome} and its check differ"
+        yield f"the outcome {line.outcome} contradicts its check"
 
 
 def _broken_faults(line: TrialLine, task: Task) -> Iterator[str]:
@@ -131,20 +131,20 @@ def _broken_faults(line: TrialLine, task: Task) -> Iterator[str]:
         or line.checks.get("coverage") is not False
         or (claimed and isinstance(parse_answer(task.expected, line.answer), ParsedValue))
     ):
-        yield f"broken by infrastructure although it ended {line.outcome} and perception did not fail it"
+        yield f"broken by infrastructure although it ended {line.outcome} and failures of perception do not explain it"
 
 
 def _call_faults(line: TrialLine, header: Header, task: Task) -> Iterator[str]:
-    """Yield faults of the calls: checks that passed require them."""
+    """Yield faults of the calls, such as a check that passed without the calls that it requires."""
     made, calls = sum(line.tool_calls.values()), Counter(line.tool_calls)
     if line.outcome is not None and line.outcome not in BREAKING and not line.steps:
-        yield f"it ended {line.outcome} without a step"
+        yield f"the trial ended {line.outcome} without a step"
     if made and not line.steps:
-        yield f"{made} calls in no step"
+        yield f"{made} calls, but no step"
     if line.bad_calls + line.perception_failures > made:
-        yield f"{line.bad_calls + line.perception_failures} calls failed of {made}"
-    if line.checks.get("coverage") and not _may_see(header.card) and not any(calls[tool] for tool in LOOKERS):
-        yield "coverage passed and nothing looked"
+        yield f"{line.bad_calls + line.perception_failures} failed calls, but only {made} calls"
+    if line.checks.get("coverage") and not _may_see(header.card) and not any(calls[tool] for tool in PERCEPTION_TOOLS):
+        yield "coverage passed without a perception call"
     if line.checks.get("calls"):
         needed = Counter[str]()
         for call in task.behaviour.calls:
@@ -155,7 +155,7 @@ def _call_faults(line: TrialLine, header: Header, task: Task) -> Iterator[str]:
         yield f"pictures passed with {calls['take_image']} of {task.behaviour.pictures} calls of take_image"
     moved = [name for name in ("pose", "framing") if line.checks.get(name)]
     if moved and set(task.needs) & MOVING and not any(calls[tool] for tool in MOVERS):
-        yield f"{moved[0]} passed and nothing moved the camera"
+        yield f"{moved[0]} passed, but no call moved the camera"
 
 
 def _may_see(card: RunCard) -> bool:

@@ -1,4 +1,4 @@
-"""Tables as data, and their cells as text. The page, the Markdown file and the CSV files are all made from the same tables."""
+"""The tables of a report, and their output as text, Markdown and CSV."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class MarkedCell:
         best: Whether it is the best of its group.
         best_of_all: Whether it is the best of the table.
         link: Address of a page.
-        note: A remark next to the value.
+        note: A remark, which is shown next to the value.
     """
 
     value: str | int | float | IntervalEstimate | None
@@ -60,8 +60,8 @@ class ReportTable:
         title: Its title.
         columns: The columns. The first one names the row.
         rows: The cells of each row.
-        notes: How to read it.
-        groups: Headings before rows, by the number of the row.
+        notes: Explanations below the table.
+        groups: Headings, by the index of the row that they precede.
     """
 
     key: str
@@ -132,38 +132,38 @@ def as_csv(table: ReportTable) -> str:
     its interval leaves out some strata.
     """
     cells_of = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
-    endings = [_endings([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in cells_of]
+    suffixes = [_suffixes([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in cells_of]
     out = io.StringIO()
     writer = csv.writer(out)
     heads = (["group"] if table.groups else []) + [
         name
-        for column, further in zip(table.columns, endings, strict=True)
-        for name in (column.name, *(f"{column.name}_{ending}" for ending in further))
+        for column, further in zip(table.columns, suffixes, strict=True)
+        for name in (column.name, *(f"{column.name}_{suffix}" for suffix in further))
     ]
     writer.writerow(heads)
     group = ""
     for number, row in enumerate(table.rows):
         group = table.groups.get(number, group)
-        cells: list[str | int | float | None] = [_inert(group)] if table.groups else []
-        for value, further in zip(row, endings, strict=True):
+        cells: list[str | int | float | None] = [_without_formula(group)] if table.groups else []
+        for value, further in zip(row, suffixes, strict=True):
             plain = unmarked(value)
             if isinstance(plain, IntervalEstimate):
                 cells += [plain.value, plain.low, plain.high, " ".join(plain.without)][: 1 + len(further)]
             else:
-                cells += [_inert(plain) if isinstance(plain, str) else plain, *(None for _ in further)]
+                cells += [_without_formula(plain) if isinstance(plain, str) else plain, *(None for _ in further)]
         writer.writerow(cells)
     return out.getvalue()
 
 
-def _endings(estimates: list[IntervalEstimate]) -> tuple[str, ...]:
-    """Return the endings of the additional CSV columns of an estimate."""
+def _suffixes(estimates: list[IntervalEstimate]) -> tuple[str, ...]:
+    """Return the suffixes of the additional CSV columns of estimates."""
     if not estimates:
         return ()
     return ("low", "high", "without") if any(found.without for found in estimates) else ("low", "high")
 
 
-def _inert(text: str) -> str:
-    """Return text that a spreadsheet does not run as a formula."""
+def _without_formula(text: str) -> str:
+    """Return text that a spreadsheet does not interpret as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 

@@ -1,4 +1,4 @@
-"""The content of a failed task's page: the instruction, the expected answer, and every failed trial step by step."""
+"""The content of the page of a failed task: the instruction, the expected answer, and every failed trial step by step."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import ScopeError
 
 FRAME_WIDTH = 640
-MOST_PIXELS = 64_000_000
-MOST_TEXT = 2_000
+"""Maximum width of a stored frame in pixels. Panoramas may be twice as wide."""
+MAX_PIXELS = 64_000_000
+MAX_TEXT_CHARS = 2_000
 
 
 class StoredRun(Protocol):
-    """A run as a log stores it: its trace, and its pictures by the names in the trace."""
+    """A stored run: its trace, and its pictures by their names in the trace."""
 
     @property
     def trace(self) -> Trace:
@@ -42,7 +43,7 @@ OpenSample = Callable[[Evaluation, Trial], StoredRun]
 
 
 @dataclass(frozen=True, slots=True)
-class CallShown:
+class PageCall:
     """A call on the page. ``frame`` is the path of its picture, ``replies`` are the answers of perception."""
 
     call: str
@@ -54,12 +55,12 @@ class CallShown:
 
 
 @dataclass(frozen=True, slots=True)
-class StepShown:
+class PageStep:
     """A step on the page. ``view`` is the frame that the planner was shown."""
 
     number: int
     thought: str
-    calls: tuple[CallShown, ...]
+    calls: tuple[PageCall, ...]
     view: str | None = None
 
 
@@ -69,7 +70,7 @@ class FailedRun:
 
     run: ReportRun
     trial: Trial
-    steps: tuple[StepShown, ...] = ()
+    steps: tuple[PageStep, ...] = ()
     first_frame: str | None = None
     missing: str = ""
 
@@ -90,7 +91,7 @@ class TaskPage:
 
 
 def page_files(evaluations: Sequence[Evaluation]) -> dict[str, str]:
-    """Return the page of each failed task, relative to the report's folder. No text from a log is used as a path."""
+    """Return the path of each failed task's page in the report's folder. Paths contain no unescaped text from logs."""
     failed = {t.task.id for e in evaluations for t in e.trials if t.headline in ("incorrect", "unscored")}
     return {task: f"tasks/{file_name(task)}" for task in sorted(failed)}
 
@@ -126,7 +127,7 @@ class FrameStore:
 
         try:
             with Image.open(io.BytesIO(content), formats=("JPEG", "PNG", "WEBP")) as picture:
-                if picture.width * picture.height > MOST_PIXELS:
+                if picture.width * picture.height > MAX_PIXELS:
                     return None
                 small = picture.convert("RGB")
         except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
@@ -144,7 +145,7 @@ def task_pages(
     frames: FrameStore,
     tasks: Mapping[str, Task],
 ) -> list[Callable[[], TaskPage]]:
-    """Return functions that each build one page. Pages are built one at a time, because pictures take memory."""
+    """Return one function per page that builds it, so that the pictures of only one page are in memory."""
     failed: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
         for trial in run.evaluation.trials:
@@ -164,26 +165,26 @@ def _failed_run(run: ReportRun, trial: Trial, open_sample: OpenSample | None, fr
     try:
         sample = open_sample(run.evaluation, trial)
         trace = sample.trace
-        return FailedRun(run, trial, _steps(trace, sample, frames), _kept(trace.started.frame, sample, frames))
+        return FailedRun(run, trial, _steps(trace, sample, frames), _stored_frame(trace.started.frame, sample, frames))
     except ScopeError as error:
         return FailedRun(run, trial, missing=f"The log does not contain the trajectory: {error}")
 
 
-def _kept(name: str | None, sample: StoredRun, frames: FrameStore) -> str | None:
+def _stored_frame(name: str | None, sample: StoredRun, frames: FrameStore) -> str | None:
     return None if name is None else frames.keep(sample.picture(name))
 
 
-def _steps(trace: Trace, sample: StoredRun, frames: FrameStore) -> tuple[StepShown, ...]:
+def _steps(trace: Trace, sample: StoredRun, frames: FrameStore) -> tuple[PageStep, ...]:
     shown = []
     for decided in trace.decisions:
         calls = tuple(_call(called, sample, frames) for called in trace.calls if called.step == decided.step)
         decision = decided.decision
         thought = "; ".join(part for part in (getattr(decision, "thought", ""), decision.reasoning) if part)
-        shown.append(StepShown(decided.step, cut(thought), calls, _kept(decided.view, sample, frames)))
+        shown.append(PageStep(decided.step, cut(thought), calls, _stored_frame(decided.view, sample, frames)))
     return tuple(shown)
 
 
-def _call(called: Called, sample: StoredRun, frames: FrameStore) -> CallShown:
+def _call(called: Called, sample: StoredRun, frames: FrameStore) -> PageCall:
     outcome = called.outcome
     arguments = ", ".join(f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in outcome.call.arguments.items())
     failed = outcome.error is not None
@@ -195,8 +196,8 @@ def _call(called: Called, sample: StoredRun, frames: FrameStore) -> CallShown:
         )
         for reply in called.replies
     )
-    return CallShown(
-        cut(f"{outcome.call.name}({arguments})"), cut(result), failed, pose, replies, _kept(called.frame, sample, frames)
+    return PageCall(
+        cut(f"{outcome.call.name}({arguments})"), cut(result), failed, pose, replies, _stored_frame(called.frame, sample, frames)
     )
 
 
@@ -210,7 +211,7 @@ def _message(result: Mapping[str, Any] | None) -> str:
 
 
 def _seen(result: Mapping[str, Any] | None) -> str:
-    """Return what perception answered: places in percent of the frame, texts unchanged. Other details are in the log."""
+    """Return the reply of perception as text, with places in percent of the frame."""
     for key, one in (("boxes", "box"), ("points", "point")):
         places = result.get(key) if result else None
         if isinstance(places, list | tuple) and result is not None:
@@ -245,7 +246,7 @@ def _notes(result: Mapping[str, Any]) -> str:
 
 
 def _in_words(value: Any) -> str:
-    """Return data as text: names with values, numbers with four digits, without empty values."""
+    """Return data as text, without empty values. Numbers have four significant digits."""
     if isinstance(value, Mapping):
         parts = {str(key).replace("_", " "): part for key, part in value.items() if part not in (None, "", [], {}, ())}
         return "; ".join(f"{key}: {_in_words(part)}" for key, part in parts.items()) or "nothing"
@@ -258,7 +259,7 @@ def _in_words(value: Any) -> str:
 
 def cut(text: str) -> str:
     """Return a text shortened to fit a page."""
-    return text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]} … ({len(text):,} characters)"
+    return text if len(text) <= MAX_TEXT_CHARS else f"{text[:MAX_TEXT_CHARS]} … ({len(text):,} characters)"
 
 
 def evidence_lines(task: Task | None) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Write a report: the HTML page, Markdown, CSV files, and a page for each failed task. All text from models is escaped."""
+"""Write a report: the HTML page, Markdown, CSV files, and a page for each failed task. Text from models is escaped."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def write_report(
 
     Args:
         evaluations: The evaluations.
-        registry: The models that the report may look up.
+        registry: The registry that describes the models.
         out: The folder of the report.
-        open_sample: Opens a stored run for its trajectory; without it pages have none.
+        open_sample: Opens a stored run; without it the pages show no trajectories.
         tasks: The tasks by id, for the evidence on their pages.
         progress: Called with the number of finished pages and of all pages.
         pages: Whether failed tasks have pages.
@@ -59,7 +59,7 @@ def write_report(
         The report.
 
     Raises:
-        OutputError: The folder holds something other than a report, or cannot be written.
+        OutputError: The folder contains something other than a report, or cannot be written.
         InputError: The evaluations have no trial.
     """
     files = page_files(evaluations) if pages else {}
@@ -86,14 +86,14 @@ def write_report(
 
 
 def _clear(out: Path) -> None:
-    """Remove an older report. A folder that holds anything else is never touched."""
+    """Remove an older report. A folder with anything else is left unchanged."""
     if out.exists() and not out.is_dir():
         raise OutputError(f"{out} is a file. Give a folder for the report.")
     if not out.exists() or not any(out.iterdir()):
         return
     page = out / "index.html"
     if not page.is_file() or f'content="{GENERATOR}' not in page.read_text("utf-8", errors="replace")[:2000]:
-        raise OutputError(f"{out} holds something that is not a report. Give an empty folder or a new name.")
+        raise OutputError(f"{out} contains something that is not a report. Give an empty folder or a new name.")
     for folder, pattern in _OWN:
         for old in (out / folder).glob(pattern):
             old.unlink()

@@ -1,1 +1,1 @@
-"""Scoring of runs: checks, verdicts, error modes, and the records of trials."""
+"""Scoring of runs: checks, verdicts, error modes, and records of trials."""

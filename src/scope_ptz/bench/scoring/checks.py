@@ -19,7 +19,7 @@ from scope_ptz.geometry import Perspective, direction, wrap_pan_deg
 CheckName = Literal["outcome", "answer", "coverage", "pose", "calls", "forbidden", "pictures", "framing"]
 SAME_ANGLE_DEG = 0.5
 SAME_ZOOM_SHARE = 0.03
-"""Two poses within these tolerances are the same."""
+"""Tolerances within which two poses are the same: degrees of pan or tilt, and the relative difference of zoom."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +54,11 @@ def check_answer(task: Task, episode: Episode) -> CheckResult | None:
     passed = agrees(task.expected, parsed)
     if isinstance(parsed, Unreadable):
         return CheckResult("answer", None, f"cannot be read: {parsed.reason}")
-    stated = "declined" if isinstance(parsed, Declined) else f"read as {_plain(parsed.value)}"
+    stated = "declined" if isinstance(parsed, Declined) else f"read as {_as_text(parsed.value)}"
     return CheckResult("answer", passed, stated if passed else f"{stated}, which is not what is expected")
 
 
-def _plain(value: object) -> str:
+def _as_text(value: object) -> str:
     return (
         ", ".join(sorted(value)) or "none"
         if isinstance(value, frozenset) and all(isinstance(v, str) for v in value)
@@ -67,7 +67,7 @@ def _plain(value: object) -> str:
 
 
 def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that perception successfully observed everything that the answer rests on."""
+    """Check that successful observations cover the evidence for the answer."""
     required = [view for view in task.evidence if view.must_look]
     if not required:
         return None
@@ -84,14 +84,14 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("pose", not wrong, "; ".join(wrong) or "the final pose is as wanted")
 
 
-def pose_difference(required: FinalPose, is_at: CameraPosition) -> list[str]:
+def pose_difference(required: FinalPose, actual: CameraPosition) -> list[str]:
     """Return how a camera state differs from the required one, in words; empty if it is within tolerance."""
     wrong = []
-    if is_at.viewpoint != required.viewpoint:
-        wrong.append(f"at viewpoint {is_at.viewpoint}, not {required.viewpoint}")
-    pan = abs(wrap_pan_deg(is_at.pose.pan_deg - required.pan_deg))
-    tilt = abs(is_at.pose.tilt_deg - required.tilt_deg)
-    zoom = abs(is_at.pose.zoom / required.zoom - 1)
+    if actual.viewpoint != required.viewpoint:
+        wrong.append(f"at viewpoint {actual.viewpoint}, not {required.viewpoint}")
+    pan = abs(wrap_pan_deg(actual.pose.pan_deg - required.pan_deg))
+    tilt = abs(actual.pose.tilt_deg - required.tilt_deg)
+    zoom = abs(actual.pose.zoom / required.zoom - 1)
     if pan > required.tolerance_deg + 1e-6:
         wrong.append(f"pan is off by {pan:.2f} degrees")
     if tilt > required.tolerance_deg + 1e-6:

@@ -1,4 +1,4 @@
-"""Coverage of evidence: whether a run observed the views that its answer rests on.
+"""Coverage of evidence: whether a run observed the views on which its answer is based.
 
 An answer passes only if successful observations cover its evidence.
 """
@@ -17,21 +17,23 @@ from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Equirectangular, Perspective, direction
 
 INSET = 0.02
-"""Share of a view at each border that need not be covered. Nothing that counts lies there."""
+"""Share of a view at each border that need not be covered. It contains no evidence."""
 
 MIN_CAP_PX = 14.0
 """Minimum height of capitals in pixels. Smaller text is not legible."""
 
 _GRID = 9
+"""Number of reference directions along each side of a view."""
 _EDGE = 1e-6
+"""Relative tolerance of all comparisons."""
 Floats = NDArray[np.float64]
 
 
 def uncovered_part(view: EvidenceView, observations: Sequence[Observation]) -> str | None:
-    """Return what the observations leave uncovered, in words.
+    """Describe what the observations leave uncovered.
 
     Args:
-        view: A view that the answer rests on.
+        view: A view on which the answer is based.
         observations: The observations of the run.
 
     Returns:
@@ -55,7 +57,7 @@ def uncovered_part(view: EvidenceView, observations: Sequence[Observation]) -> s
 
 
 def counts_for(view: EvidenceView, observation: Observation) -> bool:
-    """Return whether an observation has the viewpoint, the time and the subject of a view."""
+    """Return whether an observation matches the viewpoint, the time window and the subject of a view."""
     if observation.viewpoint != view.aim.viewpoint:
         return False
     if view.window_s is not None and not view.window_s[0] <= observation.time_s <= view.window_s[1]:
@@ -64,7 +66,7 @@ def counts_for(view: EvidenceView, observation: Observation) -> bool:
 
 
 def reference_directions(view: EvidenceView) -> Floats:
-    """Return directions all over a view's reference frame, without its border.
+    """Return directions spread over a view's reference frame, except its border.
 
     If the scope is full, they cover the whole circle within the view's band of tilts.
 
@@ -89,7 +91,7 @@ def inside(observation: Observation, directions: Floats) -> NDArray[np.bool_]:
 
 
 def is_within(item: Item, observation: Observation) -> bool:
-    """Return whether a piece of evidence is completely in the picture, whatever its size."""
+    """Return whether a piece of evidence is completely in the picture, at any size."""
     return bool(inside(observation, box_directions(item.box_deg)).all())
 
 

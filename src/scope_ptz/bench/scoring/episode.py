@@ -1,6 +1,6 @@
-"""A run as the checks see it: its calls with the camera's pose before and after, its observations, and how it ended.
+"""The record of a run that the checks use: calls with the camera's pose before and after, observations, and the outcome.
 
-An episode is built from a recorded trace, or by hand in tests. It knows nothing about the scene's ground truth.
+An episode is built from a recorded trace, or by hand in tests. It contains no ground truth of the scene.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ class Observation:
     """One successful observation by perception, or by a planner that is shown frames.
 
     Attributes:
-        viewpoint: Where the camera stood.
-        projection: What the picture shows.
+        viewpoint: Viewpoint of the camera.
+        projection: Projection of the picture.
         time_s: Scene time.
         how: The kind of perception call; "planner" for a frame that the planner was shown.
         asked: The description or question of the call.
@@ -57,7 +57,7 @@ class Observation:
 
 @dataclass(frozen=True, slots=True)
 class EpisodeCall:
-    """A tool call. ``fault`` says who caused ``error``, as in the trace; ``observations`` holds the successful ones."""
+    """A tool call. ``fault`` is the cause of ``error``, as in the trace; ``observations`` are the successful ones."""
 
     name: str
     arguments: Mapping[str, Any]
@@ -77,7 +77,7 @@ class EpisodeCall:
 
 @dataclass(frozen=True, slots=True)
 class SavedPicture:
-    """A picture that ``take_image`` reported. ``exists`` is None if the run was set to keep no pictures."""
+    """A picture that ``take_image`` reported. ``exists`` is None if the run kept no pictures."""
 
     file: str
     exists: bool | None = None
@@ -89,9 +89,9 @@ class Episode:
 
     Attributes:
         instruction: What the agent was asked to do.
-        start: Where the camera began.
+        start: Position of the camera at the start.
         calls: The tool calls in order.
-        final: Where the camera ended.
+        final: Position of the camera at the end.
         answer: The agent's final answer.
         outcome: How the run ended; None if it was interrupted.
         pictures: The pictures that the agent took.
@@ -121,7 +121,7 @@ class Episode:
 
 @dataclass(frozen=True, slots=True)
 class PresetViewpoints:
-    """The viewpoint of each preset and of the home position, as the scene defines them."""
+    """The viewpoints of a scene's presets and of its home position."""
 
     presets: Mapping[str, str]
     home: str
@@ -162,7 +162,7 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
         trace: The recorded run.
         places: The viewpoints of the scene's presets.
         planner_sees: Whether the planner was shown frames.
-        keeps_files: Whether pictures are kept in the run folder, so that missing files count as missing.
+        keeps_files: Whether the run folder keeps pictures. If it does, a picture without a file is a fault.
     """
     started = trace.started
     geometry = FrameGeometry(started.frame_width, started.frame_height)
@@ -244,7 +244,7 @@ def _planner_views(
     geometry: FrameGeometry,
     start_s: float,
 ) -> Iterator[Observation]:
-    """Yield the frame that the planner was shown before each of its decisions."""
+    """Yield the frames that the planner was shown before its decisions."""
     for decided in decisions:
         if decided.decision.opened is False:
             continue

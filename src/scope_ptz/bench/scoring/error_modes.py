@@ -1,7 +1,7 @@
 """The paper's eight error modes. A rule assigns exactly one to each failed run, in a published order of precedence.
 
-Errors of the agent's actions come first, then errors of perception, then errors of reasoning. An agent that observed the wrong
-thing was not misled by perception, and an agent that was misled did not reason wrongly. docs/benchmark.md states the rules.
+Errors of the agent's actions come first, then errors of perception, then errors of reasoning. If the agent observed the wrong
+thing, perception did not mislead it; if perception misled it, its reasoning was not wrong. docs/benchmark.md states the rules.
 """
 
 from __future__ import annotations
@@ -35,12 +35,14 @@ class ErrorMode(StrEnum):
     REASONING = "reasoning"
 
 
-_LOOKERS = frozenset({"count_objects", "query_answer"})
-_MOVERS = frozenset({"adjust_ptz", "go_to_preset", "go_home"})
+_OBSERVING_TOOLS = frozenset({"count_objects", "query_answer"})
+_MOVING_TOOLS = frozenset({"adjust_ptz", "go_to_preset", "go_home"})
 
 
 @dataclass(frozen=True, slots=True)
 class _Case:
+    """A failed run, with the facts that the rules use."""
+
     task: Task
     episode: Episode
     verdict: Verdict
@@ -66,26 +68,26 @@ class _Case:
         """Tools that the instruction requires or the reference program uses. ``get_presets`` counts only if it is required."""
         return {call.tool for call in self.task.reference if call.tool != "get_presets"} | self.fixed
 
-    def alike(self, name: str) -> frozenset[str]:
-        """Return the tools that can replace a tool.
+    def replacements(self, name: str) -> frozenset[str]:
+        """Return the tools that can replace a tool, including itself.
 
-        The two tools that only observe replace each other. Tools that move replace each other if the camera reached its target.
+        The two tools that only observe can replace each other. Tools that move can if the camera reached its target.
         """
-        if name in _LOOKERS:
-            return _LOOKERS
-        astray = any(self.verdict.failed(check) for check in ("pose", "coverage", "framing"))
-        return _MOVERS if name in _MOVERS and not astray else frozenset({name})
+        if name in _OBSERVING_TOOLS:
+            return _OBSERVING_TOOLS
+        missed_target = any(self.verdict.failed(check) for check in ("pose", "coverage", "framing"))
+        return _MOVING_TOOLS if name in _MOVING_TOOLS and not missed_target else frozenset({name})
 
     def missing_tools(self) -> set[str]:
         """Return needed tools that were never tried. A replacement counts unless the instruction requires the tool itself."""
         untried = self.needed - self.attempted
-        return {name for name in untried if name in self.fixed or not self.alike(name) & self.attempted}
+        return {name for name in untried if name in self.fixed or not self.replacements(name) & self.attempted}
 
-    def strangers(self) -> set[str]:
+    def unneeded_tools(self) -> set[str]:
         """Return tools that were tried but are neither needed nor a replacement for a needed tool."""
-        idle = self.needed - self.attempted - self.fixed
-        stand_ins = {other for name in idle for other in self.alike(name)}
-        return self.attempted - self.needed - stand_ins - {"get_presets"}
+        replaceable = self.needed - self.attempted - self.fixed
+        replacements_used = {other for name in replaceable for other in self.replacements(name)}
+        return self.attempted - self.needed - replacements_used - {"get_presets"}
 
 
 def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) -> ErrorMode | None:
@@ -108,7 +110,7 @@ def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) ->
 
 def _lacks_call(case: _Case) -> bool:
     """Return whether a needed tool was never tried and no other tool was tried in its place."""
-    return (case.acted_wrongly or not case.episode.calls) and bool(case.missing_tools()) and not case.strangers()
+    return (case.acted_wrongly or not case.episode.calls) and bool(case.missing_tools()) and not case.unneeded_tools()
 
 
 def _routed_wrongly(case: _Case) -> bool:
@@ -156,7 +158,7 @@ def _wrong_arguments(case: _Case) -> bool:
 
 
 def _was_blind(case: _Case) -> bool:
-    """Return whether every observation failed, so that wrong arguments cannot be the cause."""
+    """Return whether every perception call failed, so that wrong arguments cannot be the cause."""
     return not case.episode.observations and any(call.fault == "perception" for call in case.episode.calls)
 
 
@@ -180,7 +182,7 @@ def _was_misled(case: _Case) -> bool:
             continue
         fixed = [spec for spec in required if spec.tool == call.name]
         asked_right = all(call_matches(spec, call, {"found"}) for spec in fixed) if fixed else _asks_as_reference(case.task, call)
-        if asked_right and not _got_there(case, call):
+        if asked_right and not _reached_target(case, call):
             return True
     return False
 
@@ -195,7 +197,7 @@ def _content(call: EpisodeCall | ProgramCall) -> set[str]:
     return set(plain_words(str(call.arguments.get("description", "")))) - {"a", "an", "the"}
 
 
-def _got_there(case: _Case, call: EpisodeCall) -> bool:
+def _reached_target(case: _Case, call: EpisodeCall) -> bool:
     """Return whether a search found something and left the target framed, or in view if the task requires no framing."""
     if (call.result or {}).get("found") is False:
         return False
@@ -210,7 +212,7 @@ def _view_after(episode: Episode, call: EpisodeCall) -> Observation:
     return replace(call.observations[0], viewpoint=call.after.viewpoint, projection=view)
 
 
-def _made_up(case: _Case) -> bool:
+def _hallucinated(case: _Case) -> bool:
     """Return whether the answer claims something that does not follow from what the tools reported."""
     if case.episode.outcome != "answered":
         return False
@@ -236,7 +238,7 @@ _RULES: tuple[tuple[ErrorMode, Callable[[_Case], bool]], ...] = (
     (ErrorMode.TOOL_ROUTING, _routed_wrongly),
     (ErrorMode.SCOPE, _wrong_scope),
     (ErrorMode.TOOL_ARGS, _wrong_arguments),
-    (ErrorMode.HALLUCINATION, _made_up),
+    (ErrorMode.HALLUCINATION, _hallucinated),
     (ErrorMode.VLM_COUNTING, _miscounted),
     (ErrorMode.VLM_QUERY, _misread),
 )

@@ -28,7 +28,8 @@ from scope_ptz.bench.tasks.expected import (
 )
 from scope_ptz.bench.tasks.task import Task
 
-_MOST_COUNTS = 8
+_MAX_COUNTS = 8
+"""Number of counts of which all sums are computed."""
 
 
 def text_from_tools(episode: Episode) -> str:
@@ -54,14 +55,14 @@ def numbers_from_tools(episode: Episode) -> set[float]:
         if "answer" in result:
             other |= numbers_in(str(result["answer"]))
             other |= {0.0} if parse_answer(NoneThere(subject=("thing",)), str(result["answer"])) == ParsedValue(True) else set()
-    sums = {sum(c) for n in range(1, min(len(counts), _MOST_COUNTS) + 1) for c in combinations(counts[:_MOST_COUNTS], n)}
+    sums = {sum(c) for n in range(1, min(len(counts), _MAX_COUNTS) + 1) for c in combinations(counts[:_MAX_COUNTS], n)}
     return other | sums | {abs(a - b) for a, b in combinations(counts, 2)} | {float(sum(c > 0 for c in counts))}
 
 
 def is_supported_by_tools(task: Task, episode: Episode) -> bool:
     """Return whether the answer follows from what the tools reported.
 
-    Denials and comparisons are conclusions and need no report that states them.
+    Denials and comparisons are conclusions, so no tool needs to report them.
     """
     reading = parse_answer(task.expected, episode.answer)
     if not isinstance(reading, ParsedValue):
@@ -82,7 +83,7 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
             return all(_reported(episode, all_wordings(name, task.expected.options[name])) for name in named)
         case YesNo() | NoneThere():
             claims_presence = value == isinstance(task.expected, YesNo)
-            return not claims_presence or _presences(task, episode)
+            return not claims_presence or _is_presence_reported(task, episode)
         case Description():
             return _contradictions_reported(task.expected, value, reported)
         case _:
@@ -114,8 +115,8 @@ def _reported(episode: Episode, wordings: Sequence[str]) -> bool:
     return False
 
 
-def _presences(task: Task, episode: Episode) -> bool:
-    """Return whether any tool reported something that an answer may call a yes."""
+def _is_presence_reported(task: Task, episode: Episode) -> bool:
+    """Return whether a tool reported a presence that supports the answer yes."""
     for call in episode.calls:
         result = call.result or {}
         if call.succeeded and (result.get("count", 0) or result.get("found") or _answers_yes(task.expected, result.get("answer"))):

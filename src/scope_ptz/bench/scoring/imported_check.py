@@ -11,7 +11,7 @@ NAME = "calls"
 
 
 def check_imported_calls(imported: ImportedTask, episode: Episode) -> CheckRecord:
-    """Check that a run made the calls that an imported task expects. It is undecided if the file expects none."""
+    """Check that a run made the calls that an imported task expects. Without expected calls the check is undecided."""
     required = imported.calls
     if not required or imported.policy == "none":
         return CheckRecord(name=NAME, passed=None, reason="the file demands no tools")
@@ -22,9 +22,9 @@ def check_imported_calls(imported: ImportedTask, episode: Episode) -> CheckRecor
     missing = (missing_in_order if imported.order == "ordered" else missing_in_any_order)(required, episode.calls)
     if missing is not None:
         return CheckRecord(name=NAME, passed=False, reason=missing)
-    strangers = {call.name for call in episode.calls if call.succeeded} - {spec.tool for spec in required}
-    if imported.policy == "exact" and strangers:
+    unexpected = {call.name for call in episode.calls if call.succeeded} - {spec.tool for spec in required}
+    if imported.policy == "exact" and unexpected:
         return CheckRecord(
-            name=NAME, passed=False, reason=f"only the expected tools may be used, and {', '.join(sorted(strangers))} was"
+            name=NAME, passed=False, reason=f"only the expected tools may be used, and {', '.join(sorted(unexpected))} was"
         )
     return CheckRecord(name=NAME, passed=True, reason="every expected call was made")

@@ -12,7 +12,7 @@ from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NameSet, NoneThe
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 
 CountTruth = Callable[[Observation], int | None]
-"""Return the true count of what an observation asked for, in its own picture; None if the ground truth cannot tell."""
+"""Returns the true count of the requested things in the picture of an observation; None if the ground truth cannot tell."""
 
 
 def wrong_counts(task: Task, episode: Episode, truth: CountTruth | None) -> bool:
@@ -27,9 +27,9 @@ def wrong_counts(task: Task, episode: Episode, truth: CountTruth | None) -> bool
         counted = (call.result or {}).get("count")
         if observation.how != "count" or not isinstance(counted, int):
             continue
-        really = truth(observation) if truth is not None else None
-        if really is not None:
-            if really != counted:
+        true_count = truth(observation) if truth is not None else None
+        if true_count is not None:
+            if true_count != counted:
                 return True
             continue
         if any(_miscounts(view.shows, counted) for view in shown_by(task, observation)):
@@ -71,17 +71,17 @@ def _answers_wrongly(view: EvidenceView, observation: Observation, call: Episode
         return _misreads(view.shows, call)
     options, reply = view.shows.options, str((call.result or {}).get("answer", ""))  # type: ignore[union-attr]
     wordings = all_wordings(one, options[one])
-    there = one in view.shows.value if isinstance(view.shows, NameSet) else True
-    if (call.result or {}).get("known") is False or parse_answer(NoneThere(subject=wordings), reply) == ParsedValue(there):
+    is_present = one in view.shows.value if isinstance(view.shows, NameSet) else True
+    if (call.result or {}).get("known") is False or parse_answer(NoneThere(subject=wordings), reply) == ParsedValue(is_present):
         return True
-    if not there and parse_answer(YesNo(value=True, affirms=wordings), reply) == ParsedValue(True):
+    if not is_present and parse_answer(YesNo(value=True, affirms=wordings), reply) == ParsedValue(True):
         return True
     does_not_name_it = isinstance(view.shows, Ordering) or not names_any(reply, wordings)
     return does_not_name_it and not isinstance(view.shows, NameSet) and _misreads(view.shows, call)
 
 
 def _asked_of(view: EvidenceView, asked: str) -> str | None:
-    """Return the only one of several compared or listed things that a question names; None if it names none or more."""
+    """Return the only one of several compared or listed things that a question names; None if it names none or several."""
     if not isinstance(view.shows, Choice | Ordering | NameSet) or (not isinstance(view.shows, NameSet) and len(view.items) < 2):
         return None
     named = [name for name, further in view.shows.options.items() if names_any(asked, all_wordings(name, further))]
@@ -98,20 +98,20 @@ def _misreads(right: AnyExpected | None, call: EpisodeCall) -> bool:
 def shown_by(task: Task, observation: Observation) -> Iterator[EvidenceView]:
     """Yield the evidence views that an observation shows.
 
-    The viewpoint, the scope and the subject must match, and the picture must hold the items or the whole view.
+    The viewpoint, the scope and the subject must match, and the picture must contain the items or the whole view.
     """
     for view in task.evidence:
         if (view.scope == "full") == observation.swept and counts_for(view, observation):
             if not all(is_within(item, observation) for item in view.items):
                 continue
             if not view.whole or (
-                inside(observation, reference_directions(view)).mean() > 0.9 and look_is_as_wide(view, observation)
+                inside(observation, reference_directions(view)).mean() > 0.9 and _is_as_narrow(view, observation)
             ):
                 yield view
 
 
-def look_is_as_wide(view: EvidenceView, observation: Observation) -> bool:
-    """Return whether a picture shows little more than the reference view. A wider picture may hold more to count."""
+def _is_as_narrow(view: EvidenceView, observation: Observation) -> bool:
+    """Return whether a picture shows little more than the reference view. A wider picture may contain more to count."""
     return observation.swept or observation.projection.reach_deg <= 1.1 * _reach_deg(view)
 
 

@@ -69,7 +69,7 @@ def missing_in_order(required: Sequence[RequiredCall], calls: Sequence[EpisodeCa
 def missing_in_any_order(
     required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()
 ) -> str | None:
-    """Return which required call is missing in any order; None if each is matched by a call of its own."""
+    """Return which required call is missing in any order; None if a different call matches each of them."""
     slots = [spec for spec in required for _ in range(spec.times)]
     taken: dict[int, int] = {}
 

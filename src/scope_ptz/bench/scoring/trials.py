@@ -1,6 +1,6 @@
-"""Evaluations as plain data: the trials of a log with their verdicts, and the conditions of the evaluation.
+"""The records of an evaluation: its trials with their verdicts, and its conditions.
 
-Reports, agreement and gates are computed from these records. ``bench.engine.logs`` converts logs of the evaluation engine to them.
+Reports, agreement and regression gates use these records. ``bench.engine.logs`` reads them from logs.
 The docstrings of ``ModelCard`` and ``RunCard`` are part of the published schema of submissions.
 """
 
@@ -41,7 +41,7 @@ class Judgement(_Record):
         verdict: "unparseable" if the judge never gave a valid verdict, "failed" if its server never answered.
         error_mode: The error mode that the judge names.
         reason: The judge's reason.
-        attempts: Requests that were made.
+        attempts: Number of requests.
         input_tokens: Tokens of all requests.
         output_tokens: Tokens of all replies.
         latency_s: Wall seconds of the whole judgement.
@@ -92,11 +92,11 @@ class Trial(_Record):
         epoch: 1 for the first run of the task.
         sample: Name of the run in the log, which holds its trace and pictures.
         headline: The verdict.
-        scored_by: Whose verdict the headline is: the checks', or a judge's if the task has no check of its answer.
-        reason: Why the headline is what it is.
-        error_mode: Why the run failed; None unless the headline is "incorrect".
+        scored_by: The source of the headline: the checks, or a judge if the task has no check of its answer.
+        reason: The reason for the headline.
+        error_mode: The error mode; None unless the headline is "incorrect".
         checks: The results of the checks.
-        collateral: Whether the camera ended elsewhere without being asked to.
+        collateral: Whether the camera ended at another pose although the task required no move.
         outcome: How the run ended; None if it was interrupted.
         answer: The agent's final answer.
         steps: Decisions of the planner.
@@ -183,12 +183,12 @@ class RunCard(_Record):
 
     @property
     def ranked(self) -> bool:
-        """Whether the pair takes part in rankings of models."""
+        """Whether rankings of models include the pair."""
         return not (self.planner.deterministic or self.perception.deterministic)
 
 
 class Evaluation(_Record):
-    """An evaluation log as data.
+    """An evaluation: its conditions and its trials.
 
     Attributes:
         card: The conditions of the evaluation.

@@ -1,4 +1,4 @@
-"""The verdict on a run: one headline from all of its checks.
+"""The verdict on a run: a headline that combines all of its checks.
 
 A run is correct only if every check passes. Runs that cannot be scored and runs that infrastructure broke have their own headlines.
 """
@@ -19,7 +19,7 @@ from scope_ptz.tools.registry import TOOLS
 Headline = Literal["correct", "incorrect", "unscored", "infrastructure"]
 MOVERS = TOOLS.moving
 AGENTS_OWN_FAILURES = frozenset({"empty", "context-overflow"})
-"""Failures of a planner's server that the model itself causes: an empty reply, or a full context."""
+"""Kinds of planner failures that count as the agent's own: an empty reply, and a full context."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Verdict:
         task: The task's id.
         headline: The verdict itself.
         checks: The results of the checks.
-        collateral: Whether the camera ended elsewhere without being asked to. It does not affect the headline.
+        collateral: Whether the camera ended at another pose although the task required no move. The headline does not depend on it.
         reason: The reason for the headline.
     """
 
@@ -76,7 +76,7 @@ def _headline(task: Task, episode: Episode, checks: tuple[CheckResult, ...]) -> 
 
 
 def infrastructure(task: Task, episode: Episode) -> str | None:
-    """Return why a run says nothing about the agent: it was interrupted, or the camera or a model server failed.
+    """Return why a run cannot be used to score the agent: it was interrupted, or the camera or a model server failed.
 
     Returns:
         None if the run can be scored.
@@ -101,7 +101,7 @@ def claims(task: Task, episode: Episode) -> bool:
 
 
 def collateral(task: Task, episode: Episode) -> bool:
-    """Return whether the camera ended elsewhere although neither the instruction nor the way to the answer requires a move."""
+    """Return whether the camera ended at another pose although neither the instruction nor finding the answer requires a move."""
     behaviour = task.behaviour
     asked = behaviour.final or behaviour.framing or any(call.tool in MOVERS for call in behaviour.calls)
     return not asked and set(task.needs) <= {"sweep"} and bool(changes(episode.start, episode.final))

@@ -1,1 +1,1 @@
-"""Statistics for evaluations: small pure functions with the sources of their formulas. They know nothing about runs."""
+"""Statistics for evaluations: pure functions, with references for their formulas."""

@@ -1,11 +1,11 @@
-"""Means over strata with cluster-robust intervals, because tasks at one viewpoint are alike.
+"""Means over strata with cluster-robust intervals, because outcomes of tasks at one viewpoint are correlated.
 
 An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k. With w_k = 1/K it is the macro average, with a single
 stratum the micro average, with weights +1 and -1 a contrast. Its variance is that of the linearised estimate, summed by cluster
 (Liang and Zeger 1986), times G/(G-1). Quantiles are Student's with G-1 degrees of freedom (Cameron and Miller 2015, sections II.A
 and VI.D).
 
-Repeats of a task are one observation, called a ``unit``, because repeating a task does not add tasks.
+Repeats of a task count as one observation, called a ``unit``.
 """
 
 from __future__ import annotations
@@ -21,12 +21,13 @@ from scipy.special import stdtr, stdtrit  # type: ignore[import-untyped]
 
 LEVEL = 0.95
 _ROUNDING = 1e-24
+"""Variances up to this size are rounding errors."""
 Numbers = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """Outcomes with their groups, all of length n.
+    """Outcomes with their strata, clusters and units. All sequences have length n.
 
     Attributes:
         values: The outcomes, of shape ``(n,)``.
@@ -95,7 +96,7 @@ def weighted_mean(scores: Scores, weights: Mapping[Any, float]) -> float:
     found: dict[Hashable, list[float]] = {}
     for stratum, value in zip(scores.strata, scores.values.tolist(), strict=True):
         found.setdefault(stratum, []).append(value)
-    _hold_all(found, weights)
+    _check_strata(found, weights)
     # Exact summation, so that runs with the same outcomes have the same mean in any order.
     return fsum(weight * (fsum(found[stratum]) / len(found[stratum])) for stratum, weight in weights.items())
 
@@ -195,7 +196,7 @@ def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> In
 
 
 def share_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
-    """Estimate the share of ``first`` minus the share of ``second``, which have different outcomes.
+    """Estimate the share of ``first`` minus the share of ``second``, which are different sets of outcomes.
 
     The interval combines those of the two shares as if they were independent (Newcombe 1998, method 10; Zou and Donner 2008).
     Unlike value +- t se, it has a width even if all outcomes of one side are equal. It is unknown if one of the shares has no
@@ -230,10 +231,10 @@ def newcombe(one: Bounded, other: Bounded) -> tuple[float, float] | tuple[None, 
     Returns:
         (None, None) if one of the intervals is unknown.
     """
-    (p, low, high), (q, least, most) = one, other
-    if low is None or high is None or least is None or most is None:
+    (p, p_low, p_high), (q, q_low, q_high) = one, other
+    if p_low is None or p_high is None or q_low is None or q_high is None:
         return None, None
-    return p - q - hypot(p - low, most - q), p - q + hypot(high - p, q - least)
+    return p - q - hypot(p - p_low, q_high - q), p - q + hypot(p_high - p, q - q_low)
 
 
 def _without(scores: Scores, weights: Mapping[Any, float]) -> tuple[str, ...]:
@@ -276,12 +277,12 @@ def _factorise(labels: Sequence[Hashable]) -> tuple[list[Hashable], NDArray[np.i
 def _coded(scores: Scores, weights: Mapping[Any, float]) -> tuple[NDArray[np.intp], Numbers]:
     """Return the stratum of each outcome, of shape ``(n,)``, and each stratum's weight divided by its number of outcomes."""
     strata, codes = _factorise(scores.strata)
-    _hold_all(strata, weights)
+    _check_strata(strata, weights)
     counts = np.bincount(codes, minlength=len(strata))
     return codes, np.array([weights.get(stratum, 0.0) / n for stratum, n in zip(strata, counts, strict=True)])
 
 
-def _hold_all(strata: Collection[Hashable], weights: Mapping[Any, float]) -> None:
+def _check_strata(strata: Collection[Hashable], weights: Mapping[Any, float]) -> None:
     if absent := set(weights) - set(strata):
         raise ValueError(f"no outcome in {', '.join(sorted(map(str, absent)))}")
 

@@ -1,4 +1,4 @@
-"""Statistics of two runs over the same tasks: exact test, cluster bootstrap, and adjustment for multiple tests."""
+"""Statistics for comparing two runs over the same tasks: exact test, cluster bootstrap, adjustment for multiple tests."""
 
 from __future__ import annotations
 

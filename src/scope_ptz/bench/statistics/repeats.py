@@ -23,7 +23,7 @@ def pass_all(runs: int, passed: int, k: int) -> float | None:
         ValueError: ``passed`` is not between 0 and ``runs``, or ``k`` is below 1.
     """
     if not 0 <= passed <= runs or k < 1:
-        raise ValueError("passed lies between 0 and runs, and k is 1 or more")
+        raise ValueError("passed must be between 0 and runs, and k must be at least 1")
     return comb(passed, k) / comb(runs, k) if k <= runs else None
 
 

@@ -104,7 +104,7 @@ class Ordering(_Expected):
     @model_validator(mode="after")
     def _known(self) -> Ordering:
         if sorted(self.value) != sorted(self.options):
-            raise ValueError("an ordering orders all of its options, each once")
+            raise ValueError("an ordering must contain all of its options, each once")
         return self
 
 

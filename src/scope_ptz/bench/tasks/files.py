@@ -36,11 +36,11 @@ def load_tasks(path: Path) -> tuple[Task, ...]:
     except (ValueError, yaml.YAMLError) as error:
         raise InputError(f"{path} holds no tasks: {error}.") from error
     tasks = tuple(_task(row, path, number) for number, row in enumerate(content or (), 1))
-    twice = (
+    duplicates = (
         {t.id for t in tasks if sum(t.id == other.id for other in tasks) > 1} if len({t.id for t in tasks}) < len(tasks) else set()
     )
-    if twice:
-        raise InputError(f"{path} holds {', '.join(sorted(twice))} more than once.")
+    if duplicates:
+        raise InputError(f"{path} contains {', '.join(sorted(duplicates))} more than once.")
     return tasks
 
 

@@ -1,4 +1,4 @@
-"""Findings about rows of imported files: why a row cannot be run, or what is doubtful about it."""
+"""Findings about the rows of imported files: reasons why a row cannot be run, and doubts about its content."""
 
 from __future__ import annotations
 
@@ -31,34 +31,35 @@ FindingKind = Literal[
 BLOCKING: frozenset[FindingKind] = frozenset(
     {"empty-question", "nothing-expected", "unknown-category", "missing-scene", "missing-preset"}
 )
-"""Findings with which a row cannot be run."""
+"""Kinds of findings with which a row cannot be run."""
 
 MEANINGS: dict[FindingKind, str] = {
-    "empty-question": "there is no question",
-    "nothing-expected": "neither an answer nor a tool call is expected, so that nothing could be judged",
-    "unknown-category": "the category is none of the eight",
-    "missing-scene": "its scene is not there",
-    "missing-preset": "its scene has no such preset",
-    "duplicate": "the same question about the same view as another row",
-    "contradiction": "the same question about the same view with another answer",
-    "same-at-every-preset": "asked from several presets with one answer: where the camera starts makes no difference",
-    "now-but-full": "asks what shows right now and wants the whole scene swept",
+    "empty-question": "the question is empty",
+    "nothing-expected": "the row expects neither an answer nor a tool call, so a run cannot be judged",
+    "unknown-category": "the category is not one of the eight categories",
+    "missing-scene": "the scene does not exist",
+    "missing-preset": "the scene has no preset of this name",
+    "duplicate": "another row asks the same question about the same view",
+    "contradiction": "another row asks the same question about the same view and expects another answer",
+    "same-at-every-preset": "the question has the same answer at several presets, so the start position does not matter",
+    "now-but-full": "the question is about what is visible now, but the row expects a sweep of the full scene",
     "answer-in-question": "the question contains its answer",
-    "empty-assertion": "the expected answer asserts nothing about the scene",
-    "then-unordered": "says 'then' and leaves the order open",
-    "no-viewpoint-change": "expects neither a camera move nor a sweep",
-    "unknown-tool": "expects a tool that does not exist",
-    "wrong-arguments": "expects arguments that its tool does not take",
-    "unchecked-argument": "an expected argument that cannot be compared",
-    "unreadable-cell": "a cell that cannot be read as what it should be",
-    "unknown-value": "a value that is not known: the usual one was read, or that of another column",
-    "ragged-row": "more or fewer cells than the header has",
-    "id-repeated": "an id that another row has too",
+    "empty-assertion": "the expected answer states nothing about the scene",
+    "then-unordered": "the question says 'then', but the row does not require an order of calls",
+    "no-viewpoint-change": "the row expects neither a camera move nor a sweep",
+    "unknown-tool": "an expected tool does not exist",
+    "wrong-arguments": "an expected call has arguments that its tool does not accept",
+    "unchecked-argument": "an expected argument cannot be compared, so it is not checked",
+    "unreadable-cell": "the content of a cell has the wrong format",
+    "unknown-value": "a value is unknown, so the default value or the value of another column is used",
+    "ragged-row": "the row has more or fewer cells than the header",
+    "id-repeated": "another row has the same id",
 }
+"""The meaning of each kind of finding, as reports state it."""
 
 
 class RowFinding(BaseModel):
-    """A finding about one row. ``detail`` says what it concerns."""
+    """A finding about one row. ``detail`` names the cells, values or lines that it concerns."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

@@ -19,7 +19,7 @@ Policy = Literal["all", "exact", "any", "none"]
 
 
 class ImportedTask(BaseModel):
-    """A task from another file. A judge scores its answer; its expected calls are an executable check.
+    """A task imported from a file of another format. A judge scores its answer; its expected calls are an executable check.
 
     Attributes:
         imported: Version of this format.
@@ -30,7 +30,7 @@ class ImportedTask(BaseModel):
         policy: Which of the expected calls a run must make.
         order: Whether the order of the expected calls counts.
         start_s: Scene time at the start.
-        findings: What is doubtful about the row.
+        findings: Findings about the row.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -47,7 +47,7 @@ class ImportedTask(BaseModel):
 
 
 def holds_imported(path: Path) -> bool:
-    """Return whether a file holds imported tasks, judged by its first line."""
+    """Return whether the first line of a file is an imported task."""
     try:
         with path.open(encoding="utf-8") as file:
             first = json.loads(file.readline(2**20))
@@ -63,11 +63,11 @@ def load_imported(path: Path) -> tuple[ImportedTask, ...]:
         InputError: The file cannot be read or a task is invalid. The message names the line.
     """
     try:
-        lines = path.read_text("utf-8").split("\n")  # Only line feeds end a line of JSON.
+        lines = path.read_text("utf-8").split("\n")  # JSON strings may contain other line separators.
     except OSError as error:
         raise InputError(f"The tasks {path} cannot be read: {error.strerror}.") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"{path} holds no imported tasks: it is no text.") from error
+        raise InputError(f"{path} contains no imported tasks: it is not UTF-8 text.") from error
     tasks = list[ImportedTask]()
     for number, line in enumerate(lines, 1):
         if not line.strip():

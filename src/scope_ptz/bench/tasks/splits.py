@@ -30,7 +30,7 @@ LITE_SHARE = 0.1
 
 
 def published_folder() -> Path:
-    """Return the folder of the dataset that comes with the package."""
+    """Return the folder of the dataset in the package."""
     return Path(str(files("scope_ptz"))) / "data" / "bench"
 
 
@@ -43,7 +43,7 @@ def load_split(name: str | Path, folder: Path | None = None) -> tuple[Task, ...]
 
     Raises:
         UnknownNameError: The name is neither a split nor a file.
-        InputError: A file is missing or holds something other than tasks.
+        InputError: A file is missing or contains something other than tasks.
     """
     folder = folder or published_folder()
     if str(name) not in SPLITS:
@@ -52,7 +52,7 @@ def load_split(name: str | Path, folder: Path | None = None) -> tuple[Task, ...]
             raise UnknownNameError("split or task file", str(name), SPLITS)
         return load_tasks(path)
     if not (folder / FILES["core"]).is_file():
-        raise InputError(f"There are no tasks in {folder}. Make some with 'scope bench build' and name their file.")
+        raise InputError(f"There are no tasks in {folder}. Build tasks with 'scope bench build' and give the path of their file.")
     if name == "all":
         return tuple(task for part in ("core", "paraphrase", "reaction") for task in load_tasks(folder / FILES[part]))
     if name == "lite":
@@ -68,7 +68,7 @@ def _named(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
         raise InputError(f"The list {path} cannot be read: {error.strerror}. Build the dataset again.") from error
     by_id = {task.id: task for task in tasks}
     if unknown := [name for name in ids if name not in by_id]:
-        raise InputError(f"{path} names {unknown[0]}, which is no task of the core. Build the dataset again.")
+        raise InputError(f"{path} names {unknown[0]}, which is not a core task. Build the dataset again.")
     return tuple(by_id[name] for name in ids)
 
 
@@ -127,9 +127,9 @@ def read_manifest(folder: Path) -> dict[str, Any]:
         content: dict[str, Any] = json.loads((folder / MANIFEST).read_text("utf-8"))
         changed = [name for name, digest in content["files"].items() if _digest(folder / name) != digest]
     except (OSError, ValueError, KeyError) as error:
-        raise InputError(f"{folder} holds no whole dataset ({error}). Make one with 'scope bench build --all'.") from error
+        raise InputError(f"{folder} contains no complete dataset ({error}). Build one with 'scope bench build --all'.") from error
     if changed:
-        raise InputError(f"{folder / changed[0]} is not as it was built. Build the dataset again.")
+        raise InputError(f"{folder / changed[0]} has changed since it was built. Build the dataset again.")
     return content
 
 

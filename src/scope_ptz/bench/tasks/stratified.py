@@ -24,21 +24,21 @@ def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Ta
         The sample in the original order.
     """
     number = min(number, len(tasks))
-    waiting: dict[tuple[str, ...], list[str]] = {}
+    remaining: dict[tuple[str, ...], list[str]] = {}
     for task in sorted(tasks, key=lambda t: hashlib.sha256(f"{seed}:{t.id}".encode()).hexdigest()):
-        waiting.setdefault((task.category, task.scene, task.difficulty), []).append(task.id)
-    share = Counter(mark for task in tasks for mark in _marks((task.category, task.scene, task.difficulty)))
-    of_all = number / len(tasks) if tasks else 0.0
+        remaining.setdefault((task.category, task.scene, task.difficulty), []).append(task.id)
+    share = Counter(margin for task in tasks for margin in _margins((task.category, task.scene, task.difficulty)))
+    fraction = number / len(tasks) if tasks else 0.0
     taken, chosen = Counter[tuple[str, ...]](), set[str]()
     for _ in range(number):
         group = max(
-            (g for g, ids in waiting.items() if ids),
-            key=lambda g: (round(sum(share[mark] * of_all - taken[mark] for mark in _marks(g)), 6), g),
+            (g for g, ids in remaining.items() if ids),
+            key=lambda g: (round(sum(share[margin] * fraction - taken[margin] for margin in _margins(g)), 6), g),
         )
-        chosen.add(waiting[group].pop())
-        taken.update(_marks(group))
+        chosen.add(remaining[group].pop())
+        taken.update(_margins(group))
     return tuple(task for task in tasks if task.id in chosen)
 
 
-def _marks(group: tuple[str, ...]) -> list[tuple[str, ...]]:
+def _margins(group: tuple[str, ...]) -> list[tuple[str, ...]]:
     return [group, *(("any", part) for part in group)]

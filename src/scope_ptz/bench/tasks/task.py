@@ -29,7 +29,7 @@ RunOutcome = Literal["answered", "clarification", "refused"]
 if TYPE_CHECKING:
     ToolName = str
 else:
-    ToolName = Literal[tuple(TOOLS)]  # the names of the registry, so that a new tool needs no edit here
+    ToolName = Literal[tuple(TOOLS)]  # The names in the registry, so that a new tool needs no change here.
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -64,7 +64,7 @@ class Argument(_Model):
     @model_validator(mode="after")
     def _one(self) -> Argument:
         if (self.equals is None) == (not self.mentions):
-            raise ValueError("an argument either equals a value or mentions words")
+            raise ValueError("an argument either equals a value or mentions words: set exactly one of them")
         return self
 
 
@@ -151,9 +151,9 @@ class EvidenceView(_Model):
     @model_validator(mode="after")
     def _something(self) -> EvidenceView:
         if self.must_look and not self.items and not self.whole:
-            raise ValueError("an evidence view that must be looked at has items or is meant as a whole")
+            raise ValueError("an evidence view with must_look needs items or whole=true")
         if self.scope == "full" and self.whole and self.band_deg is None:
-            raise ValueError("a view of everything around needs its band of tilts")
+            raise ValueError("a whole view with the scope full needs band_deg")
         return self
 
 
@@ -199,12 +199,12 @@ class Task(_Model):
         if not self.id.startswith(f"{self.dataset}-"):
             raise ValueError(f"the id {self.id} does not begin with the dataset version {self.dataset}")
         if (self.stratum == "paraphrase") != (self.paraphrase_of is not None):
-            raise ValueError("a paraphrase, and only a paraphrase, says what it is a paraphrase of")
+            raise ValueError("paraphrase_of must be set for every paraphrase and for no other task")
         if isinstance(self.expected, ActionOnly):
             if not self.behaviour.checks_something and self.behaviour.outcomes == ("answered",):
-                raise ValueError("no answer is wanted and no behaviour is demanded: nothing would be checked")
+                raise ValueError("a task without an expected answer must require some behaviour, otherwise nothing is checked")
         elif self.stratum != "reaction" and not any(view.must_look for view in self.evidence):
-            raise ValueError("an answer is wanted that rests on nothing that must be looked at")
+            raise ValueError("a task with an expected answer needs an evidence view with must_look")
         return self
 
 

@@ -10,12 +10,12 @@ from scope_ptz.bench.tasks.task import Category, Scope, Stratum
 
 
 class TaskFacts(BaseModel):
-    """A task as judges and reports see it.
+    """The facts about a task.
 
     Attributes:
         id: The task's id.
         dataset: The dataset's version.
-        stratum: Part of the dataset; "imported" for a task of another file, without an executable check of its answer.
+        stratum: Part of the dataset; "imported" for an imported task, whose answer has no executable check.
         scene: The scene.
         viewpoint: The viewpoint where the run starts.
         preset: The preset where the run starts.

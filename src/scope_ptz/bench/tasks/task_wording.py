@@ -1,6 +1,6 @@
 """Describe tasks in words for judges and people: the expected answer and the required behaviour.
 
-These sentences are part of judge prompts. Changing them changes what judges decide.
+These sentences are part of judge prompts, so changing them may change verdicts.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def expected_in_words(expected: AnyExpected) -> str:
 
 
 def demands(task: Task) -> Iterator[str]:
-    """Yield what the run must have done, one sentence each. What the instruction leaves open is not mentioned."""
+    """Yield what the run must have done, one sentence each. They mention only what the instruction fixes."""
     behaviour = task.behaviour
     if behaviour.outcomes != ("answered",):
         yield f"The run must end {_or([_OUTCOMES[name] for name in behaviour.outcomes], marks='')}."

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from typer.core import TyperGroup
+from scope_ptz.cli.lazy_group import LazyGroup
 
 HELP = """Measure planners and perception on 536 tasks.
 
@@ -12,22 +10,8 @@ Start with `scope bench browse` to see tasks, and `scope bench run --split lite`
 """
 
 
-class BenchGroup(TyperGroup):
-    """The group of benchmark commands. Other commands start faster because these are loaded late."""
+class BenchGroup(LazyGroup):
+    """The group of benchmark commands."""
 
-    def list_commands(self, ctx: Any) -> list[str]:
-        self._load()
-        return super().list_commands(ctx)
-
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        self._load()
-        return super().get_command(ctx, cmd_name)
-
-    def _load(self) -> None:
-        if not self.commands:
-            import typer
-
-            from scope_ptz.cli.bench.app import bench_app
-
-            group = typer.main.get_group(bench_app)
-            self.commands.update(group.commands)
+    module = "scope_ptz.cli.bench.app"
+    attribute = "bench_app"

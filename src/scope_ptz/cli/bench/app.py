@@ -1,4 +1,4 @@
-"""The commands of ``scope bench``, in the groups in which the help lists them."""
+"""The commands of ``scope bench``, grouped as in its help."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ bench_app = typer.Typer(help=HELP, no_args_is_help=True)
 
 @bench_app.callback(help=HELP)
 def _bench() -> None:
-    """Hold the commands together."""
+    """Group the benchmark commands."""
 
 
 def schema() -> None:

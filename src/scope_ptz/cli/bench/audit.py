@@ -1,4 +1,4 @@
-"""``scope bench audit``: questions about pictures for independent readers, and their agreement with the tasks."""
+"""``scope bench audit``: write questions about pictures for independent annotators, and compare their answers with the tasks."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from scope_ptz.cli.exit import complain, put, put_json
 from scope_ptz.cli.options import JsonOption, command
 from scope_ptz.errors import InputError, OutputError
 
-audit_app = typer.Typer(help="Check tasks with readers who see only the pictures.", no_args_is_help=True)
+audit_app = typer.Typer(help="Check tasks with annotators who see only the pictures.", no_args_is_help=True)
 
 _README = """# Questions about pictures
 
-`questions.jsonl` holds a question a line: its number `q`, what was asked of somebody who steers a camera, and the `pictures` that
+`questions.jsonl` contains one question per line: its number `q`, what the operator of a camera was `asked`, and the `pictures` that
 the camera then showed, in that order, each with its `caption`. Answer from the pictures alone, as you would tell a colleague.
 
-Write `answers.jsonl`, a line a question: {"q": "q001", "answer": "There are two.", "reader": "your name"}
+Write `answers.jsonl` with one line per question: {"q": "q001", "answer": "There are two.", "reader": "your name"}
 Answer every question; "I cannot tell" is an answer.
 """
 
@@ -31,15 +31,15 @@ def audit_make(
     out: Annotated[Path, typer.Option("--out", help="New folder for pictures and questions.")],
     tasks: TasksOption = "core",
     number: Annotated[int, typer.Option("--n", min=1, help="Number of tasks to sample.")] = 100,
-    seed: Annotated[int, typer.Option(help="Seed of the sample.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed for the sample.")] = 1,
 ) -> None:
-    """Sample tasks by category, scene and difficulty, and write the frames on which their answers rest, with the questions."""
+    """Sample tasks by category, scene and difficulty, and write their questions with the frames that show the answers."""
     import anyio
 
     from scope_ptz.bench.program_runner import ProgramRunner
     from scope_ptz.bench.tasks.files import digest_of
     from scope_ptz.bench.tasks.splits import load_split
-    from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
+    from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.audit_questions import write_question
     from scope_ptz.taskgen.facts.robust import TASK_CAMERA
@@ -48,17 +48,17 @@ def audit_make(
     rows = load_split(tasks)
     chosen = draw_questions(rows, number, seed)
     if not chosen:
-        raise InputError("None of these tasks expects an answer: there is nothing to ask.")
+        raise InputError("None of these tasks expects an answer, so there is nothing to ask. Select other tasks with --tasks.")
     worlds = worlds_of([task for _, task in chosen])
-    equip = equip_with_truth(worlds, KnownViews())
-    stages = {name: ProgramRunner(world, equip, TASK_CAMERA) for name, world in worlds.items()}
+    make_context = ground_truth_tools(worlds, CachedTruth())
+    runners = {name: ProgramRunner(world, make_context, TASK_CAMERA) for name, world in worlds.items()}
     try:
         out.mkdir(parents=True)
     except FileExistsError as error:
         raise OutputError(f"{out} exists already. Name a new folder with --out.") from error
     except OSError as error:
-        raise OutputError(f"{out} cannot be made: {error.strerror}.") from error
-    questions = [anyio.run(write_question, q, task, stages[task.world], out, complain) for q, task in chosen]
+        raise OutputError(f"{out} cannot be created: {error.strerror}.") from error
+    questions = [anyio.run(write_question, q, task, runners[task.world], out, complain) for q, task in chosen]
     (out / QUESTIONS).write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in questions), "utf-8")
     draw = QuestionDraw(number=number, seed=seed, tasks=digest_of(rows))
     (out / DRAW).write_text(draw.model_dump_json() + "\n", "utf-8")
@@ -71,7 +71,9 @@ def audit_make(
 def audit_score(
     folder: Annotated[Path, typer.Argument(help="Folder that 'audit make' wrote, with answers.jsonl in it.")],
     tasks: TasksOption = "core",
-    out: Annotated[Path | None, typer.Option("--out", help="File for the result, for the dataset card (audit.json).")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="File to save the result in; the dataset card reads audit.json.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Compare the answers with the tasks, using the benchmark's own answer parser.
@@ -92,4 +94,4 @@ def audit_score(
     for row in audit.rows:
         if row.outcome != "agrees":
             put(f"{row.q} {row.task} {row.outcome}: {row.instruction!r}")
-            put(f"     {row.reader or 'nobody'} answered {row.answer!r}, expected is {row.expected!r}. {row.finding}")
+            put(f"     {row.reader or 'nobody'} answered {row.answer!r}, expected {row.expected!r}. {row.finding}")

@@ -1,4 +1,4 @@
-"""``scope bench browse``: list tasks, or show one with everything that it rests on."""
+"""``scope bench browse``: list tasks, or show one with its reference run and evidence."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def browse(
     scene: Annotated[str, typer.Option("--scene", help="Show only tasks of this scene.")] = "",
     at_random: Annotated[bool, typer.Option("--random", help="Show one of the matching tasks at random.")] = False,
     seed: Annotated[int | None, typer.Option(help="Seed for --random.")] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start and of the evidence.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start view and of the evidence.")] = None,
 ) -> None:
     """List tasks, or show one: instruction, expected answer, reference run, and the frames with its evidence."""
     rows = _matching(_tasks(tasks), category_named(category), scene)
@@ -37,7 +37,7 @@ def browse(
         for row in rows:
             put(f"{row.id:<52} {row.instruction}")
         return
-    from scope_ptz.factory.validation_perception import equip_with_truth
+    from scope_ptz.factory.validation_perception import ground_truth_tools
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.task_sheet import reference_run, summary, write_frames
 
@@ -45,7 +45,7 @@ def browse(
     (world,) = worlds.values()
     for line in summary(chosen, [row for row in _tasks(tasks) if row.paraphrase_of == chosen.id]):
         put(line)
-    for line in reference_run(chosen, world, equip_with_truth(worlds)):
+    for line in reference_run(chosen, world, ground_truth_tools(worlds)):
         put(line)
     if out is not None:
         for path in write_frames(chosen, world, out):
@@ -72,5 +72,5 @@ def _with_id(tasks: list[Task], name: str) -> Task:
         raise InputError(f"There is no task '{name}'. List them with 'scope bench browse --category counting'.")
     if len(found) > 1:
         names = ", ".join(row.id for row in found[:MAX_AMBIGUOUS_LISTED])
-        raise InputError(f"There is more than one task '{name}': {names}. Give a whole id.")
+        raise InputError(f"Several tasks end with '{name}': {names}. Give a full id.")
     return found[0]

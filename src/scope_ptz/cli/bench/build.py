@@ -1,4 +1,4 @@
-"""Commands that make and prove a dataset: ``build``, ``card``, ``validate``, and gold runs (``gold``)."""
+"""Commands that build and validate a dataset: ``build``, ``card``, ``validate``, and ``gold`` for gold runs."""
 
 from __future__ import annotations
 
@@ -27,15 +27,19 @@ def build(
     out: Annotated[Path, typer.Option("--out", help="File for the tasks (JSONL); with --all, a folder.")],
     further: Annotated[list[int] | None, typer.Argument(hidden=True, metavar="")] = None,
     scene: SceneNames = None,
-    seed: Annotated[int, typer.Option(help="Seed; another one makes another dataset of the same scenes.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed; another seed gives another dataset of the same scenes.")] = 1,
     share: Annotated[float, typer.Option(min=0.02, max=1.0, help="Share of the published number of tasks to make.")] = 1.0,
-    seeds: Annotated[list[int] | None, typer.Option("--seeds", min=1, help="Numbers of scene variations: 7 8 9.")] = None,
-    whole: Annotated[bool, typer.Option("--all", help="Make the whole dataset: every split, its proof and the gold runs.")] = False,
+    seeds: Annotated[
+        list[int] | None, typer.Option("--seeds", min=1, help="Numbers of the scene variations, for example 7 8 9.")
+    ] = None,
+    whole: Annotated[
+        bool, typer.Option("--all", help="Make the whole dataset: every split, its validation and the gold runs.")
+    ] = False,
     card: Annotated[Path | None, typer.Option("--card", help="With --all: file for the dataset card (Markdown).")] = None,
 ) -> int:
-    """Make tasks from the ground truth of scenes. Exit code 1 when the scenes do not yield the requested number."""
+    """Make tasks from the ground truth of scenes. Exit code 1 if the scenes do not yield enough tasks."""
     from scope_ptz.bench.tasks.files import dump_tasks
-    from scope_ptz.factory.validation_perception import answered
+    from scope_ptz.factory.validation_perception import is_answerable
     from scope_ptz.factory.worlds import scenes_named
     from scope_ptz.taskgen.authoring.assembly import build as build_tasks
     from scope_ptz.taskgen.dataset.build import shortfall
@@ -44,14 +48,14 @@ def build(
     numbers = variation_numbers(seeds, further)
     quotas = _quotas(share)
     if card is not None and not whole:
-        raise InputError("A card describes a whole dataset: give --all with --card, or use 'scope bench card'.")
+        raise InputError("A card describes a whole dataset. Use --card together with --all, or run 'scope bench card'.")
     if whole:
         return _build_all(scene, out, card, seed, numbers or UNSEEN_VARIATIONS, quotas)
     scenes = list(scenes_named(scene).values())
     if numbers:
-        built = build_unseen(scenes, numbers, quotas, complain, answered)
+        built = build_unseen(scenes, numbers, quotas, complain, is_answerable)
     else:
-        built = build_tasks(scenes, seed, quotas, complain, answered)
+        built = build_tasks(scenes, seed, quotas, complain, is_answerable)
     out.parent.mkdir(parents=True, exist_ok=True)
     dump_tasks(built.tasks, out)
     put(f"{len(built.tasks)} tasks in {out}")
@@ -64,14 +68,14 @@ def build(
 def _build_all(
     scene: list[str] | None, out: Path, card: Path | None, seed: int, numbers: Sequence[int], quotas: dict[Category, int] | None
 ) -> int:
-    from scope_ptz.factory.proof import prove
-    from scope_ptz.factory.validation_perception import answered
+    from scope_ptz.factory.task_validation import validate_tasks
+    from scope_ptz.factory.validation_perception import is_answerable
     from scope_ptz.factory.worlds import scenes_named
     from scope_ptz.taskgen.dataset.build import build_dataset
 
     good = build_dataset(
-        scenes_named(scene), out, seed, numbers, quotas, prove=prove, make_gold=_gold_runs, answered=answered, report=put,
-        notify=complain,
+        scenes_named(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
+        report=put, notify=complain,
     )  # fmt: skip
     if card is not None:
         write_card(out, card)
@@ -79,12 +83,12 @@ def _build_all(
 
 
 def variation_numbers(seeds: list[int] | None, further: list[int] | None) -> tuple[int, ...]:
-    """Return the numbers after ``--seeds``; several may follow it without repeating the option. Raises ``InputError``."""
+    """Return the numbers given after ``--seeds``, which need not be repeated for each number. Raises ``InputError``."""
     if further and not seeds:
-        raise InputError(f"'{further[0]}' belongs to no option. Numbers of scene variations follow --seeds.")
+        raise InputError(f"'{further[0]}' belongs to no option. Give the numbers of scene variations after --seeds.")
     numbers = (*(seeds or ()), *(further or ()))
     if any(not 1 <= number < 10**9 for number in numbers):
-        raise InputError("Numbers of scene variations are whole numbers from 1 to 999999999.")
+        raise InputError("The numbers of scene variations must be whole numbers from 1 to 999999999.")
     return tuple(dict.fromkeys(numbers))
 
 
@@ -98,7 +102,7 @@ def card(
     data: Annotated[Path | None, typer.Option("--data", help="Dataset folder (default: the published dataset).")] = None,
     out: Annotated[Path | None, typer.Option("--out", help="File to write (Markdown; default: print it).")] = None,
 ) -> None:
-    """Write the dataset card from the dataset's own files."""
+    """Write the card of a dataset from its files."""
     from scope_ptz.bench.tasks.splits import published_folder
     from scope_ptz.taskgen.dataset.card import Dataset
     from scope_ptz.taskgen.dataset.card import card as card_text
@@ -106,7 +110,7 @@ def card(
     folder = data or published_folder()
     if out is not None:
         write_card(folder, out)
-        put(f"card of {folder} in {out}")
+        put(f"Wrote the card of {folder} to {out}")
     else:
         put(card_text(Dataset.read(folder)).rstrip())
 
@@ -127,14 +131,14 @@ def write_card(folder: Path, out: Path) -> None:
 def validate(
     tasks: TasksOption = "all",
     as_json: JsonOption = False,
-    seed: Annotated[int, typer.Option(help="Seed of the wrong answers that are tried.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed for the wrong answers.")] = 1,
 ) -> int:
-    """Prove tasks: correct programs and answers pass, adversarial ones fail. Exit code 1 on any failure."""
+    """Validate tasks: correct programs and answers must pass, and adversarial ones must fail. Exit code 1 on any failure."""
     from scope_ptz.bench.tasks.splits import load_split
-    from scope_ptz.factory.proof import prove
+    from scope_ptz.factory.task_validation import validate_tasks
     from scope_ptz.taskgen.validation.report_text import report_lines
 
-    report = prove(load_split(tasks), seed, beside=load_split("core") if tasks in ("lite", "paraphrase") else ())
+    report = validate_tasks(load_split(tasks), seed, dataset=load_split("core") if tasks in ("lite", "paraphrase") else ())
     if as_json:
         put_json(report.as_dict())
     else:
@@ -148,10 +152,10 @@ def validate(
 def gold_make(
     out: Annotated[Path, typer.Option("--out", help="File for the runs (gzipped JSONL).")],
     tasks: TasksOption = "core",
-    seed: Annotated[int, typer.Option(help="Seed; another one puts other faults into other runs.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed for the choice of runs and faults.")] = 1,
     as_json: JsonOption = False,
 ) -> None:
-    """Run the reference programs through the tools, and put one known fault into each of some of them."""
+    """Run the reference programs of tasks, and insert one known fault into some of the runs."""
     from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.taskgen.gold.gold_runs import confusion_matrix, write_gold
     from scope_ptz.taskgen.gold.reference_runs import matrix_lines
@@ -169,13 +173,13 @@ def gold_make(
 @gold_app.command("check")
 @command
 def gold_check(
-    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published one).")] = None,
+    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published file).")] = None,
     tasks: TasksOption = "core",
     as_json: JsonOption = False,
 ) -> int:
-    """Apply the error-mode rules to gold runs again.
+    """Apply the error-mode rules to gold runs, and compare the result with the published one.
 
-    Exit code 1 when they name fewer faults, or accept more faulty runs, than published.
+    Exit code 1 if they name fewer faults or accept more faulty runs than published.
     """
     from scope_ptz.bench.tasks.splits import load_split, published_folder
     from scope_ptz.taskgen.gold.gold_runs import confusion_matrix, read_gold
@@ -196,9 +200,9 @@ def gold_check(
 def _gold_runs(tasks: Sequence[Task], seed: int) -> list[GoldRun]:
     import anyio
 
-    from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
+    from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.gold.reference_runs import make_gold_runs
 
     worlds = worlds_of(tasks)
-    return anyio.run(make_gold_runs, tasks, worlds, equip_with_truth(worlds, KnownViews()), seed)
+    return anyio.run(make_gold_runs, tasks, worlds, ground_truth_tools(worlds, CachedTruth()), seed)

@@ -58,7 +58,7 @@ class SelectionFlags:
 
 @dataclass(frozen=True, kw_only=True)
 class EvaluationFlags:
-    """Options for running tasks and for the location of the log."""
+    """Options that control how tasks are run and where the log is written."""
 
     concurrency: Annotated[
         int | None,
@@ -66,7 +66,7 @@ class EvaluationFlags:
             "--concurrency",
             min=1,
             max=256,
-            help="Runs at a time (default: 8 with model servers, else 1).",
+            help="Number of runs at a time (default: 8 with model servers, else 1).",
             rich_help_panel=RUN_PANEL,
         ),
     ] = None
@@ -86,7 +86,7 @@ class EvaluationFlags:
 
 @dataclass(frozen=True, kw_only=True)
 class SingleRunFlags(EvaluationFlags):
-    """The options of one evaluation, as opposed to a sweep over several pairs."""
+    """Options of a single evaluation, which a sweep over several pairs does not have."""
 
     pictures: Annotated[
         bool,
@@ -101,7 +101,7 @@ class SingleRunFlags(EvaluationFlags):
         typer.Option(
             "--resume",
             metavar="LOG",
-            help="Log to resume (default: the one of the same evaluation in --out).",
+            help="Log to resume (default: the log of the same evaluation in --out).",
             rich_help_panel=RUN_PANEL,
         ),
     ] = None
@@ -135,7 +135,7 @@ class SingleRunFlags(EvaluationFlags):
 
 
 def judge_settings(flags: JudgeFlags, repeats: int = 1) -> JudgeSettings:
-    """Return the judge that options and environment name."""
+    """Return the judge settings from the options."""
     from scope_ptz.factory.evaluation_options import JudgeSettings
 
     return JudgeSettings(
@@ -159,7 +159,9 @@ def price_of(text: str | None) -> Price | None:
     except ValueError:
         given = []
     if len(given) != 2 or min(given) < 0:
-        raise InputError(f"--price wants two amounts, in and out, in US dollars per million tokens (0.15,0.60), got '{text}'.")
+        raise InputError(
+            f"--price needs two amounts, for input and output tokens, in US dollars per million (0.15,0.60), got '{text}'."
+        )
     return Price(*given)
 
 
@@ -177,9 +179,9 @@ def published_tasks() -> list[Task]:
 
 
 def category_named(name: str) -> str:
-    """Return a category by its name; empty for all. Raises ``InputError`` for an unknown one."""
+    """Return the name of a category if it exists; an empty name means all. Raises ``InputError`` for an unknown one."""
     from scope_ptz.bench.engine.run_totals import CATEGORIES
 
     if name and name not in CATEGORIES:
-        raise InputError(f"There is no category '{name}'. There are: {', '.join(CATEGORIES)}.")
+        raise InputError(f"There is no category '{name}'. The categories are: {', '.join(CATEGORIES)}.")
     return name

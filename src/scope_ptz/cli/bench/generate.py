@@ -1,4 +1,4 @@
-"""Commands that bring tasks in: ``generate`` (drafts of a language model) and ``import`` (files in the paper's format)."""
+"""Commands that add tasks: ``generate`` (drafted by a language model) and ``import`` (from files in the paper's format)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MAX_MODELS_LISTED = 20
 
 
 def generate(
-    scene: Annotated[str, typer.Option("--scene", help="Scene, or variation of one, in which the tasks are set.")],
+    scene: Annotated[str, typer.Option("--scene", help="Scene, or variation of a scene, that the tasks are about.")],
     url: Annotated[str, typer.Option("--url", help="Address of an OpenAI-compatible server, ending in /v1.")],
     out: Annotated[Path, typer.Option("--out", help="Folder for drafts, accepted tasks and the review list.")],
     model: Annotated[str, typer.Option(help="Name of the model on its server (default: the only one it lists).")] = "",
@@ -32,8 +32,8 @@ def generate(
     want: Annotated[
         list[str] | None, typer.Option("--want", metavar="CATEGORY=N", help="Number of tasks of a category, instead of --n.")
     ] = None,
-    known: Annotated[str, typer.Option(help="Split or task file with examples, which are not to be repeated.")] = "",
-    runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs of operators.")] = None,
+    known: Annotated[str, typer.Option(help="Split or task file with tasks that serve as examples and must not be repeated.")] = "",
+    runs: Annotated[Path | None, typer.Option(help="Folder with recorded runs of operators, as examples.")] = None,
     feedback: Annotated[
         Path | None, typer.Option(help='Ratings of runs, JSONL: {"run": folder name, "rating": "good" or "bad", "note": ...}.')
     ] = None,
@@ -41,10 +41,10 @@ def generate(
         int, typer.Option(min=1, help="Maximum number of requests to the model, including earlier ones in the folder.")
     ] = 20,
     temperature: Annotated[float, typer.Option(min=0, max=2, help="Sampling temperature of the model.")] = 0.8,
-    seed: Annotated[int, typer.Option(help="Seed for views and examples, and for the model where it takes one.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed for the choice of views and examples, and for the model if it accepts one.")] = 1,
     timeout: Annotated[float, typer.Option(min=0.1, help="Seconds for one request, retries included.")] = 300.0,
 ) -> int:
-    """Draft tasks with a language model. Expected answers come from the ground truth; tasks that cannot be proved are dropped.
+    """Draft tasks with a language model. Expected answers come from the ground truth; tasks that fail validation are dropped.
 
     Running the same command again continues in the same folder.
     """
@@ -56,21 +56,21 @@ def generate(
     from scope_ptz.taskgen.generating.drafting_loop import GenerationRequest
     from scope_ptz.taskgen.generating.operator_runs import read_runs
 
-    order = GenerationRequest(
+    request = GenerationRequest(
         scene=open_scene(scene),
         requested=_requested(want or [], number),
         known=load_split(known) if known else (),
         runs=read_runs(runs, feedback),
         seed=seed,
-        most_requests=requests,
+        max_requests=requests,
     )
     ledger = DraftLedger(out)
     endpoint = _endpoint(url, key_file, timeout)
     try:
-        anyio.run(_draft, order, ledger, endpoint, model, temperature)
+        anyio.run(_draft, request, ledger, endpoint, model, temperature)
     finally:
         tasks, review = ledger.finish()
-    missing = ledger.missing(order.requested)
+    missing = ledger.missing(request.requested)
     put(f"{len(ledger.kept)} tasks accepted of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
     if missing:
         names = ", ".join(f"{n} of {name}" for name, n in missing.items())
@@ -79,17 +79,17 @@ def generate(
     return 0
 
 
-async def _draft(order: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
+async def _draft(request: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
     from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
-    from scope_ptz.factory.proof import task_prover
+    from scope_ptz.factory.task_validation import task_validator
     from scope_ptz.taskgen.generating.drafting_loop import generate as generate_tasks
 
-    options = JudgeModelOptions(temperature=temperature, seed=order.seed)
-    port = JudgeServer(await _with_model(endpoint, model), options)
+    options = JudgeModelOptions(temperature=temperature, seed=request.seed)
+    server = JudgeServer(await _with_model(endpoint, model), options)
     try:
-        await generate_tasks(order, port, task_prover(order.scene), ledger, complain)
+        await generate_tasks(request, server, task_validator(request.scene), ledger, complain)
     finally:
-        await port.close()
+        await server.close()
 
 
 def _requested(want: list[str], number: int) -> dict[Category, int]:
@@ -98,16 +98,16 @@ def _requested(want: list[str], number: int) -> dict[Category, int]:
 
     if not want:
         shares = sorted(QUOTAS, key=lambda name: -(number * QUOTAS[name] / sum(QUOTAS.values()) % 1))
-        wanted = {name: number * QUOTAS[name] // sum(QUOTAS.values()) for name in QUOTAS}
-        for name in shares[: number - sum(wanted.values())]:
-            wanted[name] += 1
-        return {name: n for name, n in wanted.items() if n}
+        counts = {name: number * QUOTAS[name] // sum(QUOTAS.values()) for name in QUOTAS}
+        for name in shares[: number - sum(counts.values())]:
+            counts[name] += 1
+        return {name: n for name, n in counts.items() if n}
     found: dict[Category, int] = {}
     for given in want:
         written, _, count = given.partition("=")
         category = next((name for name in QUOTAS if name == written), None)
         if category is None or not count.isdecimal() or not int(count):
-            raise InputError(f"--want {given}: a category and a number, such as counting=5. Categories: {', '.join(QUOTAS)}.")
+            raise InputError(f"--want {given} is not CATEGORY=N, such as counting=5. The categories are: {', '.join(QUOTAS)}.")
         found[category] = int(count)
     return found
 
@@ -125,7 +125,7 @@ def _endpoint(url: str, key_file: Path | None, timeout_s: float) -> Endpoint:
 
 
 async def _with_model(endpoint: Endpoint, model: str) -> Endpoint:
-    """Return the endpoint with the name of its model."""
+    """Return the endpoint with the given model, or else the only one that the server lists."""
     from scope_ptz.endpoints.catalogue import find_api
     from scope_ptz.endpoints.failures import ServerFailure
 
@@ -135,7 +135,7 @@ async def _with_model(endpoint: Endpoint, model: str) -> Endpoint:
         endpoint, served = await find_api(endpoint)
     except ServerFailure as failure:
         raise ConfigError(
-            f"The server at {endpoint.url} does not say which model it serves ({failure}). Name it with --model."
+            f"The server at {endpoint.url} does not report which model it serves ({failure}). Name it with --model."
         ) from None
     if len(served) != 1:
         raise InputError(
@@ -148,10 +148,11 @@ def import_tasks(
     file: Annotated[Path, typer.Argument(help="CSV file in the paper's published format.")],
     scenes: Annotated[
         Path | None,
-        typer.Option("--scenes", help="Folder with the scenes of the file (default: the installed scenes)."),
+        typer.Option("--scenes", help="Folder with the scenes that the file refers to (default: the installed scenes)."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="File for the tasks (JSONL; default: FILE's name with .imported.jsonl, here).")
+        Path | None,
+        typer.Option("--out", help="File for the tasks (JSONL; default: NAME.imported.jsonl for NAME.csv, in the current folder)."),
     ] = None,
     mapping: Annotated[
         Path | None, typer.Option("--map", help="YAML or JSON file that maps the file's locations and presets to scenes.")
@@ -160,7 +161,7 @@ def import_tasks(
 ) -> int:
     """Import tasks from a file in the paper's format: map tools, arguments, categories and scenes, and report doubtful rows.
 
-    Exit code 1 when no row can be run.
+    Exit code 1 if no row can be run.
     """
     from scope_ptz.bench.tasks.imported import dump_imported
     from scope_ptz.taskgen.importing.import_report import import_file, report_lines
@@ -180,14 +181,16 @@ def import_tasks(
         for line in report_lines(imported):
             put(line)
         put("")
-        put(f"{len(imported.tasks)} tasks in {target}, every row with its findings in {report}")
+        put(f"{len(imported.tasks)} tasks in {target}, findings for every row in {report}")
         if any(content["map_to_fill"].values()):
             put("Map unknown names of scenes and presets with --map; 'map_to_fill' in the report lists them.")
     if not imported.tasks and not content["rows"]:
         complain(f"{file} has a header and no rows: there is nothing to import.")
     elif not imported.tasks:
         known = ", ".join(sorted(places_in(scenes, mapping).scenes)) or "none"
-        complain(f"no row can be run. Installed scenes: {known}. Name those of the file with --scenes or --map.")
+        complain(
+            f"no row can be run. Known scenes: {known}. Give the scenes of the file with --scenes, or map their names with --map."
+        )
     return 0 if imported.tasks else FAILED
 
 
@@ -199,7 +202,7 @@ def places_in(folder: Path | None, mapping: Path | None) -> SceneNames:
     from scope_ptz.taskgen.importing.scene_names import SceneNameMap, SceneNames, ScenePresets, read_scene_names
 
     if folder is not None and not folder.is_dir():
-        raise InputError(f"There is no folder {folder} of scenes.")
+        raise InputError(f"The scene folder {folder} does not exist.")
     search = (*([folder] if folder else []), *scene_search(load_settings()))
     known = {}
     for name in list_scenes(search):

@@ -1,4 +1,4 @@
-"""``scope bench human``: record a human baseline, with the same nine tools and the same checks."""
+"""``scope bench human``: record a human baseline, with the same tools and checks as for models."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ MAX_STEPS = 200
 def human(
     split: Annotated[str, typer.Option("--split", help=f"Split ({SPLITS}) or task file.")] = "lite",
     category: Annotated[str, typer.Option(help="Do only tasks of this category.")] = "",
-    out: Annotated[Path, typer.Option("--out", help="Folder for the runs. Name it again to resume.")] = Path("human"),
-    by: Annotated[str, typer.Option("--by", help="Name of the person, for reports.")] = "a person",
+    out: Annotated[Path, typer.Option("--out", help="Folder for the runs. Give the same folder again to resume.")] = Path("human"),
+    by: Annotated[str, typer.Option("--by", help="Name of the person in reports.")] = "a person",
     limit: Annotated[int | None, typer.Option(min=1, help="Stop after N tasks.")] = None,
 ) -> None:
-    """Do tasks yourself: you type the commands, and you look at the pictures.
+    """Do tasks yourself, as a human baseline: you type the commands and look at the pictures.
 
     You can quit and resume at any time.
     """
@@ -46,7 +46,7 @@ def human(
 
 
 class _Session:
-    """The tasks of one person. Each finished task has a folder with its trace."""
+    """A session in which one person does tasks. Each finished task has a folder with its trace."""
 
     def __init__(self, tasks: Sequence[Task], split: str, out: Path, by: str) -> None:
         self.tasks, self.split, self.out, self.by = tasks, split, out, by
@@ -55,7 +55,7 @@ class _Session:
         self.worlds = worlds_of(tasks)
 
     def run(self, limit: int | None) -> None:
-        """Do the tasks that are left."""
+        """Go through the tasks that are not finished yet."""
         from scope_ptz.bench.human_agent import HELP
 
         open_tasks = [task for task in self.tasks if self._trace(task) is None]
@@ -64,7 +64,7 @@ class _Session:
             left = self._do(task)
             if left is None:
                 put("recorded")
-            elif left.for_good:
+            elif left.ends_session:
                 break
         self._finish()
 
@@ -90,7 +90,7 @@ class _Session:
         try:
             folder.mkdir(parents=True)
         except OSError as error:
-            raise OutputError(f"The folder {folder} cannot be made: {error.strerror}. Choose another with --out.") from error
+            raise OutputError(f"The folder {folder} cannot be created: {error.strerror}. Choose another with --out.") from error
         put(
             f"\n{task.id}\n\n    {task.instruction}\n\n  presets: {', '.join(p.name for p in self.worlds[task.world].file.presets)}"
         )
@@ -129,7 +129,7 @@ class _Session:
 
 
 async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> TaskLeftError | None:
-    """Record a run in which a person plans and looks. Return how the task was left, or None when it was finished."""
+    """Record a run in which a person is planner and perception. Return None if the task was finished, else how it was left."""
     from scope_ptz.agent.loop import Agent
     from scope_ptz.agent.records import Budgets, RunLabels
     from scope_ptz.agent.store import RunFolder

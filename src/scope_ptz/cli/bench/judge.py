@@ -1,4 +1,4 @@
-"""Commands about judges: ``rescore`` logs, measure agreement (``agree``), and test a judge on known faults (``judge-gold``)."""
+"""Judge commands: ``rescore`` logs, measure agreement (``agree``), and test a judge on known faults (``judge-gold``)."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ DEFAULT_CONCURRENCY = 8
 
 
 def rescore(
-    logs: Annotated[list[Path], typer.Argument(help="Logs of finished evaluations. Scores are added to them; none is removed.")],
+    logs: Annotated[list[Path], typer.Argument(help="Logs of finished evaluations. Scores are added; none are removed.")],
     judge: JudgeFlags,
     checks: Annotated[bool, typer.Option("--checks", help="Apply this version's executable checks again.")] = False,
     repeats: Annotated[int, typer.Option("--judge-repeats", min=1, help="Number of judgements to add to each run.")] = 1,
     concurrency: Annotated[
-        int, typer.Option("--concurrency", min=1, max=256, help="Runs that are judged at a time.")
+        int, typer.Option("--concurrency", min=1, max=256, help="Number of runs to judge at a time.")
     ] = DEFAULT_CONCURRENCY,
     decides: Annotated[
         str,
-        typer.Option("--decides", metavar="JUDGE", help="Judge whose verdicts count from now on where only a judge can score."),
+        typer.Option("--decides", metavar="JUDGE", help="Judge whose verdicts count for runs that only a judge can score."),
     ] = "",
 ) -> int:
     """Add verdicts of a judge (--judge-url) or of the installed checks (--checks) to logs. The agent is not run again.
 
-    Where only a judge can score a run, the first judge keeps deciding when another is added; --decides names another.
+    For runs that only a judge can score, the verdicts of the first judge count until --decides names another.
 
-    Running the same command again resumes an interrupted rescoring: it asks only for missing judgements. Exit code 1 when the
-    judge's server failed on any of them.
+    Running the same command again resumes an interrupted rescoring: only missing judgements are requested. Exit code 1 if any
+    judgement fails.
     """
     import anyio
 
@@ -56,26 +56,27 @@ def rescore(
 
     settings = judge_settings(judge, repeats)
     if not checks and not settings.requested and not decides:
-        raise InputError("Say what to score by: a judge (--judge-url), the checks (--checks), or both.")
+        raise InputError("Nothing to score with: give a judge (--judge-url), the checks (--checks), or both.")
 
     async def work() -> JudgementTally:
         total = JudgementTally()
-        port = await open_requested_judge(settings) if settings.requested else None
+        server = await open_requested_judge(settings) if settings.requested else None
         try:
             for log in logs:
-                if checks or port is not None:
+                if checks or server is not None:
                     tally = await add_scores(
-                        log, port, eval_context(seed=1), repeats=repeats, checks=checks, at_a_time=concurrency, notify=complain
+                        log, server, eval_context(seed=1), repeats=repeats, checks=checks, at_a_time=concurrency, notify=complain
                     )
                     total += tally
-                    put(f"{log}: {'checked again' if checks else ''}{', ' if checks and port else ''}{_made(port, tally)}")
+                    done = ["checked again"] if checks else []
+                    put(f"{log}: {', '.join([*done, *_new_judgements(server, tally)])}")
                 if decides:
                     let_decide(log, decides)
                 if several := other_judges_note(read_evaluation(log).trials):
                     put(f"{log}: {several}")
         finally:
-            if port is not None:
-                await port.close()
+            if server is not None:
+                await server.close()
         return total
 
     total = anyio.run(work)
@@ -85,22 +86,22 @@ def rescore(
     return 0
 
 
-def _made(judge: JudgeServer | None, tally: JudgementTally) -> str:
-    """Return the outcome of a log's judgements."""
+def _new_judgements(judge: JudgeServer | None, tally: JudgementTally) -> list[str]:
+    """Describe the new judgements of a log."""
     if judge is None:
-        return ""
-    return f"{tally.made} judgement{'' if tally.made == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"
+        return []
+    return [f"{tally.made} judgement{'' if tally.made == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"]
 
 
 def judge_failure(tally: JudgementTally) -> str:
-    """Return the sentence about judgements for which a judge's server failed."""
+    """Return a sentence about the judgements for which the judge's server failed."""
     first = f", the first with: {tally.failure}" if tally.failure else ""
     first = first if first.endswith((".", "!", "?")) else f"{first}."
     return f"{tally.failed} of {tally.made} judgements failed because the judge's server gave no usable reply{first}"
 
 
 def retry_message(tally: JudgementTally) -> str:
-    """Return the failure of a judge's server with the remedy."""
+    """Return a message about failed judgements that says how to retry them."""
     return (
         f"{judge_failure(tally)} Nothing is lost; running the same command again retries {'it' if tally.failed == 1 else 'them'}."
     )
@@ -111,7 +112,7 @@ def agree(
         list[Path], typer.Argument(help="Logs with judgements or labels, and verdicts on gold runs (.jsonl of judge-gold).")
     ],
     as_json: JsonOption = False,
-    seed: Annotated[int, typer.Option(help="Seed of the bootstrap.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed for the bootstrap.")] = 1,
 ) -> None:
     """Measure how far judges, their repeats, the checks, human labels and known faults agree.
 
@@ -129,7 +130,7 @@ def agree(
 
 
 def raters_in(logs: Sequence[Path]) -> list[Rater]:
-    """Return everyone who rated runs in these files. Raises ``InputError`` or ``TraceError``."""
+    """Return the raters in these files: judges, checks and people. Raises ``InputError`` or ``TraceError``."""
     from scope_ptz.bench.judging.agreement import raters_of
     from scope_ptz.bench.judging.human_labels import labels_file, read_labels, with_labels
     from scope_ptz.taskgen.gold.judge_results import raters_of_gold, read_verdicts
@@ -146,37 +147,37 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
 
 
 def judge_gold(
-    out: Annotated[Path, typer.Option("--out", help="File for verdicts (JSONL). Verdicts that it holds are not requested again.")],
+    out: Annotated[Path, typer.Option("--out", help="File for verdicts (JSONL). Verdicts already in it are not requested again.")],
     judge: JudgeFlags,
-    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published one).")] = None,
+    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published file).")] = None,
     tasks: TasksOption = "core",
-    passing: Annotated[int, typer.Option(min=0, help="Number of runs without a fault to mix in.")] = 60,
+    passing: Annotated[int, typer.Option(min=0, help="Number of runs without faults to mix in.")] = 60,
     repeats: Annotated[int, typer.Option(min=1, help="Number of judgements of each run.")] = 1,
-    limit: Annotated[int | None, typer.Option(min=1, help="Judge at most N gold runs, of all error modes in turn.")] = None,
-    concurrency: Annotated[int, typer.Option(min=1, help="Judgements at a time.")] = DEFAULT_CONCURRENCY,
+    limit: Annotated[int | None, typer.Option(min=1, help="Judge at most N gold runs, taken from all error modes in turn.")] = None,
+    concurrency: Annotated[int, typer.Option(min=1, help="Number of judgements at a time.")] = DEFAULT_CONCURRENCY,
     as_json: JsonOption = False,
 ) -> int:
-    """Test a judge on runs with known faults, mixed with runs without any.
+    """Test a judge on runs with known faults, mixed with runs without faults.
 
-    Prints false accepts, false rejects, and which error modes the judge names.
+    Prints false accepts, false rejects, and the error modes that the judge names.
     """
     import anyio
 
     from scope_ptz.factory.rescore import open_requested_judge
-    from scope_ptz.factory.validation_perception import equip_with_truth
+    from scope_ptz.factory.validation_perception import ground_truth_tools
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.gold.judge_cases import gold_cases, judge_all, result_lines
     from scope_ptz.taskgen.gold.judge_results import read_verdicts, results
 
     before = read_verdicts(out)
-    cases = gold_cases(gold, tasks, passing, limit, worlds_of, equip_with_truth)
+    cases = gold_cases(gold, tasks, passing, limit, worlds_of, ground_truth_tools)
 
     async def work() -> JudgementTally:
-        port = await open_requested_judge(judge_settings(judge))
+        server = await open_requested_judge(judge_settings(judge))
         try:
-            return await judge_all(port, cases, before, out, repeats=repeats, concurrency=concurrency, notify=complain)
+            return await judge_all(server, cases, before, out, repeats=repeats, concurrency=concurrency, notify=complain)
         finally:
-            await port.close()
+            await server.close()
 
     tally = anyio.run(work)
     found = results(read_verdicts(out))

@@ -28,21 +28,19 @@ _HELP = """c correct   i1-i8 incorrect, with the error mode   u unclear   s skip
 You can add a note: "i6 the tool counted 4, there are 5"."""
 _COMMAND = re.compile(r"\A(?P<verb>[ciusbq?])(?P<mode>[1-8])?(?:\s+(?P<note>.*))?\Z", re.IGNORECASE | re.DOTALL)
 _PICTURE = re.compile(r"\A(?:frames|pictures)/[\w.-]+\.(?:jpg|png)\Z")
-"""Names of pictures as run folders have them. A log cannot make the program write to any other path."""
+"""Names of pictures in run folders. Pictures with other names are not written, so a log cannot choose any other path."""
 
 MAX_CHARS = 40_000
-"""Longer runs are shortened on the screen."""
+"""Longer runs are truncated on the screen."""
 
 
 def label(
     log: Annotated[Path, typer.Argument(help="Log of 'scope bench run'.")],
     by: Annotated[str, typer.Option("--by", help="Your name or initials. Each person's labels are kept separately.")] = "",
     sample: Annotated[int | None, typer.Option(min=1, help="Label only N runs, sampled at random.")] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the order in which runs are shown.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed for the order in which runs are shown.")] = 1,
     pictures: Annotated[Path | None, typer.Option(help="Folder for the pictures of runs (default: a temporary one).")] = None,
-    compare: Annotated[
-        bool, typer.Option("--compare", help="Label nothing; print how far labels agree with checks and judges.")
-    ] = False,
+    compare: Annotated[bool, typer.Option("--compare", help="Only print how far the labels agree with checks and judges.")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Label runs by hand: correct, incorrect with an error mode, or unclear. Labels are saved next to the log.
@@ -57,7 +55,7 @@ def label(
     from scope_ptz.bench.engine.logs import read_evaluation
 
     if not by.strip():
-        raise InputError("Say who labels, with --by NAME.")
+        raise InputError("Give your name or initials with --by NAME.")
     trials = sampled(read_evaluation(log), sample, seed)
     if pictures is not None:
         _Labelling(log, by.strip(), trials, pictures).run()
@@ -69,7 +67,8 @@ def label(
 def sampled(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial]:
     """Return the runs to label, in random order.
 
-    Runs that never began are left out, and so are those that infrastructure broke: resuming replaces them, with their labels.
+    Runs that never started are left out. So are runs that failed for infrastructure reasons, because resuming the evaluation
+    replaces them.
     """
     fit = (trial for trial in evaluation.trials if trial.outcome is not None and trial.headline != "infrastructure")
     trials = sorted(fit, key=lambda trial: trial.sample)
@@ -96,7 +95,7 @@ def _compare(log: Path, *, as_json: bool) -> None:
 
 
 class _Labelling:
-    """A labelling session: shows one run after the other until all are labelled, or the user or the input ends it."""
+    """A labelling session: shows the runs one by one, until all are labelled, the user quits, or the input ends."""
 
     def __init__(self, log: Path, by: str, trials: Sequence[Trial], pictures: Path) -> None:
         from scope_ptz.bench.judging.human_labels import labels_file, read_labels
@@ -132,11 +131,11 @@ class _Labelling:
         files = open_sample(self.log, trial.sample)
         put(f"\n{'=' * 20} run {number} of {len(self.trials)} {'=' * 20}")
         put(render(trial.task, case_of(files.trace, files.places), MAX_CHARS))
-        for path in kept_pictures(files, self.pictures / folder_name(self.log, trial.sample)):
+        for path in write_pictures(files, self.pictures / folder_name(self.log, trial.sample)):
             put(f"picture: {path}")
 
     def _ask(self, trial: Trial) -> int | None:
-        """Ask for a command about a run. Return by how many runs to move on, or None to end the session."""
+        """Ask for a command about a run. Return how many runs to move forward, or None to end the session."""
         while True:
             sys.stdout.write("label> ")
             sys.stdout.flush()
@@ -158,9 +157,9 @@ class _Labelling:
                 case "?":
                     _put_modes()
                 case verb:
-                    made = self._label(verb, command["mode"], (command["note"] or "").strip())
-                    if made is not None:
-                        self._keep(trial, made)
+                    new_label = self._label(verb, command["mode"], (command["note"] or "").strip())
+                    if new_label is not None:
+                        self._keep(trial, new_label)
                         return 1
 
     def _label(self, verb: str, mode: str | None, note: str) -> Label | None:
@@ -175,14 +174,14 @@ class _Labelling:
             return Label(by=self.by, verdict="incorrect", error_mode=list(ErrorMode)[int(mode or 0) - 1], note=note)
         return Label(by=self.by, verdict="correct" if verb == "c" else "unclear", note=note)
 
-    def _keep(self, trial: Trial, made: Label) -> None:
+    def _keep(self, trial: Trial, new_label: Label) -> None:
         from scope_ptz.bench.judging.human_labels import add_label
 
-        add_label(self.file, made, trial.sample)
+        add_label(self.file, new_label, trial.sample)
         self.done.add(trial.sample)
 
     def _back(self, trial: Trial) -> int:
-        """Move to the run before, and ask for its label again."""
+        """Move back to the previous run, and ask for its label again."""
         at = self.trials.index(trial)
         if at == 0:
             put("This is the first run.")
@@ -205,10 +204,10 @@ def folder_name(log: Path, sample: str) -> str:
     return f"{words}-{digest[:8]}"
 
 
-def kept_pictures(files: SampleFiles, folder: Path) -> list[Path]:
+def write_pictures(files: SampleFiles, folder: Path) -> list[Path]:
     """Write a run's pictures into a folder and return their paths, the filmstrip first.
 
-    Pictures from an earlier session are not written again, and names that no run folder has are skipped.
+    Pictures from an earlier session are not written again, and names that cannot be those of a run folder are skipped.
     """
     from scope_ptz.agent.filmstrip import write_filmstrip
     from scope_ptz.errors import OutputError, ScopeError

@@ -23,20 +23,20 @@ from scope_ptz.cli.exit import complain
 from scope_ptz.factory.evaluation_options import EvaluationPlan, EvaluationProgress
 
 PRINT_EVERY_S = 15.0
-"""Seconds between two lines of progress where no table can be drawn."""
+"""Seconds between two lines of progress if the output is not a terminal."""
 MAX_RUNNING_SHOWN = 6
 RULE_BASED_NOTE = (
     "This is the built-in rule-based planner: a baseline and a check of the installation, not the result of a model.\n"
-    "For scores of models, put one in: scope bench run --planner-url http://HOST:PORT/v1 (scope models lists models)."
+    "To score a model, run: scope bench run --planner-url http://HOST:PORT/v1 (scope models lists models)."
 )
 GROUND_TRUTH_NOTE = (
     "Perception is the simulator's ground truth, not a model, so the score is not the result of a pair of models.\n"
-    "Put a vision model in with --perception NAME --perception-url http://HOST:PORT/v1 (scope models lists models)."
+    "To use a vision model, add --perception NAME --perception-url http://HOST:PORT/v1 (scope models lists models)."
 )
 
 
 class LiveProgress(EvaluationProgress):
-    """Prints notes and the estimate, and draws a table of the runs while they end."""
+    """Prints notes and the estimate, and draws a table of the finished runs that is updated live."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
@@ -117,7 +117,7 @@ class LiveProgress(EvaluationProgress):
 
 
 def category_table(trials: Iterable[Trial]) -> Table:
-    """Return the table of accuracy by category, macro and micro."""
+    """Return a table of accuracy by category, with macro and micro averages."""
     rows = list(trials)
     table = Table("category", box=None, pad_edge=False, header_style="bold")
     for name in ("runs", "correct", "wrong", "unscored", "broken", "accuracy"):
@@ -148,7 +148,7 @@ def _percent(share: float | None) -> str:
 
 
 def unscored_lines(trials: Sequence[Trial]) -> list[str]:
-    """Return lines about runs that only a judge can score and that have no verdict. They are in no share."""
+    """Return lines about runs that only a judge can score and that have no verdict. They are excluded from the accuracy."""
     pending = sum(not_judged(t) for t in trials)
     unparseable = sum(without_verdict(t) and not not_judged(t) for t in trials)
     lines = [f"not scored {pending} not judged yet: scope bench rescore LOG --judge-url ..."] if pending else []
@@ -180,7 +180,7 @@ def summary(evaluation: Evaluation) -> RenderableType:
 
 
 def baseline_note(evaluation: Evaluation) -> str:
-    """Return a note for scores that are not results of models; empty for those that are."""
+    """Return a note for scores that are not results of models; empty for scores of models."""
     card = evaluation.card
     if card.planner.deterministic:
         return RULE_BASED_NOTE

@@ -1,4 +1,4 @@
-"""Commands that read logs: ``report``, ``gate``, and the file for a public leaderboard (``submission``)."""
+"""Commands that read logs: ``report``, ``gate``, and ``submission`` for the file for a public leaderboard."""
 
 from __future__ import annotations
 
@@ -34,13 +34,15 @@ def report(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder to write. An older report in it is replaced.")],
     tasks: Annotated[
         str | None,
-        typer.Option("--tasks", help="Split or task file with the evidence of failed tasks (default: all published tasks)."),
+        typer.Option(
+            "--tasks", help="Split or task file of the tasks, whose evidence the pages show (default: all published tasks)."
+        ),
     ] = None,
     pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write a page with frames for each failed task.")] = True,
 ) -> None:
     """Write a report on one or more logs: a web page, Markdown, and CSV tables.
 
-    It has all tables and figures of the paper, for any set of runs.
+    It contains all tables and figures of the paper, for any set of runs.
     """
     _require_extra()
     from scope_ptz.bench.reports.writer import write_report
@@ -78,13 +80,13 @@ def gate(
     log: Annotated[Path, typer.Argument(help="Log to check.")],
     baseline: Annotated[Path, typer.Option("--baseline", help="Log to compare with.")],
     alpha: Annotated[
-        float, typer.Option(min=1e-6, max=0.5, help="Significance level: a loss with a smaller p value counts.")
+        float, typer.Option(min=1e-6, max=0.5, help="Significance level: a loss with a smaller p value is significant.")
     ] = 0.05,
     as_json: JsonOption = False,
 ) -> int:
     """Compare two logs task by task, for continuous integration.
 
-    Exit code 1 on a significant loss, overall or in a category; 2 when the logs are not comparable.
+    Exit code 1 on a significant loss, overall or in a category; 2 if the logs are not comparable.
     """
     from scope_ptz.factory.evaluate import require_engine
 
@@ -112,15 +114,15 @@ def submission_make(
     log: Annotated[Path, typer.Argument(help="Log of a finished evaluation.")],
     out: Annotated[Path, typer.Option("--out", "-o", help="File to write (JSON lines).")],
     tasks: Annotated[
-        str | None, typer.Option("--tasks", help="Split or task file that the log must cover (default: the split that was run).")
+        str | None, typer.Option("--tasks", help="Split or task file that the log must cover (default: the split of the log).")
     ] = None,
     partial: Annotated[
-        bool, typer.Option("--partial", help="Write an incomplete submission, which `submission validate` refuses.")
+        bool, typer.Option("--partial", help="Write an incomplete submission, which `submission validate` rejects.")
     ] = False,
 ) -> None:
-    """Write the submission of a log: its run card, and verdict, answer, calls and times of every task.
+    """Write the submission for a log: its run card, and the verdict, answer, calls and times of every task.
 
-    A log that does not cover its split is refused.
+    A log that does not cover its split is rejected.
     """
     _require_extra()
     from scope_ptz.bench.reports.submission import submission_lines, write_submission
@@ -132,13 +134,13 @@ def submission_make(
     lacking = [] if skip else _missing(header, lines, tasks)
     if lacking and not partial:
         raise InputError(
-            f"{log} does not cover {tasks or header.card.split}: {_first(lacking)}. A submission is of a whole split: run the "
-            "rest, without --limit, --category and --scene, or write what there is with --partial."
+            f"{log} does not cover {tasks or header.card.split}: {_first(lacking)}. A submission covers a whole split: run the "
+            "rest without --limit, --category and --scene, or write an incomplete submission with --partial."
         )
     write_submission((header, lines), out)
     put(f"{out}: {len(evaluation.trials)} trials of {evaluation.card.pair}")
     if lacking:
-        complain(f"{out} is partial and no valid submission: {_first(lacking)}.")
+        complain(f"{out} is incomplete and not a valid submission: {_first(lacking)}.")
 
 
 @submission_app.command("validate")
@@ -150,7 +152,7 @@ def submission_validate(
     ] = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Check that a submission is complete, consistent, in range, and of a known dataset. Exit code 1 on any fault."""
+    """Check that a submission is complete and consistent and that its dataset is known. Exit code 1 on any fault."""
     from scope_ptz.bench.reports.submission_checks import check_submission
 
     found = check_submission(file, _split(tasks))
@@ -173,7 +175,7 @@ def _missing(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> l
 
 def _first(faults: Sequence[str]) -> str:
     more = len(faults) - MAX_FAULTS_ON_ONE_LINE
-    return "; ".join(faults[:MAX_FAULTS_ON_ONE_LINE]) + (f"; and {more} more such faults" if more > 0 else "")
+    return "; ".join(faults[:MAX_FAULTS_ON_ONE_LINE]) + (f"; and {more} more faults" if more > 0 else "")
 
 
 def _require_extra() -> None:

@@ -21,11 +21,11 @@ def run(
     judge_repeats: JudgeRepeats = 1,
     as_json: JsonOption = False,
 ) -> int:
-    """Run a planner and perception pair, or an external agent, on the benchmark, and print its scores.
+    """Run a pair of planner and perception, or an external agent, on the benchmark, and print its scores.
 
-    Without options, the built-in planner and ground-truth perception run the published core tasks, locally and without any key.
+    Without options, the built-in planner and ground-truth perception run the published core tasks. That needs no server and no key.
 
-    Running the same command again resumes an interrupted evaluation. Exit code 1 when runs are missing or broken.
+    Running the same command again resumes an interrupted evaluation. Exit code 1 if runs are missing or broken.
     """
     import anyio
     from rich.console import Console

@@ -52,7 +52,7 @@ def sweep(
 ) -> int:
     """Run several pairs on the same tasks, one after the other, and compare their scores.
 
-    Your models file states where each model is served; --planner-url and --perception-url hold for all pairs.
+    Your models file states where each model is served; --planner-url and --perception-url apply to all pairs.
 
     Running the same command again resumes the sweep: it skips complete pairs and retries those that could not be reached.
     """
@@ -80,11 +80,13 @@ def sweep(
     console = Console(highlight=False, stderr=as_json)
     done = _run_all(names, shared, console)
     if as_json:
-        put_json({name: {"error": made} if isinstance(made, str) else evaluation_summary(made) for name, made in done.items()})
+        put_json(
+            {name: {"error": result} if isinstance(result, str) else evaluation_summary(result) for name, result in done.items()}
+        )
     else:
         for table in sweep_tables(done, console.width):
             console.print(table, "")
-    if any(isinstance(made, str) or not is_complete(made) for made in done.values()):
+    if any(isinstance(result, str) or not is_complete(result) for result in done.values()):
         complain("not every pair is complete; running the same command again resumes them.")
         return FAILED
     return 0
@@ -97,7 +99,7 @@ def pair_names(text: str | None, *, paper: bool) -> list[str]:
     from scope_ptz.settings import load_settings
 
     if (text is None) == (not paper):
-        raise InputError("Say which pairs: --pairs a+b,c+d or --paper.")
+        raise InputError("Give the pairs to run, either with --pairs A+B,C+D or with --paper.")
     registry = load_registry(load_settings().models_file())
     if paper:
         return [pair.name for pair in registry.pairs.values() if pair.origin == "paper"]
@@ -110,7 +112,7 @@ def pair_names(text: str | None, *, paper: bool) -> list[str]:
 
 
 def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> dict[str, Evaluation | str]:
-    """Run every pair. Return its evaluation, or the message of the error that prevented it."""
+    """Run all pairs. Return for each its evaluation, or the message of the error that prevented it."""
     import anyio
 
     from scope_ptz.bench.engine.failure_summary import failure_summary
@@ -148,7 +150,7 @@ def _models_of_pair(shared: ModelOptions, name: str) -> ModelOptions:
 
 
 def is_complete(evaluation: Evaluation) -> bool:
-    """Return whether every run has ended, and none failed because of infrastructure."""
+    """Return whether all runs have ended and none failed for infrastructure reasons."""
     return evaluation.finished and not any(trial.headline == "infrastructure" for trial in evaluation.trials)
 
 
@@ -159,13 +161,13 @@ def sweep_tables(done: dict[str, Evaluation | str], width: int) -> Iterator[Tabl
     """
     from scope_ptz.bench.engine.failure_summary import failure_summary
 
-    made = [(name, e) for name, e in done.items() if not isinstance(e, str)]
-    ranked, others = [row for row in made if row[1].card.ranked], [row for row in made if not row[1].card.ranked]
+    result = [(name, e) for name, e in done.items() if not isinstance(e, str)]
+    ranked, others = [row for row in result if row[1].card.ranked], [row for row in result if not row[1].card.ranked]
     if ranked:
         yield _pairs_table("Pairs of models, best first", ranked, width)
     if others:
         yield _pairs_table("Rule-based planner or ground-truth perception: baselines, not results of models", others, width)
-    failures = [(name, line) for name, e in made for line in failure_summary(e.trials, e.card)]
+    failures = [(name, line) for name, e in result for line in failure_summary(e.trials, e.card)]
     missing = [(name, why) for name, why in done.items() if isinstance(why, str)]
     for title, rows in (("Server failures", failures), ("Not run", missing)):
         if rows:

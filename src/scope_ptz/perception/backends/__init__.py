@@ -1,7 +1,8 @@
 """Perception backends that read pixels, one file each.
 
-A module in this package with a function ``make(spec: BackendSpec) -> Perception`` is a backend of the module's name. Other packages
-add backends by entry points of the group ``scope_ptz.perception`` that name such a function. A backend is imported when it is made.
+Every module in this package that defines ``make(spec: BackendSpec) -> Perception`` is a backend, named after the module. Other
+packages add backends with entry points of the group ``scope_ptz.perception`` that point to such a function. The module of a backend
+is imported only when the backend is created.
 """
 
 from __future__ import annotations
@@ -15,25 +16,25 @@ from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.models.tiled_panoramas import TiledPerception
 
-_NO_BACKENDS = {"spec"}
+_NOT_BACKENDS = {"spec"}  # modules of this package that define no backend
 
 
 def backend_names() -> tuple[str, ...]:
-    """Return the backends that can be made: the built-in ones and those of installed packages."""
+    """Return the names of all available backends: the built-in ones and those of installed packages."""
     return tuple(sorted(built_in_backends() | {entry.name for entry in installed(PERCEPTION)}))
 
 
 def built_in_backends() -> set[str]:
-    """Return the backends of this package."""
-    return {m.name for m in iter_modules(__path__) if not m.name.startswith("_") and m.name not in _NO_BACKENDS}
+    """Return the names of the backends in this package."""
+    return {m.name for m in iter_modules(__path__) if not m.name.startswith("_") and m.name not in _NOT_BACKENDS}
 
 
 def make_backend(spec: BackendSpec) -> Perception:
-    """Make the perception that a spec describes. A built-in backend takes precedence over a plug-in of the same name.
+    """Create the backend that a spec describes. A built-in backend takes precedence over a plug-in of the same name.
 
     Raises:
         UnknownNameError: There is no such backend.
-        ConfigError: An option is wrong, or a package is missing or broken.
+        ConfigError: An option is invalid, or a package is missing or broken.
     """
     name = normalised(spec.backend)
     if name in built_in_backends():
@@ -49,6 +50,6 @@ def _make_built_in(name: str, spec: BackendSpec) -> Perception:
     try:
         module = import_module(f"{__name__}.{name}")
     except ImportError as error:
-        raise ConfigError(f"The perception backend '{name}' lacks a package: {error}.") from error
+        raise ConfigError(f"The perception backend '{name}' cannot be imported: {error}. Install the missing package.") from error
     made: Perception = module.make(spec)
     return made

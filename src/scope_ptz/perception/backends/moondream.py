@@ -1,4 +1,4 @@
-"""Moondream over HTTP: moondream-station, the cloud, or any server with the same four paths."""
+"""Moondream over HTTP: moondream-station, the cloud, or any server with the same four endpoints."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_ptz.perception.base import Answer, Caption, Detections, Perception, P
 from scope_ptz.perception.models.coordinates import MAX_THINGS, convention, fit
 from scope_ptz.perception.models.encoding import picture_of
 from scope_ptz.perception.models.vision_prompts import one_line
-from scope_ptz.perception.models.vision_reply import VisionReply, served
+from scope_ptz.perception.models.vision_reply import VisionReply, server_errors
 
 KEY_HEADER = "X-Moondream-Auth"
 UNIT = convention("unit")
@@ -25,9 +25,9 @@ class MoondreamOptions(Options):
     """Options of the backend.
 
     Attributes:
-        max_pixels: Larger frames are scaled down to this size, because the model sees only a few crops of 378 pixels.
-        max_objects: Maximum number of objects to request; None uses the server's own limit.
-        reasoning: Whether Moondream 3 reasons about questions.
+        max_pixels: Frames with more pixels are scaled down to this number. The model itself sees only a few crops of 378 pixels.
+        max_objects: Maximum number of objects to request; None leaves the limit to the server.
+        reasoning: Whether Moondream 3 reasons before it answers a question; None leaves the choice to the server.
         caption_length: "short", "normal" or "long".
     """
 
@@ -38,7 +38,7 @@ class MoondreamOptions(Options):
 
 
 class MoondreamPerception(Perception):
-    """Perception over Moondream's own protocol. Coordinates are in [0, 1], without scores or labels."""
+    """Perception through Moondream's own HTTP protocol. Its coordinates are in [0, 1], and it returns no scores and no labels."""
 
     def __init__(self, client: JsonClient, options: MoondreamOptions | None = None, name: str = "moondream") -> None:
         self.name, self._client, self._options = name, client, options or MoondreamOptions()
@@ -63,48 +63,48 @@ class MoondreamPerception(Perception):
     async def close(self) -> None:
         await self._client.close()
 
-    async def _locate(self, frame: Frame, path: str, description: str, wanted: str) -> VisionReply:
-        """Request a list of locations. If the server refuses ``max_objects``, this and all later requests omit it."""
+    async def _locate(self, frame: Frame, path: str, description: str, reply_field: str) -> VisionReply:
+        """Request boxes or points. If the server rejects ``max_objects``, retry without it, and omit it from then on."""
         fields: dict[str, Any] = {"object": one_line(description)}
         if self._limit is None:
-            return await self._ask(frame, path, fields, wanted)
+            return await self._ask(frame, path, fields, reply_field)
         try:
-            return await self._ask(frame, path, {**fields, "settings": {"max_objects": self._limit}}, wanted)
+            return await self._ask(frame, path, {**fields, "settings": {"max_objects": self._limit}}, reply_field)
         except PerceptionError as error:
             if error.kind != FailureKind.BAD_REQUEST:
                 raise
-            reply = await self._ask(frame, path, fields, wanted)
+            reply = await self._ask(frame, path, fields, reply_field)
             self._limit = None
-            return reply.preceded(error)
+            return reply.with_earlier_attempts(error)
 
-    async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], wanted: str) -> VisionReply:
-        """Send one request. The reply holds the text or the JSON of the ``wanted`` field."""
+    async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], reply_field: str) -> VisionReply:
+        """Send one request. The reply contains the text or the JSON of the response field ``reply_field``."""
         began = perf_counter()
         picture = await picture_of(frame, fit(frame.width, frame.height, self._options.max_pixels))
         body = _body(picture.data_url, {**fields, "stream": False})
-        with served(self.name):
+        with server_errors(self.name):
             data, attempts = await self._client.post(path, body)
-        return self._reply(data, wanted, began, attempts)
+        return self._reply(data, reply_field, began, attempts)
 
-    def _reply(self, data: dict[str, Any], wanted: str, began: float, attempts: tuple[Attempt, ...]) -> VisionReply:
-        value = data.get(wanted)
-        if wanted in ("answer", "caption"):
+    def _reply(self, data: dict[str, Any], reply_field: str, began: float, attempts: tuple[Attempt, ...]) -> VisionReply:
+        value = data.get(reply_field)
+        if reply_field in ("answer", "caption"):
             if not isinstance(value, str):
-                raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no {wanted}")
+                raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no {reply_field}")
             return VisionReply(self.name, value, began, attempts)
         reply = VisionReply(self.name, json.dumps({"objects": value}), began, attempts)
         if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
-            raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no list of {wanted}")
+            raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no list of {reply_field}")
         return reply
 
 
 def _body(data_url: str, fields: dict[str, Any]) -> bytes:
-    """Return the request as JSON. The picture is inserted as it is, because base64 needs no escaping and is long."""
+    """Encode a request body as JSON. The picture bypasses the JSON encoder: base64 is long and needs no escaping."""
     rest = json.dumps(fields, separators=(",", ":"), ensure_ascii=False)[1:]
     return f'{{"image_url":"{data_url}",{rest}'.encode()
 
 
 def make(spec: BackendSpec) -> Perception:
-    """Return the backend that a spec describes."""
+    """Create the backend that a spec describes."""
     client = JsonClient(spec.needed_endpoint(), key_header=KEY_HEADER)
     return MoondreamPerception(client, MoondreamOptions.of(spec), spec.name)

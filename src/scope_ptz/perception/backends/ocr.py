@@ -1,4 +1,4 @@
-"""Reading text in this process with rapidocr, without a server, for simulated and real cameras alike."""
+"""Text recognition with rapidocr, in this process and without a server. It works for simulated and real cameras."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.models.frame_memo import FrameMemo, Image
-from scope_ptz.perception.models.text_requests import is_reading, text_fits, wanted_texts
+from scope_ptz.perception.models.text_requests import is_reading, requested_texts, text_fits
 from scope_ptz.perception.models.tile_geometry import PanoramaTile, merged, tiles
 
 Reader = Callable[[Image], "list[Line]"]
+"""A function that returns the lines of text in an RGB image (H, W, 3)."""
 
 
 class OcrOptions(Options):
-    """Options of the backend. Readings with a score below ``min_score`` are dropped."""
+    """Options of the backend. Lines with a score below ``min_score`` are dropped."""
 
     min_score: float = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line of text in the picture; ``box`` is labelled with the text."""
+    """A line of text in the picture. The label of ``box`` is the text."""
 
     text: str
     box: Box
@@ -41,8 +42,8 @@ class Line:
 class OcrPerception(Perception):
     """Perception of text only. ``detect`` and ``point`` find a text by its wording.
 
-    Other descriptions, and questions that are not answered by reading, raise ``PerceptionError``: no text that says "car" does not
-    mean that there is no car. Each frame is read once and remembered for further questions.
+    Other descriptions, and questions that text alone does not answer, raise ``PerceptionError``: a picture without the text "car"
+    may still show a car. The lines of each frame are cached for later questions.
     """
 
     handles_panoramas = True
@@ -81,15 +82,15 @@ class OcrPerception(Perception):
         return Points(points=points, source=self.name, raw=found.raw, latency_s=found.latency_s)
 
     async def _find(self, frame: Frame, description: str) -> list[Line]:
-        wanted = wanted_texts(description)
-        if wanted is None:
+        texts = requested_texts(description)
+        if texts is None:
             raise PerceptionError(f"OCR only finds text, and '{description}' names none. Quote the text, or ask a detector.")
         lines = await self.lines(frame)
-        return lines if not wanted else [line for line in lines if any(text_fits(text, line.text) for text in wanted)]
+        return lines if not texts else [line for line in lines if any(text_fits(text, line.text) for text in texts)]
 
 
 def quoted(lines: Iterable[Line]) -> str:
-    """Return lines in quotes, so that neither people nor planners take them for an instruction."""
+    """Return lines in quotes, so that a planner does not take text in the picture for an instruction."""
     return ", ".join('"' + line.text.replace('"', "'") + '"' for line in lines)
 
 
@@ -98,7 +99,7 @@ def _raw(lines: Iterable[Line]) -> str:
 
 
 def in_reading_order(lines: list[Line]) -> list[Line]:
-    """Return lines row by row. A line belongs to a row when its centre lies within the row's first line."""
+    """Return lines row by row. A line belongs to a row if its vertical centre lies within the row's first line."""
     rows: list[list[Line]] = []
     for line in sorted(lines, key=lambda x: x.box.centre[1]):
         if rows and abs(line.box.centre[1] - rows[-1][0].box.centre[1]) < rows[-1][0].box.height / 2:
@@ -109,7 +110,7 @@ def in_reading_order(lines: list[Line]) -> list[Line]:
 
 
 def read_tiles(reader: Reader, image: Image) -> list[Line]:
-    """Return all lines of a picture. A panorama is read in overlapping parts at full resolution."""
+    """Return all lines of text in a picture. A panorama is read in overlapping parts at full resolution."""
     width, height = image.shape[1], image.shape[0]
     parts: list[tuple[PanoramaTile, list[Box]]] = []
     for tile in tiles(width, height):
@@ -129,7 +130,7 @@ class RapidOcr:
     _engine: Any
 
     def __call__(self, image: Image) -> list[Line]:
-        """Return the lines of an RGB image (H, W, 3)."""
+        """Return the lines of text in an RGB image (H, W, 3)."""
         with self._lock:
             if self._engine is None:
                 self._engine = self._load()
@@ -152,18 +153,18 @@ class RapidOcr:
 
 
 def _line(corners: np.ndarray[Any, np.dtype[np.float64]], text: str, score: float, image: Image) -> Line | None:
-    """Return a line from its four corners in pixels (4, 2); None if nothing of it is in the picture."""
+    """Convert four corners in pixels (4, 2) to a line; None if they enclose no area within the picture."""
     if not np.isfinite(corners).all():
         return None
     low = np.clip(corners.min(axis=0) / (image.shape[1], image.shape[0]), 0, 1)
     high = np.clip(corners.max(axis=0) / (image.shape[1], image.shape[0]), 0, 1)
     if (high <= low).any():
         return None
-    sure = score if math.isfinite(score) and 0 <= score <= 1 else None
-    return Line(text, Box(x_min=low[0], y_min=low[1], x_max=high[0], y_max=high[1], label=text, score=sure))
+    valid_score = score if math.isfinite(score) and 0 <= score <= 1 else None
+    return Line(text, Box(x_min=low[0], y_min=low[1], x_max=high[0], y_max=high[1], label=text, score=valid_score))
 
 
 def make(spec: BackendSpec) -> Perception:
-    """Return the backend that a spec describes."""
+    """Create the backend that a spec describes."""
     need("ocr", "rapidocr", "onnxruntime")
     return OcrPerception(RapidOcr(OcrOptions.of(spec).min_score), spec.name)

@@ -1,4 +1,4 @@
-"""Vision-language models behind an OpenAI-compatible server. Each is asked in the coordinate convention that it was trained in."""
+"""Vision-language models behind an OpenAI-compatible server, prompted in the coordinate convention of each model."""
 
 from __future__ import annotations
 
@@ -24,19 +24,20 @@ from scope_ptz.perception.models.vision_prompts import (
     query_prompt,
     sent_size,
 )
-from scope_ptz.perception.models.vision_reply import VisionReply, served
+from scope_ptz.perception.models.vision_reply import VisionReply, server_errors
 
-NO_PLACES = "none"
-"""The coordinates of a model that gives none: Moondream 3 behind vLLM only answers questions and writes captions."""
+NO_COORDINATES = "none"
+"""The value of ``coordinates`` for models that return no boxes and no points, such as Moondream 3 behind vLLM."""
 
 
 class VisionOptions(Options):
     """Options of the backend.
 
     Attributes:
-        max_pixels: Larger frames are shrunk to this.
-        max_tokens: The limit of a reply, for places and answers.
-        structured: Whether lists must follow a JSON schema.
+        max_pixels: Frames with more pixels are scaled down to this number.
+        max_tokens: Maximum number of tokens in a reply.
+        temperature: The sampling temperature; None leaves it to the server.
+        structured: Whether to request boxes and points with a JSON schema (``response_format``).
         extra: Further request fields that the server or the model family needs, such as ``{"chat_template_kwargs":
             {"enable_thinking": false}}``.
     """
@@ -49,7 +50,7 @@ class VisionOptions(Options):
 
 
 class OpenAIVisionPerception(Perception):
-    """Perception by a chat model with images. ``style`` is how the model writes places; None if it writes none."""
+    """Perception by a chat model that accepts images. ``style`` is its coordinate convention, None if it gives no boxes."""
 
     def __init__(
         self, client: ChatClient, style: Convention | None, options: VisionOptions | None = None, name: str = "vision"
@@ -104,7 +105,10 @@ class OpenAIVisionPerception(Perception):
     async def _ask(
         self, picture: EncodedPicture, prompt: str, schema: dict[str, Any] | None = None
     ) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """Return the reply and the earlier attempts. Fields that a server refuses are left out, now and from then on."""
+        """Send a request, and repeat it without the fields that the server rejects. Return the reply and the attempts before it.
+
+        Rejected fields are omitted from later requests, too.
+        """
         refused, earlier = set(self._refused), tuple[Attempt, ...]()
         while True:
             fields = self._fields(schema, refused)
@@ -121,7 +125,7 @@ class OpenAIVisionPerception(Perception):
                 return reply, earlier
 
     def _fields(self, schema: dict[str, Any] | None, refused: set[str]) -> dict[str, Any]:
-        """Return the request fields besides the conversation. Newer hosted models require ``max_completion_tokens``."""
+        """Return the request fields other than the messages. Newer hosted models require ``max_completion_tokens``."""
         limit = "max_completion_tokens" if "max_tokens" in refused else "max_tokens"
         fields: dict[str, Any] = {limit: self._options.max_tokens, **self._options.extra}
         if self._options.temperature is not None:
@@ -132,26 +136,27 @@ class OpenAIVisionPerception(Perception):
 
     async def _complete(self, picture: EncodedPicture, prompt: str, fields: dict[str, Any]) -> ChatReply:
         content = [{"type": "image_url", "image_url": {"url": picture.data_url}}, {"type": "text", "text": prompt}]
-        with served(self.name):
+        with server_errors(self.name):
             return await self._client.complete([{"role": "user", "content": content}], extra=fields)
 
 
-_OTHER_NAMES = {"response_format": ("response_format", "json_schema", "json schema", "grammar", "guided", "structured")}
+_FIELD_ALIASES = {"response_format": ("response_format", "json_schema", "json schema", "grammar", "guided", "structured")}
+"""Words that error messages use for a request field, where the field's own name is not enough."""
 
 
 def refused_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
-    """Return the request fields that a server refused according to its message. Without a clue, the schema is the likeliest."""
+    """Return the request fields that an error message rejects. If the message names none, assume that it means the JSON schema."""
     if error.kind not in (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR):
         return set()
     words = str(error).lower()
-    named = {field for field in sent if any(name in words for name in _OTHER_NAMES.get(field, (field,)))}
+    named = {field for field in sent if any(name in words for name in _FIELD_ALIASES.get(field, (field,)))}
     return named or ({"response_format"} & sent.keys() if error.kind == FailureKind.BAD_REQUEST else set())
 
 
 def make(spec: BackendSpec) -> Perception:
-    """Return the backend that a spec describes."""
+    """Create the backend that a spec describes."""
     endpoint = spec.needed_endpoint()
     if spec.model:
         endpoint = endpoint.model_copy(update={"model": spec.model})
-    style = None if spec.coordinates == NO_PLACES else convention(spec.coordinates)
+    style = None if spec.coordinates == NO_COORDINATES else convention(spec.coordinates)
     return OpenAIVisionPerception(ChatClient(endpoint), style, VisionOptions.of(spec), spec.name)

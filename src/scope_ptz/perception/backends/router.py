@@ -1,4 +1,4 @@
-"""A router as a backend. Its options describe the backends that it combines."""
+"""The router backend. Its options contain the specs of the backends that it combines."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class RouterOptions(Options):
 
     Attributes:
         reader: The backend that reads text.
-        detector: The backend that finds things.
+        detector: The backend that locates objects.
         answerer: The backend that answers questions.
-        compare: Whether to ask two backends where possible and record their agreement.
+        compare: Whether to ask two backends at once where possible, and record how far they agree.
     """
 
     reader: BackendSpec | None = None
@@ -26,7 +26,7 @@ class RouterOptions(Options):
 
 
 def make(spec: BackendSpec) -> Perception:
-    """Return the backend that a spec describes."""
+    """Create the router that a spec describes."""
     options = RouterOptions.of(spec)
     reader, detector, answerer = (
         make_backend(part) if part else None for part in (options.reader, options.detector, options.answerer)

@@ -1,4 +1,4 @@
-"""The description from which a backend is made."""
+"""Specs of perception backends, and the base class of their options."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from scope_ptz.errors import ConfigError
 
 
 class BackendSpec(BaseModel):
-    """A perception backend to make.
+    """The spec of a perception backend.
 
     Attributes:
-        name: The source that results name.
-        backend: A module of this package, or the name of another package's backend.
-        model: The model's name on its server or on the hub.
-        coordinates: A convention of ``perception.models.coordinates``.
+        name: The name of the backend, which its results give as their source.
+        backend: The kind of backend: a module name in this package, or the name of a plug-in.
+        model: The model's name on its server or on Hugging Face.
+        endpoint: The model server; None for backends that run in this process.
+        coordinates: The name of a convention in ``perception.models.coordinates``.
         options: The backend's own options.
     """
 
@@ -32,23 +33,23 @@ class BackendSpec(BaseModel):
     options: dict[str, Any] = Field(default_factory=dict)
 
     def needed_endpoint(self) -> Endpoint:
-        """Return the endpoint, for backends that use a server.
+        """Return the endpoint. Backends that use a server call this.
 
         Raises:
-            ConfigError: There is no endpoint.
+            ConfigError: The spec has no endpoint.
         """
         if self.endpoint is None:
             raise ConfigError(f"The perception backend '{self.name}' needs a model server. Give its address with --perception-url.")
         return self.endpoint
 
     def needed_model(self) -> str:
-        """Return the model, for backends that load one.
+        """Return the model's name. Backends that load a model call this.
 
         Raises:
-            ConfigError: There is no model.
+            ConfigError: The spec names no model.
         """
         if not self.model:
-            raise ConfigError(f"The perception backend '{self.name}' needs the name or the folder of a model.")
+            raise ConfigError(f"The perception backend '{self.name}' needs a model. Give its name or its folder.")
         return self.model
 
 
@@ -56,7 +57,7 @@ _Options = TypeVar("_Options", bound="Options")
 
 
 class Options(BaseModel):
-    """Base class of a backend's options. Unknown and wrong options are user errors."""
+    """Base class of a backend's options. Unknown and invalid options raise ``ConfigError``."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -65,22 +66,22 @@ class Options(BaseModel):
         """Return the validated options of a spec.
 
         Raises:
-            ConfigError: An option is unknown or wrong.
+            ConfigError: An option is unknown or invalid.
         """
         try:
             return cls.model_validate(spec.options)
         except ValidationError as error:
             first = error.errors(include_input=False)[0]
             where = ".".join(str(p) for p in first["loc"])
-            raise ConfigError(f"The option '{where}' of the perception backend '{spec.name}' is wrong: {first['msg']}.") from None
+            raise ConfigError(f"The option '{where}' of the perception backend '{spec.name}' is invalid: {first['msg']}.") from None
 
 
 def need(extra: str, *packages: str) -> None:
-    """Check that all packages of an extra are installed, without importing them.
+    """Check that the packages of an optional extra are installed, without importing them.
 
     Raises:
         ConfigError: A package is missing.
     """
     missing = [package for package in packages if find_spec(package) is None]
     if missing:
-        raise ConfigError(f"This needs {' and '.join(missing)}. Install with: pip install 'scope-ptz[{extra}]'")
+        raise ConfigError(f"This feature needs {' and '.join(missing)}. Install with: pip install 'scope-ptz[{extra}]'")

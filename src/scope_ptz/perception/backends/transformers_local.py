@@ -1,4 +1,4 @@
-"""Vision-language models in this process: Moondream's own interface, and chat models that transformers supports (Qwen-VL)."""
+"""Vision-language models that run in this process: Moondream, and chat models that transformers supports, such as Qwen-VL."""
 
 from __future__ import annotations
 
@@ -31,20 +31,24 @@ from scope_ptz.perception.models.vision_prompts import (
 )
 from scope_ptz.perception.models.vision_reply import VisionReply
 
-COMMIT = re.compile(r"[0-9a-f]{40}")
+COMMIT_HASH = re.compile(r"[0-9a-f]{40}")
 UNIT = convention("unit")
 
 
 class LocalOptions(Options):
     """Options of the backend.
 
-    Moondream's interface is code from its repository. It runs only with ``trust_remote_code``, from a folder or from the one commit
-    that ``revision`` names.
+    Moondream's interface is Python code in the model's repository. It runs only if ``trust_remote_code`` is set, and only from a
+    local folder or from the commit that ``revision`` pins.
 
     Attributes:
-        family: "moondream" for its own interface, "chat" for models with a chat template.
-        device: The device as torch names it, "auto" for the best available.
-        dtype: The data type as torch names it, or "auto".
+        family: "moondream" for Moondream's own interface, "chat" for models with a chat template.
+        device: The torch device, or "auto" for the best one available.
+        dtype: The torch data type, or "auto".
+        revision: The branch, tag or commit of the model's repository.
+        trust_remote_code: Whether to run the code in the model's repository.
+        max_pixels: Frames with more pixels are scaled down to this number.
+        max_tokens: Maximum number of tokens in a reply.
     """
 
     family: Literal["moondream", "chat"] = "chat"
@@ -57,13 +61,13 @@ class LocalOptions(Options):
 
 
 class ChatModel(Protocol):
-    """A chat model that takes a picture. It returns its text, and whether the text stopped at the token limit."""
+    """A chat model that takes a picture and a prompt. It returns its text, and whether the text was cut off at the token limit."""
 
     def __call__(self, image: Image, prompt: str) -> tuple[str, bool]: ...
 
 
 class LocalChatPerception(Perception):
-    """Perception by a chat model, asked in its coordinate convention, one frame at a time in a worker thread."""
+    """Perception by a local chat model, prompted in its coordinate convention. Frames are processed one at a time in a thread."""
 
     def __init__(self, model: ChatModel, style: Convention, options: LocalOptions | None = None, name: str = "local") -> None:
         self.name, self._model, self._style, self._options = name, model, style, options or LocalOptions()
@@ -122,23 +126,23 @@ class LocalMoondreamPerception(Perception):
         found = await self._call(frame, "point", "points", one_line(description))
         return VisionReply(self.name, json.dumps({"objects": found}, default=float), began).points(UNIT, (1, 1))
 
-    async def _call(self, frame: Frame, method: str, field: str, *given: str, **options: str) -> Any:
+    async def _call(self, frame: Frame, method: str, field: str, *args: str, **options: str) -> Any:
         def call() -> Any:
             with self._lock:
                 if self._model is None:
                     self._model = self._load()
-                return getattr(self._model, method)(_pillow(frame.image), *given, **options)[field]
+                return getattr(self._model, method)(_pillow(frame.image), *args, **options)[field]
 
         return await _in_thread(self.name, call)
 
 
 async def _in_thread(name: str, call: Callable[[], Any]) -> Any:
-    """Run a model in a worker thread. Any failure becomes a ``PerceptionError``."""
+    """Run a model in a worker thread. Any exception becomes a ``PerceptionError``."""
     try:
         return await to_thread.run_sync(call)
     except PerceptionError:
         raise
-    # Models run their own code, and out-of-memory errors have a different class on every device.
+    # Model code can raise anything, and out-of-memory errors have a different class on every device.
     except Exception as error:
         raise PerceptionError(f"{name} could not look: {type(error).__name__}: {error}") from error
 
@@ -150,7 +154,7 @@ def _pillow(image: Image) -> Any:
 
 
 class TransformersChat:
-    """A transformers processor and model, loaded on first use, with greedy decoding."""
+    """A chat model of transformers, loaded on first use, with greedy decoding."""
 
     def __init__(self, model: str, options: LocalOptions) -> None:
         self._name, self._options, self._lock = model, options, threading.Lock()
@@ -160,19 +164,19 @@ class TransformersChat:
         with self._lock:
             processor, model = self._loaded = self._loaded or self._load()
             parts = [{"type": "image", "image": _pillow(image)}, {"type": "text", "text": prompt}]
-            # A template that does not know the switch would pass it on as an option of the processor.
-            quiet = {"enable_thinking": False} if "enable_thinking" in str(processor.chat_template) else {}
+            # If the chat template lacked this option, it would be passed to the processor.
+            template_options = {"enable_thinking": False} if "enable_thinking" in str(processor.chat_template) else {}
             inputs = processor.apply_chat_template(
                 [{"role": "user", "content": parts}],
                 add_generation_prompt=True,
                 tokenize=True,
                 return_dict=True,
                 return_tensors="pt",
-                **quiet,
+                **template_options,
             ).to(model.device)
-            asked = inputs["input_ids"].shape[1]
-            written = model.generate(**inputs, max_new_tokens=self._options.max_tokens, do_sample=False)[0][asked:]
-            return processor.decode(written, skip_special_tokens=True), len(written) >= self._options.max_tokens
+            prompt_tokens = inputs["input_ids"].shape[1]
+            generated = model.generate(**inputs, max_new_tokens=self._options.max_tokens, do_sample=False)[0][prompt_tokens:]
+            return processor.decode(generated, skip_special_tokens=True), len(generated) >= self._options.max_tokens
 
     def _load(self) -> tuple[Any, Any]:
         from transformers import AutoModelForImageTextToText, AutoProcessor
@@ -201,15 +205,15 @@ def _device(options: LocalOptions) -> str:
 
 
 def make(spec: BackendSpec) -> Perception:
-    """Return the backend that a spec describes."""
+    """Create the backend that a spec describes."""
     need("local", "transformers", "torch")
     options, model = LocalOptions.of(spec), spec.needed_model()
     if options.family == "chat":
         return LocalChatPerception(TransformersChat(model, options), convention(spec.coordinates), options, spec.name)
     if not options.trust_remote_code:
-        raise ConfigError(f"'{model}' brings code of its own. Set the option trust_remote_code to run it, having read it.")
-    if not Path(model).is_dir() and not COMMIT.fullmatch(options.revision or ""):
+        raise ConfigError(f"'{model}' contains its own code. Review the code, then set the option trust_remote_code to run it.")
+    if not Path(model).is_dir() and not COMMIT_HASH.fullmatch(options.revision or ""):
         raise ConfigError(
-            f"'{model}' brings code of its own. Set the option revision to the commit (40 hex digits) that you have read."
+            f"'{model}' contains its own code. Set the option revision to the commit (40 hex digits) that you reviewed."
         )
     return LocalMoondreamPerception(lambda: _load_moondream(model, options), spec.name)

@@ -1,4 +1,4 @@
-"""Zero-shot detectors in this process: OWLv2 and Grounding DINO through the transformers pipeline."""
+"""Zero-shot object detectors that run in this process: OWLv2 and Grounding DINO, through the transformers pipeline."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from scope_ptz.perception.models.tile_geometry import suppressed
 
 Found = list[dict[str, Any]]
 Detector = Callable[[Image, str], Found]
-"""From an RGB image and a phrase to ``[{"score", "label", "box": {"xmin", "ymin", "xmax", "ymax"}}]`` in pixels."""
+"""A function from an RGB image and a phrase to ``[{"score", "label", "box": {"xmin", "ymin", "xmax", "ymax"}}]``, in pixels."""
 
 
 class ZeroShotOptions(Options):
     """Options of the backend.
 
     Attributes:
-        threshold: The lowest score that counts as a detection.
-        overlap: Of boxes that overlap more than this (intersection over union), only the best is kept.
-        device: The device as torch names it ("cpu", "cuda:0"), "auto" for the best available.
+        threshold: Detections with a lower score are dropped.
+        overlap: A box that overlaps a better one by more than this (intersection over union) is dropped.
+        device: The torch device ("cpu", "cuda:0"), or "auto" for the best one available.
     """
 
     threshold: float = 0.2
@@ -39,7 +39,7 @@ class ZeroShotOptions(Options):
 
 
 class ZeroShotPerception(Perception):
-    """A detector that finds what a phrase describes, best score first. It cannot answer questions."""
+    """A detector that locates what a phrase describes, best score first. It cannot answer questions."""
 
     skills = frozenset(("detect", "point"))
 
@@ -83,7 +83,7 @@ def _thing(found: dict[str, Any]) -> RawThing:
 
 
 class PipelineDetector:
-    """The transformers pipeline, loaded on first use, one picture at a time."""
+    """The transformers pipeline, loaded on first use. It processes one picture at a time."""
 
     def __init__(self, model: str, options: ZeroShotOptions) -> None:
         self._model, self._options, self._pipeline, self._lock = model, options, None, threading.Lock()
@@ -115,7 +115,7 @@ class PipelineDetector:
 
 
 def make(spec: BackendSpec) -> Perception:
-    """Return the backend that a spec describes."""
+    """Create the backend that a spec describes."""
     need("local", "transformers", "torch")
     options = ZeroShotOptions.of(spec)
     return ZeroShotPerception(PipelineDetector(spec.needed_model(), options), options, spec.name)

@@ -1,4 +1,4 @@
-"""The simulator's ground truth as a perception backend. It reads the scene that a frame was taken in, never the frame's pixels."""
+"""The simulator's ground truth as a perception backend. It reads the scene of a frame, never the frame's pixels."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class GroundTruthPerception(Perception):
     """Answers from the ground truth of simulated frames. Frames of real cameras have none and raise ``PerceptionError``.
 
     Visibility and legibility are as the simulator defines them. Boxes come largest first, unless the description orders them ("the
-    nearest car"); they carry the thing's name and no score.
+    nearest car"). Their label is the name of the thing, and they have no score.
     """
 
     name = GROUND_TRUTH
@@ -37,7 +37,7 @@ class GroundTruthPerception(Perception):
         """Set up the backend.
 
         Args:
-            open_scene: Returns a scene by name.
+            open_scene: Returns the scene of a given name.
             read_truth: Computes the ground truth of a view.
         """
         self.open_scene = open_scene
@@ -66,8 +66,9 @@ class GroundTruthPerception(Perception):
         return Points(points=points, source=self.name, raw=_ids(things), latency_s=time.perf_counter() - began)
 
     def view(self, frame: Frame, asked: str) -> View:
-        """Return everything that a simulated frame shows. ``asked`` does not affect the truth, but simulated noise depends on
-        it.
+        """Return everything that a simulated frame shows.
+
+        ``asked`` is the question. The truth does not depend on it, but simulated noise does.
         """
         origin = frame.origin
         if origin is None:
@@ -82,7 +83,7 @@ class GroundTruthPerception(Perception):
         return read_view(self.perceived(truth, frame, asked), scene.file, origin.time_s)
 
     def perceived(self, truth: ViewTruth, frame: Frame, asked: str) -> ViewTruth:  # noqa: ARG002
-        """Return the part of the truth that is perceived, here all of it."""
+        """Return the part of the truth that the backend perceives. This one perceives everything; subclasses add errors."""
         return truth
 
     def _answer(self, frame: Frame, question: str) -> AnswerText:

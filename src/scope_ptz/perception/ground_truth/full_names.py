@@ -1,7 +1,7 @@
-"""Things that are referred to by the full name that the scene gives them: "mannequin in a red dress", "planter with pink
+"""Search by the full name that the scene gives a thing: "mannequin in a red dress", "planter with pink
 flowers".
 
-Such a name parses as a noun with a property, which the scene may state nowhere else.
+The parser reads such a name as a noun with a property, but the scene may state that property only in the name.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from scope_ptz import english
 from scope_ptz.perception.ground_truth.language import question_tree as s
 from scope_ptz.perception.ground_truth.view import Thing, View
 
-_SMALL = frozenset({"a", "an", "the", "in", "on", "of", "at", "by", "to", "with"})
+_FUNCTION_WORDS = frozenset({"a", "an", "the", "in", "on", "of", "at", "by", "to", "with"})
 
 
 def named_in_full(view: View, phrase: s.Phrase) -> list[Thing]:
@@ -18,11 +18,11 @@ def named_in_full(view: View, phrase: s.Phrase) -> list[Thing]:
     asked = _words(phrase)
     if not asked:
         return []
-    return [t for t in view.things if {english.singular(x) for x in english.letters(t.name).split()} - _SMALL == asked]
+    return [t for t in view.things if {english.singular(x) for x in english.letters(t.name).split()} - _FUNCTION_WORDS == asked]
 
 
 def _words(phrase: s.Phrase) -> set[str]:
-    """Return all words of a phrase, none when it says more than a name could."""
+    """Return all words of a phrase; an empty set if the phrase contains more than a name can."""
     if not phrase.tests or phrase.order is not None or phrase.ordinal is not None:
         return set()
     words = set(phrase.words)
@@ -34,4 +34,4 @@ def _words(phrase: s.Phrase) -> set[str]:
                 words |= set(loose)
             case _:
                 return set()
-    return {english.singular(word) for word in words} - _SMALL
+    return {english.singular(word) for word in words} - _FUNCTION_WORDS

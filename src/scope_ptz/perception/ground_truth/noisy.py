@@ -25,14 +25,14 @@ _LOOKALIKES = {
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """The size of the simulated errors.
+    """Probabilities and sizes of the simulated errors.
 
     Attributes:
         miss: A thing of ``pixels`` pixels is missed with probability ``miss * exp(-pixels / miss_scale_px)``.
         miss_scale_px: See ``miss``.
         duplicate: The probability that a thing is reported twice.
         misread: The probability that a character of a barely legible text is misread; larger text is misread less often.
-        jitter: The sides of boxes move by up to this share of their size.
+        jitter: Each side of a box moves by up to this share of the box's width or height.
     """
 
     miss: float = 0.35
@@ -43,7 +43,7 @@ class Noise:
 
 
 class NoisyPerception(GroundTruthPerception):
-    """Adds errors to the ground truth. They are consistent within one question, and differ between questions."""
+    """Ground truth with errors, which are consistent within one question and differ between questions."""
 
     name = NOISY_SOURCE
 

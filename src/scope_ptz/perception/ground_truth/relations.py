@@ -1,11 +1,11 @@
 """Spatial relations between things, in the picture and in the world.
 
 - *left / right of*: the centre of the box lies further left / right. *Above / below*: the centre lies higher / lower, and the boxes
-overlap sideways or come within a tenth of the frame of it.
-- *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap sideways, with a
+overlap horizontally, with a tolerance of a tenth of the frame.
+- *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap horizontally, with a
 tolerance of a twentieth of the frame.
 - *near, next to*: at most 4 m apart in the world.
-- *on, in, at, of*: a part of it, or standing on its ground plan without reaching below it.
+- *on, in, at, of*: a part of the other thing, or within its footprint and not below it.
 - *on the left*: the centre lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: in the
 middle 40% across, without the top and bottom tenth. *In the foreground*, *in the distance*: the nearest and furthest third of the
 depth in view, on a logarithmic scale.
@@ -23,14 +23,14 @@ from scope_ptz.perception.ground_truth.thing_facts import facts, key_words
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 BACKDROP = frozenset({"surface", "sky"})
-"""Concepts that are the background of things rather than things."""
+"""Concepts of the background, which do not count as objects."""
 
-NEAR_M = 4.0
-ON_SLACK_M = 0.3
-FLAT_M = 0.5
-DEPTH_STEP_M = 0.5
-SIDE_BAND = 0.4
-SIDE_SLACK = 0.05
+NEAR_M = 4.0  # things at most this far apart are next to each other
+ON_SLACK_M = 0.3  # tolerance for standing on something
+FLAT_M = 0.5  # lower things are flat, such as a road
+DEPTH_STEP_M = 0.5  # minimum difference in distance of a thing behind another
+SIDE_BAND = 0.4  # share of the frame that counts as a side
+SIDE_SLACK = 0.05  # tolerance of horizontal overlap, as a share of the frame
 
 
 def in_region(view: View, thing: Thing, region: s.Region) -> bool:
@@ -66,39 +66,40 @@ def relation_holds(view: View, a: Thing, kind: s.RelationKind, b: Thing) -> bool
         case "right":
             return ax > bx and not part
         case "above":
-            return ay < by and _sideways(a, b, 0.1)
+            return ay < by and _overlap_horizontally(a, b, 0.1)
         case "below":
-            return ay > by and _sideways(a, b, 0.1)
+            return ay > by and _overlap_horizontally(a, b, 0.1)
         case "front":
-            return not part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _sideways(a, b, SIDE_SLACK)
+            return not part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_SLACK)
         case "behind":
-            return not part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _sideways(a, b, SIDE_SLACK)
+            return not part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_SLACK)
         case "near" | "facing":
             return not part and a.gap_m(b) <= NEAR_M
         case "on":
             return view.belongs(a.id, b.id) or _rests_on(a, b)
 
 
-def _sideways(a: Thing, b: Thing, slack: float) -> bool:
+def _overlap_horizontally(a: Thing, b: Thing, slack: float) -> bool:
     return a.box.x_min <= b.box.x_max + slack and b.box.x_min <= a.box.x_max + slack
 
 
 def _rests_on(a: Thing, b: Thing) -> bool:
-    """Return whether a thing stands on another: its centre over the other's ground plan, and its foot above the other's foot
-    unless that is flat like a road.
+    """Return whether a thing stands on another.
+
+    Its centre must be within the other's footprint, and its base above the other's base, unless the other is flat like a road.
     """
     middle = (a.low_m + a.high_m)[:2] / 2
     over = bool(np.all(middle >= b.low_m[:2] - ON_SLACK_M) and np.all(middle <= b.high_m[:2] + ON_SLACK_M))
     foot, top = b.low_m[2] if b.high_m[2] - b.low_m[2] < FLAT_M else b.low_m[2] + ON_SLACK_M, b.high_m[2] + ON_SLACK_M
-    return over and bool(foot - ON_SLACK_M / 2 <= a.low_m[2] <= top) and _extent(a) < _extent(b)
+    return over and bool(foot - ON_SLACK_M / 2 <= a.low_m[2] <= top) and _volume_m3(a) < _volume_m3(b)
 
 
-def _extent(thing: Thing) -> float:
+def _volume_m3(thing: Thing) -> float:
     return float(np.prod(np.maximum(thing.high_m - thing.low_m, 0.1)))
 
 
 def from_corner(thing: Thing, sides: Sequence[str]) -> float:
-    """Return the distance to a corner or to the centre of the frame, in frames."""
+    """Return the distance from a thing to a corner, a side or the centre of the frame, as a share of the frame."""
     x, y = thing.box.centre
     to_x = 0.0 if "left" in sides else 1.0 if "right" in sides else 0.5
     to_y = 0.0 if "top" in sides else 1.0 if "bottom" in sides else 0.5
@@ -106,7 +107,7 @@ def from_corner(thing: Thing, sides: Sequence[str]) -> float:
 
 
 def faces(thing: Thing, side: str) -> bool | None:
-    """Return whether a thing points to a side; None if the scene does not say."""
+    """Return whether a thing faces a side; None if the scene does not state it."""
     for key, value in facts(thing):
         if set(key_words(key)) & {"direction", "facing", "heading", "pointing", "orientation", "arrow"}:
             return side in english.letters(str(value)).split()
@@ -119,7 +120,7 @@ def pixels(thing: Thing) -> int:
 
 
 def rank_key(key: s.OrderKey) -> Callable[[Thing], float]:
-    """Return the sort key of a superlative, best first."""
+    """Return the sort key of a superlative. The thing with the lowest value fits it best."""
     keys: dict[str, Callable[[Thing], float]] = {
         "left": lambda t: t.box.centre[0],
         "right": lambda t: -t.box.centre[0],
@@ -127,14 +128,14 @@ def rank_key(key: s.OrderKey) -> Callable[[Thing], float]:
         "bottom": lambda t: -t.box.centre[1],
         "nearest": lambda t: t.distance_m,
         "furthest": lambda t: -t.distance_m,
-        "biggest": lambda t: -_volume(t),
-        "smallest": _volume,
+        "biggest": lambda t: -_diagonal_m(t),
+        "smallest": _diagonal_m,
         "tallest": lambda t: -float(t.high_m[2] - t.low_m[2]),
         "widest": lambda t: -float(max(t.high_m[:2] - t.low_m[:2])),
     }
     return keys[key]
 
 
-def _volume(thing: Thing) -> float:
-    """Return the size in the world: the diagonal of the box, which also orders flat things."""
+def _diagonal_m(thing: Thing) -> float:
+    """Return the diagonal of the box in the world, a measure of size that also works for flat things."""
     return float(((thing.high_m - thing.low_m) ** 2).sum() ** 0.5)

@@ -1,4 +1,4 @@
-"""Whether a word, an outfit or a text fits a thing. The answer is yes, no, or None when the scene does not say."""
+"""Tests whether words, clothes and texts fit a thing. They return None if the scene does not state the answer."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ _STATES = [
     "working: operating operational active running",
     "",
 ]
+"""States, each followed by its synonyms."""
 _CANONICAL = {word: line.partition(":")[0] for line in _STATES if line for word in line.replace(":", "").split()} | {
     "gray": "grey", "amber": "orange", "violet": "purple", "golden": "gold", "metallic": "metal", "steel": "metal",
     "standing": "upright", "stand": "upright", "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
@@ -39,7 +40,7 @@ _OPPOSITES = [
     ("sitting", "upright"), ("upright", "fallen"), ("walking", "upright"), ("walking", "stationary"), ("walking", "sitting"),
     ("working", "off"),
 ]  # fmt: skip
-SOFT = frozenset(
+IGNORABLE = frozenset(
     [
         "big",
         "large",
@@ -88,7 +89,7 @@ SOFT = frozenset(
         "moving",
     ]
 )
-"""Words that do not restrict a description when the scene has no fact about them."""
+"""Words that are ignored in a description if the scene has no fact about them."""
 FILLERS = frozenset(
     [
         "the",
@@ -120,13 +121,13 @@ FILLERS = frozenset(
     ]
 )
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
-"""Attributes that repeat the text on a thing. They are never used, because only legible texts are read."""
+"""Attributes that repeat the text on a thing. They are never used, because only legible text may be reported."""
 COLOUR_KEYS = ("colour", "color")
 NOTHING = frozenset({"", "none", "no", "false", "nothing", "without"})
 
 
 def canonical(word: str) -> str:
-    """Return the word that stands for a word and its synonyms."""
+    """Return the canonical synonym of a word."""
     return _CANONICAL.get(word, word)
 
 
@@ -146,7 +147,7 @@ def value_words(value: object) -> list[str]:
 
 
 def fact_words(thing: Thing) -> set[str]:
-    """Return every word that describes a thing: names, values, true flags, what it does. The clothes of people are excluded."""
+    """Return the words that describe a thing: its name, attribute values, true flags and motion, but not people's clothes."""
     found = {canonical(x) for x in english.letters(f"{thing.name} {thing.category}").split()}
     for key, value in facts(thing):
         words = key_words(key)
@@ -189,7 +190,7 @@ def is_worn(key: str) -> bool:
 
 
 def colour_of(thing: Thing) -> str | None:
-    """Return the colour as the scene states it."""
+    """Return the colour that the scene states; None if it states none."""
     for key in COLOUR_KEYS:
         if key in thing.attributes:
             return str(thing.attributes[key])
@@ -205,7 +206,7 @@ def colour_of(thing: Thing) -> str | None:
 def fits_noun(view: View, thing: Thing, noun: str) -> bool:
     """Return whether a noun (singular or plural) names the thing.
 
-    A word that the scene itself uses means that thing ("pylon" for an electricity pylon), whatever else it may mean.
+    If the scene itself uses a word, such as "pylon" for an electricity pylon, other meanings of the word do not count.
     """
     one = english.letters(singular_phrase(noun))
     name, category = english.letters(head_of(thing.name)), english.letters(thing.category)
@@ -216,7 +217,7 @@ def fits_noun(view: View, thing: Thing, noun: str) -> bool:
 
 
 def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
-    """Return whether loose words ("parked", "dark blue", "a van") hold for a thing."""
+    """Return whether words such as "parked", "dark blue" or "a van" hold for a thing; None if the scene does not state it."""
     rest = [x for x in words if x not in FILLERS] or [x for x in words if x in {"on", "in"}]
     if not rest:
         return True
@@ -229,12 +230,13 @@ def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
 
 
 def _all(answers: Iterable[bool | None]) -> bool | None:
+    """Return whether all answers are yes; None stands for unknown."""
     found = list(answers)
     return False if False in found else None if None in found else True
 
 
 def _fits(view: View, thing: Thing, word: str) -> bool | None:
-    """Return whether one word holds for a thing."""
+    """Return whether one word holds for a thing; None if the scene does not state it."""
     if word.startswith("non-"):
         answer = _fits(view, thing, word.removeprefix("non-"))
         return None if answer is None else not answer
@@ -242,7 +244,7 @@ def _fits(view: View, thing: Thing, word: str) -> bool | None:
     meant = canonical(word)
     if _forms(word) & {f for x in known for f in _forms(x)} or fits_noun(view, thing, word):
         return True
-    if lexicon().concept(word) is not None and "person" in thing.concepts and wears(view, thing, [word]):
+    if lexicon().concept(word) is not None and "person" in thing.concepts and has_item(view, thing, [word]):
         return True
     if _in_context(view, thing, word) or any(english.letters(word) in english.letters(text).split() for text in thing.texts):
         return True
@@ -267,7 +269,7 @@ def _forms(word: str) -> frozenset[str]:
 
 
 def _in_context(view: View, thing: Thing, word: str) -> bool:
-    """Return whether the word names what the thing belongs to ("the gantry sign", "the cabin door")."""
+    """Return whether the word names something that the thing is a part of ("the gantry sign", "the cabin door")."""
     holder = thing.parent
     while holder is not None:
         words = english.letters(view.instances[holder].name).split()
@@ -278,8 +280,8 @@ def _in_context(view: View, thing: Thing, word: str) -> bool:
     return False
 
 
-def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = None) -> bool:
-    """Return whether a thing has what the words name: an attribute, a part or a text. What the scene does not state is absent."""
+def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None = None) -> bool:
+    """Return whether a thing has an attribute, part, clothing or text that fits. What the scene does not state is absent."""
     rest = [x for x in words if x not in FILLERS]
     spans = nouns_in(rest, view.nouns)
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))
@@ -297,7 +299,7 @@ def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = N
 
 
 def _attribute_has(key: str, value: Attribute, names: frozenset[str], others: Sequence[str], amount: int | None) -> bool:
-    """Return whether an attribute states one of the names, by its key or within its value, together with all other words."""
+    """Return whether an attribute contains one of the names, in its key or its value, together with all other words."""
     if _key_is(key, names):
         stated = value_words(value)
         if str(value).lower() not in NOTHING and value is not False and all(x in stated for x in others):
@@ -314,7 +316,7 @@ def _key_is(key: str, names: frozenset[str]) -> bool:
 
 
 def names_of(noun: str) -> frozenset[str]:
-    """Return all names, in the singular, of what a noun means."""
+    """Return all nouns, in the singular, for the concept of a noun."""
     table = lexicon()
     concept = table.concept(noun)
     return frozenset({singular_phrase(noun)}) | (table.all_names(concept) if concept else frozenset())
@@ -328,13 +330,13 @@ def _chunks(value: object) -> list[str]:
     return [english.letters(" ".join([*(c.split()[:-1]), english.singular(c.split()[-1])])) for c in text.split(",") if c.strip()]
 
 
-def bears(thing: Thing, words: Sequence[str]) -> bool:
+def has_text(thing: Thing, words: Sequence[str]) -> bool:
     """Return whether legible text on a thing contains these words in this order. Without words, any legible text counts."""
     wanted = f" {' '.join(words)} "
-    return any(wanted in f" {english.letters(text)} " or not words for text in thing.texts) or _plate_is(thing, words)
+    return any(wanted in f" {english.letters(text)} " or not words for text in thing.texts) or _has_plate(thing, words)
 
 
-def _plate_is(thing: Thing, words: Sequence[str]) -> bool:
-    """Compare number plates without spaces, and without the words "number plate"."""
+def _has_plate(thing: Thing, words: Sequence[str]) -> bool:
+    """Return whether a text on the thing is this number plate. Spaces and the words "number plate" are ignored."""
     plain = "".join(x for x in words if x not in {"number", "plate", "registration", "licence", "license"})
     return len(plain) >= 4 and any(plain == english.letters(text).replace(" ", "") for text in thing.texts)

@@ -1,8 +1,8 @@
-"""Finding the things in a view that a description means.
+"""Search for the things in a view that fit a description.
 
-- A fact of the scene comes first ("in the left lane", "in an orange vest"), then the relations of ``relations``.
-- *between*: the centre lies sideways between the centres of the two, and not clearly in front of or behind both.
-- Of several matches the one with most pixels comes first, unless a superlative or ordinal orders them. Ordinals without a side
+- Facts that the scene states ("in the left lane", "in an orange vest") take precedence over the spatial relations of ``relations``.
+- *between*: the centre lies horizontally between the centres of the two, and not clearly in front of or behind both.
+- Matches are sorted by visible pixels, largest first, unless a superlative or an ordinal orders them. Ordinals without a side
 count from the left. Superlatives keep only the best ("the two nearest" keeps two).
 """
 
@@ -26,14 +26,23 @@ from scope_ptz.perception.ground_truth.relations import (
     rank_key,
     relation_holds,
 )
-from scope_ptz.perception.ground_truth.thing_facts import FILLERS, SOFT, bears, colour_of, facts, fits_noun, fits_words, wears
+from scope_ptz.perception.ground_truth.thing_facts import (
+    FILLERS,
+    IGNORABLE,
+    colour_of,
+    facts,
+    fits_noun,
+    fits_words,
+    has_item,
+    has_text,
+)
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top", "bottom": "bottom"}
 
 
 def find(view: View, description: s.Description) -> list[Thing]:
-    """Return everything that the description means, best first."""
+    """Return all things that fit a description, best first."""
     found = things_named(view, description)
     if found or len(description.phrases) != 1:
         return found
@@ -41,7 +50,7 @@ def find(view: View, description: s.Description) -> list[Thing]:
 
 
 def things_named(view: View, description: s.Description) -> list[Thing]:
-    """Return only independent things, not what people wear."""
+    """Return the things that fit a description, without those that people wear."""
     found = _two_coloured(view, description)
     if found:
         return found
@@ -54,11 +63,11 @@ def _worn(view: View, phrase: s.Phrase) -> list[Thing]:
     """Find "hard hats", which are not independent things, on the people who wear them."""
     if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
         return []
-    return sorted((t for t in view.things if "person" in t.concepts and wears(view, t, phrase.words)), key=pixels, reverse=True)
+    return sorted((t for t in view.things if "person" in t.concepts and has_item(view, t, phrase.words)), key=pixels, reverse=True)
 
 
 def _two_coloured(view: View, description: s.Description) -> list[Thing]:
-    """Find "red and white barriers": those of both colours if there are any, else the red ones and the white ones."""
+    """Find "red and white barriers": those that have both colours. If there are none, the caller searches for each colour."""
     phrases = description.phrases
     if len(phrases) != 2 or any(len(p.words) < 2 or p.words[0] not in english.COLOURS for p in phrases):
         return []
@@ -71,7 +80,7 @@ def _two_coloured(view: View, description: s.Description) -> list[Thing]:
 
 
 def find_phrase(view: View, phrase: s.Phrase) -> list[Thing]:
-    """Return everything that one noun phrase means, best first."""
+    """Return all things that fit one noun phrase, best first."""
     core, extra, order = _core(view, phrase)
     matches = [t for t in core if all(holds(view, t, test) is True for test in (*phrase.tests, *extra))]
     return _ordered(view, sorted(matches, key=pixels, reverse=True), order, phrase)
@@ -109,9 +118,9 @@ def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...]
 
 
 def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
-    """Return the things that a noun names. "The yellow vehicle" may be a machine when no road vehicle is yellow."""
+    """Return the things that a noun names. If no vehicle fits the other words ("yellow vehicle"), machines count as vehicles."""
     if lexicon().concept(noun) == "thing":
-        return [t for t in view.things if _worth_naming(view, t) or (carried and not t.concepts & BACKDROP)]
+        return [t for t in view.things if _is_object(view, t) or (carried and not t.concepts & BACKDROP)]
     named = [t for t in view.things if fits_noun(view, t, noun)]
     if lexicon().concept(noun) == "vehicle" and others and not any(_modified(view, t, others) for t in named):
         return [t for t in view.things if "machine" in t.concepts]
@@ -121,8 +130,9 @@ def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[
 def _sided(
     matches: list[Thing], sides: list[str], many: bool, phrase: s.Phrase
 ) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
-    """Apply sides: "the left sign" is the left-most, "the left signs" are on the left, "the top right sign" is nearest that
-    corner.
+    """Apply words for sides.
+
+    "The left sign" is the left-most one, "the left signs" are on the left, and "the top right sign" is nearest to that corner.
     """
     if many:
         return matches, (s.Region(cast("tuple[s.Side, ...]", tuple(sides))),), phrase.order
@@ -131,8 +141,8 @@ def _sided(
     return sorted(matches, key=lambda t: from_corner(t, sides))[:1], (), phrase.order
 
 
-def _worth_naming(view: View, thing: Thing) -> bool:
-    """Return whether a thing counts as an object: not road, grass or sky, and not a part of something else in view."""
+def _is_object(view: View, thing: Thing) -> bool:
+    """Return whether a thing is an object of its own, not background and not a part of something else in view."""
     return not thing.concepts & BACKDROP and (thing.parent is None or thing.parent not in view.by_id)
 
 
@@ -140,23 +150,25 @@ def _modified(view: View, thing: Thing, others: Sequence[str]) -> bool:
     if not others:
         return True
     return (
-        all(fits_words(view, thing, [x]) is True or _soft(view, thing, x) for x in others)
+        all(fits_words(view, thing, [x]) is True or _ignorable(view, thing, x) for x in others)
         or fits_words(view, thing, others) is True
     )
 
 
-def _soft(view: View, thing: Thing, word: str) -> bool:
-    """Return whether a word like "big" can be ignored, because the scene has no fact about it."""
-    return word in SOFT and fits_words(view, thing, [word]) is None and not any(word in values for values in view.values.values())
+def _ignorable(view: View, thing: Thing, word: str) -> bool:
+    """Return whether a word such as "big" is ignored because the scene has no fact about it."""
+    return (
+        word in IGNORABLE and fits_words(view, thing, [word]) is None and not any(word in values for values in view.values.values())
+    )
 
 
 def _all_words(view: View, thing: Thing, words: Sequence[str]) -> bool:
-    """Match an unknown noun: every word must occur in the thing's own words."""
+    """Return whether a thing fits a phrase with an unknown noun: every word must hold for it."""
     return not set(words) <= FILLERS and all(fits_words(view, thing, [x]) is True for x in words)
 
 
 def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
-    """Return whether a test holds for a thing; None if the scene does not say."""
+    """Return whether a test holds for a thing; None if the scene does not state it."""
     match test:
         case s.Not(test=inner):
             answer = holds(view, thing, inner)
@@ -166,9 +178,9 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
             return True if True in answers else None if None in answers else False
         case s.Is(words=words):
             answer = fits_words(view, thing, words)
-            return True if answer is None and all(_soft(view, thing, x) for x in words) else answer
+            return True if answer is None and all(_ignorable(view, thing, x) for x in words) else answer
         case s.Says(words=words):
-            return bears(thing, words) or (len(words) == 1 and faces(thing, words[0]) is True)
+            return has_text(thing, words) or (len(words) == 1 and faces(thing, words[0]) is True)
         case s.Has(what=what):
             return _has(view, thing, what)
         case s.Faces(side=side):
@@ -176,10 +188,10 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
         case s.Order():
             return None
         case _:
-            return _stands(view, thing, test)
+            return _holds_in_space(view, thing, test)
 
 
-def _stands(view: View, thing: Thing, test: s.Region | s.Between | s.Relation | s.Measured | s.Within) -> bool:
+def _holds_in_space(view: View, thing: Thing, test: s.Region | s.Between | s.Relation | s.Measured | s.Within) -> bool:
     """Return whether a test about place, distance or size holds for a thing."""
     match test:
         case s.Region():
@@ -199,8 +211,8 @@ def _stands(view: View, thing: Thing, test: s.Region | s.Between | s.Relation | 
 def _has(view: View, thing: Thing, what: s.Description) -> bool:
     """Return whether a thing has everything in a list ("with a vest and a helmet")."""
     return all(
-        wears(view, thing, phrase.words, phrase.amount)
-        and all(not isinstance(t, s.Is | s.Says) or wears(view, thing, (*phrase.words, *t.words)) for t in phrase.tests)
+        has_item(view, thing, phrase.words, phrase.amount)
+        and all(not isinstance(t, s.Is | s.Says) or has_item(view, thing, (*phrase.words, *t.words)) for t in phrase.tests)
         for phrase in what.phrases
     )
 
@@ -214,11 +226,11 @@ def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description
 
 
 def _stated(view: View, thing: Thing, other: s.Description) -> bool:
-    """Return whether a fact or an outfit states the relation: "in the left lane", "in an orange vest"."""
+    """Return whether a fact or clothing states the relation: "in the left lane", "in an orange vest"."""
     words = [x for p in other.phrases for x in p.words]
     if any(set(words) <= set(stated) for stated in (english.letters(thing.name).split(), *_values(thing))):
         return True
-    return wears(view, thing, words)
+    return has_item(view, thing, words)
 
 
 _LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "right outside fast third overtaking"}

@@ -1,4 +1,4 @@
-"""The content of a frame, prepared for questions: visible things with their facts, and the texts on them."""
+"""The content of a frame as questions need it: the visible things with their facts, and the texts on them."""
 
 from __future__ import annotations
 
@@ -27,9 +27,11 @@ class Thing:
     """A visible instance.
 
     Attributes:
+        sighting: Where and how large the instance appears in the frame.
         low_m: Lowest corner of its box in the world.
-        high_m: Highest corner.
-        motion: "moving", "stationary", or empty when unknown.
+        high_m: Highest corner of that box.
+        concepts: Its concept and all kinds that it belongs to.
+        motion: "moving" or "stationary".
     """
 
     sighting: Sighting
@@ -82,15 +84,15 @@ class View:
     things: tuple[Thing, ...]
     texts: tuple[TextSighting, ...]
     parents: Mapping[str, str]
-    """The parent's id of each instance id, for the whole scene."""
+    """The id of the parent of each instance, for the whole scene."""
     instances: Mapping[str, SceneInstance | SceneActor]
     """Instances by id, for the whole scene."""
     values: Mapping[str, frozenset[str]]
-    """Every word that each attribute key takes anywhere in the scene."""
+    """The words in the values of each attribute, for the whole scene."""
     nouns: frozenset[str] = field(default=frozenset())
     """Nouns of the scene in addition to those of the lexicon."""
     hosts: tuple[Thing, ...] = ()
-    """Things with a legible text that are too cut off to count as visible, such as a sign larger than the frame."""
+    """Things that are cut off too much to count as visible but have a legible text, such as a sign larger than the frame."""
 
     @cached_property
     def by_id(self) -> dict[str, Thing]:
@@ -107,7 +109,7 @@ class View:
 
     @cached_property
     def concepts(self) -> frozenset[str]:
-        """Concepts of all nouns that the scene uses, in view or not."""
+        """Concepts of all nouns that the scene uses, whether the things are in view or not."""
         table = lexicon()
         return frozenset(k for n in self.nouns if (c := table.concept(n)) for k in table.kinds(c))
 
@@ -116,11 +118,11 @@ class View:
         return tuple(t for t in self.texts if self.belongs(t.text.parent, thing.id))
 
     def for_reading(self) -> View:
-        """Return the view with the hosts of legible texts among its things."""
+        """Return the view with ``hosts`` added to the things."""
         return replace(self, things=(*self.things, *self.hosts))
 
     def top_level(self) -> tuple[Thing, ...]:
-        """Return the things that are no part of another visible thing."""
+        """Return the things that are not parts of another visible thing."""
         return tuple(t for t in self.things if t.parent is None or t.parent not in self.by_id)
 
 
@@ -170,7 +172,7 @@ def _read_facts(scene: SceneFile) -> SceneFacts:
 
 
 def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
-    """Return the view of a frame from its ground truth."""
+    """Create the view of a frame from its ground truth."""
     facts = scene_facts(scene)
     texts = tuple(sorted(truth.texts, key=lambda t: (round(t.box[1], 2), t.box[0])))
     legible: dict[str, list[str]] = {}
@@ -214,7 +216,7 @@ def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
     for key in ("kind", "type"):
         kind = str(instance.attributes.get(key, "")).lower()
         concept = table.concept(kind) if kind else None
-        # A barrier of the kind "pedestrian" is for pedestrians and is not a pedestrian.
+        # A barrier of the kind "pedestrian" is not a pedestrian.
         if concept and (not found or (table.kinds(concept) & found) - {"thing"}):
             found |= table.kinds(concept)
     name = head_of(instance.name).split()
@@ -239,11 +241,11 @@ def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Flo
 
 
 def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:
-    """Return whether an instance moves. Actors move while their path does; baked things stand still."""
+    """Return "moving" or "stationary". Only actors move, and only while their path advances."""
     if isinstance(instance, SceneInstance):
         return "stationary"
     now, soon = path_position(instance, time_s), path_position(instance, time_s + _STEP_S)
     return "moving" if now and soon and abs(soon.walked_m - now.walked_m) > _STEP_M else "stationary"
 
 
-_STEP_S, _STEP_M = 0.1, 0.005
+_STEP_S, _STEP_M = 0.1, 0.005  # an actor that walks further than this in this time is moving

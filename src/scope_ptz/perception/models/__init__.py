@@ -1,1 +1,1 @@
-"""Parts that backends with a real model share: pictures, prompts, replies, coordinates and panoramas."""
+"""Code that model backends share: picture encoding, prompts, reply parsing, coordinates, panoramas and routing."""

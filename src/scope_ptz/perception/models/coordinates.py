@@ -1,7 +1,8 @@
-"""From the numbers that a model writes to boxes and points in [0, 1], in any convention.
+"""Conversion of coordinates in model replies to boxes and points in [0, 1].
 
-Models write pixels of the picture as they resized it (Qwen2.5-VL), thousandths (Qwen3-VL, Qwen3.5, and Gemini with y first),
-percent (Molmo) or fractions (Moondream). Impossible places are dropped with a note, and boxes that exceed the frame are clipped.
+Models use pixels of the picture as they resized it (Qwen2.5-VL), thousandths (Qwen3-VL, Qwen3.5, and Gemini with y first),
+percent (Molmo) or fractions (Moondream). Invalid boxes and points are dropped with a note, and boxes that exceed the frame are
+clipped.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from scope_ptz.perception.base import Box, Point
 Space = Literal["unit", "percent", "thousand", "pixels", "guess"]
 
 MAX_THINGS = 300
-"""Boxes or points kept of one reply. A reply with more repeats itself."""
+"""Maximum number of boxes or points per reply. Longer lists are usually repetitions."""
 
 MAX_ASPECT = 200.0
 """The largest ratio of the longer to the shorter side that the Qwen-VL resize accepts."""
@@ -29,9 +30,12 @@ class Convention:
     """The coordinate format of a model family.
 
     Attributes:
-        factor: The model resizes pictures to multiples of this many pixels. The client does it first, so that the server
-            changes nothing. None sends frames unchanged.
+        space: The unit of the coordinates. "guess" infers it from the largest number in a reply.
+        factor: The model resizes pictures to multiples of this many pixels. Pictures are resized before they are sent, so that
+            the model does not resize them again. None sends frames unchanged.
         y_first: Whether boxes are ``[y, x, y, x]`` and points ``[y, x]``.
+        box_key: The JSON key of a box.
+        point_key: The JSON key of a point.
     """
 
     name: str
@@ -70,13 +74,13 @@ def convention(name: str) -> Convention:
 
 
 def smart_resize(width: int, height: int, *, factor: int, min_pixels: int, max_pixels: int) -> tuple[int, int]:
-    """Return the size (width, height) to which Qwen-VL processors resize a picture: multiples of ``factor`` within a pixel
-    budget.
+    """Return the size (width, height) to which Qwen-VL processors resize a picture.
 
-    The arithmetic is that of ``smart_resize`` in the Qwen-VL image processors. A picture of the returned size is not resized again.
+    Width and height are multiples of ``factor``, and their product is within the limits. The arithmetic is that of ``smart_resize``
+    in the Qwen-VL image processors. A picture of the returned size is not resized again.
 
     Raises:
-        PerceptionError: The processors refuse a picture of this shape.
+        PerceptionError: The processors reject the aspect ratio.
     """
     if min(width, height) < 1 or max(width, height) / min(width, height) > MAX_ASPECT:
         raise PerceptionError(f"A picture of {width}x{height} is too narrow to be shown to a model (at most 1:{MAX_ASPECT:.0f}).")
@@ -92,14 +96,14 @@ def smart_resize(width: int, height: int, *, factor: int, min_pixels: int, max_p
 
 
 def fit(width: int, height: int, max_pixels: int) -> tuple[int, int]:
-    """Return the size (width, height) within a pixel budget at the same aspect ratio. A small picture keeps its size."""
+    """Return the size (width, height) with the same aspect ratio and at most ``max_pixels`` pixels. It is never enlarged."""
     shrink = math.sqrt(width * height / max_pixels)
     return (width, height) if shrink <= 1 else (max(1, math.floor(width / shrink)), max(1, math.floor(height / shrink)))
 
 
 @dataclass(frozen=True, slots=True)
 class RawThing:
-    """One thing in a reply: four numbers (a box) or two (a point), in the model's convention."""
+    """One object in a reply: four numbers (a box) or two (a point), in the model's convention."""
 
     numbers: tuple[float, ...]
     label: str | None = None
@@ -114,11 +118,11 @@ class RawThing:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """Places in the frame, in the order of the reply.
+    """The boxes and points of a reply, in its order.
 
     Attributes:
-        notes: What was changed or left out.
-        complete: False when there are more things than these.
+        notes: Corrections and omissions.
+        complete: False if the reply may name more objects.
     """
 
     boxes: tuple[Box, ...] = ()
@@ -130,16 +134,16 @@ class Located:
 def located(things: Iterable[RawThing], convention: Convention, sent: tuple[int, int], limit: int = MAX_THINGS) -> Located:
     """Return the boxes and points of a reply in [0, 1].
 
-    Things that are not finite, have no area, lie outside the frame or are repeated are dropped and counted in the notes.
+    Entries that are not finite, have no area, lie outside the frame or are repeated are dropped and counted in the notes.
 
     Args:
-        things: The things in the reply.
-        convention: How the model writes places.
+        things: The objects in the reply.
+        convention: The model's coordinate convention.
         sent: Width and height of the picture that the model received.
-        limit: How many things are kept.
+        limit: Maximum number of boxes or points to keep.
 
     Raises:
-        PerceptionError: The reply named things and none of them is usable (kind "malformed").
+        PerceptionError: The reply names objects, but none has a usable box or point (kind "malformed").
     """
     raw = list(things)
     scale_x, scale_y = _scale(raw, convention.space, sent)
@@ -164,14 +168,14 @@ def located(things: Iterable[RawThing], convention: Convention, sent: tuple[int,
     return _capped(list(boxes.values()), list(points.values()), counts, limit)
 
 
-_LOST = ("not finite", "no place")
-"""Things that the reply names without a place, so there are more things than places."""
+_WITHOUT_PLACE = ("not finite", "no place")
+"""Entries that have no usable coordinates. With any of them, the list is incomplete."""
 
 
 def _capped(boxes: list[Box], points: list[Point], counts: Counter[str], limit: int) -> Located:
     notes = [f"Among the places in the reply: {_listing(counts)}."] if counts else []
     within = max(len(boxes), len(points)) <= limit
-    complete = within and not any(counts[lost] for lost in _LOST)
+    complete = within and not any(counts[kind] for kind in _WITHOUT_PLACE)
     if not within:
         notes.append(f"The reply names {max(len(boxes), len(points))} things; the first {limit} are kept.")
     return Located(tuple(boxes[:limit]), tuple(points[:limit]), tuple(notes), complete)
@@ -182,7 +186,7 @@ def _listing(counts: Counter[str]) -> str:
 
 
 def _scale(things: Sequence[RawThing], space: Space, sent: tuple[int, int]) -> tuple[float, float]:
-    """Return the divisors of a reply's x and y."""
+    """Return the numbers by which x and y of a reply are divided."""
     fixed = {"unit": 1.0, "percent": 100.0, "thousand": 1000.0}
     if space == "guess":
         space = _guess(things, sent)
@@ -192,10 +196,9 @@ def _scale(things: Sequence[RawThing], space: Space, sent: tuple[int, int]) -> t
 
 
 def _guess(things: Sequence[RawThing], sent: tuple[int, int]) -> Space:
-    """Return the convention of a whole reply, judged by its largest number.
+    """Infer the unit of all coordinates in a reply from the largest one.
 
-    Up to 1 means fractions, up to 1000 thousandths (as requested), up to the size of the picture pixels. One reply uses one
-    convention.
+    Up to 1 means fractions, up to 1000 thousandths (as requested), and up to the size of the picture pixels.
     """
     finite = [abs(v) for t in things for v in t.numbers if math.isfinite(v)]
     largest = max(finite, default=0.0)
@@ -257,7 +260,7 @@ _Place = TypeVar("_Place", Box, Point)
 
 
 def _keep(place: _Place | None, kept: dict[tuple[float, ...], _Place], counts: Counter[str]) -> None:
-    """Add a place unless the reply has named it before, because repetition does not mean a second thing."""
+    """Add a box or point, unless the reply contains it already."""
     if place is None:
         return
     numbers = (place.x, place.y) if isinstance(place, Point) else (place.x_min, place.y_min, place.x_max, place.y_max)

@@ -1,4 +1,4 @@
-"""Encoding of frames for models. Each frame is encoded once per size, however many backends use it."""
+"""Encoding of frames for models. A frame is encoded once per size, even if several backends use it."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ def resized(image: Image, size: Size | None) -> Image:
 
 
 def _interpolation(old: Size, new: Size) -> int:
-    """Return the cheapest interpolation that does no harm.
+    """Return the fastest interpolation with good results.
 
-    Averaging pays only where many pixels become one. When the size changes by less than 2%, a few repeated or missing rows and
-    columns are invisible, and nothing is blurred.
+    Averaging is needed only for strong reduction. If the size changes by less than 2%, a few repeated or missing rows and columns
+    are invisible.
     """
     if new[0] * new[1] < 0.6 * old[0] * old[1]:
         return cv2.INTER_AREA
@@ -57,7 +57,7 @@ def _interpolation(old: Size, new: Size) -> int:
 def encode(image: Image, size: Size | None = None) -> EncodedPicture:
     """Encode an RGB image (H, W, 3) as JPEG, at another size (width, height) if one is given."""
     picture = resized(image, size)
-    own = picture if picture is not image else None  # in-place conversion, because allocation costs more than the work
+    own = picture if picture is not image else None  # converted in place, because allocating a copy takes longer
     try:
         swapped = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR, dst=own)
         worked, jpeg = cv2.imencode(".jpg", swapped, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
@@ -71,7 +71,7 @@ def encode(image: Image, size: Size | None = None) -> EncodedPicture:
 
 
 _SHARED: FrameMemo[Size | None, EncodedPicture] = FrameMemo(encode)
-"""A cache, not state: its values depend on the pixels only. All backends share it, so that each frame is encoded once."""
+"""The cache that all backends share, so that each frame is encoded once per size."""
 
 
 async def picture_of(

@@ -1,4 +1,4 @@
-"""A cache of results computed from pictures, kept as long as the picture exists."""
+"""A cache of results that are computed from pictures and kept as long as the picture exists."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ T = TypeVar("T")
 
 
 class FrameMemo(Generic[K, T]):
-    """Results of ``make(image, key)`` by identity of the image. Frames are read-only, so a result stays valid until its image is
-    deleted.
+    """A cache of ``make(image, key)`` for at most ``size`` pairs of image and key.
 
-    Callers that want the same result at the same time, in any thread, share one computation.
+    Images are compared by identity. They are read-only, so a result stays valid until its image is deleted. Callers that want
+    the same result at the same time, in any thread, share one computation.
     """
 
     def __init__(self, make: Callable[[Image, K], T], size: int = 8) -> None:
@@ -48,21 +48,21 @@ class FrameMemo(Generic[K, T]):
         return await to_thread.run_sync(self.get, image, key)
 
     def _entry(self, image: Image, key: K) -> _Entry[T]:
-        place = (id(image), key)
+        slot = (id(image), key)
         with self._lock:
-            entry = self._entries.get(place)
+            entry = self._entries.get(slot)
             if entry is None or entry.image() is not image:
-                entry = self._entries[place] = _Entry(weakref.ref(image, lambda gone: self._forget(place, gone)))
-            self._entries.move_to_end(place)
+                entry = self._entries[slot] = _Entry(weakref.ref(image, lambda gone: self._forget(slot, gone)))
+            self._entries.move_to_end(slot)
             while len(self._entries) > self._size:
                 self._entries.popitem(last=False)
             return entry
 
-    def _forget(self, place: tuple[int, K], gone: weakref.ref[Any]) -> None:
+    def _forget(self, slot: tuple[int, K], gone: weakref.ref[Any]) -> None:
         # No lock: this runs wherever the last reference is dropped, possibly in a thread that holds the lock.
-        entry = self._entries.get(place)
+        entry = self._entries.get(slot)
         if entry is not None and entry.image is gone:
-            self._entries.pop(place, None)
+            self._entries.pop(slot, None)
 
 
 class _Entry(Generic[T]):

@@ -1,7 +1,7 @@
-"""Parsing what a model wrote: places from JSON in any wrapping, complete or cut off, and plain answers.
+"""The parser of model replies: boxes and points from JSON in many forms, even cut off, and plain answers.
 
-"Nothing found" counts only where the reply says so, with an empty list or a short sentence. Everything else that cannot be parsed
-raises ``PerceptionError`` of kind "malformed"; it is never a zero.
+A reply means "nothing found" only if it says so, with an empty list or a short sentence. Any other reply that cannot be parsed
+raises ``PerceptionError`` of kind "malformed".
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.models.coordinates import RawThing
 
 MAX_REPLY_CHARS = 200_000
-"""The rest of a longer reply is ignored; no list of places is that long."""
+"""The rest of a longer reply is ignored. No valid list of boxes or points is that long."""
 
 MAX_ANSWER_CHARS = 2_000
-"""Longer answers are truncated to protect the planner's context."""
+"""Longer answers are truncated, because they become part of the planner's context."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParsedPlaces:
-    """The things that a reply names, in order. ``complete`` is False when the reply was cut off and there may be more."""
+    """The objects that a reply names, in order. ``complete`` is False if the reply was cut off, so that there may be more."""
 
     things: tuple[RawThing, ...]
     complete: bool = True
@@ -36,7 +36,10 @@ def read_places(text: str) -> ParsedPlaces:
     """Return the boxes and points in a model's text.
 
     Understands bare and fenced JSON (also several documents), lists cut off at the token limit, point and box tags, and corner
-    pairs in prose. A reply that says that there is nothing gives no things.
+    pairs in prose. The result is empty if the reply says that nothing was found.
+
+    Raises:
+        PerceptionError: The reply cannot be parsed (kind "malformed").
     """
     visible = without_reasoning(text)
     body, whole = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
@@ -51,7 +54,11 @@ def read_places(text: str) -> ParsedPlaces:
 
 
 def read_answer(text: str) -> str:
-    """Return the answer in a reply, without reasoning, control characters and outer quotes, and truncated if it is too long."""
+    """Return the answer in a reply, without reasoning, control characters and outer quotes. A long answer is truncated.
+
+    Raises:
+        PerceptionError: There is no answer (kind "empty").
+    """
     answer = "".join(c for c in without_reasoning(text) if c.isprintable() or c in "\n\t").strip()
     if len(answer) > 1 and answer[0] == answer[-1] == '"' and answer.count('"') == 2:
         answer = answer[1:-1].strip()
@@ -61,7 +68,7 @@ def read_answer(text: str) -> str:
 
 
 def without_reasoning(text: str) -> str:
-    """Return the reply without ``<think>`` blocks, also when only the closing tag is there or the block is never closed."""
+    """Return the reply without ``<think>`` blocks, even if the opening or the closing tag is missing."""
     rest = re.sub(r"<think(?:ing)?>.*?</think(?:ing)?>", "", text, flags=re.DOTALL | re.IGNORECASE)
     _, closing, after = rest.rpartition("</think>")
     rest = after if closing else rest
@@ -87,7 +94,7 @@ _UNKNOWN = re.compile(
 
 
 def cannot_tell(answer: str) -> bool:
-    """Return whether an answer only says that the picture does not tell."""
+    """Return whether an answer says that the question cannot be answered from the picture."""
     return bool(_UNKNOWN.match(answer))
 
 
@@ -124,14 +131,14 @@ def _documents(body: str) -> tuple[list[Any], bool]:
     return found, True
 
 
-_DEEPEST = 64
-"""Maximum nesting; no list of places is deeper, and a model that only opens brackets has no places to give."""
+_MAX_NESTING = 64
+"""Maximum nesting of a JSON document. Deeper ones are degenerate output without boxes."""
 
 
 def _repair(text: str) -> tuple[Any, bool, int]:
-    """Repair a broken document. Returns the document, whether it was closed, and its length.
+    """Repair a broken document. Return the document, whether it was closed, and its length.
 
-    Of a document that was cut off only complete values are kept, because half a number is another number.
+    If the document was cut off, only complete values are kept, because a truncated number is a wrong number.
     """
     end, stack, last = 0, list[str](), (0, "")
     quote = ""
@@ -147,7 +154,7 @@ def _repair(text: str) -> tuple[Any, bool, int]:
             quote = char
         elif char in "[{":
             stack.append("]" if char == "[" else "}")
-            if len(stack) > _DEEPEST:
+            if len(stack) > _MAX_NESTING:
                 return None, False, end + 1
         elif char in "]}" and stack:
             stack.pop()
@@ -163,7 +170,7 @@ def _lenient(text: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
-        from json_repair import repair_json  # imported late, because only broken replies need it
+        from json_repair import repair_json  # imported here, because only broken replies need it
 
         try:
             return repair_json(text, return_objects=True, skip_json_loads=True)
@@ -181,7 +188,7 @@ _SIZES = (("x", "y", "width", "height"), ("x", "y", "w", "h"))
 
 
 def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
-    """Yield the things anywhere in a JSON value."""
+    """Yield the boxes and points anywhere in a JSON value."""
     if depth > 8:
         return
     if isinstance(value, dict):
@@ -199,13 +206,13 @@ def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
             return
         found = [list(_collect(inner, depth + 1)) for inner in value]
         for inner, things in zip(value, found, strict=True):
-            # An object without a place among places is a malformed place; it is counted where places are checked.
-            lost = [RawThing(())] if not things and isinstance(inner, dict) and any(found) else []
-            yield from things or lost
+            # Among objects with coordinates, one without any is malformed; ``located`` counts it.
+            malformed = [RawThing(())] if not things and isinstance(inner, dict) and any(found) else []
+            yield from things or malformed
 
 
 def _named(fields: dict[str, Any]) -> list[RawThing]:
-    """Return the place in one JSON object, as a box, a point or both."""
+    """Return the box and the point in one JSON object, if there are any."""
     label = next((safe_text(fields[k][:200]) for k in _LABEL_KEYS if isinstance(fields.get(k), str)), None)
     score = next((_number(fields[k]) for k in _SCORE_KEYS if _is_number(fields.get(k))), None)
     found = []
@@ -239,7 +246,7 @@ def _parsed(value: Any) -> Any:
 
 
 def _flat(value: Any) -> list[float]:
-    """Return the numbers of a list that may be nested once (two corners), empty when it contains anything else."""
+    """Return the numbers of a list that may be nested once (two corners); an empty list if it contains anything else."""
     if not isinstance(value, list):
         return []
     inner = [v for part in value for v in (part if isinstance(part, list) else [part])]
@@ -253,7 +260,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _number(value: Any) -> float:
-    """Return a value as a float. Anything but a number is NaN, which is counted where places are checked."""
+    """Return a value as a float. Anything but a number becomes NaN, which ``located`` counts."""
     try:
         return float(value) if _is_number(value) else math.nan
     except OverflowError:
@@ -265,7 +272,7 @@ _CORNER_PAIR = re.compile(r"\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)\s*,?\s*\(\s*(-
 
 
 def _tagged(body: str) -> Iterator[RawThing]:
-    """Yield places outside JSON: ``<point x="63.5" y="44.5">`` and ``(x1,y1),(x2,y2)``."""
+    """Yield boxes and points outside JSON: ``<point x="63.5" y="44.5">`` and ``(x1,y1),(x2,y2)``."""
     for match in _TAG_NUMBERS.finditer(body) if "<point" in body else ():
         yield RawThing(tuple(_number(v) for v in match.groups()), named=True)
     for match in _CORNER_PAIR.finditer(body):
@@ -273,7 +280,7 @@ def _tagged(body: str) -> Iterator[RawThing]:
 
 
 def _is_empty(document: Any) -> bool:
-    """Return whether a document says that nothing was found: an empty list, alone or in an object without an error."""
+    """Return whether a document means that nothing was found: an empty list, alone or in an object without an error."""
     if isinstance(document, dict):
         return "error" not in document and any(v == [] for v in document.values())
     return bool(document == [])

@@ -1,7 +1,7 @@
-"""Several perception backends as one: a reader for text, a detector for places, an answerer for questions.
+"""A router that combines perception backends: a reader for text, a detector for boxes and points, and an answerer for questions.
 
-Each question has an order in which the backends are asked, and the first usable result counts. With ``compare`` the first two are
-asked at once, and their agreement is recorded. Without it, the next one is asked only after a failure.
+Each call has an order of backends, and the first usable result is returned. With ``compare``, the first two backends are called at
+the same time, and their agreement is recorded. Without it, a backend is called only if those before it give no usable result.
 """
 
 from __future__ import annotations
@@ -17,15 +17,17 @@ import anyio
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.base import Agreement, Answer, Box, Caption, Detections, Perception, Points, Skill
-from scope_ptz.perception.models.text_requests import is_reading, reading_target, wanted_texts
+from scope_ptz.perception.models.text_requests import is_reading, reading_target, requested_texts
 from scope_ptz.perception.models.tile_geometry import iou
 
 ANY_TEXT = "text"
-"""The description under which a reader returns every text in view, as boxes labelled with the text."""
+"""The description for which a reader returns every text in view, as boxes labelled with the text."""
 
-SAME_PLACE_IOU = 0.4
-SAME_PLACE = 0.05
-"""Points this close together, in frames, count as the same place."""
+SAME_BOX_IOU = 0.4
+"""Boxes of two backends with at least this intersection over union count as the same."""
+
+SAME_POINT = 0.05
+"""Points of two backends within this share of the frame's width and height count as the same."""
 
 R = TypeVar("R", Caption, Answer, Detections, Points)
 PerceptionCall = Callable[[Perception], Awaitable[R]]
@@ -34,7 +36,7 @@ Share = Callable[[R, R], float]
 
 @dataclass
 class _Opinion(Generic[R]):
-    """What one backend returned; result and error are None when it was not asked."""
+    """What one backend returned. Result and error are None if it was not called."""
 
     backend: Perception
     result: R | None = None
@@ -42,12 +44,12 @@ class _Opinion(Generic[R]):
 
     @property
     def usable(self) -> bool:
-        """Whether the result answers the question. "I cannot tell" passes the question on to the next backend."""
+        """Whether there is a result other than "I cannot tell"."""
         return self.result is not None and (not isinstance(self.result, Answer) or self.result.known)
 
 
 class RouterPerception(Perception):
-    """A backend made of others. Each of them is optional, but at least one is needed."""
+    """A backend that combines up to three others, at least one."""
 
     handles_panoramas = True
 
@@ -93,35 +95,35 @@ class RouterPerception(Perception):
             await part.close()
 
     def _available(self, *parts: Perception | None, skill: Skill | None = None) -> list[Perception]:
-        """Return the backends that exist and have a skill, each once."""
-        there = [p for p in parts if p is not None and (skill is None or skill in p.skills)]
-        return list(dict.fromkeys(there))
+        """Return the given backends that have a skill, without None and without repetition."""
+        able = [p for p in parts if p is not None and (skill is None or skill in p.skills)]
+        return list(dict.fromkeys(able))
 
     def _finders(self, description: str, skill: Skill) -> list[Perception]:
-        is_text = wanted_texts(description) is not None
+        is_text = requested_texts(description) is not None
         return self._available(self._reader if is_text else None, self._detector, self._answerer, skill=skill)
 
     async def _read(self, frame: Frame, question: str) -> Answer:
-        """Return what the reader reads on the thing that the question names, if another backend finds that thing."""
+        """Return the text on the object that the question names if another backend finds it, otherwise all text in view."""
         assert self._reader is not None  # noqa: S101
         target = reading_target(question)
         finders = self._available(self._detector, self._answerer, skill="detect")
         if target is None or not finders:
             return await self._reader.query(frame, question)
         began = perf_counter()
-        everything, bearers = await _both(self._reader.query(frame, question), finders[0].detect(frame, target))
+        everything, owners = await _both(self._reader.query(frame, question), finders[0].detect(frame, target))
         if isinstance(everything, PerceptionError):
             raise everything
-        if isinstance(bearers, PerceptionError) or not bearers.boxes:
+        if isinstance(owners, PerceptionError) or not owners.boxes:
             why = f"{finders[0].name} did not find '{target}'; all text in view is given."
             return everything.model_copy(update={"notes": (*everything.notes, why)})
         lines = (await self._reader.detect(frame, ANY_TEXT)).boxes
-        texts = [line.label or "" for line in lines if any(_holds(box, line) for box in bearers.boxes)]
+        texts = [line.label or "" for line in lines if any(_contains_centre(box, line) for box in owners.boxes)]
         if not texts:
             why = f"No readable text is on '{target}'; all text in view is given."
             return everything.model_copy(update={"notes": (*everything.notes, why)})
         text = "It reads: " + ", ".join(f'"{t}"' for t in texts) + "."
-        attempts = everything.attempts + bearers.attempts
+        attempts = everything.attempts + owners.attempts
         return everything.model_copy(update={"text": text, "attempts": attempts, "latency_s": perf_counter() - began})
 
     async def _first_usable(
@@ -142,18 +144,18 @@ class RouterPerception(Perception):
         return self._concluded(opinions, share, perf_counter() - began)
 
     def _concluded(self, opinions: Sequence[_Opinion[R]], share: Share[R], latency_s: float) -> R:
-        """Return the first usable result with a comparison to the others; without one, raise an error with all reasons."""
+        """Return the first usable result, compared with the second one. If all backends failed, raise an error with all reasons."""
         attempts = tuple(a for o in opinions for a in _attempts(o))
         failed = [(o.backend.name, o.error) for o in opinions if o.error is not None]
-        gave = [o.result for o in opinions if o.result is not None]
-        ranked = [o.result for o in opinions if o.usable and o.result is not None] or gave
+        results = [o.result for o in opinions if o.result is not None]
+        ranked = [o.result for o in opinions if o.usable and o.result is not None] or results
         if not ranked:
             why = " ".join(dict.fromkeys(str(error) for _, error in failed))
             raise PerceptionError(why, kind=failed[0][1].kind, attempts=attempts)
         best = ranked[0]
         failures = tuple(f"{name} failed: {error}" for name, error in failed)
         update: dict[str, Any] = {"notes": best.notes + failures, "attempts": attempts, "latency_s": latency_s}
-        if other := next((r for r in gave if r is not best), None):
+        if other := next((r for r in results if r is not best), None):
             update["agreement"] = Agreement(other=other.source, said=_in_short(other), share=share(best, other))
         return best.model_copy(update=update)
 
@@ -195,35 +197,35 @@ def _in_short(result: Caption | Answer | Detections | Points) -> str:
     return f"{len(result.points)} found" if isinstance(result, Points) else result.text[:300]
 
 
-def _holds(box: Box, line: Box) -> bool:
+def _contains_centre(box: Box, line: Box) -> bool:
     x, y = line.centre
     return box.x_min <= x <= box.x_max and box.y_min <= y <= box.y_max
 
 
 def _shared_words(a: Caption | Answer, b: Caption | Answer) -> float:
-    """Return the share of the words of the shorter text that the other text has, too."""
-    one, other = (set(re.findall(r"\w+", x.text.casefold())) - _SMALL_WORDS for x in (a, b))
+    """Return the share of the words of the shorter text that also occur in the other text, without stop words."""
+    one, other = (set(re.findall(r"\w+", x.text.casefold())) - _STOP_WORDS for x in (a, b))
     if not one or not other:
         return float(one == other)
     return len(one & other) / min(len(one), len(other))
 
 
-_SMALL_WORDS = {"a", "an", "the", "it", "is", "are", "says", "reads", "sign", "text", "of", "on", "in", "and", "to", "there"}
+_STOP_WORDS = {"a", "an", "the", "it", "is", "are", "says", "reads", "sign", "text", "of", "on", "in", "and", "to", "there"}
 
 
 def _same_boxes(a: Detections, b: Detections) -> float:
-    return _paired(a.boxes, b.boxes, lambda x, y: iou(x, y) >= SAME_PLACE_IOU)
+    return _paired(a.boxes, b.boxes, lambda x, y: iou(x, y) >= SAME_BOX_IOU)
 
 
 def _same_points(a: Points, b: Points) -> float:
-    return _paired(a.points, b.points, lambda p, q: abs(p.x - q.x) <= SAME_PLACE and abs(p.y - q.y) <= SAME_PLACE)
+    return _paired(a.points, b.points, lambda p, q: abs(p.x - q.x) <= SAME_POINT and abs(p.y - q.y) <= SAME_POINT)
 
 
 _Place = TypeVar("_Place")
 
 
 def _paired(ones: Sequence[_Place], others: Sequence[_Place], same: Callable[[_Place, _Place], bool]) -> float:
-    """Return the share of all places that have a partner, each used once. Two empty results agree fully."""
+    """Return the share of all boxes or points that can be paired, each used once. Two empty results agree fully."""
     left, pairs = list(others), 0
     for one in ones:
         partner = next((i for i, other in enumerate(left) if same(one, other)), None)

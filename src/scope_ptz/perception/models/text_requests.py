@@ -1,4 +1,4 @@
-"""Recognise questions that ask to read text, the text that they ask for, and the text that a description refers to."""
+"""Heuristics for requests about text: whether a question asks to read, on what, and which text a description names."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NOT_READING = re.compile(
 
 
 def is_reading(question: str) -> bool:
-    """Return whether a question is answered by reading text in view. A heuristic that decides who is asked first."""
+    """Return whether a question asks to read text in view. This heuristic decides which backend is called first."""
     return bool(_READING.search(question)) and not _NOT_READING.search(question)
 
 
@@ -61,7 +61,7 @@ _ANY_TEXT = re.compile(
 )
 
 
-def wanted_texts(description: str) -> tuple[str, ...] | None:
+def requested_texts(description: str) -> tuple[str, ...] | None:
     """Return the texts that a description names, in quotes or after "that says".
 
     Returns:
@@ -75,7 +75,7 @@ def wanted_texts(description: str) -> tuple[str, ...] | None:
 
 
 SAME_TEXT = 0.8
-"""Share of characters that must agree for two texts to be the same. Where OCR reads at all, it misreads at most a fifth."""
+"""Similarity from which two texts count as the same. It allows for one misread character in five."""
 
 
 def plain(text: str) -> str:
@@ -83,13 +83,13 @@ def plain(text: str) -> str:
     return "".join(c for c in text.casefold() if c.isalnum())
 
 
-def likeness(a: str, b: str) -> float:
-    """Return how much two texts agree, from 0 to 1, comparing letters and digits in order."""
+def similarity(a: str, b: str) -> float:
+    """Return the similarity of two texts, from 0 to 1. Only letters and digits count."""
     a, b = plain(a), plain(b)
     return SequenceMatcher(None, a, b, autojunk=False).ratio() if a and b else 0.0
 
 
-def text_fits(wanted: str, line: str) -> bool:
-    """Return whether a line of text is or contains a requested text, with tolerance for OCR mistakes."""
-    a, b = plain(wanted), plain(line)
-    return bool(a) and bool(b) and (a in b or likeness(a, b) >= SAME_TEXT)
+def text_fits(requested: str, line: str) -> bool:
+    """Return whether a line contains the requested text, or is similar to it despite OCR errors."""
+    a, b = plain(requested), plain(line)
+    return bool(a) and bool(b) and (a in b or similarity(a, b) >= SAME_TEXT)

@@ -1,4 +1,4 @@
-"""Overlapping tiles of wide pictures. Models and detectors shrink a whole panorama until nothing small is left."""
+"""Overlapping tiles of wide pictures. Models scale a whole panorama down so far that small objects vanish."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from dataclasses import dataclass
 from scope_ptz.perception.base import Box, Point
 from scope_ptz.perception.models.frame_memo import Image
 
-WIDEST = 2.4
+MAX_WHOLE_ASPECT = 2.4
 """Pictures up to this ratio of width to height are processed whole; ordinary frames are 16:9."""
 
-TILE_ASPECT = 1.6
+TILE_ASPECT = 1.6  # width / height of a tile
 OVERLAP = 0.15
-"""Share of a tile that its neighbour covers, too, so that nothing narrower is cut in both."""
+"""Share of a tile that the next tile covers, too. Any object narrower than this is whole in one of the two."""
 
 SAME_BOX = 0.5
-"""Overlap from which boxes of neighbouring tiles are the same thing: intersection over the smaller box, or overlap of the
-heights where both boxes are cut by the borders of their tiles.
+"""Overlap from which boxes of neighbouring tiles are the same object: the intersection over the area of the smaller box, or the
+vertical overlap if the borders of their tiles cut both boxes.
 """
 
 SEAM = 0.002
-"""A box this close to the end of a 360-degree panorama, in panoramas, may continue at the other end."""
+"""A box within this share of the width from the end of a 360-degree panorama may continue at the other end."""
 
 CUT = 0.01
-"""A box this close to the border of its tile, in tiles, may continue beyond it."""
+"""A box within this share of the tile's width from the border of its tile may continue beyond it."""
 
 
 @dataclass(frozen=True, slots=True)
 class PanoramaTile:
-    """A part of a picture over its full height, in pixels."""
+    """A part of a picture over its full height: its columns ``left`` to ``right`` (exclusive), in pixels."""
 
     left: int
     right: int
@@ -50,8 +50,8 @@ class PanoramaTile:
 
 
 def tiles(width: int, height: int) -> tuple[PanoramaTile, ...]:
-    """Return overlapping tiles that cover a picture, just one for a picture no wider than ordinary frames."""
-    if width <= WIDEST * height:
+    """Return overlapping tiles that cover a picture. A picture that is not wide has one tile."""
+    if width <= MAX_WHOLE_ASPECT * height:
         return (PanoramaTile(0, width),)
     wide = TILE_ASPECT * height
     count = math.ceil((width - wide) / (wide * (1 - OVERLAP))) + 1
@@ -61,13 +61,13 @@ def tiles(width: int, height: int) -> tuple[PanoramaTile, ...]:
 
 def iou(a: Box, b: Box) -> float:
     """Return intersection over union."""
-    shared = _shared(a, b)
+    shared = _intersection(a, b)
     union = a.width * a.height + b.width * b.height - shared
     return shared / union if union > 0 else 0.0
 
 
 def suppressed(boxes: Iterable[Box], threshold: float) -> list[Box]:
-    """Return boxes best first, without those that overlap a better one by more than ``threshold`` (intersection over union)."""
+    """Return boxes by score, best first, without those whose intersection over union with a better one exceeds ``threshold``."""
     kept: list[Box] = []
     for box in sorted(boxes, key=lambda b: -(b.score or 0.0)):
         if all(iou(box, other) <= threshold for other in kept):
@@ -77,7 +77,7 @@ def suppressed(boxes: Iterable[Box], threshold: float) -> list[Box]:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A box in the whole picture, its tile, and whether the tile's borders cut it."""
+    """A box in coordinates of the whole picture, its tile, and whether the tile's borders cut the box."""
 
     tile: PanoramaTile
     box: Box
@@ -86,40 +86,40 @@ class _Part:
 
 
 def merged(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int) -> list[Box]:
-    """Merge the boxes of all tiles. A thing that several tiles saw becomes one box."""
+    """Merge the boxes of all tiles. The boxes of an object that appears in several tiles become one."""
     kept: list[_Part] = []
     for tile, boxes in parts:
         for box in boxes:
             cut_left, cut_right = tile.left > 0 and box.x_min < CUT, tile.right < width and box.x_max > 1 - CUT
             part = _Part(tile, tile.place(box, width), cut_left, cut_right)
-            twin = next((i for i, other in enumerate(kept) if other.tile != tile and _is_same(other, part)), None)
-            if twin is None:
+            duplicate = next((i for i, other in enumerate(kept) if other.tile != tile and _is_same(other, part)), None)
+            if duplicate is None:
                 kept.append(part)
             else:
-                kept[twin] = _Part(tile, _around(kept[twin].box, part.box), kept[twin].cut_left, part.cut_right)
+                kept[duplicate] = _Part(tile, _union_box(kept[duplicate].box, part.box), kept[duplicate].cut_left, part.cut_right)
     return [part.box for part in kept]
 
 
 def merged_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
-    """Merge the points of all tiles. Two points of different tiles within ``near`` of the width are one."""
+    """Merge the points of all tiles. Points of different tiles become one if they are within ``near``, a share of the width."""
     kept: list[tuple[PanoramaTile, Point]] = []
     for tile, points in parts:
         for point in (tile.place_point(p, width) for p in points):
-            twins = (p for other, p in kept if other != tile)
-            if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in twins):
+            duplicates = (p for other, p in kept if other != tile)
+            if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in duplicates):
                 kept.append((tile, point))
     return [point for _, point in kept]
 
 
 def without_seam_twins(boxes: list[Box]) -> list[Box]:
-    """Drop the narrower half of things that show at both ends of a 360-degree panorama."""
-    twins = {
+    """Drop the narrower half of each object that appears at both ends of a 360-degree panorama."""
+    duplicates = {
         (i, j)
         for i, left in enumerate(boxes)
         for j, right in enumerate(boxes)
         if i != j and left.x_min < SEAM and right.x_max > 1 - SEAM and _same_heights(left, right)
     }
-    lost = {i if boxes[i].width < boxes[j].width else j for i, j in twins}
+    lost = {i if boxes[i].width < boxes[j].width else j for i, j in duplicates}
     return [box for i, box in enumerate(boxes) if i not in lost]
 
 
@@ -127,23 +127,23 @@ def _same_heights(a: Box, b: Box) -> bool:
     return min(a.y_max, b.y_max) - max(a.y_min, b.y_min) >= SAME_BOX * max(a.height, b.height)
 
 
-def _shared(a: Box, b: Box) -> float:
+def _intersection(a: Box, b: Box) -> float:
     wide, high = min(a.x_max, b.x_max) - max(a.x_min, b.x_min), min(a.y_max, b.y_max) - max(a.y_min, b.y_min)
     return wide * high if wide > 0 and high > 0 else 0.0
 
 
 def _is_same(left: _Part, right: _Part) -> bool:
-    """Return whether a box in a tile further right continues or repeats a box seen before."""
+    """Return whether a box of a tile further right continues or repeats a box of an earlier tile."""
     a, b = left.box, right.box
     smaller = min(a.width * a.height, b.width * b.height)
-    if smaller > 0 and _shared(a, b) / smaller >= SAME_BOX:
+    if smaller > 0 and _intersection(a, b) / smaller >= SAME_BOX:
         return True
     if not (left.cut_right and right.cut_left) or a.x_max < b.x_min:
         return False
     return _same_heights(a, b)
 
 
-def _around(a: Box, b: Box) -> Box:
+def _union_box(a: Box, b: Box) -> Box:
     better = a if (a.score or 0.0) >= (b.score or 0.0) else b
     corners = {
         "x_min": min(a.x_min, b.x_min),

@@ -1,4 +1,4 @@
-"""Panoramas for backends that would shrink them: things are searched part by part, at the resolution of ordinary frames."""
+"""Detection in panoramas, for backends that would scale a panorama down: part by part, at the resolution of ordinary frames."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ import anyio
 import numpy as np
 
 from scope_ptz.camera.base import Frame
-from scope_ptz.errors import PerceptionError, Tried
+from scope_ptz.errors import PerceptionError, RequestRecord
 from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.perception.models.tile_geometry import PanoramaTile, merged, merged_points, tiles, without_seam_twins
 
-AT_ONCE = 4
-"""Parts that are processed at the same time; servers queue more."""
+MAX_CONCURRENT_PARTS = 4
+"""Maximum number of parts that are processed at the same time."""
 
 SAME_POINT = 0.15
-"""Points of two parts this close together, in heights of the panorama, are one thing."""
+"""Points of two parts within this share of the panorama's height are the same object."""
 
-FULL_TURN_DEG = 359.5
+FULL_TURN_DEG = 359.5  # a panorama at least this wide wraps around
 
 R = TypeVar("R", Detections, Points)
 
 
 class TiledPerception(Perception):
-    """Wraps a backend and gives it stitched panoramas in overlapping parts when it searches for things.
+    """Wraps a backend and passes stitched panoramas to its ``detect`` and ``point`` in overlapping parts.
 
-    A failure of one part fails the whole call, because a count of the rest would be too low. Ordinary frames, questions and
-    captions are passed on unchanged.
+    If one part fails, the whole call fails, because a count without it would be too low. Ordinary frames, questions and captions
+    are passed on unchanged.
     """
 
     handles_panoramas = True
@@ -56,7 +56,7 @@ class TiledPerception(Perception):
             boxes = without_seam_twins(boxes)
         if all(box.score is not None for box in boxes):
             boxes.sort(key=lambda b: -(b.score or 0.0))
-        return _together([found for _, found in seen], began).model_copy(update={"boxes": tuple(boxes)})
+        return _combined([found for _, found in seen], began).model_copy(update={"boxes": tuple(boxes)})
 
     async def point(self, frame: Frame, description: str) -> Points:
         parts = _parts(frame)
@@ -66,7 +66,7 @@ class TiledPerception(Perception):
         seen = await _all([(tile, partial(self.backend.point, part, description)) for tile, part in parts])
         near = SAME_POINT / 5 * frame.height / frame.width
         points = merged_points(((tile, found.points) for tile, found in seen), frame.width, near)
-        return _together([found for _, found in seen], began).model_copy(update={"points": tuple(points)})
+        return _combined([found for _, found in seen], began).model_copy(update={"points": tuple(points)})
 
     async def close(self) -> None:
         await self.backend.close()
@@ -91,14 +91,14 @@ def _part(frame: Frame, whole: Equirectangular, tile: PanoramaTile) -> Frame:
 
 
 async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> list[tuple[PanoramaTile, R]]:
-    """Run all calls, a few at a time, and return the results in order.
+    """Run all calls concurrently, and return the results in order.
 
     Raises:
         PerceptionError: The first error, with the attempts of all calls.
     """
     results: dict[int, R] = {}
     errors: list[PerceptionError] = []
-    limiter = anyio.CapacityLimiter(AT_ONCE)
+    limiter = anyio.CapacityLimiter(MAX_CONCURRENT_PARTS)
 
     async def run(index: int, ask: Callable[[], Awaitable[R]]) -> None:
         async with limiter:
@@ -113,14 +113,14 @@ async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> 
         for index, (_, ask) in enumerate(calls):
             group.start_soon(run, index, ask)
     if errors:
-        tried: list[Tried] = [attempt for found in results.values() for attempt in found.attempts]
+        tried: list[RequestRecord] = [attempt for found in results.values() for attempt in found.attempts]
         tried += [attempt for error in errors for attempt in error.attempts]
         raise PerceptionError(str(errors[0]), kind=errors[0].kind, attempts=tried) from errors[0]
     return [(tile, results[index]) for index, (tile, _) in enumerate(calls)]
 
 
-def _together(parts: list[R], began: float) -> R:
-    """Combine the results of all parts into one, without their places."""
+def _combined(parts: list[R], began: float) -> R:
+    """Combine the results of all parts into one, except for their boxes or points."""
     update = {
         "raw": "\n".join(part.raw for part in parts),
         "notes": tuple(dict.fromkeys(note for part in parts for note in part.notes)),

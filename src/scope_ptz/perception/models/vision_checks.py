@@ -1,4 +1,4 @@
-"""Checks of a perception backend and its server, on a frame that the user chooses."""
+"""Checks of a perception backend and its server, on one frame."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from scope_ptz.endpoints.chat_server_checks import Finding, ServerCheck, checked
 from scope_ptz.perception.base import Perception
 
 _QUESTION = "What is the main thing in this picture? Answer in a few words."
-_MOST_WORDS = 120
-_MANY = 100
+_MAX_SHOWN_CHARS = 120
+_MAX_PLAUSIBLE_COUNT = 100
 
 
 async def check_perception(
     perception: Perception, frame: Frame, *, thing: str, absent: str = "purple elephant"
 ) -> AsyncIterator[ServerCheck]:
-    """Check each skill of a backend.
+    """Check each skill of a backend, and yield the result of each check.
 
     A check passes only if the reply can be parsed and its boxes lie within the frame.
 
     Args:
         perception: The backend.
-        frame: The frame to look at.
-        thing: Something that is in the frame.
-        absent: Something that is not in the frame.
+        frame: The frame.
+        thing: The name of something that is in the frame.
+        absent: The name of something that is not in the frame.
     """
     if "caption" in perception.skills:
         yield await checked("a caption", lambda: _caption(perception, frame))
@@ -47,7 +47,7 @@ async def _query(perception: Perception, frame: Frame) -> Finding:
 
 def _stated(text: str) -> Finding:
     words = " ".join(text.split())
-    return ("ok", f"'{words[:_MOST_WORDS]}'") if words else ("failed", "the answer is empty")
+    return ("ok", f"'{words[:_MAX_SHOWN_CHARS]}'") if words else ("failed", "the answer is empty")
 
 
 async def _detect(perception: Perception, frame: Frame, thing: str, *, expected: bool) -> Finding:
@@ -59,8 +59,8 @@ async def _point(perception: Perception, frame: Frame, thing: str) -> Finding:
 
 
 def _found(count: int, *, expected: bool) -> Finding:
-    if count > _MANY:
-        return "partly", f"{count}: it repeats itself"
+    if count > _MAX_PLAUSIBLE_COUNT:
+        return "partly", f"{count} found; the model repeats itself"
     if expected:
         return ("ok", f"{count} found") if count else ("partly", "none found, although there are some")
     return ("ok", "none, as expected") if not count else ("partly", f"{count} found, although there are none")

@@ -1,4 +1,4 @@
-"""Prompts and JSON schemas for vision-language models, in each model's own coordinate convention."""
+"""Prompts and JSON schemas for vision-language models, in the coordinate convention of each model."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.models.coordinates import Convention, fit, smart_resize
 from scope_ptz.perception.models.encoding import Size
 
-MIN_PIXELS = 56 * 56
+MIN_PIXELS = 56 * 56  # pictures with fewer pixels are enlarged for models that answer in pixels
 
 CAPTION_PROMPT = "Describe this picture in one or two sentences. Name what can be seen and where."
 
@@ -25,8 +25,8 @@ _UNITS = {
 def sent_size(frame: Frame, convention: Convention, max_pixels: int) -> Size:
     """Return the width and height at which a frame is sent to a model.
 
-    A model that answers in pixels gets the frame at its own working size, so that its pixels are known. For other models only the
-    aspect ratio matters.
+    A model that answers in pixels receives the frame at its own input size, because its coordinates refer to that size. For other
+    models only the aspect ratio matters.
     """
     if convention.factor is None or convention.space != "pixels":
         return fit(frame.width, frame.height, max_pixels)
@@ -68,8 +68,11 @@ def _places(convention: Convention, sent: Size) -> str:
 
 
 def places_schema(key: str, numbers: int) -> dict[str, Any]:
-    """Return the JSON schema of a list of places, for servers that can enforce one. The root is an object, as hosted APIs
-    require.
+    """Return the JSON schema of a list of boxes or points. The root is an object, as hosted APIs require.
+
+    Args:
+        key: The key of a box or point.
+        numbers: The number of coordinates of each: 4 or 2.
     """
     place = {"type": "array", "items": {"type": "number"}, "minItems": numbers, "maxItems": numbers}
     thing = {
@@ -87,7 +90,7 @@ def places_schema(key: str, numbers: int) -> dict[str, Any]:
 
 
 def one_line(text: str) -> str:
-    """Return a description that can stand in quotes within a prompt.
+    """Return a description on one line without double quotes, so that a prompt can quote it.
 
     Raises:
         PerceptionError: The description is empty.
@@ -99,5 +102,5 @@ def one_line(text: str) -> str:
 
 
 def place_error(source: str) -> PerceptionError:
-    """Return the error of a model that answers in text only."""
+    """Return the error for a model that returns neither boxes nor points."""
     return PerceptionError(f"{source} gives no places in a picture. Use a detector, or a model that gives boxes.")

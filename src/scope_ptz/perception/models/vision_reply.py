@@ -1,4 +1,4 @@
-"""From the reply of a vision-language model to a perception result. Shared by served and local models."""
+"""Conversion of the replies of vision-language models, served or local, to perception results."""
 
 from __future__ import annotations
 
@@ -19,41 +19,41 @@ MAX_RAW_CHARS = 20_000
 
 
 class VisionReply:
-    """A model's reply about one frame, which can be read as any kind of result.
+    """A model's reply about one frame, which can be converted to each type of perception result.
 
-    Results and errors include the ``attempts`` of the call. A reply that was delivered but cannot be read counts against its last
-    attempt.
+    Results and errors include the ``attempts`` of the call. If the reply cannot be parsed, its last
+    attempt is recorded as a failure.
     """
 
     def __init__(self, source: str, text: str, began: float, attempts: tuple[Attempt, ...] = (), *, cut: bool = False) -> None:
         """Set up the reply.
 
         Args:
-            source: Who replied.
+            source: The name of the backend.
             text: The text of the reply.
-            began: When the call began, by ``perf_counter``.
+            began: The start of the call, as a value of ``perf_counter``.
             attempts: The requests of the call.
             cut: Whether the reply stopped at the token limit.
         """
         self.source, self.text, self.attempts, self.cut, self._began = source, text, attempts, cut, began
 
-    def preceded(self, error: PerceptionError) -> VisionReply:
-        """Return the same reply, with the attempts of an earlier failure before its own."""
+    def with_earlier_attempts(self, error: PerceptionError) -> VisionReply:
+        """Return the same reply with the attempts of an earlier failure added before its own."""
         earlier = tuple(a for a in error.attempts if isinstance(a, Attempt))
         return VisionReply(self.source, self.text, self._began, (*earlier, *self.attempts), cut=self.cut)
 
     def caption(self) -> Caption:
         """Return the reply as a caption."""
-        with blamed(self.source, self.attempts):
-            return Caption(text=read_answer(self.text), **self._common(self._cut_answer()))
+        with reply_errors(self.source, self.attempts):
+            return Caption(text=read_answer(self.text), **self._common(self._truncation_note()))
 
     def answer(self) -> Answer:
         """Return the reply as an answer."""
-        with blamed(self.source, self.attempts):
+        with reply_errors(self.source, self.attempts):
             text = read_answer(self.text)
-        return Answer(text=text, known=not cannot_tell(text), **self._common(self._cut_answer()))
+        return Answer(text=text, known=not cannot_tell(text), **self._common(self._truncation_note()))
 
-    def _cut_answer(self) -> tuple[str, ...]:
+    def _truncation_note(self) -> tuple[str, ...]:
         return ("The answer was cut off at the token limit.",) if self.cut else ()
 
     def detections(self, convention: Convention, sent: Size) -> Detections:
@@ -70,7 +70,7 @@ class VisionReply:
         return Points(points=points, complete=complete, **self._common(notes))
 
     def _located(self, convention: Convention, sent: Size) -> tuple[Located, bool, tuple[str, ...]]:
-        with blamed(self.source, self.attempts):
+        with reply_errors(self.source, self.attempts):
             read = read_places(self.text)
             found = located(read.things, convention, sent)
         whole = read.complete and not (self.cut and found.boxes + found.points)
@@ -78,7 +78,7 @@ class VisionReply:
         return found, found.complete and whole, found.notes + notes
 
     def unreadable(self, what: str) -> PerceptionError:
-        """Return the error of a reply that cannot be read."""
+        """Return the error for a reply that cannot be parsed. ``what`` says what the model gave instead."""
         kind = FailureKind.MALFORMED
         return PerceptionError(
             f"{self.source} gave {what}: {excerpt(self.text)}", kind=kind.value, attempts=_with_kind(self.attempts, kind)
@@ -91,8 +91,8 @@ class VisionReply:
 
 
 @contextmanager
-def blamed(source: str, attempts: tuple[Attempt, ...]) -> Iterator[None]:
-    """Name the source in errors about its reply, and count them against the attempt that brought the reply."""
+def reply_errors(source: str, attempts: tuple[Attempt, ...]) -> Iterator[None]:
+    """Add the source to errors about its reply, and record them as failures of the last attempt."""
     try:
         yield
     except PerceptionError as error:
@@ -106,7 +106,7 @@ def _with_kind(attempts: tuple[Attempt, ...], kind: FailureKind) -> tuple[Attemp
 
 
 @contextmanager
-def served(source: str) -> Iterator[None]:
+def server_errors(source: str) -> Iterator[None]:
     """Turn a server's failure into a ``PerceptionError`` with its kind and all attempts."""
     try:
         yield

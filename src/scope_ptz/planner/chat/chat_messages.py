@@ -1,7 +1,7 @@
-"""The state S_t as chat messages.
+"""Convert the state S_t to chat messages.
 
-The messages are append-only: those of a step begin with the messages of the step before, byte for byte, so that the server's prefix
-cache works. The only exception comes last: for planners that take images, the newest view replaces the older one.
+The messages are append-only: the messages of each step begin with exactly those of the previous step, so that the server's prefix
+cache works. The only exception is the last picture of planners that take images: the newest view replaces the previous one.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from scope_ptz.planner.chat.schemas import plain_schemas
 
 Message = dict[str, Any]
 Notation = Literal["native", "text"]
+"""How tool calls are exchanged: in the server's own fields, or written into the text of messages."""
 
 _TEXT_TOOLS = """
 
@@ -32,19 +33,19 @@ The results come back in <tool_response> elements. These are the tools, as JSON 
 
 
 def build_messages(
-    state: State, prompt: Prompt, *, notation: Notation = "native", sees: bool = False, switch: str = "", brief_before: int = 0
+    state: State, prompt: Prompt, *, notation: Notation = "native", sees: bool = False, switch: str = "", shorten_oldest: int = 0
 ) -> list[Message]:
     """Return the messages for a state.
 
     Args:
         state: The state of the run.
         prompt: The system prompt.
-        notation: Whether tools use the server's own interface or the text.
+        notation: How tool calls are exchanged.
         sees: Whether the model takes images.
-        switch: Words at the end of the user messages that switch the model's reasoning.
-        brief_before: How many of the oldest exchanges are shortened to what later steps need.
+        switch: Text appended to the user messages to switch the model's reasoning on or off.
+        shorten_oldest: The number of the oldest exchanges to shorten to what later steps need.
     """
-    writer = _Writer(notation, brief_before, in_parts=sees)
+    writer = _Writer(notation, shorten_oldest, in_parts=sees)
     briefing = state.briefing
     starts = [turn.start for turn in state.conversation] + [briefing.pose]
     first = starts[0] or briefing.pose
@@ -74,13 +75,19 @@ def _instruction(text: str, start: Pose | None, switch: str) -> str:
 
 
 class _Writer:
-    """Appends messages. Consecutive user messages become one, because chat templates require alternating turns."""
+    """Builds the list of messages. Consecutive user messages become one, because chat templates require alternating roles."""
 
-    def __init__(self, notation: Notation, brief_before: int, *, in_parts: bool) -> None:
-        """Set up the writer. ``in_parts``: user messages are lists of parts from the start, because pictures may follow."""
+    def __init__(self, notation: Notation, shorten_oldest: int, *, in_parts: bool) -> None:
+        """Set up the writer.
+
+        Args:
+            notation: How tool calls are exchanged.
+            shorten_oldest: The number of the oldest exchanges to shorten.
+            in_parts: Whether user messages are lists of parts, so that pictures can be appended.
+        """
         self.messages: list[Message] = []
         self._in_parts = in_parts
-        self._notation, self._brief_before, self._exchanges = notation, brief_before, 0
+        self._notation, self._shorten_oldest, self._exchanges = notation, shorten_oldest, 0
         self._used: set[str] = set()
 
     def add(self, message: Message) -> None:
@@ -89,7 +96,7 @@ class _Writer:
     def user(self, content: str | list[Message]) -> None:
         last = self.messages[-1]
         if last["role"] == "user":
-            # A new object, because a caller may still hold the old one.
+            # A new object, because a caller may still have a reference to the old one.
             self.messages[-1] = {"role": "user", "content": [*_parts(last["content"]), *_parts(content)]}
         else:
             self.add({"role": "user", "content": _parts(content) if self._in_parts else content})
@@ -98,17 +105,17 @@ class _Writer:
         self.user([part for picture in pictures for part in _picture_parts(picture)])
 
     def exchange(self, exchange: Exchange) -> None:
-        brief = self._exchanges < self._brief_before
+        brief = self._exchanges < self._shorten_oldest
         self._exchanges += 1
         if self._notation == "native":
-            self._native(exchange, brief)
+            self._as_native_calls(exchange, brief)
         else:
-            self._written(exchange, brief)
+            self._as_text_calls(exchange, brief)
         pictures = [o.picture for o in exchange.outcomes if o.picture is not None]
         if pictures and self._in_parts and not brief:
             self.pictures(pictures)
 
-    def _native(self, exchange: Exchange, brief: bool) -> None:
+    def _as_native_calls(self, exchange: Exchange, brief: bool) -> None:
         ids = [self._unique(outcome.call.id) for outcome in exchange.outcomes]
         calls = [
             {"id": i, "type": "function", "function": {"name": callable_name(o.call.name), "arguments": _arguments(o.call)}}
@@ -118,14 +125,14 @@ class _Writer:
         for call_id, outcome in zip(ids, exchange.outcomes, strict=True):
             self.add({"role": "tool", "tool_call_id": call_id, "content": observation(outcome, brief=brief)})
 
-    def _written(self, exchange: Exchange, brief: bool) -> None:
-        calls = "\n".join(_as_text(outcome) for outcome in exchange.outcomes)
+    def _as_text_calls(self, exchange: Exchange, brief: bool) -> None:
+        calls = "\n".join(_call_element(outcome) for outcome in exchange.outcomes)
         self.add({"role": "assistant", "content": f"{exchange.thought}\n{calls}".strip()})
         results = (f"<tool_response>\n{observation(o, brief=brief)}\n</tool_response>" for o in exchange.outcomes)
         self.user("\n".join(results))
 
     def _unique(self, call_id: str) -> str:
-        """Return the server's own id where possible; some servers give every call the same one."""
+        """Return the id of a call, or a new id if it is empty or already used. Some servers give every call the same id."""
         if not call_id or call_id in self._used:
             call_id = f"call{len(self._used) + 1:05d}"  # nine letters and digits, as Mistral's templates require
         self._used.add(call_id)
@@ -133,20 +140,20 @@ class _Writer:
 
 
 def callable_name(name: str) -> str:
-    """Return a tool name with only the characters that the interface allows. Models may make up any name."""
+    """Replace characters that the OpenAI API does not allow in tool names by underscores. Models may invent any name."""
     return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:64] or "unreadable"
 
 
 def _arguments(call: ToolCall) -> str:
     """Return the arguments as a JSON object.
 
-    Servers put them through their chat templates, which fail on anything else. The error message of a malformed call quotes the
-    original.
+    Servers render the arguments with chat templates, which fail on anything else. The error message of a malformed call quotes the
+    original text.
     """
     return json.dumps(call.arguments, ensure_ascii=False)
 
 
-def _as_text(outcome: ToolOutcome) -> str:
+def _call_element(outcome: ToolOutcome) -> str:
     data = {"name": outcome.call.name, "arguments": outcome.call.arguments}
     return f"<tool_call>\n{json.dumps(data, ensure_ascii=False)}\n</tool_call>"
 

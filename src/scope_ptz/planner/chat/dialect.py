@@ -1,7 +1,7 @@
-"""Request features that a server has refused.
+"""Adapt requests to the features that a server supports.
 
-Servers support different request fields. A field that a server refuses is omitted from later requests. This is knowledge about
-the server, not about a run.
+OpenAI-compatible servers differ in the request fields, roles and tool interface that they support. When a server rejects one of
+these, later requests to the server omit it.
 """
 
 from __future__ import annotations
@@ -12,33 +12,55 @@ from typing import Any
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.planner.chat.chat_messages import Message, Notation
 
-_REFUSALS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
-_TOOLS = re.compile(
+_REJECTION_KINDS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
+"""Kinds of failures with which servers reject a request feature."""
+
+_TOOLS_REJECTED = re.compile(
     r"\btools?\b|tool_|tool[- ]|function[- ]call|--jinja|roles? must alternate|(unknown|unexpected|unsupported|invalid) role",
     re.IGNORECASE,
 )
-"""Refusals of tools, also by chat templates that know no roles but user and assistant."""
-_SYSTEM = re.compile(r"system (role|message|prompt)s? (is |are )?not supported|does not support system", re.IGNORECASE)
-_OPTIONAL = ("chat_template_kwargs", "reasoning_effort", "temperature", "seed")
+"""Error messages that reject tools, including those of chat templates that support only the roles user and assistant."""
+
+_SYSTEM_ROLE_REJECTED = re.compile(
+    r"system (role|message|prompt)s? (is |are )?not supported|does not support system", re.IGNORECASE
+)
+_OPTIONAL_FIELDS = ("chat_template_kwargs", "reasoning_effort", "temperature", "seed")
 
 
 class Dialect:
-    """What to leave out of the requests to a server."""
+    """The request fields, roles and tool notation that a server accepts, as learned from its rejections.
+
+    Attributes:
+        notation: How tool calls are exchanged with the server.
+    """
 
     def __init__(self, notation: Notation, *, fixed: bool) -> None:
-        self.notation: Notation = notation
-        self._fixed = fixed
-        self._refused: set[str] = set()
-        self._system = True
-        self._limit = "max_tokens"
+        """Set up a dialect that supports everything.
 
-    def fields(self, wanted: dict[str, Any]) -> dict[str, Any]:
-        """Return the requested fields that the server supports, under the names that it knows."""
-        return {self._limit if k == "max_tokens" else k: v for k, v in wanted.items() if v is not None and k not in self._refused}
+        Args:
+            notation: How to exchange tool calls at first.
+            fixed: Whether to keep the notation even if the server rejects tools.
+        """
+        self.notation: Notation = notation
+        self._notation_fixed = fixed
+        self._rejected_fields: set[str] = set()
+        self._system_role = True
+        self._max_tokens_field = "max_tokens"
+
+    def fields(self, requested: dict[str, Any]) -> dict[str, Any]:
+        """Return the request fields without those that are None or rejected, under the names that the server uses."""
+        return {
+            self._max_tokens_field if name == "max_tokens" else name: value
+            for name, value in requested.items()
+            if value is not None and name not in self._rejected_fields
+        }
 
     def messages(self, messages: list[Message]) -> list[Message]:
-        """Return the messages as the server takes them. Without a system role, the system text begins the first user message."""
-        if self._system or not messages or messages[0]["role"] != "system":
+        """Return the messages in the roles that the server accepts.
+
+        If it rejects the system role, the system text becomes the beginning of the first user message.
+        """
+        if self._system_role or not messages or messages[0]["role"] != "system":
             return messages
         system, first, *rest = messages
         head = {"type": "text", "text": system["content"] + "\n\n"}
@@ -46,21 +68,30 @@ class Dialect:
         joined = head["text"] + content if isinstance(content, str) else [head, *content]
         return [{"role": "user", "content": joined}, *rest]
 
-    def learn(self, failure: ServerFailure, sent: dict[str, Any], *, with_tools: bool) -> bool:
-        """Adapt to a refusal. Return whether it was about something that the next request can leave out."""
-        if failure.kind not in _REFUSALS:
+    def adapt(self, failure: ServerFailure, sent: dict[str, Any], *, with_tools: bool) -> bool:
+        """Adapt to a failed request.
+
+        Args:
+            failure: How the request failed.
+            sent: The optional fields of the request.
+            with_tools: Whether the request contained tools.
+
+        Returns:
+            True if the server rejected a feature that the next request omits; False if a retry would fail in the same way.
+        """
+        if failure.kind not in _REJECTION_KINDS:
             return False
-        for name in _OPTIONAL:
+        for name in _OPTIONAL_FIELDS:
             if name in sent and name in failure.detail:
-                self._refused.add(name)
+                self._rejected_fields.add(name)
                 return True
         if "max_tokens" in sent and "max_tokens" in failure.detail:
-            self._limit = "max_completion_tokens"
+            self._max_tokens_field = "max_completion_tokens"
             return True
-        if self._system and _SYSTEM.search(failure.detail):
-            self._system = False
+        if self._system_role and _SYSTEM_ROLE_REJECTED.search(failure.detail):
+            self._system_role = False
             return True
-        if with_tools and not self._fixed and _TOOLS.search(failure.detail):
+        if with_tools and not self._notation_fixed and _TOOLS_REJECTED.search(failure.detail):
             self.notation = "text"
             return True
         return False

@@ -1,6 +1,6 @@
 """Reasoning switches and sampling temperatures by model family.
 
-This is data: a new family is one entry.
+To support a new family, add an entry to ``FAMILIES``.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ class Switch:
 
     Attributes:
         fields: Fields of the request.
-        words: Words at the end of the user message, for servers that ignore the fields.
+        words: Text appended to the user message, for servers that ignore the fields.
     """
 
     fields: Mapping[str, Any] = field(default_factory=dict)
     words: str = ""
 
 
-_NOTHING = Switch()
+_NO_SWITCH = Switch()
 
 
 def _template(key: str, value: bool) -> Switch:
@@ -37,14 +37,15 @@ def _template(key: str, value: bool) -> Switch:
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """A model family, recognised by a pattern over model names. Patterns are tried in order.
+    """A model family, recognised by a regular expression for model names. The first matching family counts.
 
     Attributes:
-        thinks: Whether it reasons by default.
-        on: How to switch its reasoning on; None if it cannot be switched.
-        off: How to switch it off.
-        temperatures: The temperature with reasoning (as its makers recommend, because greedy reasoning tends to loop; None
-            leaves it to the server) and without (0 gives the same calls every time).
+        thinks: Whether its models reason by default.
+        on: How to switch reasoning on; None if it cannot be switched.
+        off: How to switch reasoning off; None if it cannot be switched.
+        temperatures: The sampling temperatures with and without reasoning. Reasoning uses the temperature that the model's makers
+            recommend, because greedy reasoning tends to loop; None selects the server's default. Without reasoning, 0 makes the
+            calls reproducible.
     """
 
     name: str
@@ -55,17 +56,17 @@ class Family:
     temperatures: tuple[float | None, float | None] = (None, 0.0)
 
 
-_QWEN = (0.6, 0.0)
+_QWEN_TEMPERATURES = (0.6, 0.0)
 FAMILIES: tuple[Family, ...] = (
-    Family("qwen3-thinking", r"qwen3.*thinking", thinks=True, temperatures=_QWEN),
-    Family("qwen3-instruct", r"qwen3(?!.*32b).*(instruct|2507|next|coder)", thinks=False, temperatures=_QWEN),
+    Family("qwen3-thinking", r"qwen3.*thinking", thinks=True, temperatures=_QWEN_TEMPERATURES),
+    Family("qwen3-instruct", r"qwen3(?!.*32b).*(instruct|2507|next|coder)", thinks=False, temperatures=_QWEN_TEMPERATURES),
     Family(
         "qwen3.5",
         r"qwen3\.[5-9]|qwen-?3\.[5-9]",
         thinks=True,
         on=_template("enable_thinking", True),
         off=_template("enable_thinking", False),
-        temperatures=_QWEN,
+        temperatures=_QWEN_TEMPERATURES,
     ),
     Family(
         "qwen3",
@@ -73,7 +74,7 @@ FAMILIES: tuple[Family, ...] = (
         thinks=True,
         on=Switch({"chat_template_kwargs": {"enable_thinking": True}}, "/think"),
         off=Switch({"chat_template_kwargs": {"enable_thinking": False}}, "/no_think"),
-        temperatures=_QWEN,
+        temperatures=_QWEN_TEMPERATURES,
     ),
     Family("smollm3", r"smollm-?3", thinks=True, on=Switch({}, "/think"), off=Switch({}, "/no_think"), temperatures=(0.6, 0.0)),
     Family(
@@ -92,41 +93,41 @@ FAMILIES: tuple[Family, ...] = (
 )
 UNKNOWN = Family("unknown", "", thinks=False)
 
-_EFFORT = {"on": Switch({"reasoning_effort": "medium"}), "off": Switch({"reasoning_effort": "none"})}
-"""Ollama silently drops template arguments; this field is its own switch."""
+_OLLAMA_SWITCHES = {"on": Switch({"reasoning_effort": "medium"}), "off": Switch({"reasoning_effort": "none"})}
+"""The switches of Ollama, which silently drops template arguments."""
 
-_KNOWN_PLACES: tuple[tuple[str, Server], ...] = ((":11434", "ollama"), (":1234", "lm-studio"), ("api.openai.com", "openai"))
+_USUAL_ADDRESSES: tuple[tuple[str, Server], ...] = ((":11434", "ollama"), (":1234", "lm-studio"), ("api.openai.com", "openai"))
 
 
 def family_of(model: str) -> Family:
-    """Return the family of a model by its name, ``UNKNOWN`` when no pattern matches."""
+    """Return the family of a model by its name; ``UNKNOWN`` if no pattern matches."""
     name = model.lower()
     return next((f for f in FAMILIES if re.search(f.pattern, name)), UNKNOWN)
 
 
 def likely_server(url: str) -> Server | None:
-    """Return the server that usually listens at an address; None if the address does not tell."""
-    place = urlsplit(url).netloc
-    return next((server for mark, server in _KNOWN_PLACES if mark in place), None)
+    """Return the server program that usually listens at an address; None for other addresses."""
+    address = urlsplit(url).netloc
+    return next((server for part, server in _USUAL_ADDRESSES if part in address), None)
 
 
 def switch_for(model: str, thinking: Thinking, server: Server | None) -> Switch:
-    """Return what to send to switch a model's reasoning: nothing for "default", and nothing for a model without a switch."""
+    """Return the request data that switches a model's reasoning. It is empty for "default" and for models without a switch."""
     if thinking == "default":
-        return _NOTHING
+        return _NO_SWITCH
     family = family_of(model)
     chosen = family.on if thinking == "on" else family.off
     if server == "openai":
-        return Switch({"reasoning_effort": "medium" if thinking == "on" else "low"}) if family is UNKNOWN else chosen or _NOTHING
+        return Switch({"reasoning_effort": "medium" if thinking == "on" else "low"}) if family is UNKNOWN else chosen or _NO_SWITCH
     if chosen is None:
-        return _NOTHING
+        return _NO_SWITCH
     if server == "ollama" and "chat_template_kwargs" in chosen.fields:
-        return Switch(_EFFORT[thinking].fields, chosen.words)
+        return Switch(_OLLAMA_SWITCHES[thinking].fields, chosen.words)
     return chosen
 
 
 def temperature_for(model: str, thinking: Thinking) -> float | None:
-    """Return the temperature for a mode, None to leave it to the server."""
+    """Return the sampling temperature for a model in a reasoning mode; None selects the server's default."""
     family = family_of(model)
     thinks = family.thinks if thinking == "default" else thinking == "on"
     return family.temperatures[0 if thinks else 1]

@@ -1,6 +1,8 @@
-"""The harmony format of the gpt-oss models, for servers that return it as text: messages in channels.
+"""Parse the harmony format of the gpt-oss models, for servers that return it unparsed.
 
-``<|channel|>analysis<|message|>...<|end|>`` is reasoning, ``final`` is the answer, and a call is addressed to its tool:
+A reply is a sequence of messages in channels. The channel ``analysis`` contains reasoning
+(``<|channel|>analysis<|message|>...<|end|>``), and ``final`` contains the answer. A tool call is a message whose recipient is the
+tool:
 ``<|channel|>commentary to=functions.go_home <|constrain|>json<|message|>{}<|call|>``.
 """
 
@@ -13,9 +15,9 @@ _RECIPIENT = re.compile(r"to=(?:functions\.)?([\w.-]+)")
 
 
 def read_harmony(text: str) -> tuple[str, list[str]]:
-    """Return the text without its channels, and the reasoning.
+    """Separate a reply into its visible text and its reasoning messages. A text in another format is returned unchanged.
 
-    Calls remain in the text as ``<tool_call>`` elements, with their arguments as written.
+    Tool calls become ``<tool_call>`` elements of the visible text, with their arguments as written.
     """
     if "<|channel|>" not in text:
         return text, []
@@ -27,9 +29,9 @@ def read_harmony(text: str) -> tuple[str, list[str]]:
     if pieces[0].strip():
         header = pieces[0]  # the prompt ended with the role or the name of the channel
     for token, piece in zip(pieces[1::2], pieces[2::2], strict=True):
-        if token == "message":  # noqa: S105 - a token of a language, not of a login
+        if token == "message":  # noqa: S105 - a token of the format, not a password
             in_body = True
-            _file(header, piece.strip(), visible, thoughts)
+            _append_message(header, piece.strip(), visible, thoughts)
         elif token in ("start", "channel", "constrain"):
             header = piece if in_body else f"{header} {piece}"
             in_body = False
@@ -39,7 +41,8 @@ def read_harmony(text: str) -> tuple[str, list[str]]:
     return "".join(visible), thoughts
 
 
-def _file(header: str, body: str, visible: list[str], thoughts: list[str]) -> None:
+def _append_message(header: str, body: str, visible: list[str], thoughts: list[str]) -> None:
+    """Append a message to the visible text or to the reasoning, depending on its header."""
     recipient = _RECIPIENT.search(header)
     if recipient:
         visible.append(f"<tool_call><function={recipient[1]}>{body}</function></tool_call>")

@@ -1,4 +1,7 @@
-"""Text of a call's outcome for the planner: concise, with rounded numbers, and text that the camera saw marked as data."""
+"""Format the outcome of a tool call as text for a chat model.
+
+The text is short, numbers are rounded, and text that comes from the scene is marked as data.
+"""
 
 from __future__ import annotations
 
@@ -8,52 +11,56 @@ from typing import Any
 
 from scope_ptz.planner.base import ToolOutcome
 
-MOST_BOXES = 12
-MOST_CHARS = 4000
-"""Characters kept of one text from perception. A longer text comes from a model that did not stop."""
+MAX_BOXES = 12  # boxes listed; the others are only counted
+MAX_CHARS = 4000
+"""Longer texts from perception are truncated. They come from models that did not stop generating."""
 
-BRIEF_CHARS = 120
+BRIEF_CHARS = 120  # longer texts are truncated in shortened outcomes
 
-_KEPT = (
+_RESULT_FIELDS = (
     "count", "known", "found", "matches", "fill", "held_share", "duration_s", "presets", "preset", "file", "view",
     "clamped", "limited_by",
 )  # fmt: skip
-_SEEN_TEXTS = ("answer", "chosen")
-_HARMLESS = str.maketrans({"<": "‹", ">": "›", "＜": "‹", "＞": "›"})
+_TEXT_FIELDS = ("answer", "chosen")
+_REPLACED_BRACKETS = str.maketrans({"<": "‹", ">": "›", "＜": "‹", "＞": "›"})
 
 
 def observation(outcome: ToolOutcome, *, brief: bool = False) -> str:
-    """Return the outcome as one JSON line. ``brief``: only what later steps may need, for a context that is nearly full."""
+    """Return the outcome as one line of JSON. ``brief`` keeps only what later steps may need, for a context that is nearly full."""
     if outcome.error is not None or outcome.result is None:
-        error = seen_text(outcome.error or "The tool gave no result.", mark=False)
+        error = as_data(outcome.error or "The tool gave no result.", mark=False)
         return _line({"error": error[:BRIEF_CHARS] if brief else error})
     result = outcome.result
-    content: dict[str, Any] = {key: _rounded(result[key]) for key in _KEPT if result.get(key) not in (None, (), [], "")}
+    content: dict[str, Any] = {key: _rounded(result[key]) for key in _RESULT_FIELDS if result.get(key) not in (None, (), [], "")}
     if result.get("complete") is False:
         content["complete"] = False
     if brief:
-        content |= {key: seen_text(result[key][:BRIEF_CHARS]) for key in _SEEN_TEXTS if result.get(key)}
+        content |= {key: as_data(result[key][:BRIEF_CHARS]) for key in _TEXT_FIELDS if result.get(key)}
     else:
         content |= _boxes(result.get("boxes") or ())
-        # The message holds everything else: the answer, its source, corrections and a second opinion.
-        content["message"] = seen_text(str(result.get("message", "")), mark="source" in result)
+        # The message contains everything else: the answer, its source, corrections and a second opinion.
+        content["message"] = as_data(str(result.get("message", "")), mark="source" in result)
     content["pose"] = _rounded(result.get("pose"))
     return _line(content)
 
 
-def seen_text(text: str, *, mark: bool = True) -> str:
-    """Return text from outside as data. It can neither close its mark nor contain tokens that steer a chat template."""
-    cut = text if len(text) <= MOST_CHARS else text[:MOST_CHARS] + " (cut)"
-    harmless = cut.translate(_HARMLESS)
+def as_data(text: str, *, mark: bool = True) -> str:
+    """Return untrusted text, such as a perception reply, as data.
+
+    Angle brackets are replaced, so that the text can neither close the ``camera_text`` element nor contain control tokens of a
+    chat template. ``mark`` encloses the text in that element.
+    """
+    cut = text if len(text) <= MAX_CHARS else text[:MAX_CHARS] + " (cut)"
+    harmless = cut.translate(_REPLACED_BRACKETS)
     return f"<camera_text>{harmless}</camera_text>" if mark else harmless
 
 
 def _boxes(boxes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return the corners of the boxes in hundredths of the frame, in perception's order; only the first of many."""
+    """Return the corners of the first ``MAX_BOXES`` boxes as fractions of the frame, rounded to two decimals."""
     if not boxes:
         return {}
-    corners = [[round(box[k], 2) for k in ("x_min", "y_min", "x_max", "y_max")] for box in boxes[:MOST_BOXES]]
-    more = len(boxes) - MOST_BOXES
+    corners = [[round(box[k], 2) for k in ("x_min", "y_min", "x_max", "y_max")] for box in boxes[:MAX_BOXES]]
+    more = len(boxes) - MAX_BOXES
     return {"boxes_xyxy": corners, **({"boxes_not_listed": more} if more > 0 else {})}
 
 

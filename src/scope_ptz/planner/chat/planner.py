@@ -22,24 +22,24 @@ from scope_ptz.planner.chat.schemas import plain_schemas
 from scope_ptz.planner.chat.window import fits, shortenings
 
 _OVERFLOW, _CUT_OFF = FailureKind.CONTEXT_OVERFLOW, FailureKind.CUT_OFF
-_MOST_LESSONS = 6
-"""How many unsupported features are left out before a server's refusal is final."""
+_MAX_ADAPTATIONS = 6
+"""The number of rejected features that are omitted before a rejection becomes an error."""
 
 
 class ChatOptions(BaseModel):
     """Options for planning with a chat model.
 
     Attributes:
-        tools: How tools are offered: through the server's interface ("native"), in the prompt and the text ("text"), or
-            natively until the server refuses it ("auto").
+        tools: How tool calls are exchanged: in the server's own fields ("native"), in the text of messages ("text"), or
+            natively until the server rejects tools ("auto").
         sees: Whether the model takes images.
-        summarise: Whether to shorten old observations when the context is full instead of ending the run. Never used in
+        summarise: Whether to shorten old observations, instead of ending the run, when the context is full. Never used in
             evaluations.
-        context_tokens: The size of the model's context, where it is known.
-        max_tokens: The limit of one reply.
-        temperature: None selects what suits the model.
-        server: The program that serves the model, guessed from its address when None.
-        family: A model name that determines the family, when the server uses another name.
+        context_tokens: The size of the model's context; None if it is unknown.
+        max_tokens: The maximum length of a reply; None selects the server's default.
+        temperature: The sampling temperature; None selects the default of the model's family.
+        server: The program that serves the model; None guesses it from the address.
+        family: The model name by which to select the family, if the server uses another name for the model.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -61,7 +61,7 @@ class ChatOptions(BaseModel):
 class ChatPlanner(Planner):
     """A planner that asks a chat model at each step.
 
-    Between steps it keeps a connection and what it learned about the server, but nothing about the run.
+    Between steps it keeps the connection and the features that the server supports, but no state of the run.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class ChatPlanner(Planner):
 
         Args:
             endpoint: The server.
-            options: How to plan.
+            options: Options for planning; None selects the defaults.
             client: A client to use instead of a new one.
             prompt: A prompt to use instead of the named one, for variants without a file.
         """
@@ -111,11 +111,11 @@ class ChatPlanner(Planner):
         }
 
     async def step(self, state: State) -> Decision:
-        tried: list[Attempt] = []
-        for brief_before in self._levels(state):
+        attempts: list[Attempt] = []
+        for shorten_oldest in self._levels(state):
             try:
-                reply = await self._ask(state, brief_before, tried)
-                return self._decide(reply, state, tried)
+                reply = await self._ask(state, shorten_oldest, attempts)
+                return self._decide(reply, state, attempts)
             except PlannerError as error:
                 failure = error
                 full = error.kind == _OVERFLOW.value or (error.kind == _CUT_OFF.value and self.options.max_tokens is None)
@@ -127,41 +127,44 @@ class ChatPlanner(Planner):
         await self.client.close()
 
     def _levels(self, state: State) -> Iterator[int]:
-        """Yield how many of the oldest exchanges to shorten, in the order of the attempts."""
+        """Yield the numbers of oldest exchanges to shorten, in the order in which to try them."""
         levels = [0, *shortenings(state)] if self.options.summarise else [0]
         for level in levels:
             window = self.options.context_tokens
             if level == levels[-1] or window is None or fits(self._messages(state, level), state.tools, window):
                 yield level
 
-    def _messages(self, state: State, brief_before: int) -> list[Message]:
+    def _messages(self, state: State, shorten_oldest: int) -> list[Message]:
         messages = build_messages(
             state,
             self.prompt,
             notation=self._dialect.notation,
             sees=self.sees,
             switch=self._switch.words,
-            brief_before=brief_before,
+            shorten_oldest=shorten_oldest,
         )
         return self._dialect.messages(messages)
 
-    async def _ask(self, state: State, brief_before: int, tried: list[Attempt]) -> ChatReply:
-        """Return a reply. What the server refuses and can do without is left out. Every request is added to ``tried``."""
-        for lesson in range(_MOST_LESSONS + 1):
+    async def _ask(self, state: State, shorten_oldest: int, attempts: list[Attempt]) -> ChatReply:
+        """Send the messages and return the reply. Retry without optional features that the server rejects.
+
+        Every request is appended to ``attempts``.
+        """
+        for adaptations in range(_MAX_ADAPTATIONS + 1):
             native = self._dialect.notation == "native"
             fields = self._dialect.fields(self._fields)
             tools = plain_schemas(state.tools) if native and state.tools else None
-            messages = self._messages(state, brief_before)
+            messages = self._messages(state, shorten_oldest)
             try:
                 reply = await self.client.complete(messages, tools=tools, stream=self.options.stream, extra=fields)
             except ServerFailure as failure:
-                tried.extend(failure.history)
-                if lesson < _MOST_LESSONS and self._dialect.learn(failure, fields, with_tools=tools is not None):
+                attempts.extend(failure.history)
+                if adaptations < _MAX_ADAPTATIONS and self._dialect.adapt(failure, fields, with_tools=tools is not None):
                     continue
-                raise PlannerError(str(failure), kind=failure.kind.value, attempts=tried) from None
-            tried.extend(reply.attempts)
+                raise PlannerError(str(failure), kind=failure.kind.value, attempts=attempts) from None
+            attempts.extend(reply.attempts)
             return reply
         raise AssertionError("the last attempt returns or raises")
 
-    def _decide(self, reply: ChatReply, state: State, tried: list[Attempt]) -> Decision:
-        return decide(reply.model_copy(update={"attempts": tuple(tried)}), state, context_tokens=self.options.context_tokens)
+    def _decide(self, reply: ChatReply, state: State, attempts: list[Attempt]) -> Decision:
+        return decide(reply.model_copy(update={"attempts": tuple(attempts)}), state, context_tokens=self.options.context_tokens)

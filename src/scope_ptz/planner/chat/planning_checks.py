@@ -1,4 +1,4 @@
-"""Checks of a server's use as a planner: tool calls and answers from their results, streamed and whole."""
+"""Check whether a server's model can plan: tool calls, and answers based on their results, with and without streaming."""
 
 from __future__ import annotations
 
@@ -11,9 +11,13 @@ from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, State, ToolCall, ToolOutcome
 from scope_ptz.planner.chat.planner import ChatOptions, ChatPlanner
 
-PICTURE, TURN = "Take a picture.", "Pan right by 20 degrees."
-_TAKEN = {"message": "The picture is saved.", "pose": {"pan_deg": 0.0, "tilt_deg": 0.0, "zoom": 1.0}, "file": "frame-0001.jpg"}
-_MOST_WORDS = 160
+PICTURE_INSTRUCTION, TURN_INSTRUCTION = "Take a picture.", "Pan right by 20 degrees."
+_PICTURE_RESULT = {
+    "message": "The picture is saved.",
+    "pose": {"pan_deg": 0.0, "tilt_deg": 0.0, "zoom": 1.0},
+    "file": "frame-0001.jpg",
+}
+_MAX_DETAIL_CHARS = 160
 
 
 async def check_planning(
@@ -24,7 +28,7 @@ async def check_planning(
     Args:
         endpoint: The server.
         tools: The schemas of the nine tools.
-        options: How to ask the model.
+        options: Options for planning; ``stream`` and ``sees`` are ignored.
     """
     options = options or ChatOptions()
     for stream in (False, True):
@@ -33,9 +37,9 @@ async def check_planning(
             endpoint.model_copy(update={"retries": 1}), options.model_copy(update={"stream": stream, "sees": False})
         )
         try:
-            yield await checked(f"a tool call{how}", lambda p=planner: _calls(p, tools))  # type: ignore[misc]
-            yield await checked(f"arguments of the right type{how}", lambda p=planner: _turns(p, tools))  # type: ignore[misc]
-            yield await checked(f"an answer from a tool's result{how}", lambda p=planner: _concludes(p, tools))  # type: ignore[misc]
+            yield await checked(f"a tool call{how}", lambda p=planner: _check_call(p, tools))  # type: ignore[misc]
+            yield await checked(f"arguments of the right type{how}", lambda p=planner: _check_arguments(p, tools))  # type: ignore[misc]
+            yield await checked(f"an answer from a tool's result{how}", lambda p=planner: _check_answer(p, tools))  # type: ignore[misc]
         finally:
             await planner.close()
 
@@ -47,24 +51,24 @@ def probe(instruction: str, tools: Sequence[dict[str, Any]], *history: Exchange)
 
 
 def picture_taken() -> Exchange:
-    """Return the step after which a picture has been taken."""
-    return Exchange(outcomes=(ToolOutcome(call=ToolCall(id="call-1", name="take_image"), result=_TAKEN),))
+    """Return the step in which a picture was taken."""
+    return Exchange(outcomes=(ToolOutcome(call=ToolCall(id="call-1", name="take_image"), result=_PICTURE_RESULT),))
 
 
-async def _calls(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
-    decision = await planner.step(probe(PICTURE, tools))
+async def _check_call(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
+    decision = await planner.step(probe(PICTURE_INSTRUCTION, tools))
     if not isinstance(decision, CallTools):
         return "failed", f"no call; it answered: {_brief(decision)}"
     if "take_image" not in [call.name for call in decision.calls]:
-        return "partly", f"another call than the obvious one: {_brief(decision)}"
+        return "partly", f"an unexpected call: {_brief(decision)}"
     source = decision.served.calls_from if decision.served else ""
     if source != "native":
-        return "partly", f"read from the text ({source}): the server does not parse this model's calls"
+        return "partly", f"the server does not parse this model's calls; SCOPE parses them from the text (notation: {source})"
     return "ok", _brief(decision)
 
 
-async def _turns(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
-    decision = await planner.step(probe(TURN, tools))
+async def _check_arguments(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
+    decision = await planner.step(probe(TURN_INSTRUCTION, tools))
     if not isinstance(decision, CallTools):
         return "partly", f"no call; it answered: {_brief(decision)}"
     call = decision.calls[0]
@@ -73,20 +77,20 @@ async def _turns(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Findi
     return "ok", _brief(decision)
 
 
-async def _concludes(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
-    decision = await planner.step(probe(PICTURE, tools, picture_taken()))
+async def _check_answer(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
+    decision = await planner.step(probe(PICTURE_INSTRUCTION, tools, picture_taken()))
     if not isinstance(decision, Finish):
-        return "partly", f"it continues although the task is done: {_brief(decision)}"
+        return "partly", f"it makes another call although the task is done: {_brief(decision)}"
     if "<think" in decision.text:
         return "failed", f"its reasoning is in the answer: {_brief(decision)}"
     if not (decision.usage.input_tokens and decision.usage.output_tokens):
-        return "partly", f"it does not report token counts; it answered: {_brief(decision)}"
+        return "partly", f"the server does not report token counts; it answered: {_brief(decision)}"
     return "ok", _brief(decision)
 
 
 def _brief(decision: Decision) -> str:
     if isinstance(decision, Finish):
-        words = " ".join(decision.text.split())
-        return f"'{words[:_MOST_WORDS]}{'…' if len(words) > _MOST_WORDS else ''}'"
+        text = " ".join(decision.text.split())
+        return f"'{text[:_MAX_DETAIL_CHARS]}{'…' if len(text) > _MAX_DETAIL_CHARS else ''}'"
     calls = (f"{call.name}({', '.join(f'{k}={v!r}' for k, v in call.arguments.items())})" for call in decision.calls)
-    return "; ".join(calls)[:_MOST_WORDS]
+    return "; ".join(calls)[:_MAX_DETAIL_CHARS]

@@ -1,7 +1,7 @@
-"""Separating reasoning from the answer. Reasoning is kept in traces, and never shown or used as an answer.
+"""Separate a reply's reasoning from its answer. Reasoning is kept in traces; it is never shown or used as an answer.
 
-Servers that know the model return its reasoning in a field of its own. Others leave it in the text, between marks that differ by
-family.
+Servers that support the model return its reasoning in a separate field. Others leave it in the text, between tags that differ by
+model family.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from scope_ptz.planner.chat.harmony import read_harmony
 
-_PAIRS = (
+_TAG_PAIRS = (
     ("<think>", "</think>"),  # Qwen, DeepSeek, GLM, SmolLM, Nemotron
     ("<thinking>", "</thinking>"),
     ("<thought>", "</thought>"),
@@ -26,45 +26,45 @@ _GRANITE = re.compile(
     r"\A\s*here(?:'s| is) my thought process:(?P<thought>.*?)here(?:'s| is) my response:", re.IGNORECASE | re.DOTALL
 )
 _CALL_BEGINS = re.compile(r"<tool_call>|<function=|<\|tool_call|\[TOOL_CALLS\]|<｜tool▁calls▁begin｜>")
-"""The beginning of a call, which also ends reasoning that was not closed."""
+"""The start of a tool call, which also ends reasoning whose closing tag is missing."""
 
 
 @dataclass(frozen=True, slots=True)
-class Parted:
-    """The two parts of a reply, stripped; either may be empty."""
+class SeparatedReply:
+    """A reply's answer and reasoning, stripped of white space; either may be empty."""
 
     text: str
     reasoning: str
 
 
-def part(text: str, field: str = "") -> Parted:
+def separate_reasoning(text: str, field: str = "") -> SeparatedReply:
     """Separate a reply into text and reasoning.
 
     Args:
         text: The content as the server returned it.
-        field: Reasoning that the server already separated.
+        field: The reasoning that the server returned in a separate field.
     """
     rest, thoughts = read_harmony(text)
     if granite := _GRANITE.match(rest):
         thoughts.append(granite["thought"])
         rest = rest[granite.end() :]
-    for opening, closing in _PAIRS:
-        rest = _take(rest, opening, closing, thoughts)
+    for opening, closing in _TAG_PAIRS:
+        rest = _extract(rest, opening, closing, thoughts)
     reasoning = "\n\n".join(t.strip() for t in (field, *thoughts) if t.strip())
-    return Parted(rest.strip(), reasoning)
+    return SeparatedReply(rest.strip(), reasoning)
 
 
-def _take(text: str, opening: str, closing: str, thoughts: list[str]) -> str:
-    """Move the text between two marks from ``text`` to ``thoughts``, in one pass."""
+def _extract(text: str, opening: str, closing: str, thoughts: list[str]) -> str:
+    """Append the text between opening and closing tags to ``thoughts``, and return the other text."""
     kept: list[str] = []
     at, inside, seen = 0, False, False
-    for mark in re.finditer(f"{re.escape(opening)}|{re.escape(closing)}", text):
-        opens = mark[0] == opening
+    for tag in re.finditer(f"{re.escape(opening)}|{re.escape(closing)}", text):
+        opens = tag[0] == opening
         if inside and opens:
             continue
-        # Closed without being opened: the chat template put the opening mark into the prompt.
-        (thoughts if inside or not (opens or seen) else kept).append(text[at : mark.start()])
-        at, inside, seen = mark.end(), opens, True
+        # A closing tag without an opening one: the chat template put the opening tag into the prompt.
+        (thoughts if inside or not (opens or seen) else kept).append(text[at : tag.start()])
+        at, inside, seen = tag.end(), opens, True
     rest = text[at:]
     if not inside:
         return "".join((*kept, rest))

@@ -1,7 +1,7 @@
 """Tool schemas in a form that all servers accept.
 
-Some servers compile a schema into a grammar and refuse what they cannot compile, such as a pattern without anchors; others know no
-unions. Arguments are validated when a call is made in any case, so the schema only has to inform the model.
+Some servers compile a schema into a grammar and reject what they cannot compile, such as a pattern without anchors; others do not
+support unions. Calls are validated before they run anyway, so these schemas only have to inform the model.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-_CHECKED_HERE = (
+_DROPPED_KEYWORDS = (
     "pattern",
     "minLength",
     "maxLength",
@@ -23,7 +23,7 @@ _CHECKED_HERE = (
 
 
 def plain_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the tools with parameters of one plain type each. An optional parameter is one that is not required."""
+    """Return the tools with one plain type for each parameter. Parameters that may be null keep only their other type."""
     return [{**tool, "function": {**tool["function"], "parameters": _parameters(tool["function"]["parameters"])}} for tool in tools]
 
 
@@ -35,5 +35,5 @@ def _parameters(schema: dict[str, Any]) -> dict[str, Any]:
 def _plain(prop: dict[str, Any]) -> dict[str, Any]:
     options = [option for option in prop.get("anyOf", ()) if option.get("type") != "null"]
     merged = {**prop, **options[0]} if len(options) == 1 else prop
-    dropped = (*_CHECKED_HERE, "anyOf") if len(options) == 1 else _CHECKED_HERE
+    dropped = (*_DROPPED_KEYWORDS, "anyOf") if len(options) == 1 else _DROPPED_KEYWORDS
     return {key: value for key, value in merged.items() if key not in dropped}

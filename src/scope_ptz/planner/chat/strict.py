@@ -1,4 +1,4 @@
-"""Strict JSON for tool calls: only finite numbers, and only characters that a file can hold."""
+"""Strict JSON for tool calls: only finite numbers, and only characters that UTF-8 can encode."""
 
 from __future__ import annotations
 
@@ -6,30 +6,30 @@ import json
 import math
 from typing import Any
 
-__all__ = ["readable", "strict_json"]
+__all__ = ["encodable", "strict_json"]
 
 
 def strict_json(text: str) -> Any:
     """Parse JSON without NaN, infinities, numbers that overflow, or extreme nesting.
 
     Raises:
-        ValueError: The text is no such JSON.
+        ValueError: The text is not valid JSON, or contains one of these.
     """
     try:
-        value = json.loads(readable(text), parse_constant=_no_number, parse_float=_finite)
+        value = json.loads(encodable(text), parse_constant=_reject_constant, parse_float=_finite)
         return _clean(value) if "\\ud" in text.lower() else value
     except RecursionError as error:
         raise ValueError("it is nested too deeply") from error
 
 
-def readable(text: str) -> str:
+def encodable(text: str) -> str:
     """Return the text with lone surrogates, which UTF-8 cannot encode, replaced by question marks."""
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _clean(value: Any) -> Any:
     if isinstance(value, str):
-        return readable(value)
+        return encodable(value)
     if isinstance(value, list):
         return [_clean(item) for item in value]
     if isinstance(value, dict):
@@ -37,8 +37,8 @@ def _clean(value: Any) -> Any:
     return value
 
 
-def _no_number(name: str) -> Any:
-    raise ValueError(f"{name} is no number")
+def _reject_constant(name: str) -> Any:
+    raise ValueError(f"{name} is not a finite number")
 
 
 def _finite(digits: str) -> float:

@@ -1,8 +1,8 @@
-"""Tool calls that a server returned as text: found, parsed and taken out of the text.
+"""Find and parse the tool calls in a reply's text, for servers that return calls as text.
 
-A notation with tags marks its calls, so whatever is inside is taken for a call, and mistakes are reported to the planner. Notations
-without tags (JSON, bare or in a code fence, and Python calls) count only when they name an offered tool, so that an answer in JSON
-stays an answer.
+Everything inside the tags of a tagged notation is treated as a call, and calls that cannot be parsed are reported to the planner.
+Notations without tags (JSON or Python calls, bare or in a code fence) count as calls only if they name an offered tool, so that an
+answer in JSON remains an answer.
 """
 
 from __future__ import annotations
@@ -15,10 +15,18 @@ from dataclasses import dataclass
 from itertools import islice
 from json import JSONDecoder
 
-from scope_ptz.planner.chat.strict import readable, strict_json
-from scope_ptz.planner.chat.written import Signatures, WrittenCall, from_object, plain_name, read_arguments, wreck
+from scope_ptz.planner.chat.strict import encodable, strict_json
+from scope_ptz.planner.chat.written_calls import (
+    MAX_QUOTED_CHARS,
+    Signatures,
+    WrittenCall,
+    call_from_object,
+    malformed_call,
+    plain_name,
+    read_arguments,
+)
 
-_Reader = Callable[[str, Signatures], list[WrittenCall]]
+_CallParser = Callable[[str, Signatures], list[WrittenCall]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +35,7 @@ class FoundCalls:
 
     Attributes:
         rest: The text without its calls.
-        notation: How the calls were written; empty if there are none.
+        notation: The name of the notation in which they were written; empty if there are no calls.
     """
 
     calls: tuple[WrittenCall, ...]
@@ -35,42 +43,51 @@ class FoundCalls:
     notation: str
 
 
-def find_calls(text: str, tools: Signatures, *, marked_only: bool = False) -> FoundCalls:
-    """Return the calls in a text, in order. Of several notations, the first one that occurs is used."""
-    text = readable(text)
-    for notation, pattern, reader in _MARKED:
+def find_calls(text: str, tools: Signatures, *, tagged_only: bool = False) -> FoundCalls:
+    """Return the calls in a text, in order.
+
+    Args:
+        text: The text of a reply.
+        tools: The offered tools.
+        tagged_only: Whether to ignore notations without tags.
+
+    Returns:
+        The calls of the first notation in ``_TAGGED_NOTATIONS`` that occurs, otherwise those without tags.
+    """
+    text = encodable(text)
+    for notation, pattern, reader in _TAGGED_NOTATIONS:
         inside = [(match, reader(match["body"], tools)) for match in pattern.finditer(text)]
         if any(calls for _, calls in inside):
             return FoundCalls(tuple(call for _, calls in inside for call in calls), pattern.sub("", text).strip(), notation)
-    return FoundCalls((), text.strip(), "") if marked_only else _unmarked(text, tools)
+    return FoundCalls((), text.strip(), "") if tagged_only else _find_untagged(text, tools)
 
 
-def _json_or_markup(body: str, tools: Signatures) -> list[WrittenCall]:
+def _json_or_xml_calls(body: str, tools: Signatures) -> list[WrittenCall]:
     """Parse the inside of ``<tool_call>``: JSON (Hermes), XML functions (Qwen3-Coder), or XML keys and values (GLM)."""
     if "<function" in body:
-        return _xml_functions(body, tools)
+        return _xml_calls(body, tools)
     if "<arg_key>" in body:
-        return [_keys_and_values(body, tools)]
+        return [_call_from_keys(body, tools)]
     name = body.strip()
-    return [WrittenCall(name, {})] if name in tools else _json_calls(body, tools) or [wreck(body)]
+    return [WrittenCall(name, {})] if name in tools else _json_calls(body, tools) or [malformed_call(body)]
 
 
-def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG001 - all readers share one signature
-    """Parse a sequence of JSON objects or lists of them. A value that cannot be parsed becomes a call that fails."""
+def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG001 - all parsers share one signature
+    """Parse a sequence of JSON objects or lists of them. A value that cannot be parsed becomes a malformed call."""
     calls: list[WrittenCall] = []
     for chunk in _json_chunks(body):
         try:
             value = strict_json(chunk)
         except ValueError:
-            calls.append(wreck(chunk))
+            calls.append(malformed_call(chunk))
             continue
         for item in value if isinstance(value, list) else [value]:
-            calls.append(from_object(item) or wreck(chunk))
+            calls.append(call_from_object(item) or malformed_call(chunk))
     return calls
 
 
 def _json_chunks(body: str) -> list[str]:
-    """Return the JSON values of a text. An incomplete value at the end counts as one more."""
+    """Split a text into JSON values. An incomplete value at the end is one more item."""
     decoder, chunks, at = JSONDecoder(), [], 0
     while at < len(body):
         if body[at].isspace() or body[at] in ",;":
@@ -97,7 +114,7 @@ _KEY_AND_VALUE = re.compile(
 )
 
 
-def _xml_functions(body: str, tools: Signatures) -> list[WrittenCall]:
+def _xml_calls(body: str, tools: Signatures) -> list[WrittenCall]:
     calls = []
     for match in _FUNCTION.finditer(body):
         name, inside = plain_name(match["name"]), match["body"].strip()
@@ -107,8 +124,8 @@ def _xml_functions(body: str, tools: Signatures) -> list[WrittenCall]:
             continue
         given = {m["key"]: tools.value(name, m["key"], _unwrapped(m["value"])) for m in _PARAMETER.finditer(inside)}
         leftover = _PARAMETER.sub("", inside).strip()
-        calls.append(WrittenCall(name, {}, inside[:300]) if leftover else WrittenCall(name, given))
-    return calls or [wreck(body)]
+        calls.append(WrittenCall(name, {}, inside[:MAX_QUOTED_CHARS]) if leftover else WrittenCall(name, given))
+    return calls or [malformed_call(body)]
 
 
 def _unwrapped(value: str) -> str:
@@ -116,28 +133,28 @@ def _unwrapped(value: str) -> str:
     return value.removeprefix("\n").removesuffix("\n")
 
 
-def _keys_and_values(body: str, tools: Signatures) -> WrittenCall:
+def _call_from_keys(body: str, tools: Signatures) -> WrittenCall:
     name = plain_name(body.partition("<arg_key>")[0])
     return WrittenCall(
         name, {m["key"].strip(): tools.value(name, m["key"].strip(), m["value"]) for m in _KEY_AND_VALUE.finditer(body)}
     )
 
 
-_MOST_PYTHON_CHARS = 20_000
+_MAX_PYTHON_CHARS = 20_000  # longer texts are not parsed as Python
 
 
 def _python_calls(body: str, tools: Signatures) -> list[WrittenCall]:
     """Parse Python calls with literal keyword arguments: ``[adjust_ptz(pan_deg=20), go_home()]``."""
     if body.strip().startswith(("{", "[{")):
         return _json_calls(body, tools)
-    if len(body) > _MOST_PYTHON_CHARS:
-        return [wreck(body)]
+    if len(body) > _MAX_PYTHON_CHARS:
+        return [malformed_call(body)]
     try:
         tree = ast.parse(body.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return [wreck(body)]
+        return [malformed_call(body)]
     nodes = tree.elts if isinstance(tree, ast.List | ast.Tuple) else [tree]
-    return [_python_call(node) or wreck(body) for node in nodes]
+    return [_python_call(node) or malformed_call(body) for node in nodes]
 
 
 def _python_call(node: ast.expr) -> WrittenCall | None:
@@ -147,14 +164,14 @@ def _python_call(node: ast.expr) -> WrittenCall | None:
     try:
         given = {keyword.arg: ast.literal_eval(keyword.value) for keyword in node.keywords if keyword.arg}
     except (ValueError, RecursionError):
-        return WrittenCall(name, {}, ast.unparse(node)[:300])
+        return WrittenCall(name, {}, ast.unparse(node)[:MAX_QUOTED_CHARS])
     plain = all(isinstance(v, str | int | bool | None) or (isinstance(v, float) and math.isfinite(v)) for v in given.values())
     if node.args or len(given) != len(node.keywords) or not plain:
-        return WrittenCall(name, {}, ast.unparse(node)[:300])
+        return WrittenCall(name, {}, ast.unparse(node)[:MAX_QUOTED_CHARS])
     return WrittenCall(name, given)
 
 
-def _mistral(body: str, tools: Signatures) -> list[WrittenCall]:
+def _mistral_calls(body: str, tools: Signatures) -> list[WrittenCall]:
     """Parse ``[{"name": ..., "arguments": ...}]``, or a name, optionally ``[ARGS]``, and its arguments."""
     if body.strip().startswith("["):
         return _json_calls(body, tools)
@@ -164,44 +181,44 @@ def _mistral(body: str, tools: Signatures) -> list[WrittenCall]:
 
 
 def _between(opening: str, closing: str) -> re.Pattern[str]:
-    """Return a pattern for the text between two marks. The closing mark may be missing before the next call and at the end."""
+    """Return a pattern for the text between two tags. The closing tag may be missing before the next call and at the end."""
     return re.compile(f"{opening}(?P<body>.*?)(?:{closing}|(?={opening})|\\Z)", re.DOTALL)
 
 
-_MARKED: tuple[tuple[str, re.Pattern[str], _Reader], ...] = (
-    ("tool_call", _between("<tool_call>", "</tool_call>"), _json_or_markup),
-    ("function", re.compile(r"(?P<body><function(?:=|\s+name=).*?(?:</function>|\Z))", re.DOTALL), _xml_functions),
+_TAGGED_NOTATIONS: tuple[tuple[str, re.Pattern[str], _CallParser], ...] = (
+    ("tool_call", _between("<tool_call>", "</tool_call>"), _json_or_xml_calls),
+    ("function", re.compile(r"(?P<body><function(?:=|\s+name=).*?(?:</function>|\Z))", re.DOTALL), _xml_calls),
     ("tools", _between("<tools>", "</tools>"), _json_calls),
     ("function_call", _between("<function_call>", "</function_call>"), _json_calls),
     ("lfm", _between(r"<\|tool_call_start\|>", r"<\|tool_call_end\|>"), _python_calls),
     ("phi", _between(r"<\|tool_call\|>", r"<\|/tool_call\|>"), _json_calls),
-    ("mistral", _between(r"\[TOOL_CALLS\]", r"(?=\[TOOL_CALLS\])"), _mistral),
+    ("mistral", _between(r"\[TOOL_CALLS\]", r"(?=\[TOOL_CALLS\])"), _mistral_calls),
     ("llama", _between(r"<\|python_tag\|>", r"<\|eom_id\|>|<\|eot_id\|>"), _json_calls),
 )
-_MOST_STARTS = 20
-"""Maximum number of lines that are tried as the start of calls. A text with more lines is a table or a program."""
+_MAX_START_LINES = 20
+"""Maximum number of lines that are tried as the start of calls. A text with more such lines is a table or a program."""
 _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
 
 
-def _unmarked(text: str, tools: Signatures) -> FoundCalls:
-    """Return JSON or Python calls in a code fence, or in a text that consists of calls only."""
-    fences = [(m, _known(m["body"], tools)) for m in _FENCE.finditer(text)]
+def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
+    """Return JSON or Python calls in code fences, or in a text that consists of calls, possibly after prose."""
+    fences = [(m, _calls_of_tools(m["body"], tools)) for m in _FENCE.finditer(text)]
     if any(calls for _, calls in fences):
         rest = text
         for match, calls in fences:
             rest = rest.replace(match[0], "") if calls else rest
         return FoundCalls(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
-    if calls := _known(text, tools):
+    if calls := _calls_of_tools(text, tools):
         return FoundCalls(tuple(calls), "", "bare")
-    # Prose followed by nothing but calls.
-    for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MOST_STARTS):
-        if calls := _known(text[match.start() :], tools):
+    # Prose, then only calls.
+    for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MAX_START_LINES):
+        if calls := _calls_of_tools(text[match.start() :], tools):
             return FoundCalls(tuple(calls), text[: match.start()].strip(), "bare")
     return FoundCalls((), text.strip(), "")
 
 
-def _known(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Return the calls of a text that consists only of calls of offered tools, else none."""
+def _calls_of_tools(body: str, tools: Signatures) -> list[WrittenCall]:
+    """Return the calls in a text that consists only of calls of offered tools; an empty list for any other text."""
     body = body.strip()
     calls: list[WrittenCall] = []
     if body.startswith(("{", "[{")):

@@ -1,7 +1,7 @@
-"""Handle conversations that outgrow the model's context.
+"""Handle conversations that exceed the model's context.
 
-By default the run ends with an outcome of its own. When the user allows it, old observations are shortened instead: the calls stay,
-and their results keep only counts, readings, findings and poses.
+By default the run ends with a context overflow. With ``ChatOptions.summarise``, old observations are shortened instead: all calls
+are kept, and their results keep only counts, answers, poses and other short fields.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ CHARS_PER_TOKEN = 3.2
 """A conservative value; tokenizers average 3.5 to 4.5 characters for English and JSON."""
 
 PICTURE_TOKENS = 1300
-"""About what a frame of 1280x720 costs current vision models."""
+"""The approximate cost of a 1280x720 frame for current vision models."""
 
-KEPT_WHOLE = 2
-"""The newest exchanges are never shortened, because the planner is about to act on them."""
+NEVER_SHORTENED = 2
+"""The number of newest exchanges that are never shortened, because the planner is about to act on them."""
 
-_FILL = 0.9
-_REPLY_TOKENS = 512
+_FILL = 0.9  # usable share of the context, because the token count is an estimate
+_REPLY_TOKENS = 512  # reserved for the reply
 
 
 def estimated_tokens(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapping[str, Any]]) -> int:
-    """Return a rough token count, made without the model's tokenizer."""
+    """Estimate the tokens of messages and tools without the model's tokenizer."""
     chars, pictures = len(json.dumps(tools)), 0
     for message in messages:
         content = message.get("content") or ""
@@ -38,19 +38,19 @@ def estimated_tokens(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapp
 
 
 def fits(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapping[str, Any]], context_tokens: int) -> bool:
-    """Return whether messages are likely to leave room for a reply."""
+    """Return whether messages and tools probably leave room for a reply in the context."""
     return estimated_tokens(messages, tools) + min(_REPLY_TOKENS, context_tokens // 4) <= context_tokens * _FILL
 
 
 def shortenings(state: State) -> Iterator[int]:
-    """Yield how many of the oldest exchanges to shorten: first half of them, then all but the newest.
+    """Yield how many of the oldest exchanges to shorten: first about half of them, then all but the newest.
 
-    Half is rounded to an even number, so that the beginning of the messages changes rarely and caches keep working.
+    Half is rounded down to an even number, so that the beginning of the messages rarely changes and prefix caches keep working.
     """
     exchanges = sum(len(turn.exchanges) for turn in state.conversation) + len(state.history)
-    most = exchanges - KEPT_WHOLE
+    maximum = exchanges - NEVER_SHORTENED
     half = (exchanges // 2) // 2 * 2
-    if 0 < half < most:
+    if 0 < half < maximum:
         yield half
-    if most > 0:
-        yield most
+    if maximum > 0:
+        yield maximum

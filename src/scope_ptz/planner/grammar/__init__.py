@@ -1,7 +1,7 @@
 """The built-in planner: a grammar of camera operation and an interpreter, without a model.
 
-``lexing`` turns text into lexemes, ``parsing`` turns lexemes into the steps of ``instruction_tree``, ``binding`` resolves the names
-in them, and ``execution`` runs the steps against the history.
+``lexing`` splits text into lexemes, ``parsing`` builds the steps of ``instruction_tree`` from them, ``binding`` resolves the names
+in the steps, and ``execution`` runs the steps against the history.
 """
 
 from __future__ import annotations
@@ -10,16 +10,14 @@ from scope_ptz.builtin_names import GRAMMAR
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
-from scope_ptz.planner.grammar.execution.camera_history import whereabouts
+from scope_ptz.planner.grammar.execution.camera_history import position_history
 from scope_ptz.planner.grammar.execution.program import Program
 
 __all__ = ["GrammarPlanner", "Understanding", "understand"]
 
 
 class GrammarPlanner(Planner):
-    """A planner that follows rules. Each step replays the program against the recorded outcomes, so no state is kept between
-    steps.
-    """
+    """A rule-based planner. Each step replays the program against the recorded outcomes, so no state is kept between steps."""
 
     name = GRAMMAR
 
@@ -34,23 +32,24 @@ def decide(state: State) -> Decision:
         return Finish(kind="refused", text=meaning.refusal)
     if meaning.clarification:
         return Finish(kind="clarification", text=meaning.clarification)
-    program = Program(state.briefing.limits, state.briefing.pose, been=whereabouts(state.conversation))
+    program = Program(state.briefing.limits, state.briefing.pose, positions=position_history(state.conversation))
     outcomes = [outcome for exchange in state.history for outcome in exchange.outcomes]
-    wanted = _replay(program, meaning, outcomes)
-    if wanted is None:
+    call = _next_call(program, meaning, outcomes)
+    if call is None:
         return Finish(kind="answered", text=program.answer())
-    tool, arguments = wanted
+    tool, arguments = call
     return CallTools(calls=(ToolCall(id=f"call-{len(outcomes) + 1}", name=tool, arguments=arguments),))
 
 
-def _replay(program: Program, meaning: Understanding, outcomes: list[ToolOutcome]) -> tuple[str, dict[str, object]] | None:
+def _next_call(program: Program, meaning: Understanding, outcomes: list[ToolOutcome]) -> tuple[str, dict[str, object]] | None:
+    """Replay the recorded outcomes. Return the tool and arguments of the next call, or None if the program has ended."""
     run = program.run(meaning.steps)
     try:
-        wanted = next(run)
+        call = next(run)
         for outcome in outcomes:
-            if outcome.call.name != wanted[0]:
-                raise PlannerError(f"the history holds {outcome.call.name} where this instruction calls {wanted[0]}")
-            wanted = run.send(outcome)
+            if outcome.call.name != call[0]:
+                raise PlannerError(f"the history contains {outcome.call.name} where this instruction calls {call[0]}")
+            call = run.send(outcome)
     except StopIteration:
         return None
-    return wanted
+    return call

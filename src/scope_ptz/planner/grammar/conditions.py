@@ -1,4 +1,4 @@
-"""Descriptions of things and places, and the conditions that are tested on them."""
+"""References to objects and presets, and the conditions of an instruction, such as "until you see three cars"."""
 
 from __future__ import annotations
 
@@ -13,41 +13,45 @@ Sense = Literal["more", "fewer"]
 
 @dataclass(frozen=True, slots=True)
 class PresetRef:
-    """A preset by name, or by its number in the list (-1 is the last).
+    """A reference to a preset.
 
     Attributes:
-        sure: Whether the instruction says that it is a preset.
-        determined: Whether it has an article.
+        name: The name as it appears in the instruction.
+        number: The position in the list of presets, if the instruction gives one: 1 is the first, -1 the last.
+        explicit: Whether the words can only refer to a preset ("preset gate"); other words may also refer to an object.
+        has_article: Whether the name follows "the", "a" or "an".
     """
 
     name: str = ""
     number: int | None = None
-    sure: bool = False
-    determined: bool = False
+    explicit: bool = False
+    has_article: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """A described thing. An empty description is a pronoun.
+    """A reference to one or more objects.
 
     Attributes:
-        definite: Whether it has a definite article.
-        odd: Whether its words do not name an object ("times", "closer").
+        text: The description; empty for a pronoun.
+        definite: Whether the description follows a definite article or a demonstrative.
+        not_an_object: Whether the words cannot describe an object ("times", "closer").
     """
 
     text: str = ""
     definite: bool = False
-    odd: bool = False
+    not_an_object: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A condition on a count."""
+    """A comparison of a count with a number, such as "at least 3"."""
 
     operator: Operator = ">="
     number: float = 1
 
-    def holds(self, count: float) -> bool:
+    def matches(self, count: float) -> bool:
+        """Return whether a count meets the comparison."""
         return {
             ">=": count >= self.number, "<=": count <= self.number, ">": count > self.number,
             "<": count < self.number, "==": count == self.number,
@@ -56,7 +60,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """The condition that a number of things are visible."""
+    """The condition that a given number of objects is visible."""
 
     thing: Thing
     quantity: Quantity = Quantity()
@@ -65,29 +69,31 @@ class Seen:
 
 @dataclass(frozen=True, slots=True)
 class Readable:
-    """The condition that the text on a thing can be read."""
+    """The condition that the text on an object can be read."""
 
     thing: Thing
 
 
 @dataclass(frozen=True, slots=True)
-class Holds:
-    """A yes-or-no question about the scene.
+class Statement:
+    """The condition that a statement about an object, such as "the gate is open", is true or false.
 
     Attributes:
-        wanted: The answer that meets the condition.
-        question: The question to ask; empty for "is it so?".
+        subject: The object.
+        predicate: The statement about the object, such as "open".
+        expected: True if the statement must be true to meet the condition, False if it must be false.
+        question: The question to ask perception; if it is empty, "is SUBJECT PREDICATE?" is asked.
     """
 
     subject: Thing
     predicate: str
-    wanted: bool = True
+    expected: bool = True
     question: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Outnumbers:
-    """The condition that there are more (or fewer) of the first than of the second."""
+    """The condition that more (or fewer) visible objects match the first description than the second."""
 
     first: Thing
     second: Thing
@@ -95,8 +101,8 @@ class Outnumbers:
 
 
 @dataclass(frozen=True, slots=True)
-class PresetWins:
-    """The condition that one preset shows more (or fewer) of a thing than another."""
+class PresetOutnumbers:
+    """The condition that more (or fewer) objects are visible at the first preset than at the second."""
 
     thing: Thing
     first: PresetRef
@@ -106,12 +112,12 @@ class PresetWins:
 
 @dataclass(frozen=True, slots=True)
 class Answered:
-    """The condition "if so": the last answer was yes, or the last count was not zero."""
+    """The condition "if so": the last answer was yes, or the last count was above zero."""
 
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """Conditions joined by "and" (all) or "or" (any)."""
+    """Conditions joined by "and" (all must be met) or "or" (at least one must be met)."""
 
     parts: tuple[Condition, ...]
     mode: Literal["all", "any"]
@@ -119,9 +125,9 @@ class Joined:
 
 @dataclass(frozen=True, slots=True)
 class Negated:
-    """The opposite of a condition."""
+    """The negation of a condition."""
 
     part: Condition
 
 
-Condition = Answered | PresetWins | Seen | Readable | Holds | Outnumbers | Joined | Negated
+Condition = Answered | PresetOutnumbers | Seen | Readable | Statement | Outnumbers | Joined | Negated

@@ -1,4 +1,4 @@
-"""The typed steps of an instruction. Names are as the user wrote them; ``binding`` resolves presets and pronouns."""
+"""The steps of an instruction as typed data. Names are as the user wrote them; ``binding`` resolves presets and pronouns."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from typing import Literal
 
 from scope_ptz.planner.grammar.conditions import Answered as Answered
 from scope_ptz.planner.grammar.conditions import Condition as Condition
-from scope_ptz.planner.grammar.conditions import Holds as Holds
 from scope_ptz.planner.grammar.conditions import Joined as Joined
 from scope_ptz.planner.grammar.conditions import Negated as Negated
 from scope_ptz.planner.grammar.conditions import Operator as Operator
 from scope_ptz.planner.grammar.conditions import Outnumbers as Outnumbers
+from scope_ptz.planner.grammar.conditions import PresetOutnumbers as PresetOutnumbers
 from scope_ptz.planner.grammar.conditions import PresetRef as PresetRef
-from scope_ptz.planner.grammar.conditions import PresetWins as PresetWins
 from scope_ptz.planner.grammar.conditions import Quantity as Quantity
 from scope_ptz.planner.grammar.conditions import Readable as Readable
 from scope_ptz.planner.grammar.conditions import Seen as Seen
 from scope_ptz.planner.grammar.conditions import Sense as Sense
+from scope_ptz.planner.grammar.conditions import Statement as Statement
 from scope_ptz.planner.grammar.conditions import Thing as Thing
 from scope_ptz.tools.arguments import View
 
@@ -26,9 +26,9 @@ Axis = Literal["pan", "tilt"]
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """How far: degrees, "little", "lot", "limit" (all the way), "unsaid", or the "same" as the turn before."""
+    """How far to turn: in degrees, "little", "lot", "limit" (all the way), "unspecified", or the "same" as the previous turn."""
 
-    kind: Literal["degrees", "little", "lot", "limit", "unsaid", "same"] = "unsaid"
+    kind: Literal["degrees", "little", "lot", "limit", "unspecified", "same"] = "unspecified"
     degrees: float = 0.0
 
 
@@ -38,8 +38,9 @@ class Turn:
 
     Attributes:
         sign: +1 for right or up, -1 for left or down.
-        step: The step size of a turn made in steps.
-        steps: The number of these steps.
+        amount: The total turn; None if the instruction does not mention it.
+        step: The size of one step, if the turn is made in steps.
+        steps: The number of steps, if the instruction gives it.
     """
 
     axis: Axis
@@ -51,7 +52,7 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Zoom:
-    """A relative change of magnification."""
+    """A relative change of magnification: by a factor, by a percentage, or all the way "in" or "out"."""
 
     kind: Literal["factor", "percent", "in", "out"]
     value: float = 0.0
@@ -70,7 +71,11 @@ Part = Turn | Zoom | Aim
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A move. ``verb`` is whether the instruction has a verb for it; "left 5" has none and may belong to the move before."""
+    """A camera movement on one or more axes.
+
+    Attributes:
+        verb: Whether the instruction has a verb for the move. "Left 5" has none, so it may belong to the previous move.
+    """
 
     parts: tuple[Part, ...]
     verb: bool = True
@@ -78,14 +83,14 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Further:
-    """The turn before, by another amount ("another 15")."""
+    """Repeat the previous turn by another amount ("another 15")."""
 
     amount: Amount
 
 
 @dataclass(frozen=True, slots=True)
 class Back:
-    """Return to where the camera was; ``zoom_only`` for "zoom back out"."""
+    """Return to the previous position, or only to its zoom ("zoom back out")."""
 
     zoom_only: bool = False
     amount: Amount | None = None
@@ -98,8 +103,11 @@ class Home:
 
 @dataclass(frozen=True, slots=True)
 class GoPreset:
-    """Go to a preset. ``how`` is "go" when the words certainly name a place; with "show", "look" and "bare" they may name a
-    thing.
+    """Go to a preset.
+
+    Attributes:
+        how: The verb of the instruction, "bare" for none. After "go" the words must name a preset; otherwise they may name an
+            object.
     """
 
     ref: PresetRef
@@ -108,7 +116,7 @@ class GoPreset:
 
 @dataclass(frozen=True, slots=True)
 class GoThere:
-    """Go to the preset mentioned last, or to the winner of a comparison."""
+    """Go to the preset that was mentioned last, or to the one that a comparison found."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +126,7 @@ class ListPresets:
 
 @dataclass(frozen=True, slots=True)
 class Snap:
-    """Take pictures, of a thing if one is given."""
+    """Take pictures, of an object if one is given."""
 
     times: int = 1
     of: Thing | None = None
@@ -126,7 +134,7 @@ class Snap:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """Count things."""
+    """Count the objects of each description."""
 
     things: tuple[Thing, ...]
     view: View | None = None
@@ -134,7 +142,11 @@ class Count:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """Ask a question about the scene. ``embedded``: it is part of another sentence ("tell me if it is open")."""
+    """Ask a question about the scene.
+
+    Attributes:
+        embedded: Whether the question is part of another sentence ("tell me if it is open").
+    """
 
     question: str
     view: View | None = None
@@ -143,14 +155,14 @@ class Ask:
 
 @dataclass(frozen=True, slots=True)
 class Rescope:
-    """Repeat the count or question before in another view ("and then in the whole scene")."""
+    """Repeat the previous count or question in another view ("and then in the whole scene")."""
 
     view: View
 
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """Read the text on a thing."""
+    """Read the text on an object."""
 
     thing: Thing
     view: View | None = None
@@ -158,14 +170,14 @@ class Read:
 
 @dataclass(frozen=True, slots=True)
 class ZoomTo:
-    """Zoom in on a thing."""
+    """Zoom in on an object."""
 
     thing: Thing
 
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """Follow a thing."""
+    """Follow an object."""
 
     thing: Thing
     seconds: float = 10.0
@@ -173,7 +185,7 @@ class Track:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """The most that a loop may move: a number of moves, or degrees in total."""
+    """The limit of a loop: a number of moves, or degrees in total."""
 
     moves: int | None = None
     degrees: float | None = None
@@ -181,7 +193,11 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """Repeat steps. ``group``: it is set off by a comma, so it may cover more than the step before."""
+    """Repeat steps a number of times.
+
+    Attributes:
+        group: Whether a comma precedes the number, so that it may also apply to earlier steps.
+    """
 
     body: tuple[Step, ...]
     times: int
@@ -190,7 +206,11 @@ class Repeat:
 
 @dataclass(frozen=True, slots=True)
 class DoAgain:
-    """Repeat the steps before, ``times`` in total, or ``times`` more."""
+    """Repeat the previous steps.
+
+    Attributes:
+        times: How often the steps run in total or, if ``more`` is set, in addition; None for once more.
+    """
 
     times: int | None = None
     more: bool = False
@@ -208,7 +228,7 @@ class Loop:
 
 @dataclass(frozen=True, slots=True)
 class If:
-    """Do steps when a condition is met, and others when it is not."""
+    """Run steps if a condition is met, and others if it is not."""
 
     condition: Condition
     then: tuple[Step, ...]
@@ -217,21 +237,21 @@ class If:
 
 @dataclass(frozen=True, slots=True)
 class EachTime:
-    """Do something after every move of the step before."""
+    """Run steps after every move of the previous step."""
 
     body: tuple[Step, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Between:
-    """Do something between the repetitions of the step before ("three photos, panning left 10 between each")."""
+    """Run steps between the repetitions of the previous step ("three photos, panning left 10 between each")."""
 
     body: tuple[Step, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class AtIntervals:
-    """Do something at regular intervals of a turn: of ``move``, or of the step before."""
+    """Run steps at regular intervals of a turn: of ``move`` or, if it is None, of the previous step."""
 
     body: tuple[Step, ...]
     degrees: float
@@ -240,9 +260,10 @@ class AtIntervals:
 
 @dataclass(frozen=True, slots=True)
 class ThanBefore:
-    """Compare a count with the count before the moves just made ("are there more than before?").
+    """Compare a count with the one before the last moves ("are there more than before?").
 
-    An empty thing means what was counted last.
+    Attributes:
+        thing: What to count; if its text is empty, what was counted last.
     """
 
     thing: Thing
@@ -251,14 +272,14 @@ class ThanBefore:
 
 @dataclass(frozen=True, slots=True)
 class Mention:
-    """Name a thing that later words refer to ("I am looking for a yellow van")."""
+    """Name an object that later pronouns refer to ("I am looking for a yellow van")."""
 
     thing: Thing
 
 
 @dataclass(frozen=True, slots=True)
 class AtPlaces:
-    """Do the body at each of the places; no places means every preset."""
+    """Run the body at each of several presets. If ``places`` is empty, run it at every preset."""
 
     places: tuple[PresetRef, ...]
     body: tuple[Step, ...]
@@ -266,18 +287,18 @@ class AtPlaces:
 
 @dataclass(frozen=True, slots=True)
 class SameAt:
-    """Repeat the steps before at other places."""
+    """Repeat the previous steps at other presets."""
 
     places: tuple[PresetRef, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class WhichPreset:
-    """Count at each place and report which shows most (or fewest).
+    """Count at each of several presets and report which one shows the most (or fewest).
 
     Attributes:
-        go: Whether to go there.
-        any_of: Whether to report which places show any at all.
+        go: Whether to go to that preset afterwards.
+        any_of: Whether to report instead which presets show any of the objects.
     """
 
     thing: Thing
@@ -285,12 +306,11 @@ class WhichPreset:
     places: tuple[PresetRef, ...] = ()
     go: bool = False
     any_of: bool = False
-    yes_no: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Compare:
-    """Count two kinds of thing in one view."""
+    """Compare the counts of two descriptions in one view."""
 
     first: Thing
     second: Thing
@@ -300,7 +320,7 @@ class Compare:
 
 @dataclass(frozen=True, slots=True)
 class BeforeAfter:
-    """Count, move and count again."""
+    """Compare the counts before and after moves."""
 
     thing: Thing
     moves: tuple[Step, ...]
@@ -309,10 +329,10 @@ class BeforeAfter:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """Look all around, which sets the scope of the questions that follow.
+    """Look all around: the following questions are about the whole scene.
 
     Attributes:
-        turn: Whether the words may also mean a mere turn of the camera.
+        turn: Whether the words may also ask for a full turn of the camera.
     """
 
     turn: bool = False
@@ -320,12 +340,12 @@ class Sweep:
 
 @dataclass(frozen=True, slots=True)
 class Forbid:
-    """Something not to do, which leaves nothing to do."""
+    """An instruction not to do something ("do not move")."""
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """A request to report ("let me know"), which the answer fulfils anyway."""
+    """A request to report ("let me know"). It adds nothing, because every run ends with an answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -340,14 +360,14 @@ class Help:
 
 @dataclass(frozen=True, slots=True)
 class WhatAbout:
-    """The last question again, about another thing ("and the trucks?")."""
+    """Repeat the last question about another object ("and the trucks?")."""
 
     thing: Thing
 
 
 @dataclass(frozen=True, slots=True)
 class Unclear:
-    """A step that is understood only in part, with the question to ask."""
+    """A step that is only partly understood, with the question to ask the user."""
 
     question: str
 
@@ -361,7 +381,7 @@ Step = (
 
 @dataclass(frozen=True, slots=True)
 class Linked:
-    """A step with the link to the step before: "and", ",", "then", "." or "" for the first."""
+    """A step with its link to the previous step: "and", ",", "then", "." or "" for the first step."""
 
     link: str
     step: Step

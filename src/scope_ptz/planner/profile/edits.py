@@ -1,4 +1,4 @@
-"""Small edits that keep the meaning of an instruction or prompt, as people make them without thinking. All are deterministic."""
+"""Small edits that do not change the meaning of an instruction or prompt. All edits are deterministic."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.english import number_word
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """An edit. ``apply`` returns the text unchanged where there is nothing to edit; such a case is not asked again."""
+    """An edit. Texts that ``apply`` returns unchanged are not measured again."""
 
     name: str
     where: Literal["prompt", "instruction"]
@@ -29,8 +29,8 @@ _OTHER_WORDS = (
     (r"\btrack\b", "follow"),
     (r"\bwhich presets are there\b", "what presets do you have"),
 )
-_KEPT_WHOLE = frozenset({"degrees", "percent", "highway", "presets", "preset"})
-_ASKS = re.compile(r"^(how|what|which|is|are|if)\b", re.IGNORECASE)
+_NOT_MISSPELLED = frozenset({"degrees", "percent", "highway", "presets", "preset"})
+_QUESTION_START = re.compile(r"^(how|what|which|is|are|if)\b", re.IGNORECASE)
 
 
 def _lower_first(text: str) -> str:
@@ -38,13 +38,13 @@ def _lower_first(text: str) -> str:
 
 
 def _request(opening: str, ending: str) -> Callable[[str], str]:
-    """Return an edit that puts polite words around a command. Questions and conditions stay as they are."""
-    return lambda text: text if _ASKS.match(text) else f"{opening}{_lower_first(text.rstrip('.!'))}{ending}"
+    """Return an edit that adds polite words to a command. Questions and conditions remain unchanged."""
+    return lambda text: text if _QUESTION_START.match(text) else f"{opening}{_lower_first(text.rstrip('.!'))}{ending}"
 
 
 def _typo(text: str) -> str:
-    """Swap two letters of the longest word that is no number, preset or direction."""
-    words = [w for w in re.findall(r"[a-z]{6,}", text) if w not in _KEPT_WHOLE]
+    """Swap two letters of the longest lower-case word, except units and presets."""
+    words = [w for w in re.findall(r"[a-z]{6,}", text) if w not in _NOT_MISSPELLED]
     if not words:
         return text
     word = max(words, key=len)
@@ -79,7 +79,7 @@ INSTRUCTION_EDITS: tuple[Edit, ...] = (
 
 
 def _reversed_rules(text: str) -> str:
-    """Reverse the rules of each list."""
+    """Reverse the order of the rules in each list."""
     lines, out, rules = text.split("\n"), list[str](), list[str]()
     for line in [*lines, ""]:
         if line.startswith("- "):

@@ -1,6 +1,6 @@
 """Send one instruction to a planner without a camera, and check its first calls.
 
-The checks: whether a call is valid, whether it is the expected one, and whether it moves in the opposite direction (inverted).
+The checks are whether a call is valid, whether it is the expected one, and whether it moves in the opposite direction (inverted).
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from scope_ptz.planner.base import Briefing, CallTools, Planner, State, Usage
 from scope_ptz.tools.adjust_ptz import AdjustPtz
 from scope_ptz.tools.registry import parse_call, schemas
 
-PRESETS = ("gate", "highway")
-_TOLERANCE = 0.01
+PRESETS = ("gate", "highway")  # the presets that the planner is given
+_TOLERANCE = 0.01  # numbers that differ by at most this are equal
 
 
 class _Model(BaseModel):
@@ -30,12 +30,14 @@ class _Model(BaseModel):
 
 
 class FirstCall(_Model):
+    """A tool call: the name of the tool and the arguments."""
+
     name: str
     arguments: dict[str, Any] = {}
 
 
 class InstructionRow(_Model):
-    """An instruction with the calls that carry it out. ``alternatives`` are other acceptable tools for the first call."""
+    """An instruction with its expected calls. ``alternatives`` are other acceptable tools for the first call."""
 
     instruction: str
     kind: str
@@ -44,14 +46,16 @@ class InstructionRow(_Model):
 
 
 class PlannerTrial(_Model):
-    """The first step of a planner.
+    """The first step of a planner for an instruction.
 
     Attributes:
+        edit: The name of the edit; empty for none.
+        asked: The instruction as it was sent, after the edit.
         calls: The valid calls.
         invalid: The number of invalid calls.
         failure: The kind of failure; None if the planner did not fail.
         right: Whether the first call is the expected one.
-        inverted: Whether it turns or zooms in the opposite direction.
+        inverted: Whether the first move turns or zooms in the opposite direction.
     """
 
     row: InstructionRow
@@ -104,7 +108,7 @@ def read_rows(source: Path) -> tuple[InstructionRow, ...]:
 
 
 class _Line(BaseModel):
-    """A line of a file of instructions with expected calls."""
+    """A line of a file that contains instructions with expected calls."""
 
     instruction: str
     kind: str = ""
@@ -114,27 +118,27 @@ class _Line(BaseModel):
 
 async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None = None, edit: str = "") -> PlannerTrial:
     """Send an instruction to a planner. ``asked`` is the edited wording, if any."""
-    words = row.instruction if asked is None else asked
+    instruction = row.instruction if asked is None else asked
     state = State(
-        instruction=words, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=Limits()), tools=tuple(schemas())
+        instruction=instruction, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=Limits()), tools=tuple(schemas())
     )  # fmt: skip
     began = perf_counter()
     try:
         decision = await planner.step(state)
     except PlannerError as error:
         failure = error.kind or "planner-error"
-        return PlannerTrial(row=row, edit=edit, asked=words, failure=failure, text=str(error), seconds=perf_counter() - began)
+        return PlannerTrial(row=row, edit=edit, asked=instruction, failure=failure, text=str(error), seconds=perf_counter() - began)
     seconds = perf_counter() - began
-    wanted = decision.calls if isinstance(decision, CallTools) else ()
+    requested = decision.calls if isinstance(decision, CallTools) else ()
     calls = tuple(
-        FirstCall(name=c.name, arguments=c.arguments) for c in wanted if c.problem is None and _valid(c.name, c.arguments)
+        FirstCall(name=c.name, arguments=c.arguments) for c in requested if c.problem is None and _valid(c.name, c.arguments)
     )
     return PlannerTrial(
         row=row,
         edit=edit,
-        asked=words,
+        asked=instruction,
         calls=calls,
-        invalid=len(wanted) - len(calls),
+        invalid=len(requested) - len(calls),
         text=decision.thought if isinstance(decision, CallTools) else decision.text,
         right=bool(calls) and is_right(row, calls[0]),
         inverted=is_inverted(row, calls),
@@ -161,18 +165,20 @@ def is_right(row: InstructionRow, call: FirstCall) -> bool:
 
 
 def same_arguments(one: FirstCall, other: FirstCall) -> bool:
-    """Return whether two calls of a tool are equivalent: equal numbers, descriptions of the same words, and questions about the
-    same view.
+    """Return whether two calls of a tool have equivalent arguments.
 
-    In a file of expected calls, ``{"contains": [words, ...]}`` may replace a text; the words may come in any order.
+    Numbers must be equal and descriptions must consist of the same words; the texts of questions are not compared. In an expected
+    call, ``{"contains": [words, ...]}`` may replace a text, which must then contain the words in any order.
     """
-    wanted = {key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value}
-    plain = FirstCall(name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in wanted.items()})
+    required_words = {
+        key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value
+    }
+    plain = FirstCall(name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in required_words.items()})
     try:
         a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (plain, other))
     except ToolCallError:
         return False
-    return all(set(_words(a[key])) <= set(_words(b[key])) if key in wanted else _same(a[key], b[key]) for key in a)
+    return all(set(_words(a[key])) <= set(_words(b[key])) if key in required_words else _same(a[key], b[key]) for key in a)
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -188,22 +194,22 @@ def _words(text: str) -> list[str]:
 
 
 def same_choice(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
-    """Return whether two planners began with the same tools, up to the length of the shorter sequence."""
+    """Return whether two sequences of calls use the same tools, up to the length of the shorter one."""
     if not one or not other:
         return not one and not other
     return all(a.name == b.name for a, b in zip(one, other, strict=False))
 
 
 def same_calls(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
-    """Return whether two planners began with the same tools and arguments."""
+    """Return whether two sequences of calls use the same tools and arguments, up to the length of the shorter one."""
     return same_choice(one, other) and all(same_arguments(a, b) for a, b in zip(one, other, strict=False))
 
 
 def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
-    """Return whether the first move goes right instead of left, up instead of down, or in instead of out."""
-    wanted = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
+    """Return whether the first move has the opposite direction of the expected one: right for left, up for down, or in for out."""
+    expected = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
     made = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
-    return wanted is not None and made is not None and any(w * m < 0 for w, m in zip(wanted, made, strict=True))
+    return expected is not None and made is not None and any(e * m < 0 for e, m in zip(expected, made, strict=True))
 
 
 def _directions(call: FirstCall) -> tuple[float, float, float]:

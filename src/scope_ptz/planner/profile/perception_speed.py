@@ -1,4 +1,4 @@
-"""Measure the speed of perception on frames of a scene, skill by skill."""
+"""Measure the speed of each perception skill on frames of a scene."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ OBJECT, QUESTION = "car", "What is the main thing in this picture? Answer in a f
 
 
 class PerceptionSpeed(BaseModel):
-    """Seconds per skill.
+    """The measured seconds per call of each skill.
 
     Attributes:
         frames: Number of frames.
-        by_skill: Median and 95th percentile of the calls that succeeded.
-        never_worked: Skills without any successful call.
+        by_skill: Median and 95th percentile of the successful calls.
+        never_worked: Skills without a successful call.
         failures: Number of failed calls by kind.
-        first_failure: The error message of the first one.
+        first_failure: The error message of the first failed call.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -36,7 +36,7 @@ class PerceptionSpeed(BaseModel):
 
     @property
     def slowest_median_s(self) -> float | None:
-        """The median of the slowest skill; None if a skill never worked, because such a skill is not fast."""
+        """The median of the slowest skill; None if a skill has no successful call, because its speed is unknown."""
         if self.never_worked:
             return None
         return max((spread.median for spread in self.by_skill.values()), default=None)
@@ -45,14 +45,14 @@ class PerceptionSpeed(BaseModel):
 async def measure_perception(
     perception: Perception, frames: Sequence[Frame], on_call: Callable[[], None] = lambda: None
 ) -> PerceptionSpeed:
-    """Ask for every skill on every frame and time it.
+    """Call every skill on every frame and measure the time.
 
-    One round before that is not counted: it loads the model and opens the connection.
+    A warm-up round, which loads the model and opens the connection, is not counted.
 
     Args:
-        perception: What is measured.
-        frames: Pictures, no two alike, so that nothing is answered from a cache.
-        on_call: Called after each call that counts.
+        perception: The perception backend to measure.
+        frames: Frames, all different, so that no reply comes from a cache.
+        on_call: Called after each call outside the warm-up round.
     """
     skills: dict[str, Callable[[Frame], Awaitable[object]]] = {
         "query": lambda frame: perception.query(frame, QUESTION),

@@ -1,4 +1,7 @@
-"""The measurement: every instruction unedited, unedited again (which shows the server's own variation), and under each edit."""
+"""Measure how sensitive a planner is to edits of the prompt and the instruction.
+
+Each instruction is sent unedited, once more unedited (to measure the server's own variation), and with each edit.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edi
 from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows, same_calls, same_choice
 
 AGAIN = "asked again unchanged"
-_Z = 1.96
+_Z = 1.96  # for a 95% interval
 
 
 class _Model(BaseModel):
@@ -49,8 +52,8 @@ class EditEffect(_Model):
     """The effect of an edit.
 
     Attributes:
-        tools_changed: How often another tool was chosen than without the edit.
-        calls_changed: How often the tool or its arguments changed.
+        tools_changed: How often the planner chose other tools than without the edit.
+        calls_changed: How often the tools or their arguments changed.
     """
 
     edit: str
@@ -64,9 +67,9 @@ class EditEffect(_Model):
 class Sensitivity(_Model):
     """The report of a measurement.
 
-    ``valid``, ``right``, ``inverted`` and ``failed`` are about the unedited instructions. A trial in which the planner or its
-    server failed counts only in ``failed``. ``noise`` is how often the tools change without any edit, so an edit's effect is what
-    exceeds it. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` are examples.
+    ``valid``, ``right``, ``inverted`` and ``failed`` are rates over the unedited instructions. A trial in which the planner or its
+    server failed counts only in ``failed``. ``noise`` is the rate at which the tools change without any edit; an edit has an effect
+    only if its rate is higher. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` are examples.
     """
 
     prompt: str
@@ -102,15 +105,15 @@ async def measure_sensitivity(
     at_once: int = 4,
     progress: Callable[[int, int], None] = lambda done, of: None,  # noqa: ARG005
 ) -> Sensitivity:
-    """Measure how sensitive a planner is to edits.
+    """Run all instructions with all edits, and report how the calls change.
 
     Args:
         make_planner: Makes a planner; called once for each variant of the prompt.
         prompt: The unedited prompt.
         rows: The instructions; None selects the packaged ones.
         edits: The edits to try.
-        at_once: How many requests may run at a time.
-        progress: Called with the number of trials done and in total.
+        at_once: The maximum number of concurrent requests.
+        progress: Called after each trial with the number of completed trials and their total.
     """
     rows = load_rows() if rows is None else rows
     cases = _cases(rows, prompt, edits)
@@ -150,7 +153,7 @@ def _cases(rows: Sequence[InstructionRow], prompt: Prompt, edits: Sequence[Edit]
 
 
 def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Case], trials: Sequence[PlannerTrial]) -> Sensitivity:
-    """Return the report of all trials, given in the order of their cases."""
+    """Return the report of all trials, which are in the order of their cases."""
     unedited = {trial.row.instruction: trial for trial in trials if not trial.edit}
     planned = [trial for trial in unedited.values() if trial.failure is None]
     pairs = _pairs(cases, trials, unedited)
@@ -174,7 +177,7 @@ def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Cas
 
 @dataclass(frozen=True, slots=True)
 class _Pair:
-    """The same instruction without and with an edit; the planner did not fail at either."""
+    """The trials of an instruction without and with an edit. The planner failed in neither."""
 
     case: _Case
     unedited: PlannerTrial
@@ -186,7 +189,7 @@ class _Pair:
 
 
 def _pairs(cases: Sequence[_Case], trials: Sequence[PlannerTrial], unedited: Mapping[str, PlannerTrial]) -> list[_Pair]:
-    """Pair every edited trial with the unedited trial of its instruction, where the planner failed at neither."""
+    """Pair every edited trial with the unedited trial of its instruction, unless the planner failed in one of them."""
     return [
         _Pair(case, unedited[case.row.instruction], trial)
         for case, trial in zip(cases, trials, strict=True)
@@ -199,7 +202,7 @@ def _changed(pairs: Iterable[_Pair]) -> Rate:
 
 
 def _effects(cases: Sequence[_Case], pairs: Sequence[_Pair]) -> tuple[EditEffect, ...]:
-    """Return what each edit did, in the order in which the edits were tried."""
+    """Return the effect of each edit, in the order in which the edits were tried."""
     names = dict.fromkeys((case.edit, case.where) for case in cases if case.where)
     return tuple(_effect(name, where, [p for p in pairs if (p.case.edit, p.case.where) == (name, where)]) for name, where in names)
 
@@ -216,7 +219,7 @@ def _effect(name: str, where: str, pairs: Sequence[_Pair]) -> EditEffect:
 
 
 def _inverted(trials: Iterable[PlannerTrial]) -> Rate:
-    """Return how often a move goes the opposite way, among the instructions that ask for a move."""
+    """Return the rate of inverted moves among the instructions that ask for a move."""
     return Rate.over(t.inverted for t in trials if _moves(t))
 
 

@@ -22,7 +22,7 @@ class Spread(BaseModel):
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread | None:
-        """Return the spread of values, None for no values."""
+        """Return the spread of values; None if there are none."""
         if not values:
             return None
         ordered = sorted(values)
@@ -53,25 +53,25 @@ class Speed(BaseModel):
 
 
 def speed_of(trials: Sequence[PlannerTrial], warm_up: PlannerTrial | None = None) -> Speed:
-    """Return the speed of a planner. ``warm_up`` is a trial before the others, used only for its error message."""
-    good = [t for t in trials if t.failure is None]
-    called = [t for t in good if t.calls or t.invalid]
+    """Return the speed of a planner. ``warm_up`` is an uncounted trial before the others, used only for its error message."""
+    succeeded = [t for t in trials if t.failure is None]
+    called = [t for t in succeeded if t.calls or t.invalid]
     return Speed(
         turns=len(trials),
-        turn_s=Spread.of([t.seconds for t in good]),
-        first_token_s=Spread.of([t.first_token_s for t in good if t.first_token_s is not None]),
-        tokens_per_s=Spread.of([rate for t in good if (rate := _tokens_per_s(t)) is not None]),
+        turn_s=Spread.of([t.seconds for t in succeeded]),
+        first_token_s=Spread.of([t.first_token_s for t in succeeded if t.first_token_s is not None]),
+        tokens_per_s=Spread.of([rate for t in succeeded if (rate := _tokens_per_s(t)) is not None]),
         valid=Rate.over(not t.invalid for t in called),
-        right=Rate.over(t.right for t in good),
-        inverted=Rate.over(t.inverted for t in good if any(c.name == "adjust_ptz" for c in t.row.calls)),
+        right=Rate.over(t.right for t in succeeded),
+        inverted=Rate.over(t.inverted for t in succeeded if any(c.name == "adjust_ptz" for c in t.row.calls)),
         failures=dict(Counter(t.failure for t in trials if t.failure is not None)),
         first_failure=next((t.text for t in (warm_up, *trials) if t is not None and t.failure is not None), ""),
     )
 
 
 def _tokens_per_s(trial: PlannerTrial) -> float | None:
-    """Return tokens per second after the first token, None for replies that were not streamed or are too short."""
+    """Return the tokens per second after the first token; None for replies that were not streamed or are too short."""
     if trial.first_token_s is None or trial.usage.output_tokens < 2:
         return None
-    writing_s = trial.seconds - trial.first_token_s
-    return (trial.usage.output_tokens - 1) / writing_s if writing_s > 0 else None
+    generation_s = trial.seconds - trial.first_token_s
+    return (trial.usage.output_tokens - 1) / generation_s if generation_s > 0 else None

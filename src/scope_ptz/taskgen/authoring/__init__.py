@@ -1,7 +1,8 @@
-"""Authoring of tasks from the ground truth of scenes. The same scenes and seed give the same bytes.
+"""Authoring of tasks from the ground truth of scenes. The same scenes and seed always give identical tasks.
 
-The modules follow one another: ``task_places`` draws the views that tasks are about, ``view_contents``, ``object_names`` and
-``zoom_targets`` find what can be asked there, ``categories`` turns it into drafts (``drafts``), ``scene_drafts`` collects them for
-a scene, ``selection`` balances them, and ``assembly`` numbers, pairs and paraphrases the result. ``noun_phrases`` holds the
-English, and ``reactions`` adds requests that an agent should question or refuse.
+The modules in the order of their use: ``task_places`` samples the views that tasks are about. ``view_contents``, ``object_names``
+and ``zoom_targets`` find the objects that a question can be about. ``categories`` turns them into drafts (``drafts``), and
+``scene_drafts`` collects the drafts of a scene. ``selection`` balances them, and ``assembly`` numbers, pairs and paraphrases the
+selected ones. ``noun_phrases`` writes English noun phrases, and ``reactions`` adds requests that an agent should question or
+refuse.
 """

@@ -1,4 +1,4 @@
-"""Assembly of a dataset: drafts of all scenes are selected to the quotas, worded, numbered, paired and paraphrased."""
+"""Assembly of a dataset: select drafts of all scenes to fill the quotas, then word, number, pair and paraphrase them."""
 
 from __future__ import annotations
 
@@ -18,24 +18,29 @@ QUOTAS: dict[Category, int] = {
     "counting": 95, "descriptor": 89, "location": 53, "ocr": 54, "single_call": 72, "multi_step_command": 57,
     "multi_step_reasoning": 54, "comparative": 62,
 }  # fmt: skip
-"""Core tasks per category, as in the paper: 536 in all."""
+"""Number of core tasks per category, as in the paper: 536 in total."""
 
-REACTIONS = 44  # tasks that an agent should question or refuse
-PARAPHRASED, WORDINGS = 64, 3  # paraphrased core tasks, and further wordings of each
+REACTIONS = 44  # number of tasks that an agent should question or refuse
+PARAPHRASED, WORDINGS = 64, 3  # number of paraphrased core tasks, and of additional wordings for each
 
 Progress = Callable[[str], None]
 
 
 @dataclass
 class BuiltTasks:
-    """A dataset. ``short`` counts, by category or stratum, the tasks that the scenes did not yield."""
+    """The tasks of a dataset.
+
+    Attributes:
+        tasks: The tasks.
+        short: Number of tasks that are missing because the scenes had too few drafts, by category or stratum.
+    """
 
     tasks: list[Task] = field(default_factory=list)
     short: dict[str, int] = field(default_factory=dict)
 
 
 class Builder:
-    """Builds the dataset of some scenes."""
+    """Builds the tasks of a dataset. The arguments are those of ``build``."""
 
     def __init__(
         self,
@@ -74,7 +79,7 @@ class Builder:
         return built
 
     def _pools(self) -> dict[Category, list[TaskDraft]]:
-        """Return the drafts of all scenes by category. Only one scene's layers are in memory at a time."""
+        """Return the drafts of all scenes by category. Only one scene's images are in memory at a time."""
         pools: dict[Category, list[TaskDraft]] = {category: [] for category in self.quotas}
         for drafts in self.scene_drafts:
             for category, pool in pools.items():
@@ -85,7 +90,7 @@ class Builder:
         return pools
 
     def _number(self, category: Category, rows: list[ChosenDraft]) -> None:
-        """Give every draft its id, and connect the two tasks of each pair."""
+        """Assign an id to every selected draft, and link the two tasks of each pair."""
         counts: Counter[str] = Counter()
         for row in rows:
             counts[row.scene] += 1
@@ -97,7 +102,7 @@ class Builder:
                 row.pair, twin.pair = twin.id, row.id
 
     def _paraphrases(self, chosen: dict[Category, list[ChosenDraft]]) -> list[Task]:
-        """Return further wordings of tasks, alternating between categories."""
+        """Return additional wordings of tasks, taken from the categories in turn."""
         number = max(1, PARAPHRASED * sum(self.quotas.values()) // sum(QUOTAS.values()))
         found = list[Task]()
         candidates = {c: [row for row in rows if len(row.variants) >= WORDINGS] for c, rows in chosen.items()}
@@ -147,16 +152,16 @@ def build(
     progress: Progress | None = None,
     can_answer: CanAnswer | None = None,
 ) -> BuiltTasks:
-    """Build the dataset of some scenes.
+    """Build the tasks of a dataset.
 
     Args:
-        scenes: The scenes. Their order matters.
+        scenes: The scenes of the tasks.
         seed: Seed for every random choice.
         quotas: Core tasks per category. The default is the published quotas, plus reactions.
         progress: Receives a line of text after every step.
-        can_answer: Whether perception can answer the reference program of a draft. By default every draft counts as answerable.
+        can_answer: Returns whether perception can answer the questions of a draft. By default, all drafts are answerable.
 
     Returns:
-        The tasks, and how many are missing.
+        The tasks, and the number of missing ones.
     """
     return Builder(scenes, seed, quotas, progress, can_answer).build()

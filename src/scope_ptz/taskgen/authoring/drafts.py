@@ -1,4 +1,4 @@
-"""Drafts of tasks: a question or a command about a place, before it has a wording and an id."""
+"""Drafts of tasks: questions and commands about a place that have no final wording and no id yet."""
 
 from __future__ import annotations
 
@@ -54,24 +54,24 @@ def same_form(*questions: str) -> tuple[tuple[str, str], ...]:
 
 @dataclass(frozen=True)
 class TaskDraft:
-    """A task before it has a wording and an id.
+    """A task that has no final wording and no id yet.
 
     Attributes:
         category: The category of the task.
         question_type: The question type, which the selection balances.
-        key: What is asked. The same question is never asked twice about a view.
-        place: The start of the task and the view it is about.
+        key: Identifies the question, so that it is asked only once about a view.
+        place: The start of the task, and the view that it is about.
         expected: The expected answer.
-        question: The wordings of a question.
+        question: The wordings of the question; None for a task with ``instructions``.
         instructions: Complete wordings, for a task that is not a question about a place.
-        evidence: The views that the answer rests on.
-        perception_calls: The calls of the reference program that ask perception.
+        evidence: The views from which the answer follows.
+        perception_calls: The calls of the reference program that use perception.
         program: The reference program. By default, the calls of the place followed by ``perception_calls``.
         behaviour: What a run must do in addition to answering.
-        needs: What an agent must do before it can answer. By default, what the place needs.
+        needs: The actions that an agent must take before it can answer. By default, those of the place.
         tags: Tags of the task.
         weight: Number of objects to distinguish, for the difficulty.
-        twin: The task with the same wording whose answer is a presence, where the answer of this one is an absence.
+        twin: For a draft about an absent object, the draft with the same wording about a present one.
         answer_key: The answer as a short text, which the selection balances.
     """
 
@@ -109,7 +109,7 @@ class TaskDraft:
 
     @cached_property
     def traits(self) -> tuple[tuple[str, str], ...]:
-        """What the selection balances: scene, viewpoints, question type, answer, subjects, view and start preset."""
+        """The traits that the selection balances: scene, viewpoints, question type, answer, subjects, view and start preset."""
         place = self.place
         seen = {view.aim.viewpoint for view in self.evidence} or {str(place.at.viewpoint)}
         return (
@@ -124,17 +124,17 @@ class TaskDraft:
 
     @property
     def full_key(self) -> str:
-        """Identify the question together with the view."""
+        """A key for the combination of question and view."""
         return f"{self.place.key}|{self.key}"
 
     def digest(self, seed: int | str) -> str:
-        """Return a pseudo-random number that depends on the seed and on this draft alone."""
+        """Return a pseudo-random hexadecimal number that depends only on the seed and this draft."""
         text = f"{seed}|{self.category}|{self.question_type}|{self.full_key}|{self.answer_key}|{self.place.start}"
         return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
 class SentenceFrames:
-    """Words the drafts of a category, using its sentence frames evenly and no text twice."""
+    """Words the drafts of a category. It uses all sentence frames equally often, and no text twice."""
 
     def __init__(self, texts: set[str]) -> None:
         self.used: Counter[str] = Counter()
@@ -146,10 +146,10 @@ class SentenceFrames:
         Args:
             draft: The draft.
             rng: Source of the random choices.
-            like: The only frame to use, for the twin of a draft.
+            like: Name of the only frame to use, for the twin of a draft; None for any frame.
 
         Returns:
-            The instruction and the name of its frame, or None when no unused wording is left.
+            The instruction and the name of its frame; None if all wordings are used.
         """
         options = [o for o in self._options(draft, rng) if o[0] not in self.texts and (like is None or o[1] == like)]
         if not options:
@@ -170,7 +170,7 @@ class SentenceFrames:
         for n, (direct, inside) in enumerate(draft.question.forms):
             words = {"d": direct, "D": capital(direct), "i": inside}
             name = f"{draft.question_type}/{n}"
-            if place.stays:
+            if place.is_start_view:
                 options += [(w.format(**words), f"{name}/stay{k}") for k, w in enumerate(_STAYING)]
                 continue
             if place.preset is not None and not place.swept:
@@ -187,21 +187,21 @@ class SentenceFrames:
 def evidence_view(
     place: TaskPlace, shows: AnyExpected | None, about: Wordings, items: Sequence[Item] = (), *, whole: bool
 ) -> EvidenceView:
-    """Return a place as evidence for an answer.
+    """Return the view of a place as evidence for an answer.
 
     Args:
         place: The view, or the sweep.
-        shows: What the view shows.
-        about: Words that a perception call about it mentions.
-        items: The objects that the answer rests on.
-        whole: Whether the whole view counts. A run must then see it at 60% or more of its resolution here.
+        shows: The answer that the view supports.
+        about: Words that a perception call about this evidence mentions.
+        items: The objects from which the answer follows.
+        whole: Whether the whole view is evidence. A run must then see it with at least 60% of its resolution here.
     """
     density = place.truth.projection.density * math.pi / 180
     return EvidenceView(
         aim=place.aim,
         scope="full" if place.swept else "current",
         hfov_deg=place.hfov_deg,
-        band_deg=band() if place.swept else None,
+        band_deg=sweep_tilt_range() if place.swept else None,
         items=tuple(items),
         whole=whole,
         min_density_px_deg=round(0.6 * density, 3) if whole else 0.0,
@@ -210,8 +210,8 @@ def evidence_view(
     )
 
 
-def band() -> tuple[float, float]:
-    """Return the lowest and the highest tilt that a sweep covers, in degrees."""
+def sweep_tilt_range() -> tuple[float, float]:
+    """Return the lowest and the highest tilt in a sweep, in degrees."""
     sweep = TASK_CAMERA.sweep()
     return round(sweep.bottom_tilt_deg + 0.01, 2), round(sweep.top_tilt_deg, 2)
 
@@ -235,6 +235,12 @@ Difficulty = Literal["easy", "medium", "hard"]
 
 
 def difficulty(calls: Sequence[ProgramCall], size: float, *, swept: bool) -> Difficulty:
-    """Return the difficulty by rule, from the number of calls, the number of objects to tell apart (``size``), and a sweep."""
+    """Return the difficulty of a task.
+
+    Args:
+        calls: The calls of the reference program.
+        size: Number of objects to tell apart.
+        swept: Whether the task needs a sweep.
+    """
     points = (len(calls) > 2) + (len(calls) > 4) + (size > 4) + (size > 9) + swept
     return "easy" if points == 0 else "medium" if points == 1 else "hard"

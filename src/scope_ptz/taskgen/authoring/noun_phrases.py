@@ -1,4 +1,4 @@
-"""English phrases for instructions: plurals, articles, lists, names of object kinds, colours and amounts."""
+"""English phrases for instructions: plurals, articles, lists, and words for object kinds, colours and amounts."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ UNCOUNTED = frozenset({
     "pedestrian", "door sign", "window notice", "wall sign", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp",
     "lane signal", "wheel stop", "wheel guide", "walkway", "cycle shelter", "clock tower", "sign", "gantry", "parking space",
 })  # fmt: skip
-"""Categories that people count differently, because the objects run into each other or recede into the distance."""
+"""Categories that people count differently, because their objects are not clearly separate or extend into the distance."""
 
-_FAMILIES: dict[str, Wordings] = {
+_COLOUR_SYNONYMS: dict[str, Wordings] = {
     "white": ("off-white",), "black": (), "grey": ("gray", "silver", "dark grey", "light grey"),
     "red": ("dark red", "maroon", "crimson"),
     "blue": ("dark blue", "light blue", "navy", "sky blue", "navy blue"), "green": ("dark green", "light green", "lime"),
     "yellow": ("gold",), "orange": ("amber",), "brown": ("dark brown", "light brown"), "purple": ("violet",), "pink": (),
 }  # fmt: skip
-"""Plain colours and other words for them."""
+"""Plain colours, and other words for each of them."""
 
-_FAMILY = {name: plain for plain, others in _FAMILIES.items() for name in (plain, *others)}
+_PLAIN_COLOURS = {name: plain for plain, others in _COLOUR_SYNONYMS.items() for name in (plain, *others)}
 
 
 def plural(noun: str) -> str:
-    """Return the plural of a noun phrase. Its noun is the last word, or the word before "of", "with" and the like."""
+    """Return the plural of a noun phrase. The inflected word is the last one, or the one before a preposition such as "of"."""
     words = noun.split()
     head = next((i for i, word in enumerate(words) if i and word in {"of", "with", "in", "on", "for", "carrying"}), len(words)) - 1
     words[head] = _plural(words[head])
@@ -56,32 +56,32 @@ def _plural(word: str) -> str:
 
 
 def article(noun: str) -> str:
-    """Return the noun with "a" or "an"."""
+    """Return a noun phrase with "a" or "an" before it."""
     first = noun.lower()
     vowel = first[0] in "aeio" or (first[0] == "u" and not first.startswith(("uni", "use", "uti")))
-    return f"{'an' if vowel or noun.startswith(_SPELT) else 'a'} {noun}"
+    return f"{'an' if vowel or noun.startswith(_VOWEL_SOUNDS) else 'a'} {noun}"
 
 
-_SPELT = ("SUV", "8", "11 ", "18 ")
-"""Beginnings that are pronounced with a vowel."""
+_VOWEL_SOUNDS = ("SUV", "8", "11 ", "18 ")
+"""Beginnings that are pronounced with a vowel sound but not spelt with a vowel."""
 
 
 def the(name: str) -> str:
-    """Return a name with its article. Numbered names ("dock door 5") take none."""
+    """Return a name with "the" before it. Names that end in a number ("dock door 5") have no article."""
     return name if re.search(r"\d$", name) else f"the {name.removeprefix('The ')}"
 
 
 def listing(names: Sequence[str], word: str = "and") -> str:
-    """Join names with commas, and the last two with a conjunction."""
+    """Join names with commas, and the last two with the conjunction ``word``."""
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {word} {names[-1]}"
 
 
-def called(category: str) -> str:
+def everyday_name(category: str) -> str:
     """Return the everyday name of a category, usually the category itself."""
-    return _CALLED.get(category, category)
+    return _EVERYDAY_NAMES.get(category, category)
 
 
-_CALLED = {
+_EVERYDAY_NAMES = {
     "cross": "pharmacy cross", "roller": "road roller", "suv": "SUV", "tv": "TV", "cctv camera": "CCTV camera",
     "a-board": "A-board", "belisha beacon": "Belisha beacon", "tyre stack": "stack of tyres", "pipe stack": "stack of pipes",
     "pallet stack": "stack of pallets", "gravel pile": "pile of gravel", "sand pile": "pile of sand",
@@ -90,11 +90,11 @@ _CALLED = {
 
 def noun_of(kind: Kind) -> str:
     """Return the noun phrase for one object of a kind, with its attributes in their usual order."""
-    noun = called(kind.category)
+    noun = everyday_name(kind.category)
     if kind.attribute is not None:
         key, value = kind.attribute
         key = "posture" if kind.category == "person" and key == "state" else key
-        return _WITH.get(key, ("{value} {noun}", ""))[0].format(value=value, noun=noun, a=article(value))
+        return _ATTRIBUTE_PHRASES.get(key, ("{value} {noun}", ""))[0].format(value=value, noun=noun, a=article(value))
     return f"{kind.colour} {noun}" if kind.colour else noun
 
 
@@ -102,12 +102,12 @@ def many_of(kind: Kind) -> str:
     """Return the noun phrase for several objects of a kind."""
     key = kind.attribute[0] if kind.attribute is not None else ""
     key = "posture" if kind.category == "person" and key == "state" else key
-    if kind.attribute is not None and key in _WITH:
-        return _WITH[key][1].format(value=kind.attribute[1], many=plural(called(kind.category)))
+    if kind.attribute is not None and key in _ATTRIBUTE_PHRASES:
+        return _ATTRIBUTE_PHRASES[key][1].format(value=kind.attribute[1], many=plural(everyday_name(kind.category)))
     return plural(noun_of(kind))
 
 
-_WITH = {
+_ATTRIBUTE_PHRASES = {
     "vest": ("{noun} in {a} vest", "{many} in {value} vests"),
     "helmet": ("{noun} in {a} helmet", "{many} in {value} helmets"),
     "posture": ("{noun} who is {value}", "{many} who are {value}"),
@@ -116,32 +116,32 @@ _WITH = {
 
 
 def unit_of(kind: Kind) -> Wordings:
-    """Return the words that may stand for what is counted: the whole name, the category, and its last word."""
-    return tuple(dict.fromkeys((noun_of(kind), called(kind.category), kind.category, kind.category.split()[-1])))
+    """Return the words that an answer may use for the counted objects: the whole name, the category, and its last word."""
+    return tuple(dict.fromkeys((noun_of(kind), everyday_name(kind.category), kind.category, kind.category.split()[-1])))
 
 
 def about(*kinds: Kind) -> Wordings:
-    """Return the words that a perception call about objects of these kinds mentions."""
-    words = (word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_ALSO.get(kind.category, ())))
+    """Return words for objects of these kinds. A perception call about such objects mentions at least one of the words."""
+    words = (word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_OTHER_WORDS.get(kind.category, ())))
     return tuple(dict.fromkeys(words))
 
 
-_ALSO = {"person": ("anyone", "people"), "lorry": ("truck",)}
+_OTHER_WORDS = {"person": ("anyone", "people"), "lorry": ("truck",)}
 
 
 def plain_colour(colour: object) -> str | None:
-    """Return the plain colour for a colour attribute, or None where people would disagree."""
-    return _FAMILY.get(str(colour))
+    """Return the plain colour for a colour attribute; None if people would disagree about it."""
+    return _PLAIN_COLOURS.get(str(colour))
 
 
 def wordings(options: Options) -> Wordings:
-    """Return every word that stands for any of the options."""
+    """Return all wordings of all options."""
     return tuple(word for name, others in options.items() for word in (name, *others))
 
 
 def colour_options() -> Options:
     """Return the plain colours as answer options."""
-    return dict(_FAMILIES)
+    return dict(_COLOUR_SYNONYMS)
 
 
 def degrees(number: float) -> str:
@@ -155,5 +155,5 @@ def times(factor: float) -> str:
 
 
 def capital(text: str) -> str:
-    """Return the text with a capital first letter."""
+    """Return the text with its first letter capitalised."""
     return text[:1].upper() + text[1:]

@@ -1,4 +1,4 @@
-"""Names that identify exactly one object in a view."""
+"""Choose names for objects that identify exactly one object in a view."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from functools import lru_cache
 
 from scope_ptz.bench.tasks.expected import Wordings
 from scope_ptz.simulator.truth import Sighting
-from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTED, about, called, noun_of, plain_colour, the
-from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, SceneThing, has_colour, near_colours, own_colour
+from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTED, about, everyday_name, noun_of, plain_colour, the
+from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, SceneThing, has_colour, own_colour, similar_colours
 from scope_ptz.taskgen.facts.robust import RobustTruth, with_parts
 
-MADE_OUT_PX = 8.0
-"""Height in pixels at which a person who knows what to look for can recognise capital letters."""
+RECOGNISABLE_TEXT_PX = 8.0
+"""Minimum height of capital letters, in pixels, for a person to recognise an expected text."""
 
 
 @dataclass(frozen=True)
 class NamedThing:
-    """An object and its name.
+    """An object in a view, with a name that identifies it.
 
     Attributes:
         thing: The object as it appears in the view.
         name: The name without an article ("excavator", "leftmost car").
-        kind: The kind that the name is built from.
-        positional: Whether the name depends on the position in the view.
+        kind: The kind of object in the name.
+        positional: Whether the name describes the position in the view.
     """
 
     thing: Sighting
@@ -40,19 +40,25 @@ class NamedThing:
 
     @property
     def words(self) -> Wordings:
-        """The words that a perception call about the object mentions."""
+        """Words for the object. A perception call about it mentions at least one of them."""
         return tuple(dict.fromkeys((*about(self.kind), self.name, self.name.split()[-1])))
 
 
 @lru_cache(maxsize=2048)
 def unique_things(truth: RobustTruth, *, coloured: bool, min_pixels: int = 350) -> tuple[NamedThing, ...]:
-    """Return the objects that are the only ones of their kind in view. With ``coloured``, a kind may include the colour."""
+    """Return the objects that are the only ones of their kind in view.
+
+    Args:
+        truth: The ground truth of the view.
+        coloured: Whether a colour may be part of the kind, as in "red car".
+        min_pixels: Minimum size of an object in pixels.
+    """
     found = []
     categories = sorted({s.instance.category for s in truth.clear})
     for category in categories:
         alone = truth.all_of(Kind(category))
         if alone is not None and len(alone) == 1 and is_only_candidate(truth, Kind(category), alone[0]):
-            found.append(NamedThing(alone[0], called(category), Kind(category)))
+            found.append(NamedThing(alone[0], everyday_name(category), Kind(category)))
             continue
         if not coloured:
             continue
@@ -66,150 +72,170 @@ def unique_things(truth: RobustTruth, *, coloured: bool, min_pixels: int = 350) 
 
 
 def is_only_candidate(truth: RobustTruth, kind: Kind, thing: Sighting) -> bool:
-    """Whether no other object that shows in the view, however small, could be meant."""
+    """Return whether no other object in the view, not even a barely visible one, fits a kind."""
     return not any(kind.fits(other) or kind.ambiguous_with(other) for other in truth.others(thing))
 
 
 @lru_cache(maxsize=2048)
-def named_things(truth: RobustTruth, min_pixels: int = 350, made_out_px: float = MADE_OUT_PX) -> tuple[NamedThing, ...]:
-    """Return the objects with a name of their own in the scene ("bakery sign") that fits nothing else in view."""
+def named_things(truth: RobustTruth, min_pixels: int = 350, min_text_px: float = RECOGNISABLE_TEXT_PX) -> tuple[NamedThing, ...]:
+    """Return the objects whose own name in the scene ("bakery sign") matches no other object in view.
+
+    Args:
+        truth: The ground truth of the view.
+        min_pixels: Minimum size of an object in pixels.
+        min_text_px: Minimum height of capital letters, in pixels, if a person needs to read them to recognise the object.
+    """
     found = []
     for sighting in truth.clear:
-        thing, name = sighting.instance, spoken(sighting.instance.name)
+        thing, name = sighting.instance, name_in_instruction(sighting.instance.name)
         words = name.lower().split()
-        least = max(min_pixels, _PERSON_PX) if thing.category in GROUPS["person"] else min_pixels
+        required_pixels = max(min_pixels, _PERSON_PX) if thing.category in GROUPS["person"] else min_pixels
         if (
-            sighting.pixels < least
+            sighting.pixels < required_pixels
             or truth.split_by_sweep(sighting)
-            or thing.category in _VAGUE
-            or not 2 <= len(words) <= _LONGEST_NAME
+            or thing.category in _HARD_TO_TELL_APART
+            or not 2 <= len(words) <= _MAX_NAME_WORDS
         ):
             continue
         if (
             set(words) & _MISLEADING
-            or (set(words) & _HAVING and sighting.share < _HAD_SHARE)
+            or (set(words) & _PART_WORDS and sighting.share < _MIN_SHARE_WITH_PART)
             or (set(words) & COLOUR_WORDS and not has_colour(thing))
             or ("phone" in words and thing.category in GROUPS["person"])
-            or not recognised(truth, sighting, name, made_out_px)
-            or any(could_bear_name(other, name, thing) for other in truth.others(sighting))
+            or not is_recognisable(truth, sighting, name, min_text_px)
+            or any(name_could_refer_to(other, name, thing) for other in truth.others(sighting))
         ):
             continue
         found.append(NamedThing(sighting, name, Kind(thing.category)))
     return tuple(found)
 
 
-def recognised(truth: RobustTruth, sighting: Sighting, name: str, made_out_px: float) -> bool:
-    """Whether a person recognises an object by its name in this view.
+def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_px: float) -> bool:
+    """Return whether a person can recognise an object by its name in this view.
 
-    The lettering of signs, numbered bays and similar objects must be large enough to recognise.
+    If the name of an object comes from its lettering, as for signs and numbered bays, the lettering must be large enough.
     """
     thing = sighting.instance
-    own = _letters(name) - _LITTLE - _WEAK - _letters(thing.category) - _letters(_head(name))
-    by_number, by_words = name[-1].isdigit(), thing.category in _BY_WORDS and not own <= COLOUR_WORDS
-    if not by_number and not by_words:
+    own = _words(name) - _FUNCTION_WORDS - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
+    by_number, by_text = name[-1].isdigit(), thing.category in _KNOWN_BY_TEXT and not own <= COLOUR_WORDS
+    if not by_number and not by_text:
         return True
-    family = with_parts(truth.scene, thing.id)
-    near = [t for t in truth.first.texts if t.text.parent in family and t.cap_height_px >= made_out_px and t.unhidden_share > 0.9]
-    lettering = {word for t in near for word in _letters(t.text.text)}
+    parts = with_parts(truth.scene, thing.id)
+    texts = [t for t in truth.first.texts if t.text.parent in parts and t.cap_height_px >= min_text_px and t.unhidden_share > 0.9]
+    lettering = {word for t in texts for word in _words(t.text.text)}
     if by_number:
         return name.split()[-1] in lettering
-    return any(a[:_STEM] == b[:_STEM] for a in own for b in lettering)
+    return any(a[:_STEM_CHARS] == b[:_STEM_CHARS] for a in own for b in lettering)
 
 
-_STEM = 4
-"""Words with this many first letters in common are forms of one word ("optician", "opticians")."""
+_STEM_CHARS = 4
+"""Words that share this many first letters count as forms of the same word ("optician", "opticians")."""
 
-_BY_WORDS = SIGNS | {"shop", "kiosk", "market stall", "door"}
-"""Categories whose objects are told apart by their lettering."""
+_KNOWN_BY_TEXT = SIGNS | {"shop", "kiosk", "market stall", "door"}
+"""Categories whose objects people tell apart by their lettering."""
 
-_HAVING, _HAD_SHARE = frozenset({"with", "carrying", "pushing", "holding"}), 0.75
-"""When less than this share of an object shows, the part that it is named after ("with a pram") may be hidden."""
+_PART_WORDS = frozenset({"with", "carrying", "pushing", "holding"})
+"""Words in names that mention a part or a carried object, such as "with a pram"."""
+
+_MIN_SHARE_WITH_PART = 0.75
+"""Minimum visible share of an object whose name mentions a part, because the part could otherwise be hidden."""
 
 _PERSON_PX = 700
-"""Fewest pixels on which clothes and things in the hand can be seen."""
+"""Minimum number of pixels of a person for clothes and carried objects to be visible."""
 
 
 def _head(name: str) -> str:
-    """Return the head noun of a name, or an empty string when the name ends in a number."""
+    """Return the head noun of a name; an empty string if the name ends in a number."""
     head = re.split(r" (?:of|with|in|on|by|for|at) ", name)[0].split()[-1]
     return head if head.isalpha() else ""
 
 
-def spoken(name: str) -> str:
-    """Return the name of an object as it is used after "the"."""
+def name_in_instruction(name: str) -> str:
+    """Return the scene's name of an object in the form in which instructions use it after "the"."""
     name = re.sub(r"^(\w+) (standing|walking|waiting|sitting)$", r"\2 \1", name)
     return name.removeprefix("The ").replace("price of ", "price card for ").replace("belisha", "Belisha")
 
 
-def could_bear_name(other: SceneThing, name: str, thing: SceneThing) -> bool:
-    """Whether a person could mistake another object for the named one.
+def name_could_refer_to(other: SceneThing, name: str, thing: SceneThing) -> bool:
+    """Return whether a name could also refer to another object.
 
-    This is the case if the other object's name, category and attributes match the name. Words that distinguish little ("tall",
-    "saloon") and similar colours are ignored.
+    This is the case if the other object's name, category and attributes contain the words of the name. Common words ("tall",
+    "saloon") need not match, and similar colours count as equal.
+
+    Args:
+        other: The other object.
+        name: The name.
+        thing: The object that the name belongs to.
     """
-    named = _letters(name) - _LITTLE
+    named = _words(name) - _FUNCTION_WORDS
     facts = (f"{key} {value}" for key, value in other.attributes.items() if isinstance(value, str))
-    borne = _letters(" ".join((other.name, other.category, *facts)))
-    if named <= borne:
+    described = _words(" ".join((other.name, other.category, *facts)))
+    if named <= described:
         return True
     if other.category != thing.category and not Kind(thing.category).ambiguous_with(other):
         return False
-    own = named - _WEAK - _letters(thing.category) - _letters(_head(name))
-    return all(word in borne or any(near_colours(word, colour) for colour in borne) for word in own)
+    own = named - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
+    return all(word in described or any(similar_colours(word, colour) for colour in described) for word in own)
 
 
-def _letters(text: str) -> set[str]:
+def _words(text: str) -> set[str]:
+    """Return the words and numbers in a text, in lower case."""
     return set(re.findall(r"[^\W_]+", text.lower()))
 
 
-_LITTLE = frozenset({"a", "an", "the", "of", "in", "on", "with", "by", "for", "at", "to", "who", "his", "her", "their", "its"})
-_WEAK = frozenset({
+_FUNCTION_WORDS = frozenset(
+    {"a", "an", "the", "of", "in", "on", "with", "by", "for", "at", "to", "who", "his", "her", "their", "its"}
+)
+_COMMON_WORDS = frozenset({
     "standing", "walking", "waiting", "tall", "small", "large", "wide", "light", "dark", "saloon", "hatchback", "suv", "estate",
     "town", "site", "delivery", "roadside", "lit", "unlit", "round", "worker", "person", "man", "woman", "pedestrian", "customer",
 })  # fmt: skip
-"""Words that do not reliably distinguish one object from another."""
+"""Words that do not reliably distinguish two objects."""
 
 _MISLEADING = frozenset({
     "no", "and", "area", "end", "without", "behind", "before", "painted", "name", "by", "under", "at", "near", "beside", "middle",
     "left", "right",
 })  # fmt: skip
-"""Words in names of two objects, of a location that several objects may be at, or of something that is absent."""
+"""Words that make a name ambiguous: it may be about two objects, a location, or something that is absent."""
 
-_LONGEST_NAME = 5  # words
-_VAGUE = frozenset({
+_MAX_NAME_WORDS = 5
+_HARD_TO_TELL_APART = frozenset({
     "tree", "bush", "hedge", "hill", "road", "pavement", "surface", "field", "grass", "plant", "shrub", "kerb", "track", "ground",
     "yew", "flower bed", "puddle", "marking", "sky", "fence panel", "guardrail", "pylon", "building", "house", "terrace",
     "townhouse", "gantry", "parking space", "bay number", "dock number", "walkway", "hatched zone", "road marking", "wheel stop",
     "wheel guide", "window", "door sign", "window notice", "fence", "silo", "chimney", "dock leveller", "dock shelter",
     "tram platform", "lane signal", "gate",
 })  # fmt: skip
-"""Categories whose objects nobody can tell apart by name."""
+"""Categories whose objects people cannot tell apart by name."""
 
 
-def nameable_things(truth: RobustTruth, min_pixels: int = 500, made_out_px: float = MADE_OUT_PX) -> list[NamedThing]:
-    """Return every object with a name that fits nothing else in view, under its shortest name."""
-    named = (*named_things(truth, min_pixels, made_out_px), *unique_things(truth, coloured=True, min_pixels=min_pixels))
+def nameable_things(truth: RobustTruth, min_pixels: int = 500, min_text_px: float = RECOGNISABLE_TEXT_PX) -> list[NamedThing]:
+    """Return all objects that can be identified by a name, each with one name.
+
+    The arguments are those of ``named_things``. Names from ``unique_things`` are preferred, because they are shorter.
+    """
+    named = (*named_things(truth, min_pixels, min_text_px), *unique_things(truth, coloured=True, min_pixels=min_pixels))
     return list({one.thing.instance.id: one for one in named}.values())
 
 
 def extreme_things(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedThing]:
-    """Yield the leftmost, rightmost and nearest of several objects of a kind, where there is no doubt which one it is."""
+    """Yield the leftmost, rightmost and nearest of several objects of a kind, if they are unambiguous."""
     for category in sorted({s.instance.category for s in truth.clear} - UNCOUNTED):
         kind = Kind(category)
         things = truth.all_of(kind)
-        if things is None or not 2 <= len(things) <= 9 or not whole_group(truth, kind):
+        if things is None or not 2 <= len(things) <= 9 or not is_complete_group(truth, kind):
             continue
         for axis_name, which in (("leftmost", 0), ("rightmost", -1)):
             end = outermost(truth, things, which)
             if end is not None and end.pixels >= min_pixels:
-                yield NamedThing(end, f"{axis_name} {called(category)}", kind, positional=True)
+                yield NamedThing(end, f"{axis_name} {everyday_name(category)}", kind, positional=True)
         near = sorted(things, key=lambda s: s.distance_m)
         if near[1].distance_m > near[0].distance_m * 1.2 and near[0].pixels >= min_pixels:
-            yield NamedThing(near[0], f"nearest {called(category)}", kind, positional=True)
+            yield NamedThing(near[0], f"nearest {everyday_name(category)}", kind, positional=True)
 
 
 def coloured_boards(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedThing]:
-    """Yield boards with lettering that differ in colour from others of their category ("navy shop sign")."""
+    """Yield boards with lettering that can be identified by their colour ("navy shop sign")."""
     for sighting in truth.clear:
         thing = sighting.instance
         colour = own_colour(thing)
@@ -230,23 +256,26 @@ _COLOURED_BOARDS = frozenset({"shop sign", "hanging sign", "pavement board"})
 
 
 def colours_confusable(one: str, other: str | None) -> bool:
-    """Whether two colours share a word or a plain colour, or are colours that people disagree on."""
+    """Return whether people could confuse two colours: they share a word or a plain colour, or are similar."""
     return (
         other is None
         or bool({*one.split()} & {*other.split()})
         or plain_colour(one) == plain_colour(other)
-        or near_colours(one, other)
+        or similar_colours(one, other)
     )
 
 
-def whole_group(truth: RobustTruth, kind: Kind) -> bool:
-    """Whether no other object of the kind is partly visible. A person could take such an object for the outermost one."""
+def is_complete_group(truth: RobustTruth, kind: Kind) -> bool:
+    """Return whether all visible objects of a kind are clearly visible.
+
+    A person could otherwise take a partly hidden object for the outermost one.
+    """
     visible = {s.instance.number for s in truth.all_of(kind) or ()}
     return not any(kind.fits(s.instance) and s.instance.number not in visible and s.pixels > 30 for s in truth.samples[0].sightings)
 
 
 def outermost(truth: RobustTruth, things: Sequence[Sighting], which: int) -> Sighting | None:
-    """Return the first (0) or last (-1) object from the left, or None when the one beside it is too close."""
+    """Return the leftmost (0) or rightmost (-1) object; None if its neighbour is too close to it."""
     order = sorted(things, key=lambda s: (s.box[0] + s.box[2]) / 2)
     pair = order[:2] if which == 0 else order[-2:]
     return order[which] if truth.in_order(pair, 0, 0.05) is not None else None

@@ -1,4 +1,4 @@
-"""All drafts of one scene, by category."""
+"""Create the drafts of one scene, by category."""
 
 from __future__ import annotations
 
@@ -29,16 +29,23 @@ from scope_ptz.taskgen.authoring.drafts import TaskDraft
 from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
-_OFF_PRESET_VIEWS = 64  # views away from the presets, per scene
-_VIEWS_TRIED = 2  # each of them is the one that shows most objects among this many
-_START_VIEWS = 3  # presets whose start view is asked about; such tasks can be answered without a move
-_MOST_GROUPS = 40  # pairs, and groups of three, of presets that are compared
-_MOST_OF_A_TYPE = 10  # drafts of one question type that are kept for a view
-_READING_VIEWS = 36  # views that are close enough to read a text, per scene
+_OFF_PRESET_VIEWS = 64  # number of views away from the presets, per scene
+_CANDIDATE_VIEWS = 2  # each such view is the candidate with the most objects among this many
+_START_VIEWS = 3  # number of presets with questions about the start view, which need no move
+_MAX_GROUPS = 40  # maximum number of compared pairs of presets, and of groups of three
+_MAX_PER_TYPE = 10  # maximum number of drafts per question type and view
+_READING_VIEWS = 36  # maximum number of views that are close enough to read a text, per scene
 
 
 class SceneDrafts:
-    """Drafts of a scene, in an order that the seed determines. Views are read only when a category needs them."""
+    """Creates the drafts of a scene, in an order that depends on the seed. The ground truth of a view is read on first use.
+
+    Args:
+        scene: The scene.
+        seed: Seed for every random choice.
+        nouns: Nouns of object categories that a question may be about even if the scene has no such object.
+        values: The values of attributes in all scenes.
+    """
 
     def __init__(self, scene: Scene, seed: int, nouns: frozenset[str], values: Values) -> None:
         self.scene, self.nouns, self.values = scene, nouns, values
@@ -50,30 +57,30 @@ class SceneDrafts:
 
     @cached_property
     def presets(self) -> list[TaskPlace]:
-        """Every preset, alternating between viewpoints."""
+        """All presets, taken from the viewpoints in turn."""
         by_viewpoint: dict[str, list[str]] = {}
         for preset in self.scene.file.presets:
             by_viewpoint.setdefault(preset.viewpoint, []).append(preset.name)
         longest = max(map(len, by_viewpoint.values()))
         names = [group[n] for n in range(longest) for group in by_viewpoint.values() if n < len(group)]
-        return [self.places.direct(name) for name in names]
+        return [self.places.from_other_preset(name) for name in names]
 
     @cached_property
     def views(self) -> list[TaskPlace]:
-        """The places that most categories share: presets, sweeps, views away from the presets, and a few start views."""
-        sweeps = {place.at.viewpoint: place for place in reversed(self.places.around()) if not place.calls}
-        stays = [self.places.stay(str(p.preset)) for p in self.presets]
+        """The places that most categories use: presets, sweeps, views away from the presets, and some start views."""
+        sweeps = {place.at.viewpoint: place for place in reversed(self.places.sweeps()) if not place.calls}
+        stays = [self.places.at_preset(str(p.preset)) for p in self.presets]
         self._rng("stays").shuffle(stays)
         return [*self.presets, *sweeps.values(), *self._off_presets(), *stays[:_START_VIEWS]]
 
     def _off_presets(self) -> Iterator[TaskPlace]:
-        """Yield views away from the presets, each the one of a few that shows most objects."""
-        stream, seen = self.places.off(), set[str]()
+        """Yield views away from the presets. Each is the one with the most objects among a few candidates."""
+        stream, seen = self.places.off_presets(), set[str]()
         for _ in range(_OFF_PRESET_VIEWS):
-            tried = [place for place in islice(stream, _VIEWS_TRIED) if place.key not in seen]
-            if not tried:
+            candidates = [place for place in islice(stream, _CANDIDATE_VIEWS) if place.key not in seen]
+            if not candidates:
                 return
-            best = max(tried, key=lambda place: len(place.truth.first.visible))
+            best = max(candidates, key=lambda place: len(place.truth.first.visible))
             seen.add(best.key)
             yield best
 
@@ -85,9 +92,9 @@ class SceneDrafts:
         self._rng("reading").shuffle(texts)
         for text in texts:
             for viewpoint in self.scene.file.viewpoints:
-                here = self.scene.viewpoint(viewpoint.name)
+                origin = self.scene.viewpoint(viewpoint.name)
                 centre = np.array(text.centre_m, dtype=np.float64)
-                towards = here.position_m - centre
+                towards = origin.position_m - centre
                 angle = float(angle_between_deg(np.cross(np.array(text.right), np.array(text.up)), towards))
                 if angle > 42 or text.parent in found:
                     continue
@@ -96,7 +103,7 @@ class SceneDrafts:
                 hfov = TASK_CAMERA.width / (22.0 / cap_deg)
                 if hfov < TASK_CAMERA.optics.hfov_deg(TASK_CAMERA.limits.max_zoom):
                     continue
-                pan, tilt = pan_tilt_deg(here.offset(centre))
+                pan, tilt = pan_tilt_deg(origin.offset(centre))
                 zoom = TASK_CAMERA.optics.zoom_for_hfov(min(hfov, TASK_CAMERA.optics.hfov_deg(1.0)))
                 place = self.places.towards(viewpoint.name, float(pan), float(tilt), zoom)
                 if place is not None and any(t.text.id == text.id and t.legible for t in place.truth.first.texts):
@@ -106,7 +113,7 @@ class SceneDrafts:
         return list(found.values())
 
     def drafts(self, category: Category) -> Iterator[TaskDraft]:
-        """Yield every draft of a category."""
+        """Yield all drafts of a category."""
         rng = self._rng(category)
         match category:
             case "single_call":
@@ -118,7 +125,7 @@ class SceneDrafts:
                     yield from ocr_tasks.drafts(place)
             case _:
                 for place in self.views:
-                    yield from _few(self._at(category, place), self._seed)
+                    yield from _limit_per_type(self._drafts_at(category, place), self._seed)
         if category == "comparative":
             for group in (*self._groups(2), *self._groups(3)):
                 yield from preset_comparisons.drafts(group, rng)
@@ -131,9 +138,9 @@ class SceneDrafts:
         rng = self._rng(f"groups:{size}")
         groups = [tuple(rng.sample(group, size)) for group in combinations(self.presets, size)]
         rng.shuffle(groups)
-        return groups[:_MOST_GROUPS]
+        return groups[:_MAX_GROUPS]
 
-    def _at(self, category: Category, place: TaskPlace) -> list[TaskDraft]:
+    def _drafts_at(self, category: Category, place: TaskPlace) -> list[TaskDraft]:
         rng = self._rng(f"{category}:{place.start}:{place.key}")
         match category:
             case "counting":
@@ -144,11 +151,11 @@ class SceneDrafts:
                 return location_tasks.drafts(place, self.nouns, rng)
             case "comparative":
                 return comparative_tasks.drafts(place, rng)
-        return reasoning_tasks.within(place, rng)
+        return reasoning_tasks.drafts_within_view(place, rng)
 
 
-def _few(drafts: list[TaskDraft], seed: str) -> Iterator[TaskDraft]:
-    """Yield a few drafts of each question type, with as many different answers as there are."""
+def _limit_per_type(drafts: list[TaskDraft], seed: str) -> Iterator[TaskDraft]:
+    """Yield a limited number of drafts of each question type, with as many different answers as possible."""
     by_type: dict[str, list[TaskDraft]] = {}
     for draft in sorted(drafts, key=lambda draft: draft.digest(seed)):
         by_type.setdefault(draft.question_type, []).append(draft)
@@ -159,4 +166,4 @@ def _few(drafts: list[TaskDraft], seed: str) -> Iterator[TaskDraft]:
             ranks.append(seen[draft.answer_key])
             seen[draft.answer_key] += 1
         order = sorted(range(len(group)), key=ranks.__getitem__)
-        yield from (group[at] for at in order[:_MOST_OF_A_TYPE])
+        yield from (group[at] for at in order[:_MAX_PER_TYPE])

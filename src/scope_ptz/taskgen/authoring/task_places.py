@@ -1,4 +1,4 @@
-"""PresetViewpoints: the start preset of a task, the moves from there to the view it is about, and phrases for these moves."""
+"""Places of tasks: a start preset, the moves from there to the view that the task is about, and phrases for these moves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SWEEP = (
 )  # fmt: skip
 
 
-_HARDLY_DEG = 2.5  # operators do not bother with smaller turns
+_MIN_TURN_DEG = 2.5  # smaller turns towards an object are omitted
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class TaskPlace:
         start: The preset at which the task starts.
         calls: The calls that lead to the view.
         at: Viewpoint and pose after these calls.
-        swept: Whether the task is about everything around the viewpoint instead of the view.
+        swept: Whether the task is about a sweep around the viewpoint instead of a single view.
     """
 
     scene: Scene
@@ -58,25 +58,25 @@ class TaskPlace:
 
     @property
     def key(self) -> str:
-        """Identify the view, whatever calls lead to it."""
+        """A key for the view, independent of the calls that lead to it."""
         pose = self.at.pose
         view = "all" if self.swept else f"{pose.pan_deg:.1f}/{pose.tilt_deg:.1f}/{pose.zoom:.2f}"
         return f"{self.scene.name}:{self.at.viewpoint}:{view}"
 
     @property
-    def stays(self) -> bool:
-        """Whether the task is about the start view."""
+    def is_start_view(self) -> bool:
+        """Whether the view is the start view, so that no call leads to it."""
         return not self.calls and not self.swept
 
     @property
     def preset(self) -> str | None:
-        """The preset of the view, when a single preset call leads to it."""
+        """The preset of the view if a single preset call leads to it; otherwise None."""
         only = self.calls[0] if len(self.calls) == 1 else None
         return str(only.arguments["name"]) if only is not None and only.tool == "go_to_preset" else None
 
     @property
     def aim(self) -> Aim:
-        """Viewpoint and pose, rounded as tasks store them."""
+        """Viewpoint and pose, with the rounding that stored tasks use."""
         pose = self.at.pose
         return Aim(
             viewpoint=str(self.at.viewpoint),
@@ -87,7 +87,7 @@ class TaskPlace:
 
     @property
     def final(self) -> FinalPose:
-        """The pose that a run must end at."""
+        """The camera position at which a run must end."""
         return FinalPose(**self.aim.model_dump())
 
     @property
@@ -97,7 +97,7 @@ class TaskPlace:
 
     @property
     def needs(self) -> tuple[Need, ...]:
-        """What an agent must do to see the view: change the preset, move, zoom, sweep."""
+        """The actions that an agent must take to see the view: change the preset, move, zoom, sweep."""
         found: list[Need] = []
         for call in self.calls:
             if call.tool in ("go_to_preset", "go_home"):
@@ -109,10 +109,10 @@ class TaskPlace:
         return tuple(dict.fromkeys([*found, *(["sweep"] if self.swept else [])]))  # type: ignore[list-item]
 
     def move_phrases(self, rng: random.Random) -> tuple[str, str]:
-        """Return the moves in words, without a capital or a full stop.
+        """Return the moves in words, without a capital letter or a full stop.
 
         Returns:
-            A complete phrase ("turn left and zoom in 2x"), and one that "and ..." can follow ("turn left, zoom in 2x").
+            A complete phrase ("turn left and zoom in 2x"), and a phrase to which "and ..." can be added ("turn left, zoom in 2x").
         """
         parts = [phrase for call in self.calls for phrase in call_phrases(call, rng)]
         if self.swept:
@@ -128,7 +128,7 @@ def joined(parts: list[str], rng: random.Random) -> str:
 
 
 def call_phrases(call: ProgramCall, rng: random.Random) -> list[str]:
-    """Return a call that moves the camera in words, one phrase per axis."""
+    """Return phrases for a call that moves the camera, one for each axis."""
     arguments = call.arguments
     if call.tool == "go_to_preset":
         return [rng.choice(_PRESET).format(p=arguments["name"])]
@@ -153,13 +153,13 @@ def preset_at(preset: ScenePreset) -> CameraPosition:
 
 
 def move(at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
-    """Return where an adjustment leads, or None when a limit of the camera would clamp it."""
+    """Return the camera position after an adjustment; None if a limit of the camera would clamp it."""
     pose, cut = TASK_CAMERA.limits.clamp(requested_pose(at.pose, AdjustPtz.model_validate(call.arguments), TASK_CAMERA.limits))
     return None if cut else CameraPosition(at.viewpoint, pose)
 
 
 def adjust(pan: float = 0.0, tilt: float = 0.0, factor: float | None = None) -> ProgramCall:
-    """Return a call that turns and zooms. Amounts of zero are left out."""
+    """Return a call that turns and zooms. Arguments of zero are omitted."""
     given = {"pan_deg": float(pan), "tilt_deg": float(tilt), "zoom_factor": factor}
     return ProgramCall(tool="adjust_ptz", arguments={k: v for k, v in given.items() if v})
 
@@ -169,33 +169,36 @@ def go(preset: str) -> ProgramCall:
     return ProgramCall(tool="go_to_preset", arguments={"name": preset})
 
 
-def elsewhere(one: TaskPlace, two: TaskPlace) -> TaskPlace:
-    """Return the start of a task about two presets: that of the first one, or a third preset where that is the second one."""
+def comparison_start(one: TaskPlace, two: TaskPlace) -> TaskPlace:
+    """Return the start of a task about two presets.
+
+    It is the start of the first place, or a third preset if that start is the second preset.
+    """
     names = [p.name for p in one.scene.file.presets]
     others = [name for name in names if name not in (one.preset, two.preset)]
     if one.start == two.preset and others:
-        # Any other preset will do, but it must be the same in every build and vary between pairs.
+        # The choice among the other presets must be the same in every build, and vary between pairs.
         return TaskPlace(one.scene, others[sum(map(ord, f"{one.preset}{two.preset}")) % len(others)], (), one.at)
     return TaskPlace(one.scene, one.start, (), one.at)
 
 
 class ScenePlaces:
-    """The places of a scene, drawn in a seeded order."""
+    """Samples places in a scene with a seeded random generator."""
 
     def __init__(self, scene: Scene, rng: random.Random) -> None:
         self.scene, self.presets = scene, {p.name: p for p in scene.file.presets}
         self._rng = rng
 
-    def direct(self, name: str) -> TaskPlace:
-        """Return a preset as a place that is reached from another preset."""
+    def from_other_preset(self, name: str) -> TaskPlace:
+        """Return the view of a preset, reached from another preset at which the task starts."""
         others = [p for p in self.presets if p != name] or [name]
         return TaskPlace(self.scene, self._rng.choice(others), (go(name),), preset_at(self.presets[name]))
 
-    def stay(self, name: str) -> TaskPlace:
-        """Return a preset as a place at which the task starts."""
+    def at_preset(self, name: str) -> TaskPlace:
+        """Return the view of a preset at which the task starts."""
         return TaskPlace(self.scene, name, (), preset_at(self.presets[name]))
 
-    def around(self) -> list[TaskPlace]:
+    def sweeps(self) -> list[TaskPlace]:
         """Return sweeps from every preset, some of them reached from another preset."""
         places = []
         for name, preset in self.presets.items():
@@ -206,12 +209,11 @@ class ScenePlaces:
         self._rng.shuffle(places)
         return places
 
-    def off(self) -> Iterator[TaskPlace]:
-        """Yield up to 3000 views away from the presets: turned, tilted or zoomed, some of them after a change of preset."""
-        names, tried = list(self.presets), 0
-        while tried < 3000:
-            name = names[tried % len(names)]
-            tried += 1
+    def off_presets(self) -> Iterator[TaskPlace]:
+        """Yield views away from the presets, from up to 3000 random moves. Some of them begin with a change of preset."""
+        names = list(self.presets)
+        for attempt in range(3000):
+            name = names[attempt % len(names)]
             call = self._adjustment()
             at = preset_at(self.presets[name])
             there = move(at, call)
@@ -240,10 +242,10 @@ class ScenePlaces:
         return adjust(pan, tilt)
 
     def towards(self, viewpoint: str, pan_deg: float, tilt_deg: float, zoom: float) -> TaskPlace | None:
-        """Return a view of a direction, whole degrees away from the nearest preset of that viewpoint.
+        """Return a view in a direction, which is reached from the nearest preset of the viewpoint by turning whole degrees.
 
         Returns:
-            The place, or None when the viewpoint has no preset or a limit of the camera is in the way.
+            The place; None if the viewpoint has no preset, or if a limit of the camera prevents the move.
         """
         near = [p for p in self.presets.values() if p.viewpoint == viewpoint]
         if not near:
@@ -254,8 +256,8 @@ class ScenePlaces:
         factor = next((f for f in (1.5, 2.0, 2.5, 3.0, 4.0) if at.pose.zoom * f >= zoom), None)
         if factor is None or at.pose.zoom * factor > TASK_CAMERA.limits.max_zoom:
             return None
-        # Operators do not turn a camera by a degree or two for an object that is in view anyway.
-        pan, tilt = (round(angle) if abs(angle) > _HARDLY_DEG else 0 for angle in (pan, tilt))
+        # A turn by one or two degrees would sound unnatural, because the object is in view without it.
+        pan, tilt = (round(angle) if abs(angle) > _MIN_TURN_DEG else 0 for angle in (pan, tilt))
         call = adjust(pan, tilt, factor)
         there = move(at, call)
         if there is None:

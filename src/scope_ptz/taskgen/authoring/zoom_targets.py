@@ -1,4 +1,4 @@
-"""Objects that ``zoom_to_object`` can frame: found for certain, entirely in view, and within the range of the lens."""
+"""Objects that ``zoom_to_object`` can frame: large enough to be detected, entirely in view, and within the zoom range."""
 
 from __future__ import annotations
 
@@ -13,15 +13,23 @@ from scope_ptz.taskgen.facts.kinds import SceneThing
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA, RobustTruth
 
 FILL = 0.75
-"""Share of the frame that a framed object takes up along its limiting side."""
+"""Share of the frame that a framed object fills along its limiting side."""
 
 
-SMALLEST_PX = 150
-"""Objects that cover fewer pixels are too small to be found for certain."""
+MIN_TARGET_PX = 150
+"""Minimum size of an object in pixels, so that it can be detected reliably."""
 
 
 def close_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, float]) -> tuple[Pose, float] | None:
-    """Return the pose that frames an outline, with the share of the frame that it fills, or None when the pose is out of reach."""
+    """Return the pose that frames an outline, and the share of the frame that the outline then fills.
+
+    Args:
+        hull_deg: Pan and tilt of the points of the outline, in degrees.
+        zoom_limits: Minimum and maximum zoom.
+
+    Returns:
+        The pose and the share; None if no pose shows the whole outline.
+    """
     outline = direction(*np.array(hull_deg, dtype=np.float64).T)
     middle = outline.mean(axis=0)
     pose, fill = Pose(), 0.0
@@ -44,9 +52,10 @@ def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace
     """Return the view after zooming in on an object.
 
     Returns:
-        The place, or None when the view cannot be predicted: the object is cut off or partly hidden, or a camera limit applies.
+        The place; None if the view cannot be predicted, because the object is too small, cut off or partly hidden, or because of a
+        camera limit.
     """
-    if sighting.cut or sighting.occluded or sighting.pixels < SMALLEST_PX:
+    if sighting.cut or sighting.occluded or sighting.pixels < MIN_TARGET_PX:
         return None
     extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
     limits = TASK_CAMERA.limits
@@ -59,7 +68,7 @@ def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace
 
 
 def framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing | None:
-    """Return the requirement to frame an object, or None when it is partly hidden or the lens has no margin to frame it."""
+    """Return the requirement to frame an object; None if it is partly hidden, or if the zoom range is too small to frame it."""
     close = framed(place, sighting, thing)
     extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
     if close is None or extent is None or sighting.share < 0.97:

@@ -1,4 +1,4 @@
-"""Build the whole dataset: every split, its proof, and the gold runs of the error modes."""
+"""Build the whole dataset: every split, its validation report, and the gold runs for the error modes."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ from scope_ptz.taskgen.gold.mutations import GoldRun
 from scope_ptz.taskgen.gold.reference_runs import matrix_lines
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
 
-REPORT_EVERY = 100
+PROGRESS_INTERVAL = 100
 """Number of validated tasks between two progress notes."""
 
-Prove = Callable[[Sequence[Task], int, Callable[[int, int], None]], ValidationReport]
+ValidateTasks = Callable[[Sequence[Task], int, Callable[[int, int], None]], ValidationReport]
+"""Validates tasks with a seed, and reports progress to a callback."""
 MakeGold = Callable[[Sequence[Task], int], list[GoldRun]]
+"""Creates the gold runs of tasks with a seed."""
 
 
 def build_dataset(
@@ -33,43 +35,43 @@ def build_dataset(
     numbers: Sequence[int],
     quotas: dict[Category, int] | None,
     *,
-    prove: Prove,
+    validate: ValidateTasks,
     make_gold: MakeGold,
-    answered: Callable[[TaskDraft], bool],
+    can_answer: Callable[[TaskDraft], bool],
     report: Callable[[str], None],
     notify: Callable[[str], None],
 ) -> bool:
-    """Write a dataset into a folder. The same scenes, seed and numbers give the same bytes.
+    """Write a dataset to a folder. The same scenes, seed and variations always give identical files.
 
     Args:
-        scenes: Scenes to make tasks for, by name.
-        out: Folder to write.
+        scenes: Scenes of the tasks, by name.
+        out: Folder of the dataset.
         seed: Seed for every random choice.
-        numbers: Variations of the scenes for the unseen split.
+        numbers: Numbers of the scene variations for the unseen split.
         quotas: Number of tasks of each category; None for the published numbers.
-        prove: Validates tasks.
-        make_gold: Makes gold runs.
-        answered: Whether ground-truth perception can answer what a draft asks.
-        report: Called with each line of the result.
-        notify: Called with notes about progress and shortfalls.
+        validate: Validates tasks.
+        make_gold: Creates gold runs.
+        can_answer: Returns whether ground-truth perception can answer the questions of a draft.
+        report: Receives each line of the result.
+        notify: Receives notes about progress and shortfalls.
 
     Returns:
         True if every quota was met and every task was validated.
     """
-    core = build(list(scenes.values()), seed, quotas, notify, answered)
-    unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda text: notify(f"unseen {text}"), answered)
+    core = build(list(scenes.values()), seed, quotas, notify, can_answer)
+    unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda text: notify(f"unseen {text}"), can_answer)
     short = [shortfall(core), shortfall(unseen, " unseen")]
     for text in filter(None, short):
         notify(text)
     written = write_splits(core.tasks, unseen.tasks, out, seed=seed)
     report(f"{len(core.tasks)} tasks and {len(unseen.tasks)} unseen ones in {out}")
 
-    proofs = {}
+    reports = {}
     for name, tasks in (("published", core.tasks), ("unseen", unseen.tasks)):
-        proofs[name] = prove(tasks, seed, partial(_notify_proved, notify, name))
-        report(f"{name}: {'sound' if proofs[name].sound else 'NOT SOUND: see scope bench validate'}")
+        reports[name] = validate(tasks, seed, partial(_notify_progress, notify, name))
+        report(f"{name}: {'sound' if reports[name].sound else 'NOT SOUND: run `scope bench validate` for details'}")
     written.append(out / PROOF)
-    written[-1].write_text(json.dumps({name: proof.as_dict() for name, proof in proofs.items()}, indent=1) + "\n", "utf-8")
+    written[-1].write_text(json.dumps({name: result.as_dict() for name, result in reports.items()}, indent=1) + "\n", "utf-8")
 
     gold = make_gold([task for task in core.tasks if task.stratum == "core"], seed)
     written.append(out / GOLD)
@@ -77,15 +79,15 @@ def build_dataset(
     for line in matrix_lines(gold):
         report(line)
     write_manifest(out, written, scenes.values(), seed=seed, unseen=list(numbers), **({} if quotas is None else {"quotas": quotas}))
-    return not any(short) and all(proof.sound for proof in proofs.values())
+    return not any(short) and all(result.sound for result in reports.values())
 
 
-def shortfall(built: BuiltTasks, of: str = "") -> str:
-    """Return a message that names the unmet quotas; empty if all quotas are met."""
+def shortfall(built: BuiltTasks, split: str = "") -> str:
+    """Return a message about unmet quotas; empty if all quotas are met. ``split`` qualifies the tasks, such as " unseen"."""
     missing = ", ".join(f"{number} of {name} are missing" for name, number in built.short.items())
-    return f"too few{of}: {missing}" if missing else ""
+    return f"too few{split} tasks: {missing}" if missing else ""
 
 
-def _notify_proved(notify: Callable[[str], None], name: str, done: int, total: int) -> None:
-    if done % REPORT_EVERY == 0 or done == total:
-        notify(f"{name}: proved {done} of {total}")
+def _notify_progress(notify: Callable[[str], None], name: str, done: int, total: int) -> None:
+    if done % PROGRESS_INTERVAL == 0 or done == total:
+        notify(f"{name}: validated {done} of {total}")

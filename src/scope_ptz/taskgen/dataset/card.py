@@ -1,4 +1,4 @@
-"""The dataset card, a Markdown page that is generated from the files of the dataset."""
+"""Write the dataset card, a Markdown page that is generated from the files of the dataset."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.bench.tasks.splits import load_split, read_manifest
 from scope_ptz.bench.tasks.task import CANARY, Task
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.dataset import distributions as d
-from scope_ptz.taskgen.gold.gold_runs import OTHER, confusion_matrix, read_gold
+from scope_ptz.taskgen.gold.gold_runs import WITHOUT_MODE, confusion_matrix, read_gold
 from scope_ptz.taskgen.picture_audit import Audit, AuditedAnswer, read_audit, task_digest
 
 GOLD, PROOF, AUDIT = "gold.jsonl.gz", "proof.json", "audit.json"
@@ -33,9 +33,9 @@ class Dataset:
     Attributes:
         splits: Tasks by split.
         manifest: The manifest.
-        proof: Results of the validation by part of the dataset.
+        proof: Validation results of the published and the unseen tasks, as stored in the file.
         gold: Path of the gold runs.
-        audit: The audit, if one was made.
+        audit: The picture audit; None if none was made.
     """
 
     splits: Mapping[str, tuple[Task, ...]]
@@ -88,9 +88,9 @@ def _what(data: Dataset) -> Iterator[str]:
     yield (
         "The tasks measure how well an agent, that is a planner together with a perception model, carries out instructions to one "
         "camera: whether it looks in the right direction, counts, reads, finds and compares correctly, and does what was asked and "
-        "nothing else. They serve to compare pairs of models under equal conditions, and to find out why runs fail.\n\n"
+        "nothing else. Use them to compare pairs of models under equal conditions, and to find out why runs fail.\n\n"
         "The tasks are not training data. The scores of a model that has seen them do not predict its scores on unseen tasks. The "
-        "tasks are also no evidence that an agent is fit to monitor people or to guard anything."
+        "scores also do not show that an agent is suitable for monitoring people or for security."
     )
     yield "## How the tasks were made"
     yield (
@@ -98,7 +98,7 @@ def _what(data: Dataset) -> Iterator[str]:
         "is entered by hand. A program reads the ground truth of views of the scenes and drafts tasks about them. It keeps only "
         "those whose answers also hold at poses that differ by 0.5 degrees and 3% of zoom, and with visibility thresholds that are "
         "30% lower or higher. [The benchmark](benchmark.md) explains the rules. The same scenes in the same order and the same "
-        "seed give the same bytes:"
+        "seed always produce identical files:"
     )
     made = data.manifest["made_with"]
     unseen = " ".join(map(str, made["unseen"]))
@@ -135,30 +135,31 @@ def _contents(data: Dataset) -> Iterator[str]:
     yield "## Contents"
     yield d.markdown_table(("split", "tasks", "description"), [(n, len(rows), _ABOUT[n]) for n, rows in data.splits.items()])
     yield "Core tasks by category and scene:"
-    yield d.markdown_table(*d.crossed(core, lambda t: t.category, lambda t: t.scene))
+    yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.scene))
     yield "By category and difficulty, which depends on the number of calls, the number of objects to tell apart, and a sweep:"
-    yield d.markdown_table(*d.crossed(core, lambda t: t.category, lambda t: t.difficulty))
+    yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.difficulty))
     yield "By category and scope:"
-    yield d.markdown_table(*d.crossed(core, lambda t: t.category, lambda t: t.scope))
+    yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.scope))
     yield "By the viewpoint that the answer depends on:"
-    yield d.chart(d.spread(core, lambda t: [d.viewpoint(t)]))
+    yield d.chart(d.value_counts(core, lambda t: [d.viewpoint(t)]))
     yield "By what an agent must do before it can answer (several may apply):"
-    yield d.chart(d.spread(core, lambda t: t.needs or ("nothing",)))
+    yield d.chart(d.value_counts(core, lambda t: t.needs or ("nothing",)))
 
 
 def _answers(data: Dataset) -> Iterator[str]:
     core = data.splits["core"]
     yield "## Answers"
     rows = [
-        (name, size, different, ", ".join(f"{value} ({n})" for value, n in most)) for name, size, different, most in d.answers(core)
+        (name, size, different, ", ".join(f"{value} ({n})" for value, n in most))
+        for name, size, different, most in d.answer_statistics(core)
     ]
     yield d.markdown_table(("category", "tasks", "different answers", "most frequent"), rows)
     yield "How often each number is the right answer (“there is none” counts as 0):"
-    yield d.chart(d.numbers(core))
-    stays = d.from_start(core)
+    yield d.chart(d.number_counts(core))
+    stays = d.start_view_count(core)
     yield (
-        f"{d.pairs(core)} tasks have the answer “there is none”. Each is paired with a task of the same wording whose object is "
-        f"present. {stays} of {len(core)} ({stays / len(core):.1%}) can be answered from the start view alone."
+        f"{d.pair_count(core)} tasks have the answer “there is none”. Each is paired with a task of the same wording whose object "
+        f"is present. {stays} of {len(core)} ({stays / len(core):.1%}) can be answered from the start view alone."
     )
 
 
@@ -183,7 +184,7 @@ def _proof(data: Dataset) -> Iterator[str]:
 def _gold(data: Dataset) -> Iterator[str]:
     _, runs = read_gold(data.gold, data.splits["core"])
     result = confusion_matrix(runs)
-    columns = [*(mode.value for mode in ErrorMode), *OTHER]
+    columns = [*(mode.value for mode in ErrorMode), *WITHOUT_MODE]
     yield "## Error modes"
     yield (
         f"{result.total} reference runs have one known fault each (`scope bench gold check`). The rules name the error mode of "
@@ -203,9 +204,9 @@ def _audit(data: Dataset) -> Iterator[str]:
     audit, by_id = data.audit, {task.id: task for task in data.splits["core"]}
     right, of = audit.share()
     yield (
-        "Readers saw only the instruction and the frames that the answer depends on. Tasks were drawn by category, scene and "
+        "Readers saw only the instruction and the frames that the answer depends on. Tasks were sampled by category, scene and "
         f"difficulty (`scope bench audit make --n {audit.draw.number} --seed {audit.draw.seed}`). {right} of {of} answers agree "
-        f"with the expected value ({right / of:.1%}). Drawn tasks without an answer: {len(audit.rows) - of}."
+        f"with the expected value ({right / of:.1%}). Sampled tasks without an answer: {len(audit.rows) - of}."
         if of
         else "No question was answered."
     )

@@ -1,4 +1,4 @@
-"""Distributions of a dataset over categories, scenes, viewpoints, difficulty, needs and right answers, as tables and charts."""
+"""Distributions of a dataset over categories, scenes, viewpoints, difficulty, needs and answers, as tables and charts."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, Text
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
-BAR_CHARS = 30  # length of the longest bar of a chart
-MOST_ANSWERS = 6  # answers that are listed per category
+BAR_CHARS = 30  # length of the longest bar in a chart
+MAX_ANSWERS = 6  # number of most frequent answers that are listed per category
 
 Key = Callable[[Task], str]
 _ORDER = {"easy": 1, "medium": 2, "hard": 3}
 
 
-def crossed(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], list[list[str | int]]]:
-    """Return the header and the rows of a table of counts. The last column and the last row are sums."""
+def cross_table(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], list[list[str | int]]]:
+    """Return the header and the rows of a table that counts tasks by two keys. The last column and row contain totals."""
     counts = Counter((rows(task), columns(task)) for task in tasks)
     across = sorted({column for _, column in counts}, key=lambda name: (_ORDER.get(name, 0), name))
     down = list(dict.fromkeys(rows(task) for task in tasks))
@@ -26,20 +26,23 @@ def crossed(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], 
     return ["", *across, "all"], body
 
 
-def spread(tasks: Iterable[Task], of: Callable[[Task], Iterable[str]]) -> list[tuple[str, int]]:
-    """Return how many tasks have each value, the most frequent first."""
-    return Counter(value for task in tasks for value in of(task)).most_common()
+def value_counts(tasks: Iterable[Task], values_of: Callable[[Task], Iterable[str]]) -> list[tuple[str, int]]:
+    """Return the number of tasks with each value, the most frequent value first."""
+    return Counter(value for task in tasks for value in values_of(task)).most_common()
 
 
 def viewpoint(task: Task) -> str:
-    """Return the viewpoint that the answer rests on, "several" for more than one; without evidence, where the camera must end."""
+    """Return the scene and viewpoint of a task's evidence, or of its final pose if it has no evidence.
+
+    The viewpoint is "several" if there is more than one, and "any" if there is none.
+    """
     aims = [view.aim.viewpoint for view in task.evidence] or ([task.behaviour.final.viewpoint] if task.behaviour.final else [])
     names = sorted(set(aims))
     return f"{task.scene} {names[0]}" if len(names) == 1 else f"{task.scene} several" if names else f"{task.scene} any"
 
 
-def answer(task: Task) -> str:
-    """Return the right answer in short, with one text for all actions and one for all absences."""
+def short_answer(task: Task) -> str:
+    """Return the correct answer as a short text. All actions have the same text, and so do all absences."""
     match task.expected:
         case ActionOnly():
             return "(an action)"
@@ -49,18 +52,18 @@ def answer(task: Task) -> str:
             return f"{task.expected.value:g}"
         case Text():
             return f"“{task.expected.accepted[0]}”"
-    return right_answers(task.expected)[0].strip(".").lower()
+    return correct_answers(task.expected)[0].strip(".").lower()
 
 
-def answers(tasks: Sequence[Task]) -> Iterator[tuple[str, int, int, list[tuple[str, int]]]]:
-    """Yield the name of each category, its size, its number of different answers, and the most frequent answers."""
+def answer_statistics(tasks: Sequence[Task]) -> Iterator[tuple[str, int, int, list[tuple[str, int]]]]:
+    """Yield each category with its number of tasks, its number of different answers, and its most frequent answers."""
     for category in dict.fromkeys(task.category for task in tasks):
-        counts = Counter(answer(task) for task in tasks if task.category == category)
-        yield category, counts.total(), len(counts), counts.most_common(MOST_ANSWERS)
+        counts = Counter(short_answer(task) for task in tasks if task.category == category)
+        yield category, counts.total(), len(counts), counts.most_common(MAX_ANSWERS)
 
 
-def numbers(tasks: Iterable[Task]) -> list[tuple[str, int]]:
-    """Return how often each number is the right answer. "There is none" counts as 0."""
+def number_counts(tasks: Iterable[Task]) -> list[tuple[str, int]]:
+    """Return the number of tasks with each number as the correct answer. "There is none" counts as 0."""
     counts = Counter(
         round(task.expected.value) if isinstance(task.expected, Number) else 0
         for task in tasks
@@ -69,13 +72,13 @@ def numbers(tasks: Iterable[Task]) -> list[tuple[str, int]]:
     return [(str(number), counts[number]) for number in sorted(counts)]
 
 
-def pairs(tasks: Iterable[Task]) -> int:
-    """Return how many tasks have the answer that there is none and a twin with a presence."""
+def pair_count(tasks: Iterable[Task]) -> int:
+    """Return the number of tasks with the answer "there is none" that have a twin about a present object."""
     return sum(isinstance(task.expected, NoneThere) and task.pair is not None for task in tasks)
 
 
-def from_start(tasks: Iterable[Task]) -> int:
-    """Return how many tasks need neither a move nor a zoom nor a sweep."""
+def start_view_count(tasks: Iterable[Task]) -> int:
+    """Return the number of tasks that can be answered from the start view."""
     return sum(not task.needs for task in tasks)
 
 
@@ -88,7 +91,7 @@ def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str | int]]) -> 
 
 
 def chart(values: Sequence[tuple[str, int]]) -> str:
-    """Return values as bars of text in a code block."""
+    """Return values as a bar chart of text in a code block."""
     most, width = max((n for _, n in values), default=0), max((len(name) for name, _ in values), default=0)
     lines = [f"{name:>{width}} {'█' * max(1, round(BAR_CHARS * n / most)) if n else ''} {n}" for name, n in values]
     return "\n".join(["```text", *lines, "```"])

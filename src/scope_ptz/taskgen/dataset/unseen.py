@@ -1,4 +1,4 @@
-"""The unseen split: core tasks in varied worlds of the same scenes."""
+"""Build the unseen split: core tasks in variations of the scenes."""
 
 from __future__ import annotations
 
@@ -17,26 +17,27 @@ def build_unseen(
     progress: Progress | None = None,
     can_answer: CanAnswer | None = None,
 ) -> BuiltTasks:
-    """Build core tasks in variations of some scenes.
+    """Build core tasks in variations of scenes.
 
     Args:
         scenes: The scenes.
-        numbers: Numbers of the variations. The tasks are spread over all variations of all scenes.
-        quotas: Tasks per category. By default the published ones.
+        numbers: Numbers of the variations. The tasks are distributed over all variations of all scenes.
+        quotas: Number of tasks per category; None for the published numbers.
         progress: Receives a line of text after every step.
-        can_answer: Whether perception can answer the reference program of a draft.
+        can_answer: Returns whether perception can answer the questions of a draft.
 
     Returns:
-        The tasks, and how many are missing.
+        The tasks, and the number of missing ones.
     """
     worlds = [(scene, number, scene.varied(number)) for scene in scenes for number in dict.fromkeys(numbers)]
-    # No core dataset uses such a seed, so that wordings and targets differ from it as well.
+    # Core datasets have smaller seeds, so that the wordings and objects of the unseen tasks differ from theirs.
     seed = 1_000_000 + sum(number * 31**k for k, number in enumerate(numbers))
-    made = build([world for _, _, world in worlds], seed, dict(quotas or QUOTAS), progress, can_answer)
+    built = build([world for _, _, world in worlds], seed, dict(quotas or QUOTAS), progress, can_answer)
     origins = {world.name: (scene, number) for scene, number, world in worlds}
-    tasks = [_of_scene(task, *origins[task.scene]) for task in made.tasks if task.stratum == "core"]
-    return BuiltTasks(tasks, made.short)
+    tasks = [_with_variation(task, *origins[task.scene]) for task in built.tasks if task.stratum == "core"]
+    return BuiltTasks(tasks, built.short)
 
 
-def _of_scene(task: Task, scene: Scene, number: int) -> Task:
+def _with_variation(task: Task, scene: Scene, number: int) -> Task:
+    """Return a task with the name of the original scene and the number of its variation."""
     return Task.model_validate({**task.model_dump(), "scene": scene.name, "variation": number})

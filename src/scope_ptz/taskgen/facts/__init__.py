@@ -1,5 +1,5 @@
-"""Facts that the making and the validation of tasks share.
+"""Facts about views, objects and answers, shared by the authoring and the validation of tasks.
 
-``robust`` reads the ground truth of a view and states only what certainly holds. ``kinds`` defines kinds of objects and which of
-them people confuse. ``answer_phrasing`` words right and wrong answers to an expected value, and ``near_duplicates`` compares tasks.
+``robust`` reads the ground truth of a view and reports only facts that are certain. ``kinds`` defines kinds of objects, and which
+of them people confuse. ``answer_phrasing`` words correct and wrong answers, and ``near_duplicates`` compares tasks.
 """

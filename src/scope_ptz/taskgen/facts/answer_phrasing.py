@@ -1,4 +1,4 @@
-"""Right and wrong answers in words to any expected value. Validation lets its programs give them."""
+"""Wordings of correct and wrong answers for every type of expected answer. Validation uses them as the answers of its runs."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from scope_ptz.bench.tasks.expected import (
 )
 from scope_ptz.english import number_word
 
-_PLACES = frozenset({"left", "right", "north", "south", "east", "west", "above", "below", "behind"})
-_UNLIKE = "ACDEFHJKMNPRTUVWXY2346790"
-"""Letters and digits that replace a letter of a text to simulate a misreading."""
+_DIRECTIONS = frozenset({"left", "right", "north", "south", "east", "west", "above", "below", "behind"})
+_MISREADINGS = "ACDEFHJKMNPRTUVWXY2346790"
+"""Letters and digits that replace a character of a text to simulate a misreading."""
 
 
-def right_answers(expected: AnyExpected) -> tuple[str, ...]:
-    """Return five or more wordings of the right answer."""
+def correct_answers(expected: AnyExpected) -> tuple[str, ...]:
+    """Return five or more wordings of the correct answer."""
     match expected:
         case Number():
             return _numbers(expected.value, expected.unit)
@@ -65,7 +65,7 @@ def right_answers(expected: AnyExpected) -> tuple[str, ...]:
 
 
 def offered(expected: AnyExpected, question: str) -> tuple[str, ...]:
-    """Return the answers that a question offers ("on the left or on the right?") in its order, or nothing without an offer."""
+    """Return the answers that a question offers ("on the left or on the right?"), in its order; empty if it offers none."""
     if not isinstance(expected, Choice | NameSet | Ordering):
         return ()
     found = list[tuple[int, int, str]]()
@@ -75,19 +75,19 @@ def offered(expected: AnyExpected, question: str) -> tuple[str, ...]:
     found.sort(key=lambda at: (at[0], -at[1]))
     names = list[str]()
     for (_, end, one), (start, _, other) in pairwise(found):
-        if one != other and 0 < start - end <= _OFFER_GAP and not set(question[end:start]) & set(".?!:;"):
+        if one != other and 0 < start - end <= _MAX_OFFER_GAP and not set(question[end:start]) & set(".?!:;"):
             names += [other] if names else [one, other]
         elif len(names) > 1 and start >= end:
             break
     return tuple(dict.fromkeys(names))
 
 
-_OFFER_GAP = 26
-"""Most characters between two answers that are offered together: "the red car or the"."""
+_MAX_OFFER_GAP = 26
+"""Maximum number of characters between two offered answers, for words such as " or the"."""
 
 
 def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:
-    """Return a readable answer that is wrong, or None when there is none (no question, or a single option)."""
+    """Return a wrong answer that the answer parser can read; None for a command or a question with only one option."""
     match expected:
         case Number():
             steps = [
@@ -96,7 +96,7 @@ def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:
             ]
             return rng.choice(_numbers(float(round(expected.value + rng.choice(steps))), expected.unit))
         case YesNo():
-            return rng.choice(right_answers(expected.model_copy(update={"value": not expected.value})))
+            return rng.choice(correct_answers(expected.model_copy(update={"value": not expected.value})))
         case Choice():
             others = [name for name in expected.options if name != expected.value]
             return rng.choice(_names(rng.choice(others))) if others else None
@@ -137,7 +137,7 @@ def plural(words: str) -> str:
 
 
 def in_words(number: int) -> str:
-    """Return a whole number in words below 100, else in digits."""
+    """Return a whole number in words if it is from 0 to 99, otherwise in digits."""
     if not 0 <= number < 100:
         return str(number)
     return number_word(number)
@@ -187,14 +187,14 @@ def _relations(expected: Relation, value: str) -> tuple[str, ...]:
             "There is no difference.",
         )
     words = expected.forward if value == "forward" else expected.backward
-    turned = expected.backward if value == "forward" else expected.forward
+    opposite = expected.backward if value == "forward" else expected.forward
     wordings = []
-    for way, this, that in ((words, one, two), (turned, two, one)):
+    for way, this, that in ((words, one, two), (opposite, two, one)):
         for word in way[:2]:
-            link = "of" if word in _PLACES else "than"
+            link = "of" if word in _DIRECTIONS else "than"
             wordings += [f"The {this} is {word} {link} the {that}.", f"{this}: {word} {link} {that}"]
     wordings.append(f"I would say that {wordings[0][0].lower()}{wordings[0][1:]}")
-    if not any(word in _PLACES for word in (*words, *turned)):
+    if not any(word in _DIRECTIONS for word in (*words, *opposite)):
         wordings += [f"The {one if value == 'forward' else two}."]
     return tuple(wordings)
 
@@ -219,8 +219,8 @@ def _other_set(expected: NameSet, rng: random.Random) -> tuple[str, ...]:
 
 
 def _misread(text: str, rng: random.Random) -> str:
-    """Return a text with one letter or digit replaced by another that does not look like it."""
-    places = [at for at, letter in enumerate(text) if letter.isalnum()]
-    at = rng.choice(places)
-    others = [letter for letter in _UNLIKE if letter.lower() != text[at].lower() and {letter, text[at].upper()} != {"0", "O"}]
+    """Return a text with one letter or digit replaced by a different one. "0" and "O" do not replace each other."""
+    positions = [at for at, letter in enumerate(text) if letter.isalnum()]
+    at = rng.choice(positions)
+    others = [letter for letter in _MISREADINGS if letter.lower() != text[at].lower() and {letter, text[at].upper()} != {"0", "O"}]
     return text[:at] + rng.choice(others) + text[at + 1 :]

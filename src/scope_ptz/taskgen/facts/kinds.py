@@ -1,7 +1,7 @@
-"""Kinds of objects that a question can be about, and the objects that a person could call by the name of a kind.
+"""Kinds of objects that a question can be about, and rules for objects that people might count as another kind.
 
-What one person calls a litter bin is a bin or a recycling bin to others. Where a view holds objects with such names, nothing is
-asked about them, so that no expected number is a matter of taste.
+One person's litter bin is a recycling bin to another. If people could disagree about an object in a view, no question is asked
+about its kind, so that every expected number is unambiguous.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ GROUPS: dict[str, frozenset[str]] = {
         "coach", "minibus", "truck",
     }),
 }  # fmt: skip
-"""Words for groups of categories, with the categories that certainly belong to each."""
+"""Groups of categories by name, each with the categories that certainly belong to it."""
 
 SIGNS = frozenset({
     "sign", "message sign", "arrow board", "board", "notice", "poster", "banner", "a-board", "shop sign", "no entry sign",
@@ -31,25 +31,25 @@ SIGNS = frozenset({
     "traffic sign", "road sign", "street sign", "parking sign", "estate agent board", "for sale board", "label", "placard",
     "speed sign", "dock number", "bay number", "pavement board", "wall sign", "window notice", "door sign", "company board",
 })  # fmt: skip
-"""Categories that could be called a sign."""
+"""Categories that people could call a sign."""
 
-KNOWN_BY_THEIR_FACE = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
-"""Categories that can be recognised only from the side with the lettering."""
+RECOGNISED_BY_TEXT = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
+"""Categories that people recognise only from the side with the lettering."""
 
-FACELESS = frozenset({
+UNRECOGNISABLE = frozenset({
     "cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal", "parking meter", "dock light",
     "camera pole",
 })  # fmt: skip
-"""Plain boxes, poles and lamps that look like others without a name from a distance. Nothing is asked about them."""
+"""Plain boxes, poles and lamps that people cannot recognise from a distance. No question is asked about them."""
 
-BACKDROP: Mapping[str, frozenset[str]] = {
+INCOMPLETE_CATEGORIES: Mapping[str, frozenset[str]] = {
     "highway-works": frozenset({"roller door", "door", "dock door", "window", "pallet"}),
     "station-square": frozenset({"awning"}),
     "freight-yard": frozenset({"roller door"}),
 }
-"""Categories that a scene shows but its ground truth does not hold completely, by scene.
+"""Categories whose visible objects are not all in the ground truth, by scene.
 
-They show in the backdrop or as parts of larger objects, or lie hidden under others so that people count them differently.
+Some are in the backdrop, are parts of larger objects, or lie under other objects, so that people count them differently.
 """
 
 _CONFUSED_CATEGORIES: tuple[frozenset[str], ...] = (
@@ -110,7 +110,7 @@ _CONFUSED_CATEGORIES: tuple[frozenset[str], ...] = (
 )  # fmt: skip
 """Groups of categories that people confuse."""
 
-_NEAR_COLOURS = (
+_SIMILAR_COLOURS = (
     {"silver", "grey"}, {"silver", "white"}, {"orange", "yellow"}, {"orange", "red"}, {"cream", "white"}, {"buff", "yellow"},
     {"purple", "pink"}, {"beige", "cream"}, {"beige", "brown"}, {"grey", "black"}, {"navy", "black"}, {"navy", "blue"},
     {"ochre", "yellow"}, {"ochre", "orange"}, {"ochre", "brown"}, {"golden", "yellow"}, {"golden", "brown"}, {"tan", "brown"},
@@ -120,11 +120,13 @@ _NEAR_COLOURS = (
     {"cream", "grey"}, {"light", "grey", "white"}, {"khaki", "green"}, {"khaki", "brown"},
 )  # fmt: skip
 
-_RIDDEN = frozenset({"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"})
-"""Categories whose driver can be seen."""
+_WITH_VISIBLE_DRIVER = frozenset(
+    {"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"}
+)
+"""Categories of vehicles whose driver may be visible."""
 
 _OTHER_NAMES = {"car": frozenset({"taxi", "cab"}), "bus": frozenset({"coach", "minibus"})}
-"""Words in the name of an object that some people would use instead of its category."""
+"""Words in the name of an object that some people would use instead of its category, by category."""
 
 COLOUR_WORDS = frozenset({
     "white", "black", "grey", "silver", "red", "blue", "navy", "green", "yellow", "orange", "brown", "beige", "cream", "buff",
@@ -137,14 +139,14 @@ SceneThing = SceneInstance | SceneActor
 
 @dataclass(frozen=True)
 class Kind:
-    """Objects of a category or group of categories, optionally of one colour or with one other attribute."""
+    """A kind of object: a category or group of categories, optionally with a colour or one other attribute."""
 
     category: str
     colour: str | None = None
     attribute: tuple[str, str] | None = None
 
     def fits(self, thing: SceneThing) -> bool:
-        """Whether an object certainly is of this kind."""
+        """Return whether an object certainly belongs to this kind."""
         facts = thing.attributes
         return (
             not self._has_other_name(thing)
@@ -154,17 +156,17 @@ class Kind:
         )
 
     def _has_other_name(self, thing: SceneThing) -> bool:
-        """Whether some people use another word for an object of this category: taxi for car, coach for bus."""
+        """Return whether some people use another word for an object of this category, such as "taxi" for a car."""
         return thing.category == self.category and bool(
             _OTHER_NAMES.get(self.category, frozenset()) & set(thing.name.lower().split())
         )
 
     def may_ride_on(self, thing: SceneThing) -> bool:
-        """Whether a person of this kind may be visible on a vehicle without being an object of the ground truth."""
-        return self.category in GROUPS["person"] and thing.category in _RIDDEN
+        """Return whether a vehicle may show a person of this kind who is not an object in the ground truth."""
+        return self.category in GROUPS["person"] and thing.category in _WITH_VISIBLE_DRIVER
 
     def ambiguous_with(self, thing: SceneThing) -> bool:
-        """Whether a person could call an object by the name of this kind although it does not fit."""
+        """Return whether people could count an object as this kind, although it does not fit."""
         if self.fits(thing):
             return False
         if self._has_other_name(thing):
@@ -176,53 +178,53 @@ class Kind:
         if self.attribute is not None:
             return self.attribute[0] not in thing.attributes
         colour = own_colour(thing) or ""
-        return not colour or bool(set((self.colour or "").split()) & set(colour.split())) or near_colours(self.colour, colour)
+        return not colour or bool(set((self.colour or "").split()) & set(colour.split())) or similar_colours(self.colour, colour)
 
 
 def own_colour(thing: SceneThing) -> str | None:
-    """Return the colour of an object itself, not that of clothes or of its contents ("planter with red flowers")."""
+    """Return the colour of an object itself; None if it is the colour of clothes or contents ("planter with red flowers")."""
     colour = thing.attributes.get("colour")
     if not isinstance(colour, str) or thing.category in GROUPS["person"] or not has_colour(thing):
         return None
     words = thing.name.lower().split()
-    behind = next((words[at + 1 :] for at, word in enumerate(words) if word in _JOINS), [])
-    return None if set(colour.split()) & set(behind) else colour
+    contents = next((words[at + 1 :] for at, word in enumerate(words) if word in _PREPOSITIONS), [])
+    return None if set(colour.split()) & set(contents) else colour
 
 
 def has_colour(thing: SceneThing) -> bool:
-    """Whether people would say that an object of this category has one colour."""
+    """Return whether people would describe an object of this category by a single colour."""
     return thing.category not in _COLOURLESS
 
 
 def colour_shows(thing: SceneThing) -> bool:
-    """Whether the picture shows the colour of an object and its name does not give it away.
+    """Return whether a picture shows the colour of an object, and its name does not reveal the colour.
 
-    Signs, striped objects and rolled-up doors do not show one colour.
+    Signs, striped objects and open doors do not show a single colour.
     """
     facts = thing.attributes
     striped = facts.get("pattern", "plain") != "plain"
-    rolled_up = "door" in thing.category and facts.get("state", "closed") != "closed"
+    open_door = "door" in thing.category and facts.get("state", "closed") != "closed"
     implied = not _COLOUR_IMPLYING.isdisjoint(thing.name.lower().split())
-    return thing.category not in SIGNS and not striped and not rolled_up and not implied
+    return thing.category not in SIGNS and not striped and not open_door and not implied
 
 
 _COLOUR_IMPLYING = frozenset({"concrete", "aluminium", "steel", "galvanised", "timber", "wooden", "brick"})
-"""Materials in a name that give the colour away."""
+"""Materials in a name that reveal the colour."""
 
 
 _COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
     "cyclist", "driver", "clock", "statue", "fox", "tram", "lorry", "articulated lorry", "charging point", "traffic light",
     "plate compactor", "belisha beacon",
 }  # fmt: skip
-"""Categories that people would not describe by a single colour, or by that colour."""
+"""Categories that people would not describe by the single colour in the ground truth."""
 
-_JOINS = frozenset({"of", "with", "in", "on", "for"})
+_PREPOSITIONS = frozenset({"of", "with", "in", "on", "for"})
 
 
-def near_colours(one: str | None, other: str) -> bool:
-    """Whether people disagree which of two colours an object has."""
+def similar_colours(one: str | None, other: str) -> bool:
+    """Return whether two colours are so similar that people disagree which of them an object has."""
     words = {*(one or "").split(), *other.split()}
-    return one is not None and any(words >= pair for pair in _NEAR_COLOURS)
+    return one is not None and any(words >= pair for pair in _SIMILAR_COLOURS)
 
 
 COUNTED_STATES: tuple[tuple[str, str, str], ...] = (
@@ -235,11 +237,11 @@ COUNTED_STATES: tuple[tuple[str, str, str], ...] = (
     ("lamp post", "state", "lit"), ("parking space", "state", "empty"), ("parking space", "state", "occupied"),
     ("umbrella", "state", "open"), ("container", "state", "open"),
 )  # fmt: skip
-"""States that can be recognised at a glance and therefore counted: category, attribute and value."""
+"""States that are easy to recognise, so that objects with them can be counted: category, attribute and value."""
 
 
 def kinds_in(things: Iterable[SceneThing]) -> list[Kind]:
-    """Return every kind among some objects in a fixed order: categories with and without colour, groups, and states."""
+    """Return the kinds of the given objects in a fixed order: categories with and without colour, groups, and states."""
     present = list(things)
     found = {(t.category, c) for t in present for c in (None, own_colour(t)) if c is None or " and " not in c}
     plain = [Kind(category, colour) for category, colour in sorted(found, key=str)]

@@ -1,7 +1,7 @@
-"""Near-duplicates among tasks: the same question about the same view in any words, or nearly the same words.
+"""Detect near-duplicate tasks: the same question about the same view in any words, or almost the same words.
 
-Texts are compared by the Jaccard similarity of their sets of five-letter shingles, numbers and names included. For a few thousand
-short texts this is as fast as an estimate by MinHash, and exact.
+Texts are compared by the Jaccard similarity of their sets of five-character shingles, including numbers and names. For a few
+thousand short texts, this is as fast as an estimate with MinHash, and exact.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from scope_ptz.bench.tasks.task import Task
 
 SHINGLE_CHARS = 5
-NEAR_SIMILARITY = 0.75
-"""Similarity from which two texts in the same world are near-duplicates."""
+MIN_SIMILARITY = 0.75
+"""Minimum similarity of near-duplicates. Only texts about the same scene and variation are compared."""
 
 
 def shingles(text: str) -> frozenset[str]:
@@ -25,12 +25,15 @@ def shingles(text: str) -> frozenset[str]:
 
 
 def similarity(one: frozenset[str], two: frozenset[str]) -> float:
-    """Return the Jaccard similarity of two sets."""
+    """Return the Jaccard similarity of two sets, from 0 to 1."""
     return len(one & two) / len(one | two) if one or two else 1.0
 
 
-def asked_about(task: Task) -> str | None:
-    """Return what a task asks about which views, independent of its words, or None when it asks nothing."""
+def question_key(task: Task) -> str | None:
+    """Return a key for the expected answer, the views and the objects of a task, independent of its words.
+
+    Return None for a task without evidence.
+    """
     if not task.evidence:
         return None
     views = [
@@ -43,33 +46,38 @@ def asked_about(task: Task) -> str | None:
 
 @dataclass(frozen=True)
 class NearDuplicate:
-    """A task that another one nearly repeats, with their similarity (1 when they ask the same about the same view)."""
+    """An earlier task that a new task repeats.
+
+    Attributes:
+        task: The id of the earlier task.
+        similarity: The similarity of their texts; 1 if they ask the same question about the same view.
+    """
 
     task: str
     similarity: float
 
 
 class KnownTasks:
-    """Tasks that new tasks are compared with."""
+    """The tasks with which new tasks are compared."""
 
     def __init__(self, tasks: Iterable[Task] = ()) -> None:
         self._texts: dict[str, list[tuple[str, frozenset[str]]]] = {}
-        self._asked: dict[str, str] = {}
+        self._questions: dict[str, str] = {}
         for task in tasks:
             self.add(task)
 
     def add(self, task: Task) -> None:
-        """Add a task to compare with."""
+        """Add a task, with which later tasks are compared."""
         self._texts.setdefault(task.world, []).append((task.id, shingles(task.instruction)))
-        if (asked := asked_about(task)) is not None:
-            self._asked.setdefault(asked, task.id)
+        if (key := question_key(task)) is not None:
+            self._questions.setdefault(key, task.id)
 
     def nearest(self, task: Task) -> NearDuplicate | None:
-        """Return the task that this one repeats or resembles most, or None when it resembles none enough."""
-        asked = asked_about(task)
-        if asked is not None and asked in self._asked:
-            return NearDuplicate(self._asked[asked], 1.0)
+        """Return the most similar task; None if no task is a near-duplicate."""
+        key = question_key(task)
+        if key is not None and key in self._questions:
+            return NearDuplicate(self._questions[key], 1.0)
         own = shingles(task.instruction)
         found = [NearDuplicate(name, similarity(own, other)) for name, other in self._texts.get(task.world, ())]
         best = max(found, key=lambda near: near.similarity, default=None)
-        return best if best is not None and best.similarity >= NEAR_SIMILARITY else None
+        return best if best is not None and best.similarity >= MIN_SIMILARITY else None

@@ -1,7 +1,7 @@
-"""Robust ground truth: what holds in a view even when pose, time and visibility thresholds change a little.
+"""Robust ground truth: facts about a view that remain true if the pose, time and visibility thresholds change slightly.
 
-The truth of a view is read at its pose and at eight further poses and moments around it. A statement is made only if it holds in
-all of them, and under visibility thresholds that are 30% lower and 30% higher. This module neither reads nor writes language.
+The ground truth of a view is read at its pose and at eight nearby poses and later times. A fact is reported only if it is true in
+all of them, and with visibility thresholds that are 30% lower and 30% higher. This module neither reads nor writes language.
 """
 
 from __future__ import annotations
@@ -32,34 +32,37 @@ from scope_ptz.simulator.truth import (
     ViewTruth,
     view_truth,
 )
-from scope_ptz.taskgen.facts.kinds import BACKDROP, FACELESS, KNOWN_BY_THEIR_FACE, Kind, SceneThing
+from scope_ptz.taskgen.facts.kinds import INCOMPLETE_CATEGORIES, RECOGNISED_BY_TEXT, UNRECOGNISABLE, Kind, SceneThing
 
 TASK_CAMERA = FrameGeometry(1280, 720)
-"""The camera that tasks are made and validated for."""
+"""The camera for which tasks are created and validated."""
 
-JITTER_DEG, JITTER_ZOOM = 0.5, 0.03  # how far the poses around differ in pan and tilt, and in zoom
+JITTER_DEG, JITTER_ZOOM = 0.5, 0.03  # offset of the nearby poses in pan and tilt (degrees), and in zoom (share)
 THRESHOLDS = (0.7, 1.0, 1.3)
-"""Factors of the visibility thresholds under which a statement must hold."""
+"""Factors by which the visibility thresholds are multiplied. A fact must be true with each of them."""
 
 TRACE_PX = 20
-"""Most pixels of an object that counts as absent. A person sees nothing of it."""
+"""Maximum number of visible pixels of an object that counts as absent. People do not notice so few pixels."""
 
 FAINT_PX = 40
-"""A person may count an object with more pixels even if it is not visible by definition. Its kind is then excluded from counts."""
+"""Maximum number of pixels of an object that people certainly do not count.
 
-_EDGE = 0.2
-"""Cosine of the angle to the normal of a surface below which it is seen edge-on."""
+If an object has more pixels but is not visible by definition, no question asks for the number of its kind.
+"""
+
+_MIN_FACING_COSINE = 0.2
+"""Minimum cosine of the angle between the line of sight and the normal of a text. Below it, the text is seen edge-on."""
 
 SOON_S = (0.5, 1.0, 1.5, 2.0, 4.5)
-"""Seconds after the start at which texts must be legible as well when actors pass by."""
+"""Seconds after the start at which texts must also be legible, if actors pass through the view."""
 
 LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
-"""Seconds after the start at which the poses around are read."""
+"""Seconds after the start at which the nearby poses are read, one for each pose."""
 
 
 @dataclass(frozen=True)
 class RobustTruth:
-    """Statements about a view that certainly hold.
+    """Facts about a view, or about a sweep, that are certainly true.
 
     Attributes:
         scene: The scene.
@@ -87,29 +90,29 @@ class RobustTruth:
 
     @cached_property
     def samples(self) -> tuple[ViewTruth, ...]:
-        """The ground truth at the pose, then at the corners of a box of poses around it, each at another moment."""
+        """The ground truth at the pose, then at eight nearby poses, each at another time."""
         if self.pose is None:
             moments = LATER_S[1::3]
             return self.first, *(self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + s) for s in moments)
         corners = product((-1, 1), repeat=3)
-        around = [
+        nearby = [
             Pose(self.pose.pan_deg + a * JITTER_DEG, self.pose.tilt_deg + b * JITTER_DEG, self.pose.zoom * (1 + c * JITTER_ZOOM))
             for a, b, c in corners
         ]
         return self.first, *(
             self.read_truth(self.scene, self.viewpoint, TASK_CAMERA.view(p), self.time_s + s)
-            for p, s in zip(around, LATER_S, strict=True)
+            for p, s in zip(nearby, LATER_S, strict=True)
         )
 
     @cached_property
-    def passing(self) -> frozenset[int]:
-        """Numbers of the actors that come into view at some time."""
+    def passing_actors(self) -> frozenset[int]:
+        """Numbers of the actors that are in view at some time."""
         found = _all_appearances(self.scene, self.viewpoint)
         return frozenset(number for number, seen in found.items() if any(shows(a, self.projection) for a in seen))
 
     @cached_property
     def _visible(self) -> dict[int, set[bool]]:
-        """For each object that shows in any sample, whether it is visible in each sample under each threshold."""
+        """For each object in any sample: the set of results of its visibility over all samples and thresholds."""
         found: dict[int, set[bool]] = {}
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings}
         for truth in self.samples:
@@ -120,8 +123,8 @@ class RobustTruth:
         return found
 
     def visibility(self, number: int) -> bool | None:
-        """Whether an object is certainly visible (True), certainly not (False), or neither (None)."""
-        if number in self.passing:
+        """Return True if an object is certainly visible, False if it is certainly not, and None if that is uncertain."""
+        if number in self.passing_actors:
             return None
         outcomes = self._visible.get(number, {False})
         return next(iter(outcomes)) if len(outcomes) == 1 else None
@@ -132,20 +135,23 @@ class RobustTruth:
         return tuple(s for s in self.samples[0].sightings if self.visibility(s.instance.number) and self.recognisable(s.instance))
 
     def recognisable(self, thing: SceneThing) -> bool:
-        """Whether an object can be recognised in a picture from here. Some categories are known only by their lettered side."""
+        """Return whether people can recognise an object in a picture from this viewpoint.
+
+        Objects of some categories are recognised only by their lettering, which must face the viewpoint.
+        """
         if self.unreliable(thing.category) or thing.attributes.get("canopy") == "rolled up":
-            return False  # without its canopy, a market stall is a bare frame
-        if thing.category not in KNOWN_BY_THEIR_FACE:
+            return False  # a market stall with a rolled-up canopy looks like a bare frame
+        if thing.category not in RECOGNISED_BY_TEXT:
             return True
-        from_here = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)
-        return any(_faces(text, from_here) for text in lettering(self.scene, thing.id)) or not lettering(self.scene, thing.id)
+        eye = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)
+        return any(_faces(text, eye) for text in lettering(self.scene, thing.id)) or not lettering(self.scene, thing.id)
 
     def unreliable(self, category: str) -> bool:
-        """Whether objects of a category cannot be recognised in this scene, or the ground truth does not hold all of them."""
-        return category in FACELESS or category in BACKDROP.get(self.scene.name, ())
+        """Return whether objects of a category cannot be recognised, or are not all in the ground truth of this scene."""
+        return category in UNRECOGNISABLE or category in INCOMPLETE_CATEGORIES.get(self.scene.name, ())
 
     def all_of(self, kind: Kind) -> tuple[Sighting, ...] | None:
-        """Return all visible objects of a kind, or None if that is uncertain or a person could see it differently."""
+        """Return all visible objects of a kind; None if their number is uncertain or people could disagree about it."""
         found = []
         if self.unreliable(kind.category):
             return None
@@ -164,7 +170,7 @@ class RobustTruth:
                     found.append(sighting)
             elif kind.ambiguous_with(thing) and self.visibility(thing.number) is not False:
                 return None
-        if any(kind.fits(a) or kind.may_ride_on(a) for a in self.scene.file.actors if a.number in self.passing):
+        if any(kind.fits(a) or kind.may_ride_on(a) for a in self.scene.file.actors if a.number in self.passing_actors):
             return None
         shown = {s.instance.number for s in self.samples[0].sightings}
         others = (s for truth in self.samples[1:] for s in truth.sightings if s.instance.number not in shown)
@@ -173,59 +179,59 @@ class RobustTruth:
         return tuple(found)
 
     def split_by_sweep(self, sighting: Sighting) -> bool:
-        """Whether an object lies across the two ends of a sweep, so that it has no single position."""
+        """Return whether an object extends over both ends of a sweep, so that it has no single position."""
         return self.pose is None and sighting.box[2] - sighting.box[0] > 0.5
 
     def lacks(self, kind: Kind) -> bool:
-        """Whether no object of a kind, nor any that could be mistaken for one, shows now or later."""
+        """Return whether the view certainly shows no object of a kind, nor a similar one, at any time."""
         if self.unreliable(kind.category) or any(
-            kind.fits(a) or kind.ambiguous_with(a) for a in self.scene.file.actors if a.number in self.passing
+            kind.fits(a) or kind.ambiguous_with(a) for a in self.scene.file.actors if a.number in self.passing_actors
         ):
             return False
         return not any(kind.fits(thing) or kind.ambiguous_with(thing) for thing in self.traces)
 
     @cached_property
     def faint(self) -> frozenset[int]:
-        """Numbers of the objects that show enough in some sample for an attentive person to count them."""
+        """Numbers of the objects that are large enough in some sample for an attentive person to count them."""
         return frozenset(s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > FAINT_PX)
 
     @cached_property
     def traces(self) -> tuple[SceneThing, ...]:
-        """Objects of which more than a trace is visible in any sample."""
+        """Objects with more than ``TRACE_PX`` visible pixels in any sample."""
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > TRACE_PX}
         return tuple(self.scene.by_number[number] for number in sorted(numbers))
 
     @cached_property
     def _ever_shown(self) -> tuple[SceneThing, ...]:
-        """Objects of which more than a trace is visible in any sample, and the actors that pass by."""
-        passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing)
+        """Objects with more than ``TRACE_PX`` visible pixels in any sample, and the actors that pass through the view."""
+        passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing_actors)
         return tuple(thing for thing in self.traces if thing not in passing) + passing
 
     def others(self, sighting: Sighting) -> tuple[SceneThing, ...]:
-        """Return all other objects that show in the view now or later."""
+        """Return all other objects that are in the view at any time."""
         return tuple(thing for thing in self._ever_shown if thing.number != sighting.instance.number)
 
     def centres(self, sighting: Sighting) -> list[tuple[float, float]]:
-        """Return the centre of an object in the frame (x and y from 0 to 1), at the pose and around it."""
+        """Return the centre of an object in the frame (x and y from 0 to 1) for each sample that shows it."""
         number = sighting.instance.number
         boxes = [s.box for truth in self.samples for s in truth.sightings if s.instance.number == number]
         return [((b[0] + b[2]) / 2, (b[1] + b[3]) / 2) for b in boxes]
 
     def areas(self, sighting: Sighting) -> list[float]:
-        """Return how many pixels an object covers, at the pose and around it."""
+        """Return the number of visible pixels of an object for each sample that shows it."""
         number = sighting.instance.number
         return [float(s.pixels) for truth in self.samples for s in truth.sightings if s.instance.number == number]
 
     def side(self, sighting: Sighting, axis: int, margin: float = 0.06) -> int | None:
-        """Return the half of the frame that certainly holds an object.
+        """Return the half of the frame in which an object certainly is.
 
         Args:
             sighting: The object.
             axis: 0 for left and right, 1 for upper and lower.
-            margin: Distance to the middle line, as a share of the frame.
+            margin: Minimum distance of the object's centre from the middle line, as a share of the frame.
 
         Returns:
-            0 for left or upper, 1 for right or lower, or None when the object is too close to the middle line.
+            0 for left or upper, 1 for right or lower; None if the object is too close to the middle line.
         """
         low, high = sighting.box[axis], sighting.box[axis + 2]
         middles = [spot[axis] for spot in self.centres(sighting)]
@@ -234,7 +240,7 @@ class RobustTruth:
         return 1 if min(middles) > 0.5 + margin and low > 0.5 - margin / 2 else None
 
     def in_order(self, things: Sequence[Sighting], axis: int, margin: float = 0.05) -> tuple[Sighting, ...] | None:
-        """Return objects from left to right (axis 0) or top to bottom (axis 1), or None when two of them are too close."""
+        """Return objects from left to right (axis 0) or top to bottom (axis 1); None if two of them are too close together."""
         spots = {s.instance.number: self.centres(s) for s in things}
         order = sorted(things, key=lambda s: spots[s.instance.number][0][axis])
         for one, two in pairwise(order):
@@ -245,29 +251,29 @@ class RobustTruth:
 
     @cached_property
     def legible(self) -> tuple[TextSighting, ...]:
-        """Texts that are certainly legible, from top to bottom and left to right."""
+        """Texts that are certainly legible, sorted from top to bottom and left to right."""
         sure = [{t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples]
         ids = frozenset.intersection(*(frozenset(names) for names in sure))
-        for later_s in SOON_S if ids and self.passing else ():
+        for later_s in SOON_S if ids and self.passing_actors else ():
             soon = self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
             ids &= {text.text.id for text in soon.legible}
         return tuple(sorted((t for t in self.samples[0].texts if t.text.id in ids), key=lambda t: (round(t.box[1], 2), t.box[0])))
 
     def texts_on(self, thing: SceneThing) -> tuple[TextSighting, ...] | None:
-        """Return all texts on an object and its parts, or None when one of them is only partly legible."""
-        family = with_parts(self.scene, thing.id)
+        """Return all texts on an object and its parts; None if one of them is only partly legible."""
+        part_ids = with_parts(self.scene, thing.id)
         legible_ids = {t.text.id for t in self.legible}
-        shown = [t for t in self.samples[0].texts if t.text.parent in family and t.unhidden_share > 0.3]
+        shown = [t for t in self.samples[0].texts if t.text.parent in part_ids and t.unhidden_share > 0.3]
         if any(t.text.id not in legible_ids and t.cap_height_px >= MIN_CAP_HEIGHT_PX * 0.35 for t in shown):
             return None
-        return tuple(t for t in self.legible if t.text.parent in family)
+        return tuple(t for t in self.legible if t.text.parent in part_ids)
 
     def item(self, sighting: Sighting, value: str | bool | float | None = None) -> Item:
-        """Return an object as evidence: where it shows, and the size at which a run must see it (70% of its size here)."""
+        """Return an object as evidence: its position, and the minimum size at which a run must see it (70% of its size here)."""
         return self._item(sighting.instance.id, sighting.box, value, None)
 
     def text_item(self, text: TextSighting) -> Item:
-        """Return a text as evidence."""
+        """Return a text as evidence: its position, and the minimum height of its capitals in a run."""
         cap_deg = text.cap_height_px / (self.projection.density * np.pi / 180)
         return self._item(text.text.id, text.box, text.text.text, float(cap_deg))
 
@@ -292,11 +298,11 @@ class RobustTruth:
 
 @lru_cache(maxsize=16)
 def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance, ...]]:
-    """Return where each actor appears during the first two minutes, twice a second, by its number."""
-    here, found = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
+    """Return the positions of each actor by its number, every 0.5 s during the first two minutes."""
+    origin, found = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
     longest = max((actor.period_s for actor in scene.file.actors), default=0.0)
     for moment in np.arange(0.0, min(longest, 120.0), 0.5):
-        for appearance in appearances(scene, here, float(moment)):
+        for appearance in appearances(scene, origin, float(moment)):
             found.setdefault(appearance.actor.number, []).append(appearance)
     return {number: tuple(seen) for number, seen in found.items()}
 
@@ -313,24 +319,24 @@ def with_parts(scene: Scene, whole: str) -> frozenset[str]:
 @lru_cache(maxsize=4096)
 def lettering(scene: Scene, whole: str) -> tuple[SceneText, ...]:
     """Return the texts on an object and its parts."""
-    family = with_parts(scene, whole)
-    return tuple(text for text in scene.file.texts if text.parent in family)
+    part_ids = with_parts(scene, whole)
+    return tuple(text for text in scene.file.texts if text.parent in part_ids)
 
 
 def _faces(text: SceneText, point: NDArray[np.float64]) -> bool:
-    """Whether a text faces a point with its written side, and not edge-on."""
+    """Return whether the front of a text faces a point and is not seen edge-on."""
     ahead = np.cross(text.right, text.up)
     towards = point - np.array(text.centre_m)
-    return float(ahead @ towards) > _EDGE * float(np.linalg.norm(towards))
+    return float(ahead @ towards) > _MIN_FACING_COSINE * float(np.linalg.norm(towards))
 
 
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:
-    """Whether an object is visible by definition, with both thresholds scaled."""
+    """Return whether an object is visible by definition, with both thresholds multiplied by ``scale``."""
     return sighting.pixels >= MIN_VISIBLE_PX * scale and sighting.share >= MIN_VISIBLE_SHARE * scale
 
 
 def legible(text: TextSighting, scale: float = 1.0) -> bool:
-    """Whether a text is legible by definition, with all thresholds scaled."""
+    """Return whether a text is legible by definition, with all thresholds made stricter by ``scale``."""
     return (
         text.cap_height_px >= MIN_CAP_HEIGHT_PX * scale
         and text.angle_deg <= min(MAX_READING_ANGLE_DEG / scale, 85.0)
@@ -340,5 +346,5 @@ def legible(text: TextSighting, scale: float = 1.0) -> bool:
 
 @lru_cache(maxsize=600)
 def robust_truth(scene: Scene, at: CameraPosition, time_s: float, *, swept: bool = False) -> RobustTruth:
-    """Return the robust ground truth of a view, or of a sweep from its viewpoint. Recent results are kept."""
+    """Return the robust ground truth of a view, or of a sweep from its viewpoint. Recent results are cached."""
     return RobustTruth(scene, at.viewpoint or "", None if swept else at.pose, time_s)

@@ -1,6 +1,6 @@
-"""Programs that work out the right answer to a draft from the ground truth, one per program name in the schema.
+"""Programs that compute the correct answer to a draft from the ground truth, one for each program name in the schema.
 
-A program uses robust ground truth only (see ``facts.robust``). A draft with an uncertain answer is rejected.
+Programs use only robust ground truth (see ``facts.robust``). A draft with an uncertain answer is rejected.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from scope_ptz.taskgen.facts.kinds import Kind
 from scope_ptz.taskgen.generating.draft_places import DraftRejectedError, places_of
 from scope_ptz.taskgen.generating.draft_schema import ALLOWED, Draft
 
-_MOST_COUNTED = 15  # people count larger numbers differently
+_MAX_COUNT = 15  # people disagree about larger counts
 TAG = "generated"
 
 
@@ -29,10 +29,10 @@ class _Solution:
     """The result of a program.
 
     Attributes:
-        expected: The right answer.
-        evidence: The views that it rests on.
+        expected: The correct answer.
+        evidence: The views from which it follows.
         program: The reference program.
-        size: Number of objects to distinguish.
+        size: Number of objects to tell apart.
         tags: Tags of the task.
     """
 
@@ -44,7 +44,13 @@ class _Solution:
 
 
 def task_of(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
-    """Make the task of a draft, with an expected value from the ground truth.
+    """Create a task from a draft, with an expected answer from the ground truth.
+
+    Args:
+        draft: The draft.
+        scene: The scene of the task.
+        name: Id of the task.
+        dataset: Name of the dataset.
 
     Raises:
         DraftRejectedError: The draft cannot become a task.
@@ -75,7 +81,7 @@ def task_of(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
         scope="full" if last.swept else "current",
         difficulty=difficulty(solution.program, solution.size, swept=last.swept),
         expected=solution.expected,
-        # Views that are compared or summed may be visited in any order.
+        # An agent may visit the views of a comparison or sum in any order.
         behaviour=Behaviour(final=last.final if len(places) == 1 or draft.program == "action" else None),
         evidence=solution.evidence,
         reference=solution.program,
@@ -85,7 +91,7 @@ def task_of(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
 
 
 def _compare(draft: Draft, expected: AnyExpected) -> None:
-    """Reject a draft whose expected answer is not the right one, or whose instruction contains the answer."""
+    """Reject a draft whose expected answer is wrong, or whose instruction contains the answer."""
     if isinstance(expected, ActionOnly):
         return
     reading = parse_answer(expected, draft.expected)
@@ -113,7 +119,7 @@ def _single(places: Sequence[TaskPlace]) -> TaskPlace:
 
 
 def _counted(place: TaskPlace, kind: Kind) -> tuple[Number | NoneThere, EvidenceView, int]:
-    """Return how many objects of a kind a view certainly shows, with the evidence."""
+    """Return the certain number of objects of a kind in a view, as an expected answer, as evidence and as a number."""
     things = place.truth.all_of(kind)
     if things is None:
         raise DraftRejectedError(f"the number of {many_of(kind)} in that view is uncertain")
@@ -122,8 +128,8 @@ def _counted(place: TaskPlace, kind: Kind) -> tuple[Number | NoneThere, Evidence
             raise DraftRejectedError(f"it is uncertain whether that view shows a {noun_of(kind)}")
         none = NoneThere(subject=unit_of(kind))
         return none, evidence_view(place, none, about(kind), whole=True), 0
-    if len(things) > _MOST_COUNTED:
-        raise DraftRejectedError(f"there are more than {_MOST_COUNTED} {many_of(kind)}: people would count them differently")
+    if len(things) > _MAX_COUNT:
+        raise DraftRejectedError(f"there are more than {_MAX_COUNT} {many_of(kind)}: people would count them differently")
     number = Number(value=float(len(things)), unit=unit_of(kind))
     return number, evidence_view(place, number, about(kind), [place.truth.item(t, True) for t in things], whole=True), len(things)
 
@@ -194,7 +200,7 @@ def _side(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
 
 
 def _most(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
-    """Return which of several kinds in a view is the most numerous, or which of several views shows most of one kind."""
+    """Return which of several kinds in a view is the most numerous, or which of several views shows the most of one kind."""
     kinds = _kinds(draft)
     if len(places) == 1 and len(kinds) > 1:
         pairs = [(places[0], kind, many_of(kind)) for kind in kinds]
@@ -224,7 +230,7 @@ def _sum(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     if len(set(shown)) < len(shown):
         raise DraftRejectedError("one thing shows in two of the views: a sum would count it twice")
     total = sum(number for _, _, number in found)
-    if not 0 < total <= _MOST_COUNTED:
+    if not 0 < total <= _MAX_COUNT:
         raise DraftRejectedError(f"the sum is {total}")
     number = Number(value=float(total), unit=unit_of(kind))
     visits = _visits([(place, kind, "") for place in places])
@@ -241,7 +247,7 @@ def _action(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
 
 
 def _visits(pairs: Sequence[tuple[TaskPlace, Kind, str]]) -> tuple[ProgramCall, ...]:
-    """Return the moves from view to view, with a count at each."""
+    """Return the moves from view to view, with a count call at each view."""
     program, done = list[ProgramCall](), 0
     for place, kind, _ in pairs:
         program += [*place.calls[done:], count_call(many_of(kind), place)]

@@ -1,4 +1,4 @@
-"""The record of every draft on disk. It allows resuming after an interruption, and gives a list for human review."""
+"""The record of all drafts on disk, from which generation resumes after an interruption. It also writes a list for review."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class LedgerEntry(BaseModel):
 
     Attributes:
         batch: Number of the request.
-        fate: What happened to the draft.
-        reason: Why it was not kept.
+        fate: Whether the draft was kept, or how it was rejected.
+        reason: The reason why it was not kept.
         draft: The draft as the model wrote it.
-        task: The task made of it, when it was kept.
+        task: The task created from the draft; None if it was not kept.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -40,7 +40,7 @@ class LedgerEntry(BaseModel):
 
 
 class DraftLedger:
-    """The record in a folder. Entries are only added, never changed."""
+    """The record of drafts in a folder. Entries are only added, never changed."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -53,26 +53,26 @@ class DraftLedger:
 
     @property
     def kept(self) -> list[Task]:
-        """The tasks of all kept drafts."""
+        """The tasks of all drafts that were kept."""
         return [entry.task for entry in self.entries if entry.task is not None and entry.fate == "kept"]
 
     @property
     def batches(self) -> int:
-        """Number of requests so far."""
+        """Number of requests to the model so far."""
         return max((entry.batch for entry in self.entries), default=0)
 
     def missing(self, requested: dict[Category, int]) -> dict[Category, int]:
-        """Return how many tasks of each category are still missing."""
-        have = Counter(task.category for task in self.kept)
-        return {category: number - have[category] for category, number in requested.items() if number > have[category]}
+        """Return the number of missing tasks for each category that is not complete."""
+        existing = Counter(task.category for task in self.kept)
+        return {category: number - existing[category] for category, number in requested.items() if number > existing[category]}
 
-    def last_reasons(self, most: int = 8) -> list[str]:
-        """Return why the most recent drafts were not kept, each reason once."""
+    def last_reasons(self, limit: int = 8) -> list[str]:
+        """Return the most recent reasons why drafts were not kept, without duplicates."""
         reasons = [entry.reason for entry in reversed(self.entries) if entry.fate in ("dropped", "near-duplicate")]
-        return list(dict.fromkeys(reasons))[:most]
+        return list(dict.fromkeys(reasons))[:limit]
 
     def add(self, entry: LedgerEntry) -> None:
-        """Record a draft on disk immediately."""
+        """Add an entry and write it to disk immediately."""
         row = entry.model_dump(mode="json", exclude={"task"})
         row["task"] = entry.task.model_dump(mode="json", exclude_defaults=True) if entry.task else None
         try:
@@ -103,7 +103,7 @@ def _entry(line: str, path: Path, number: int) -> LedgerEntry:
 
 
 def _review(entries: Sequence[LedgerEntry]) -> list[str]:
-    """Return the review list as Markdown. Text of the model is in code spans, so that it cannot act as markup."""
+    """Return the review list as Markdown. The model's text is in code spans, so that it is not interpreted as markup."""
     fates = Counter(entry.fate for entry in entries)
     lines = [
         "# Drafted tasks for review",

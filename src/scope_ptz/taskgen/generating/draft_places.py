@@ -1,4 +1,4 @@
-"""The views of a draft as places in the scene, and the check that its instruction states the moves."""
+"""Resolve the views of a draft to places in the scene, and check that its instruction states the moves."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _AROUND = re.compile(
     r"\b(?:around|round|sweep|whole|everything|entire|everywhere|all directions|every direction|full)\b", re.IGNORECASE
 )
 _TIMES = {2.0: ("twice", "double"), 3.0: ("three times", "triple"), 0.5: ("half",), 4.0: ("four times",)}
-_MOST_CALLS = 6
+_MAX_CALLS = 6
 
 
 class DraftRejectedError(Exception):
@@ -23,7 +23,7 @@ class DraftRejectedError(Exception):
 
 
 def places_of(draft: Draft, scene: Scene) -> list[TaskPlace]:
-    """Return the views of a draft as places.
+    """Return the places of a draft, one for each view.
 
     Raises:
         DraftRejectedError: A move is not possible, or the instruction does not state it.
@@ -49,8 +49,8 @@ def places_of(draft: Draft, scene: Scene) -> list[TaskPlace]:
                 at = there
             calls.append(call)
         places.append(TaskPlace(scene, draft.start, tuple(calls), at, swept=view.sweep))
-    if len(calls) > _MOST_CALLS:
-        raise DraftRejectedError(f"more than {_MOST_CALLS} moves")
+    if len(calls) > _MAX_CALLS:
+        raise DraftRejectedError(f"more than {_MAX_CALLS} moves")
     if wrong := next(unstated_moves(draft), None):
         raise DraftRejectedError(wrong)
     return places
@@ -73,7 +73,7 @@ def _amounts(step: Move) -> list[float]:
 
 
 def _states(text: str, amount: float) -> bool:
-    """Whether a text states a number, in digits or in words."""
+    """Return whether a text contains a number, in digits or in words."""
     if any(f" {word} " in text for word in _TIMES.get(amount, ())):
         return True
     if any(float(number) == amount for number in re.findall(r"\d+(?:\.\d+)?", text)):

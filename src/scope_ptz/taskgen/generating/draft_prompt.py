@@ -1,6 +1,7 @@
-"""The prompt for drafts: inventory of the scene, views and how they change, requested numbers, examples, feedback of operators.
+"""Write the prompt that requests drafts from a language model.
 
-The wording of the prompt influences which drafts a model writes.
+It contains the inventory of the scene, facts about views, the requested numbers, example tasks and recorded runs of operators.
+Changing its wording changes the drafts that a model writes.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ from scope_ptz.taskgen.generating.draft_schema import ALLOWED
 from scope_ptz.taskgen.generating.operator_runs import OperatorRun
 
 ADJUSTMENTS = ((30.0, 0.0, None), (-30.0, 0.0, None), (0.0, -8.0, None), (0.0, 0.0, 2.0))
-"""Pan, tilt and zoom of the adjustments whose effect on each view is described."""
+"""Pan, tilt and zoom factor of the adjustments whose effect on each view is described in the prompt."""
 
-EXAMPLES, PRESETS_AT_ONCE = 8, 4  # how many example tasks and views one prompt holds
+EXAMPLES, PRESETS_PER_PROMPT = 8, 4  # number of example tasks and of views in one prompt
 _RULES = """You write tasks for a benchmark of agents that steer a pan-tilt-zoom camera in a simulated scene.
 Reply with JSON only: {"drafts": [...]}, as the schema says. A draft has:
 - instruction: what an operator would say, in natural and varied English. It names every preset and says every angle and zoom that
@@ -50,12 +51,12 @@ def messages(
     Args:
         scene: The scene.
         requested: Number of drafts per category.
-        examples: Tasks that examples are drawn from.
+        examples: Tasks from which examples are chosen.
         runs: Recorded runs of operators.
-        dropped: Why recent drafts were not kept.
+        dropped: Reasons why recent drafts were not kept.
         rng: Source of the random choices.
     """
-    shown = rng.sample(list(scene.file.presets), min(PRESETS_AT_ONCE, len(scene.file.presets)))
+    shown = rng.sample(list(scene.file.presets), min(PRESETS_PER_PROMPT, len(scene.file.presets)))
     content = {
         "scene": scene.file.title,
         "inventory": inventory(scene),
@@ -77,7 +78,7 @@ def messages(
 
 
 def inventory(scene: Scene) -> dict[str, Any]:
-    """Return how many objects of each category and colour the scene holds."""
+    """Return the number of objects of each category and colour in the scene."""
     found: dict[str, Counter[str]] = {}
     for thing in scene.things:
         found.setdefault(thing.category, Counter())[str(thing.attributes.get("colour", "no colour"))] += 1
@@ -85,7 +86,7 @@ def inventory(scene: Scene) -> dict[str, Any]:
 
 
 def view_facts(scene: Scene, preset: ScenePreset) -> dict[str, Any]:
-    """Return what the view of a preset certainly shows, and how that changes under some adjustments."""
+    """Return the objects that the view of a preset certainly shows, and how they change with each adjustment."""
     at = preset_at(preset)
     here = TaskPlace(scene, preset.name, (), at)
     base = certain_counts(here)
@@ -108,7 +109,7 @@ def view_facts(scene: Scene, preset: ScenePreset) -> dict[str, Any]:
 
 
 def certain_counts(place: TaskPlace) -> dict[str, int]:
-    """Return how many objects of each category and colour certainly show at a place. Uncertain kinds are left out."""
+    """Return the number of visible objects of each category and colour at a place. Uncertain kinds are omitted."""
     kinds = [kind for kind in kinds_in(s.instance for s in place.truth.clear) if kind.attribute is None]
     objects = ((kind, place.truth.all_of(kind)) for kind in kinds)
     return {_name(kind): len(things) for kind, things in objects if things}

@@ -1,7 +1,7 @@
-"""The format of drafts that a model writes. They are data, never code, and everything in them is checked before use.
+"""The format of drafts that a model writes. Drafts are data, never code, and are validated before use.
 
-A draft states how to get to one or several views, which program over the ground truth answers it, and the expected answer. That
-answer is only compared with the right one. Class names and docstrings are part of the schema that the model receives.
+A draft contains the moves to one or more views, the program that computes the answer from the ground truth, and the answer that the
+model expects, which is compared with the computed one. Class names and docstrings are part of the schema that the model receives.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ ALLOWED: dict[Category, tuple[Program, ...]] = {
     "multi_step_reasoning": ("sum", "most"),
     "comparative": ("most",),
 }
-"""Programs that can make a task of each category."""
+"""Programs that are allowed for tasks of each category."""
 
-MOST_DRAFTS, MOST_CHARS = 20, 200_000  # drafts and characters of one reply
+MAX_DRAFTS, MAX_REPLY_CHARS = 20, 200_000  # maximum number of drafts and of characters in one reply
 Word = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[\w][\w '/&-]*$")]
 _FENCE = re.compile(r"\A\s*```(?:json)?\s*(.*?)\s*```\s*\Z", re.DOTALL)
 
@@ -88,7 +88,7 @@ def reply_schema() -> dict[str, Any]:
     """Return the JSON schema of a reply: a list of drafts."""
     return {
         "type": "object",
-        "properties": {"drafts": {"type": "array", "items": {"$ref": "#/$defs/Draft"}, "maxItems": MOST_DRAFTS}},
+        "properties": {"drafts": {"type": "array", "items": {"$ref": "#/$defs/Draft"}, "maxItems": MAX_DRAFTS}},
         "required": ["drafts"],
         "additionalProperties": False,
         "$defs": {**Draft.model_json_schema().get("$defs", {}), "Draft": _without_defs(Draft.model_json_schema())},
@@ -105,8 +105,8 @@ def read_reply(text: str) -> list[Any]:
     Raises:
         ValueError: The reply is not a list of drafts.
     """
-    if len(text) > MOST_CHARS:
-        raise ValueError(f"the reply is longer than {MOST_CHARS} characters")
+    if len(text) > MAX_REPLY_CHARS:
+        raise ValueError(f"the reply is longer than {MAX_REPLY_CHARS} characters")
     fenced = _FENCE.match(text)
     try:
         content = json.loads(fenced.group(1) if fenced else text)
@@ -115,7 +115,7 @@ def read_reply(text: str) -> list[Any]:
     rows = content.get("drafts") if isinstance(content, dict) else content
     if not isinstance(rows, list):
         raise ValueError("the reply has no list of drafts")  # noqa: TRY004 - a wrong value in a reply is not a TypeError
-    return rows[:MOST_DRAFTS]
+    return rows[:MAX_DRAFTS]
 
 
 def read_draft(row: Any) -> Draft | str:

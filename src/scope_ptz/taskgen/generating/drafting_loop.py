@@ -1,4 +1,4 @@
-"""The drafting loop: request drafts, check and record each of them, and repeat until there are enough tasks."""
+"""The drafting loop: request drafts, validate and record each one, and repeat until there are enough tasks."""
 
 from __future__ import annotations
 
@@ -19,26 +19,27 @@ from scope_ptz.taskgen.generating.draft_prompt import messages
 from scope_ptz.taskgen.generating.draft_schema import Draft, read_draft, read_reply, reply_schema
 from scope_ptz.taskgen.generating.operator_runs import OperatorRun
 
-BATCH = 8  # drafts per request
+BATCH_SIZE = 8  # drafts per request
 
-Prove = Callable[[Task], Awaitable[str | None]]
-"""Returns why a task is not sound, or None when its reference program passes and adversarial attempts fail."""
+ValidateTask = Callable[[Task], Awaitable[str | None]]
+"""Returns the reason why a task is invalid; None if its reference program passes and adversarial attempts fail."""
 
 Progress = Callable[[str], None]
+"""Receives a line of text."""
 
 
 @dataclass(frozen=True)
 class GenerationRequest:
-    """What to generate.
+    """The settings of a generation.
 
     Attributes:
         scene: The scene of the tasks.
         requested: Number of tasks per category.
-        known: Tasks that must not be repeated. They also serve as examples.
+        known: Tasks that must not be repeated. The prompt uses some of them as examples.
         runs: Recorded runs of operators.
         seed: Seed for every random choice.
-        most_requests: Largest number of requests to the model, earlier ones in the ledger included.
-        failures: Number of consecutive requests without a usable reply after which generation stops.
+        max_requests: Maximum number of requests to the model, including those that are already in the ledger.
+        max_failures: Number of consecutive requests without a usable reply after which generation stops.
     """
 
     scene: Scene
@@ -46,45 +47,49 @@ class GenerationRequest:
     known: Sequence[Task] = ()
     runs: Sequence[OperatorRun] = ()
     seed: int = 1
-    most_requests: int = 20
-    failures: int = 3
+    max_requests: int = 20
+    max_failures: int = 3
 
 
-async def generate(request: GenerationRequest, complete: Complete, prove: Prove, ledger: DraftLedger, progress: Progress) -> None:
-    """Request drafts until every category has its number or the requests are used up. Earlier entries of the ledger count.
+async def generate(
+    request: GenerationRequest, complete: Complete, validate: ValidateTask, ledger: DraftLedger, progress: Progress
+) -> None:
+    """Request drafts until every category is complete or the maximum number of requests is reached.
+
+    Drafts that the ledger already contains count as well.
 
     Args:
-        request: What to generate.
+        request: The settings.
         complete: Sends a request to the model.
-        prove: Checks a task by running it.
+        validate: Validates a task by running it.
         ledger: The record to resume and extend.
         progress: Receives a line of text after every request.
 
     Raises:
-        NoReplyError: The model repeatedly gave no usable reply. Tasks that were kept before remain in the ledger.
+        NoReplyError: The model repeatedly gave no usable reply. The ledger still contains the tasks that were kept before.
     """
     known = KnownTasks([*request.known, *ledger.kept])
     examples = [task for task in request.known if task.scene == request.scene.file.name] or list(request.known)
-    without = 0
-    for batch in range(ledger.batches + 1, request.most_requests + 1):
+    failures = 0
+    for batch in range(ledger.batches + 1, request.max_requests + 1):
         missing = ledger.missing(request.requested)
         if not missing:
             return
-        requested = _share(missing, BATCH)
+        requested = _share(missing, BATCH_SIZE)
         rng = random.Random(f"{request.seed}:{batch}")
-        asked = messages(request.scene, requested, examples, request.runs, ledger.last_reasons(), rng)
+        prompt = messages(request.scene, requested, examples, request.runs, ledger.last_reasons(), rng)
         try:
-            rows = read_reply((await complete(asked, reply_schema())).text)
+            rows = read_reply((await complete(prompt, reply_schema())).text)
         except (ValueError, NoReplyError) as error:
             ledger.add(LedgerEntry(batch=batch, fate="no reply", reason=str(error)[:300]))
             progress(f"request {batch}: {error}")
-            without += 1
-            if without == request.failures:
-                raise NoReplyError(f"{without} requests in a row brought no drafts; the last: {error}") from error
+            failures += 1
+            if failures == request.max_failures:
+                raise NoReplyError(f"{failures} consecutive requests returned no drafts. The last error: {error}") from error
             continue
-        without = 0
+        failures = 0
         for row in rows:
-            entry = await _checked(row, request, known, ledger, prove, batch)
+            entry = await _ledger_entry(row, request, known, ledger, validate, batch)
             ledger.add(entry)
             if entry.fate == "kept" and entry.task is not None:
                 known.add(entry.task)
@@ -94,41 +99,41 @@ async def generate(request: GenerationRequest, complete: Complete, prove: Prove,
         progress(f"request {batch}: " + ", ".join(f"{number} {fate}" for fate, number in fates.items()))
 
 
-async def _checked(
-    row: object, request: GenerationRequest, known: KnownTasks, ledger: DraftLedger, prove: Prove, batch: int
+async def _ledger_entry(
+    row: object, request: GenerationRequest, known: KnownTasks, ledger: DraftLedger, validate: ValidateTask, batch: int
 ) -> LedgerEntry:
-    """Check one draft."""
+    """Validate one draft, and return its entry for the ledger."""
     draft = read_draft(row)
     if not isinstance(draft, Draft):
-        return LedgerEntry(batch=batch, fate="dropped", reason=draft, draft=_brief(row))
+        return LedgerEntry(batch=batch, fate="dropped", reason=draft, draft=_shortened(row))
     number = len(ledger.kept) + 1
     category = draft.category.replace("_", "-")
     name = f"{DATASET}-{request.scene.name}-generated-{category}-{number:03d}"
     if not ledger.missing(request.requested).get(draft.category):
         reason = f"no more tasks of the category {draft.category} are needed"
-        return LedgerEntry(batch=batch, fate="dropped", reason=reason, draft=_brief(row))
+        return LedgerEntry(batch=batch, fate="dropped", reason=reason, draft=_shortened(row))
     try:
         task = task_of(draft, request.scene, name, DATASET)
     except DraftRejectedError as rejected:
-        return LedgerEntry(batch=batch, fate="dropped", reason=str(rejected), draft=_brief(row))
+        return LedgerEntry(batch=batch, fate="dropped", reason=str(rejected), draft=_shortened(row))
     if (near := known.nearest(task)) is not None:
         reason = f"{near.similarity:.0%} similar to {near.task}"
-        return LedgerEntry(batch=batch, fate="near-duplicate", reason=reason, draft=_brief(row))
-    if (unsound := await prove(task)) is not None:
-        return LedgerEntry(batch=batch, fate="dropped", reason=f"validation failed: {unsound}", draft=_brief(row))
-    return LedgerEntry(batch=batch, fate="kept", draft=_brief(row), task=task)
+        return LedgerEntry(batch=batch, fate="near-duplicate", reason=reason, draft=_shortened(row))
+    if (fault := await validate(task)) is not None:
+        return LedgerEntry(batch=batch, fate="dropped", reason=f"validation failed: {fault}", draft=_shortened(row))
+    return LedgerEntry(batch=batch, fate="kept", draft=_shortened(row), task=task)
 
 
-def _brief(row: object) -> object:
-    """Return a draft for the record. A large draft, or one that is not an object, is cut to the beginning of its text."""
+def _shortened(row: object) -> object:
+    """Return a draft for the ledger. A large draft, or one that is not an object, is replaced by the beginning of its text."""
     return row if isinstance(row, dict) and len(str(row)) < 4000 else str(row)[:300]
 
 
-def _share(missing: dict[Category, int], most: int) -> dict[Category, int]:
-    """Return the numbers per category for one request, filled alternately."""
+def _share(missing: dict[Category, int], size: int) -> dict[Category, int]:
+    """Return the number of drafts per category for one request of up to ``size`` drafts, taken from the categories in turn."""
     requested: Counter[Category] = Counter()
-    while sum(requested.values()) < min(most, sum(missing.values())):
+    while sum(requested.values()) < min(size, sum(missing.values())):
         for category, number in missing.items():
-            if requested[category] < number and sum(requested.values()) < most:
+            if requested[category] < number and sum(requested.values()) < size:
                 requested[category] += 1
     return dict(requested)

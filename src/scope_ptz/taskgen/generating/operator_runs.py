@@ -1,4 +1,4 @@
-"""Recorded runs of operators with their feedback. They show a model what people ask of a camera."""
+"""Recorded runs of operators with their feedback, which show a model the instructions that people give to a camera."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from scope_ptz.agent.trace import FILE_NAME, Trace, read_trace
 from scope_ptz.errors import InputError
 
-MOST_RUNS, MOST_CHARS = 12, 300  # runs in a prompt, and characters of each text in it
+MAX_RUNS, MAX_TEXT_CHARS = 12, 300  # maximum number of runs in a prompt, and of characters in each of their texts
 
 
 class Feedback(BaseModel):
-    """A line of a feedback file. ``run`` is the name of a run folder."""
+    """Feedback on a run, as one line of a feedback file. ``run`` is the name of the run folder."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -27,19 +27,19 @@ class Feedback(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class OperatorRun:
-    """A recorded run and the feedback on it."""
+    """A recorded run, with the feedback on it if there is any."""
 
     trace: Trace
     feedback: Feedback | None
 
     def summary(self) -> dict[str, Any]:
-        """Return the run in short, as data for a prompt."""
+        """Return a summary of the run as JSON data for a prompt."""
         ended = self.trace.ended
         return {
-            "asked": self.trace.started.instruction[:MOST_CHARS],
+            "asked": self.trace.started.instruction[:MAX_TEXT_CHARS],
             "calls": [{call.outcome.call.name: call.outcome.call.arguments} for call in self.trace.calls][:10],
-            "ended": f"{ended.outcome}: {ended.text[:MOST_CHARS]}" if ended else "cut off",
-            "operator said": f"{self.feedback.rating}: {self.feedback.note[:MOST_CHARS]}" if self.feedback else "nothing",
+            "ended": f"{ended.outcome}: {ended.text[:MAX_TEXT_CHARS]}" if ended else "cut off",
+            "operator said": f"{self.feedback.rating}: {self.feedback.note[:MAX_TEXT_CHARS]}" if self.feedback else "nothing",
         }
 
 
@@ -47,8 +47,8 @@ def read_runs(folder: Path | None, feedback: Path | None) -> list[OperatorRun]:
     """Read the runs for a prompt, those with feedback first.
 
     Args:
-        folder: Folder of run folders.
-        feedback: JSONL file with feedback.
+        folder: Folder that contains run folders; None for no runs.
+        feedback: JSONL file with feedback; None for no feedback.
 
     Raises:
         InputError: The folder or the feedback cannot be read, or the feedback is about a run that does not exist.
@@ -56,14 +56,14 @@ def read_runs(folder: Path | None, feedback: Path | None) -> list[OperatorRun]:
     comments = {row.run: row for row in _feedback(feedback)} if feedback is not None else {}
     if folder is None:
         if comments:
-            raise InputError("Feedback needs the runs that it is about. Name their folder with --runs.")
+            raise InputError("Feedback needs the recorded runs. Give their folder with --runs.")
         return []
     if not folder.is_dir():
-        raise InputError(f"There is no folder of runs at {folder}.")
+        raise InputError(f"The folder of runs {folder} does not exist. Correct --runs.")
     names = sorted(path.name for path in folder.iterdir() if (path / FILE_NAME).is_file())
     if unknown := sorted(set(comments) - set(names)):
         raise InputError(f"The feedback is about the run '{unknown[0]}', which is not in {folder}.")
-    chosen = sorted(names, key=lambda name: (name not in comments, name))[:MOST_RUNS]
+    chosen = sorted(names, key=lambda name: (name not in comments, name))[:MAX_RUNS]
     return [OperatorRun(read_trace(folder / name), comments.get(name)) for name in chosen]
 
 

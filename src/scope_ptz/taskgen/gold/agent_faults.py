@@ -1,7 +1,7 @@
 """Faults in the actions of an agent: missing calls, wrong tools, wrong scopes and wrong arguments.
 
-Every fault function takes a run that passes. It returns the run with the fault, or None when the fault does not apply to the run.
-The names of these functions are stored with gold runs.
+Each fault function takes a passing run and returns it with the fault, or None if the fault does not apply to the run. The names
+of these functions are stored with gold runs.
 """
 
 from __future__ import annotations
@@ -29,25 +29,26 @@ TURN_ARGUMENTS = ("pan_deg", "tilt_deg")
 
 @dataclass(frozen=True, slots=True)
 class FaultSetting:
-    """The world of a run as fault functions need it: where its presets are, and the camera."""
+    """The presets and the camera that fault functions need to recompute a run."""
 
     presets: Mapping[str, CameraPosition]
     camera: FrameGeometry
 
 
 def replayed(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetting) -> Episode:
-    """Return the run with other calls. Poses and observed views are worked out again from the start."""
-    at, made = episode.start, list[EpisodeCall]()
+    """Return the run with other calls, and with recomputed poses and observations."""
+    at, replayed_calls = episode.start, list[EpisodeCall]()
     for call in calls:
-        after = _after(call, at, episode, setting)
+        after = _position_after(call, at, episode, setting)
         moved = replace(call, before=at, after=after, observations=())
-        made.append(replace(moved, observations=observations_of(moved, setting.camera) if moved.succeeded else ()))
+        replayed_calls.append(replace(moved, observations=observations_of(moved, setting.camera) if moved.succeeded else ()))
         at = after
-    kept = {str((call.result or {}).get("file")) for call in made if call.name == "take_image"}
-    return replace(episode, calls=tuple(made), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
+    kept = {str((call.result or {}).get("file")) for call in replayed_calls if call.name == "take_image"}
+    return replace(episode, calls=tuple(replayed_calls), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
 
 
-def _after(call: EpisodeCall, at: CameraPosition, episode: Episode, setting: FaultSetting) -> CameraPosition:
+def _position_after(call: EpisodeCall, at: CameraPosition, episode: Episode, setting: FaultSetting) -> CameraPosition:
+    """Return the camera position after a call that begins at another position than in the original run."""
     if not call.succeeded or call.name not in MOVERS:
         return at
     if call.name == "go_to_preset":
@@ -68,7 +69,7 @@ def with_result(call: EpisodeCall, **changes: Any) -> EpisodeCall:
 
 
 def changed(episode: Episode, setting: FaultSetting, change: Callable[[EpisodeCall], EpisodeCall | None]) -> Episode:
-    """Return the run with every call changed, or left out where ``change`` returns None."""
+    """Return the run with every call replaced by the result of ``change``, or omitted if that is None."""
     return replayed(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
 
 
@@ -76,19 +77,19 @@ def changed(episode: Episode, setting: FaultSetting, change: Callable[[EpisodeCa
 
 
 def drop_all(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Leave out all calls."""
+    """Omit all calls."""
     return replayed(episode, (), setting)
 
 
 def drop_looks(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Leave out all perception calls."""
+    """Omit all perception calls."""
     if not any(call.name in PERCEPTION_TOOLS for call in episode.calls):
         return None
     return changed(episode, setting, lambda call: None if call.name in PERCEPTION_TOOLS else call)
 
 
 def drop_pictures(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Leave out all pictures."""
+    """Omit all calls that take pictures."""
     if not episode.pictures:
         return None
     return changed(episode, setting, lambda call: None if call.name == "take_image" else call)
@@ -97,16 +98,17 @@ def drop_pictures(task: Task, episode: Episode, setting: FaultSetting, rng: rand
 # Wrong tool
 
 
-_STAND_INS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
+_REPLACEMENTS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
     "take_image": ("query_answer", {"question": "What is in view?"}, {"message": "A view.", "answer": "A view."}),
     "zoom_to_object": ("adjust_ptz", {"zoom_factor": 1.2}, {"message": "Moved."}),
 }
+"""The tool, arguments and result that replace a call of a tool. Other tools are replaced by ``take_image``."""
 
 
 def swap_tools(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Replace every call of one tool by a call of a tool that cannot do its work."""
+    """Replace every call of one tool by a call of an unsuitable tool."""
     name = rng.choice([call.name for call in episode.calls])
-    other, arguments, result = _STAND_INS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
+    other, arguments, result = _REPLACEMENTS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
     if any(call.name == other for call in episode.calls):
         return None
 
@@ -123,9 +125,9 @@ def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.
     """Swap two consecutive calls whose order matters."""
     if len(task.behaviour.calls) < 2 or task.behaviour.order != "ordered":
         return None
-    places = list(range(len(episode.calls) - 1))
-    rng.shuffle(places)
-    for at in places:
+    indices = list(range(len(episode.calls) - 1))
+    rng.shuffle(indices)
+    for at in indices:
         calls = list(episode.calls)
         calls[at], calls[at + 1] = calls[at + 1], calls[at]
         if missing_in_order(task.behaviour.calls, calls) is not None:
@@ -137,7 +139,7 @@ def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.
 
 
 def flip_scope(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Use the full scope instead of the current view, or the reverse, with a wrong answer."""
+    """Use the full scope instead of the current view, or vice versa, and give a wrong answer."""
     if not any(call.name in PERCEPTION_TOOLS for call in episode.calls) or isinstance(task.expected, ActionOnly):
         return None
     answer = wrong_answer(task.expected, rng)
@@ -157,7 +159,7 @@ def flip_scope(task: Task, episode: Episode, setting: FaultSetting, rng: random.
 
 
 def count_of(expected: AnyExpected, answer: str, call: EpisodeCall) -> int:
-    """Return a count that would explain a wrong answer."""
+    """Return a wrong count that is consistent with a wrong answer."""
     reading, counted = parse_answer(expected, answer), int((call.result or {}).get("count", 0))
     if isinstance(reading, ParsedValue) and isinstance(reading.value, float):
         return round(reading.value)
@@ -184,7 +186,7 @@ def other_preset(task: Task, episode: Episode, setting: FaultSetting, rng: rando
 
 
 def turned_round(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Turn in the opposite direction: "panning left when asked to pan right", as the paper puts it."""
+    """Turn in the opposite direction. The paper's example is "panning left when asked to pan right"."""
     if not any(call.name == "adjust_ptz" and turns(call) for call in episode.calls):
         return None
 
@@ -200,12 +202,12 @@ def turned_round(task: Task, episode: Episode, setting: FaultSetting, rng: rando
 
 
 def turns(call: EpisodeCall) -> bool:
-    """Whether an adjustment changes the direction and not only the magnification."""
+    """Return whether an adjustment changes the direction, not only the magnification."""
     return any(call.arguments.get(name) for name in TURN_ARGUMENTS)
 
 
 def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Count, or ask about, something that was not asked for."""
+    """Count or ask about something that the instruction does not mention."""
     answer = wrong_answer(task.expected, rng)
     if (
         answer is None
@@ -214,7 +216,7 @@ def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: rando
     ):
         return None
 
-    def aside(call: EpisodeCall) -> EpisodeCall:
+    def off_topic(call: EpisodeCall) -> EpisodeCall:
         if call.name == "count_objects":
             arguments = {**call.arguments, "description": "clouds"}
             return with_result(replace(call, arguments=arguments), count=count_of(task.expected, answer, call), message=answer)
@@ -223,4 +225,4 @@ def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: rando
             return with_result(replace(call, arguments=arguments), answer=answer, known=True, message=answer)
         return call
 
-    return replace(changed(episode, setting, aside), answer=answer)
+    return replace(changed(episode, setting, off_topic), answer=answer)

@@ -1,7 +1,7 @@
-"""Sets of gold runs: making them, scoring them with the rules for error modes, and their file format.
+"""Sets of gold runs: create them, score them with the rules for error modes, and read and write them.
 
-The file is gzipped JSONL: a header with the published result, then one run per line. Observed views are not stored, because they
-follow from the calls. Tasks are referred to by id.
+The file is gzipped JSONL: a header with the published result, then one run per line. A run contains the id of its task. Its
+observations are not stored, because they can be computed from the calls.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from scope_ptz.errors import InputError
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
 
-PER_MODE = 30  # runs per error mode, 240 in all
+RUNS_PER_MODE = 30  # 240 runs for the eight error modes
 
-OTHER = ("accepted", "not scored")
-"""Outcomes of a faulty run other than the eight error modes: it is judged correct, or not scored at all."""
+WITHOUT_MODE = ("accepted", "not scored")
+"""Results of a faulty run to which the rules assign no error mode: it is judged correct, or it is not scored."""
 
 
 @dataclass(frozen=True)
 class ConfusionMatrix:
-    """Gold runs by the mode of their fault and the mode that the rules assign.
+    """Counts of gold runs by the error mode of their fault and the error mode that the rules assign.
 
     Attributes:
-        cells: Number of runs by the mode of the fault and the assigned mode, which may be one of ``OTHER``.
-        off_diagonal: Task, fault, mode and assigned mode of every run for which the two differ.
+        cells: Number of runs by the mode of the fault and the assigned mode, which may be one of ``WITHOUT_MODE``.
+        off_diagonal: Task, fault, mode of the fault and assigned mode of every run for which the two modes differ.
     """
 
     cells: Counter[tuple[str, str]]
@@ -51,13 +51,13 @@ class ConfusionMatrix:
 
     @property
     def named(self) -> int:
-        """Number of runs whose mode the rules name correctly."""
+        """Number of runs to which the rules assign the correct mode."""
         return sum(number for (mode, assigned), number in self.cells.items() if mode == assigned)
 
     @property
     def accepted(self) -> int:
         """Number of runs that were judged correct despite their fault."""
-        return sum(number for (_, assigned), number in self.cells.items() if assigned == OTHER[0])
+        return sum(number for (_, assigned), number in self.cells.items() if assigned == WITHOUT_MODE[0])
 
     @property
     def false_accept_rate(self) -> float:
@@ -65,7 +65,7 @@ class ConfusionMatrix:
         return self.accepted / self.total if self.total else 0.0
 
     def worse_than(self, published: Mapping[str, int]) -> bool:
-        """Whether fewer runs are named correctly, or more are accepted, than in a published header."""
+        """Return whether fewer modes are correct, or more runs are accepted, than in the header of a published file."""
         return self.named < published["named"] or self.accepted > published["accepted"]
 
     def as_dict(self) -> dict[str, Any]:
@@ -76,23 +76,23 @@ class ConfusionMatrix:
             "named": self.named,
             "accepted": self.accepted,
             "false_accept_rate": self.false_accept_rate,
-            "matrix": {row: {column: n for column in (*modes, *OTHER) if (n := self.cells[row, column])} for row in modes},
+            "matrix": {row: {column: n for column in (*modes, *WITHOUT_MODE) if (n := self.cells[row, column])} for row in modes},
             "astray": [dict(zip(("task", "fault", "mode", "told"), one, strict=True)) for one in self.off_diagonal],
         }
 
 
 def gold_runs(
-    runs: Sequence[tuple[Task, Episode]], settings: Mapping[str, FaultSetting], seed: int, per_mode: int = PER_MODE
+    runs: Sequence[tuple[Task, Episode]], settings: Mapping[str, FaultSetting], seed: int, per_mode: int = RUNS_PER_MODE
 ) -> list[GoldRun]:
-    """Put faults of every mode into runs that pass.
+    """Insert faults of every error mode into passing runs.
 
-    Runs in which perception was wrong, or could not answer, have a fault already and are left out.
+    Runs in which perception was wrong or could not answer are not used, because they already have a fault.
 
     Args:
         runs: Tasks with passing runs.
-        settings: Fault settings by world.
+        settings: Fault settings by scene or variation.
         seed: Seed for every random choice.
-        per_mode: Runs per error mode, drawn alternately from the categories.
+        per_mode: Number of runs per error mode, taken from the categories in turn.
     """
     runs = [(task, run) for task, run in runs if not wrong_counts(task, run, None) and not wrong_reads(task, run)]
     found = list[GoldRun]()
@@ -103,21 +103,21 @@ def gold_runs(
             by_category.setdefault(task.category, []).append((task, episode))
         for rows in by_category.values():
             rng.shuffle(rows)
-        made = list[GoldRun]()
-        while len(made) < per_mode and any(by_category.values()):
+        of_mode = list[GoldRun]()
+        while len(of_mode) < per_mode and any(by_category.values()):
             for rows in by_category.values():
-                while rows and len(made) < per_mode:
+                while rows and len(of_mode) < per_mode:
                     task, episode = rows.pop()
                     one = mutate(task, episode, mode, settings[task.world], random.Random(f"{seed}:{mode}:{task.id}"))
                     if one is not None:
-                        made.append(one)
+                        of_mode.append(one)
                         break
-        found += made
+        found += of_mode
     return found
 
 
 def confusion_matrix(gold: Iterable[GoldRun]) -> ConfusionMatrix:
-    """Score gold runs with the checks and the rules for error modes."""
+    """Score gold runs with the checks and the rules for error modes, and count the results."""
     cells, off_diagonal = Counter[tuple[str, str]](), list[tuple[str, str, str, str]]()
     for one in gold:
         assigned = _assigned_mode(one)
@@ -131,11 +131,11 @@ def _assigned_mode(one: GoldRun) -> str:
     mode = error_mode(one.task, one.episode)
     if mode is not None:
         return mode.value
-    return OTHER[0] if score_episode(one.task, one.episode).headline == "correct" else OTHER[1]
+    return WITHOUT_MODE[0] if score_episode(one.task, one.episode).headline == "correct" else WITHOUT_MODE[1]
 
 
 def write_gold(gold: Sequence[GoldRun], path: Path) -> None:
-    """Write runs with a header that holds their current result. The same runs give the same bytes."""
+    """Write runs to a file, with a header that contains their current result. The same runs always give an identical file."""
     result = confusion_matrix(gold)
     header = {"gold": 1, "runs": result.total, "named": result.named, "accepted": result.accepted}
     rows = [header, *({"task": g.task.id, "mode": g.mode.value, "fault": g.fault, "run": _run_data(g.episode)} for g in gold)]
@@ -148,13 +148,13 @@ def read_gold(path: Path, tasks: Iterable[Task]) -> tuple[dict[str, int], list[G
 
     Args:
         path: The file.
-        tasks: The tasks that it refers to.
+        tasks: The tasks of the runs.
 
     Returns:
         The numbers in the header, and the runs.
 
     Raises:
-        InputError: The file is damaged, or refers to other tasks.
+        InputError: The file is damaged, or contains runs of other tasks.
     """
     by_id = {task.id: task for task in tasks}
     try:
@@ -163,13 +163,14 @@ def read_gold(path: Path, tasks: Iterable[Task]) -> tuple[dict[str, int], list[G
         gold = [GoldRun(ErrorMode(row["mode"]), by_id[row["task"]], _episode(row["run"]), row["fault"]) for row in rows]
     except KeyError as error:
         raise InputError(
-            f"{path} does not belong to these tasks: {error} is missing. Make it again with 'scope bench gold make'."
+            f"{path} does not belong to these tasks: {error} is missing. Create it again with `scope bench gold make`."
         ) from error
     except (OSError, EOFError, ValueError, TypeError) as error:
         raise InputError(f"{path} is not a file of gold runs: {error}.") from error
     if len(gold) != published["runs"]:
         raise InputError(
-            f"{path} should hold {published['runs']} gold runs, but holds {len(gold)}. Make it again with 'scope bench gold make'."
+            f"{path} should contain {published['runs']} gold runs, but contains {len(gold)}. "
+            "Create it again with `scope bench gold make`."
         )
     return published, gold
 
@@ -177,45 +178,45 @@ def read_gold(path: Path, tasks: Iterable[Task]) -> tuple[dict[str, int], list[G
 def _run_data(episode: Episode) -> dict[str, Any]:
     return {
         "instruction": episode.instruction,
-        "start": _standing_data(episode.start),
+        "start": _position_data(episode.start),
         "calls": [
             {
                 "name": call.name,
                 "arguments": dict(call.arguments),
-                "after": _standing_data(call.after),
+                "after": _position_data(call.after),
                 **{k: v for k in ("result", "error", "fault") if (v := getattr(call, k)) is not None},
                 "time_s": round(call.time_s, 4),
             }
             for call in episode.calls
         ],
-        "final": _standing_data(episode.final),
+        "final": _position_data(episode.final),
         "text": episode.answer,
         "outcome": episode.outcome,
         "pictures": [picture.file for picture in episode.pictures],
     }
 
 
-def _standing_data(at: CameraPosition) -> list[Any]:
+def _position_data(at: CameraPosition) -> list[Any]:
     return [at.viewpoint, round(at.pose.pan_deg, 6), round(at.pose.tilt_deg, 6), round(at.pose.zoom, 6)]
 
 
 def _episode(row: Mapping[str, Any]) -> Episode:
-    def standing(values: Sequence[Any]) -> CameraPosition:
+    def position(values: Sequence[Any]) -> CameraPosition:
         viewpoint, *pose = values
         return CameraPosition(viewpoint, RecordedPose(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
 
-    at = start = standing(row["start"])
+    at = start = position(row["start"])
     calls = list[EpisodeCall]()
     for given in row["calls"]:
         further = {name: given.get(name) for name in ("result", "error", "fault")}
         calls.append(
             with_observations(
                 EpisodeCall(
-                    given["name"], given["arguments"], at, after := standing(given["after"]), time_s=given["time_s"], **further
+                    given["name"], given["arguments"], at, after := position(given["after"]), time_s=given["time_s"], **further
                 ),
                 TASK_CAMERA,
             )
         )
         at = after
     pictures = tuple(SavedPicture(name) for name in row["pictures"])
-    return Episode(row["instruction"], start, tuple(calls), standing(row["final"]), row["text"], row["outcome"], pictures)
+    return Episode(row["instruction"], start, tuple(calls), position(row["final"]), row["text"], row["outcome"], pictures)

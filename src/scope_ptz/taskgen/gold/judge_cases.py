@@ -1,4 +1,4 @@
-"""Testing a judge on gold runs: which runs it judges, the requests, and the result as lines of text."""
+"""Test a judge on gold runs: select the runs, request the judgements, and format the result as lines of text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.splits import load_split, published_folder
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import read_gold
 from scope_ptz.taskgen.gold.judge_results import (
@@ -31,55 +31,55 @@ from scope_ptz.taskgen.gold.judge_results import (
     GoldCase,
     GoldResult,
     GoldVerdict,
+    alternating_modes,
     gold_case,
-    in_turn,
     passing_case,
 )
 from scope_ptz.taskgen.gold.judge_results import judge_gold as judge_cases
-from scope_ptz.taskgen.gold.reference_runs import HEADS
+from scope_ptz.taskgen.gold.reference_runs import COLUMN_NAMES
 
 
 async def judge_all(
-    port: JudgeServer,
+    server: JudgeServer,
     cases: Sequence[GoldCase],
-    before: Sequence[GoldVerdict],
+    earlier: Sequence[GoldVerdict],
     out: Path,
     *,
     repeats: int,
     concurrency: int,
     notify: Callable[[str], None],
 ) -> JudgementTally:
-    """Judge the cases that have no verdict yet, and append the verdicts to a file. Failed verdicts are requested again.
+    """Judge the cases that have no verdict yet, and append the verdicts to a file. Failed judgements are requested again.
 
     Args:
-        port: The judge's server.
+        server: The judge's server.
         cases: Runs to judge.
-        before: Verdicts that the file holds already.
+        earlier: Verdicts that the file already contains.
         out: File for verdicts.
         repeats: Number of judgements of each run.
-        concurrency: Judgements at a time.
+        concurrency: Number of concurrent judgements.
         notify: Receives a note before each round.
     """
-    name = port.client.endpoint.model
+    name = server.client.endpoint.model
     version = prompt_version()
     done = {
         (verdict.key, verdict.judgement.repeat)
-        for verdict in before
+        for verdict in earlier
         if (verdict.judgement.judge, verdict.judgement.prompt) == (name, version) and verdict.judgement.verdict != "failed"
     }
 
-    made: list[Judgement] = []
+    judgements: list[Judgement] = []
 
     def note(verdict: GoldVerdict) -> None:
-        made.append(verdict.judgement)
+        judgements.append(verdict.judgement)
         append_line(out, json.dumps(verdict.model_dump(mode="json"), ensure_ascii=False))
 
     for repeat in range(repeats):
-        left = [case for case in cases if (case.key, repeat) not in done]
-        notify(f"{name}: {len(left)} of {len(cases)} runs to judge" + (f", judgement {repeat + 1}" if repeats > 1 else ""))
-        score_episode = Judge(name, port.repeated(repeat))
-        await judge_cases(score_episode, left, concurrency=concurrency, repeat=repeat, note=note)
-    return JudgementTally.of(made)
+        remaining = [case for case in cases if (case.key, repeat) not in done]
+        notify(f"{name}: {len(remaining)} of {len(cases)} runs to judge" + (f", judgement {repeat + 1}" if repeats > 1 else ""))
+        judge = Judge(name, server.repeated(repeat))
+        await judge_cases(judge, remaining, concurrency=concurrency, repeat=repeat, note=note)
+    return JudgementTally.of(judgements)
 
 
 def gold_cases(
@@ -88,29 +88,29 @@ def gold_cases(
     passing: int,
     limit: int | None,
     worlds_of: Callable[[Iterable[Task]], Mapping[str, Scene]],
-    equip_with_truth: Callable[[Mapping[str, Scene]], MakeToolContext],
+    ground_truth_tools: Callable[[Mapping[str, Scene]], MakeToolContext],
 ) -> list[GoldCase]:
-    """Return gold runs and, mixed in, runs of the same tasks that pass, made by their reference programs.
+    """Return gold runs and passing runs of the same tasks as cases for a judge. Reference programs produce the passing runs.
 
     Args:
         gold: File of gold runs; None for the published one.
-        split: Split or task file that the runs are of.
-        passing: Number of runs without a fault.
-        limit: Maximum number of gold runs.
-        worlds_of: Opens the worlds of tasks.
-        equip_with_truth: Gives cameras in these worlds a perception that knows the ground truth.
+        split: Split or task file with the tasks of the runs.
+        passing: Maximum number of passing runs.
+        limit: Maximum number of gold runs; None for all.
+        worlds_of: Opens the scenes and variations of tasks.
+        ground_truth_tools: Returns a function that creates tool contexts with ground-truth perception.
     """
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(split))
-    runs = in_turn(runs)[:limit]
+    runs = alternating_modes(runs)[:limit]
     worlds = worlds_of(run.task for run in runs)
     places = {name: PresetViewpoints.of(world.file) for name, world in worlds.items()}
-    equip = equip_with_truth(worlds)
+    make_context = ground_truth_tools(worlds)
     cases = [gold_case(run, places[run.task.world]) for run in runs]
 
     async def add_passing() -> None:
         for task in list({run.task.id: run.task for run in runs}.values())[:passing]:
-            answer, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
-            episode = await ProgramRunner(worlds[task.world], equip, TASK_CAMERA).run(task, task.reference, answer, outcome)
+            answer, outcome = correct_answers(task.expected)[0], task.behaviour.outcomes[0]
+            episode = await ProgramRunner(worlds[task.world], make_context, TASK_CAMERA).run(task, task.reference, answer, outcome)
             if score_episode(task, episode).headline == "correct":
                 cases.append(passing_case(task, episode, places[task.world]))
 
@@ -119,18 +119,18 @@ def gold_cases(
 
 
 def result_lines(result: GoldResult) -> Iterator[str]:
-    """Return the confusion matrix of a judge on gold runs, with its false accepts and rejects."""
+    """Yield the confusion matrix of a judge on gold runs as lines of text, with its rates of false accepts and rejects."""
     modes = [mode.value for mode in ErrorMode]
     columns = [*modes, "correct", *WITHOUT_VERDICT]
-    made = sum(result.cells.values())
-    times = f", {made} judgements" if made != result.runs else ""
+    judgements = sum(result.cells.values())
+    times = f", {judgements} judgements" if judgements != result.runs else ""
     runs = f"{result.runs} gold run{'' if result.runs == 1 else 's'}"
-    yield f"{result.judge}: {runs}{times}; rows: the fault put in, columns: what the judge reported"
-    yield f"{'':<20}" + "".join(f"{HEADS.get(name, name):>12}" for name in columns)
+    yield f"{result.judge}: {runs}{times}; rows: inserted fault, columns: verdict of the judge"
+    yield f"{'':<20}" + "".join(f"{COLUMN_NAMES.get(name, name):>12}" for name in columns)
     for row in (*modes, PASSES):
         if any(fault == row for fault, _ in result.cells):
             yield f"{row.replace('_', ' '):<20}" + "".join(f"{result.cells.get((row, name), 0) or '.':>12}" for name in columns)
     for what, share in (("false accepts", result.false_accept_rate), ("false rejects", result.false_reject_rate)):
         yield f"{what}: {f'{share:.1%}' if share is not None else 'not measured'}"
     yield f"correct or not: {figures(result.verdicts)}"
-    yield f"error mode, of faulty runs that it rejected: {figures(result.modes)}"
+    yield f"error mode of the faulty runs that it rejected: {figures(result.modes)}"

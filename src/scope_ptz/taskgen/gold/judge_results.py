@@ -12,7 +12,7 @@ from typing import Any
 import anyio
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from scope_ptz.bench.judging.agreement import RatedRun, Rater, add_rating, numbered
+from scope_ptz.bench.judging.agreement import RatedRun, Rater, add_rating, judgements_with_raters
 from scope_ptz.bench.judging.case import JudgeCase, case_of_episode
 from scope_ptz.bench.judging.json_lines import whole_lines
 from scope_ptz.bench.judging.judge import Judge
@@ -26,12 +26,19 @@ from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.gold.mutations import GoldRun
 
-PASSES = "passes"  # stands for the mode of a run without a fault
+PASSES = "passes"  # used instead of an error mode for runs without a fault
 WITHOUT_VERDICT = ("unparseable", "failed")
 
 
 class GoldCase(BaseModel):
-    """A run with a known verdict. ``fault`` is the mode of its fault, if any, and ``how`` the name of the fault function."""
+    """A run with a known verdict, as a case for a judge.
+
+    Attributes:
+        facts: Facts about the task.
+        case: The case.
+        fault: The error mode of its fault; None for a passing run.
+        how: Name of the fault function, or "reference" for a passing run.
+    """
 
     model_config = ConfigDict(frozen=True, arbitrary_types_allowed=True)
 
@@ -42,12 +49,12 @@ class GoldCase(BaseModel):
 
     @property
     def key(self) -> str:
-        """Identify the run among gold runs."""
+        """A key that identifies the run among gold runs."""
         return f"{self.facts.id}/{self.fault.value if self.fault else PASSES}/{self.how}"
 
 
 class GoldVerdict(BaseModel):
-    """The judgement of a gold run, as it is stored in a file."""
+    """The judgement of a gold run, in the form in which it is stored."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -58,7 +65,7 @@ class GoldVerdict(BaseModel):
 
 
 def gold_case(gold: GoldRun, places: PresetViewpoints) -> GoldCase:
-    """Return a faulty run as a case for a judge, with the places of its scene."""
+    """Return a gold run as a case for a judge. ``places`` are the presets of its scene."""
     return _case(gold.task, gold.episode, places, gold.mode, gold.fault)
 
 
@@ -81,12 +88,9 @@ async def judge_gold(
     Args:
         judge: The judge.
         cases: The runs.
-        concurrency: How many runs are judged at the same time.
-        repeat: Number of this repetition.
-        note: Called with every verdict as soon as it is available, so that an interruption loses nothing.
-
-    Raises:
-        Exception: Whatever ``note`` raises.
+        concurrency: Number of concurrent judgements.
+        repeat: Index of the judgement of each run, from 0.
+        note: Receives each verdict as soon as it is available. Its exceptions are raised to the caller.
     """
     limit = anyio.Semaphore(concurrency)
 
@@ -132,14 +136,14 @@ class GoldResult:
     @property
     def false_accept_rate(self) -> float | None:
         """Share of faulty runs with a verdict that are judged correct."""
-        given = self._count(faulty=True) - self._count(faulty=True, verdicts=WITHOUT_VERDICT)
-        return self._count(faulty=True, verdicts=("correct",)) / given if given else None
+        judged = self._count(faulty=True) - self._count(faulty=True, verdicts=WITHOUT_VERDICT)
+        return self._count(faulty=True, verdicts=("correct",)) / judged if judged else None
 
     @property
     def false_reject_rate(self) -> float | None:
         """Share of passing runs with a verdict that are not judged correct."""
-        given = self._count(faulty=False) - self._count(faulty=False, verdicts=WITHOUT_VERDICT)
-        return 1 - self._count(faulty=False, verdicts=("correct",)) / given if given else None
+        judged = self._count(faulty=False) - self._count(faulty=False, verdicts=WITHOUT_VERDICT)
+        return 1 - self._count(faulty=False, verdicts=("correct",)) / judged if judged else None
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as JSON data."""
@@ -163,10 +167,16 @@ class GoldResult:
 
 
 def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldResult:
-    """Compare the verdicts of one judge with the known faults."""
+    """Compare the verdicts of one judge with the known faults.
+
+    Args:
+        judge: Name of the judge.
+        verdicts: Its verdicts.
+        seed: Seed for the confidence intervals.
+    """
     rows = [(_fault(verdict), _verdict(verdict.judgement), verdict) for verdict in verdicts]
     given = [row for row in rows if row[1] not in WITHOUT_VERDICT]
-    blamed = [row for row in given if row[0] != PASSES and row[1] != "correct"]
+    rejected = [row for row in given if row[0] != PASSES and row[1] != "correct"]
     return GoldResult(
         judge=judge,
         runs=len({verdict.key for verdict in verdicts}),
@@ -177,12 +187,12 @@ def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldRe
             [row.task for _, _, row in given],
             seed,
         ),
-        modes=cohen([r[0] for r in blamed], [r[1] for r in blamed], [r[2].task for r in blamed], seed),
+        modes=cohen([r[0] for r in rejected], [r[1] for r in rejected], [r[2].task for r in rejected], seed),
     )
 
 
 def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
-    """Return the result of every judge over all its repetitions. A failed judgement that was repeated later does not count."""
+    """Return the result of every judge over all of its judgements. Failed judgements that were repeated later are ignored."""
     newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
     by_judge: dict[str, list[GoldVerdict]] = {}
     for verdict in newest.values():
@@ -191,7 +201,7 @@ def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
 
 
 def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
-    """Return the known faults as one rater, and every judge as another."""
+    """Return one rater for the known faults and one for every judge."""
     newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
     known, judges = Rater("the known faults", "gold", "gold"), dict[str, Rater]()
     by_key: dict[str, list[GoldVerdict]] = {}
@@ -200,23 +210,23 @@ def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
     for key, rows in by_key.items():
         item = RatedRun("gold", key, rows[0].task)
         add_rating(known, item, "incorrect" if rows[0].fault else "correct", rows[0].fault)
-        for name, group, judgement in numbered([row.judgement for row in rows]):
+        for name, group, judgement in judgements_with_raters([row.judgement for row in rows]):
             rater = judges.setdefault(name, Rater(name, "judge", f"judge:{group}"))
             add_rating(rater, item, judgement.verdict, judgement.error_mode)
     return [known, *judges.values()] if by_key else []
 
 
-def in_turn(runs: Sequence[GoldRun]) -> list[GoldRun]:
-    """Return the runs alternating between error modes, so that the first few cover all modes."""
-    waiting = [[run for run in runs if run.mode is mode] for mode in ErrorMode]
-    return [run for row in zip_longest(*waiting) for run in row if run is not None]
+def alternating_modes(runs: Sequence[GoldRun]) -> list[GoldRun]:
+    """Return the runs ordered so that the error modes take turns. The first few runs then cover all modes."""
+    by_mode = [[run for run in runs if run.mode is mode] for mode in ErrorMode]
+    return [run for row in zip_longest(*by_mode) for run in row if run is not None]
 
 
 def read_verdicts(path: Path) -> tuple[GoldVerdict, ...]:
-    """Read the verdicts of a file. A last line that was cut off is left out.
+    """Read the verdicts in a file. An incomplete last line is ignored.
 
     Raises:
-        InputError: The file is damaged otherwise.
+        InputError: Another line is damaged.
     """
     rows = list[GoldVerdict]()
     for number, line in whole_lines(path):
@@ -224,7 +234,9 @@ def read_verdicts(path: Path) -> tuple[GoldVerdict, ...]:
             rows.append(GoldVerdict.model_validate_json(line))
         except ValidationError as error:
             first = error.errors(include_url=False, include_input=False)[0]
-            raise InputError(f"{path}, line {number} is not a verdict on a gold run: {first['msg']}.") from error
+            raise InputError(
+                f"{path}, line {number} is not a verdict on a gold run: {first['msg']}. Delete the line to continue."
+            ) from error
     return tuple(rows)
 
 

@@ -1,4 +1,4 @@
-"""Insert one known fault of one error mode into a passing run."""
+"""Insert a known fault of one error mode into a passing run."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from scope_ptz.taskgen.gold.agent_faults import FaultSetting
 __all__ = ["FaultSetting", "GoldRun", "confusion", "mutate"]
 
 FaultFunction = Callable[[Task, Episode, FaultSetting, random.Random], Episode | None]
+# The fault functions of each error mode.
 FAULTS: dict[ErrorMode, tuple[FaultFunction, ...]] = {
     ErrorMode.LACK_OF_TOOL_CALL: (agent_faults.drop_all, agent_faults.drop_looks, agent_faults.drop_pictures),
     ErrorMode.TOOL_ROUTING: (agent_faults.swap_tools, agent_faults.swap_order),
@@ -39,10 +40,11 @@ class GoldRun:
 
 
 def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: FaultSetting, rng: random.Random) -> GoldRun | None:
-    """Put one fault of an error mode into a run.
+    """Insert one fault of an error mode into a passing run.
 
     Returns:
-        The run with the fault, or None when no fault of the mode applies to it: without a counting call, nothing can be miscounted.
+        The run with the fault; None if no fault of the mode applies to it. For example, a run without a counting call cannot have
+        a wrong count.
     """
     functions = list(FAULTS[mode])
     rng.shuffle(functions)
@@ -53,5 +55,5 @@ def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: FaultSetting,
 
 
 def confusion(gold: Iterable[GoldRun]) -> Counter[tuple[ErrorMode, ErrorMode | None]]:
-    """Count runs by the mode of their fault and the mode that the rules assign (None when a run is not judged incorrect)."""
+    """Count runs by the mode of their fault and the mode that the rules assign, which is None for runs not judged incorrect."""
     return Counter((one.mode, error_mode(one.task, one.episode)) for one in gold)

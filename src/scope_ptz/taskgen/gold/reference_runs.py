@@ -1,4 +1,4 @@
-"""Gold runs made from reference programs, and their confusion matrix as lines of text."""
+"""Create gold runs from reference programs, and format their confusion matrix as lines of text."""
 
 from __future__ import annotations
 
@@ -10,51 +10,53 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.task_places import preset_at
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
-from scope_ptz.taskgen.gold.gold_runs import OTHER, confusion_matrix, gold_runs
+from scope_ptz.taskgen.gold.gold_runs import WITHOUT_MODE, confusion_matrix, gold_runs
 from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun
 
 
-async def make_gold_runs(tasks: Sequence[Task], worlds: Mapping[str, Scene], equip: MakeToolContext, seed: int) -> list[GoldRun]:
-    """Run the reference programs of tasks through the tools, and put one known fault into each of some of them.
+async def make_gold_runs(
+    tasks: Sequence[Task], worlds: Mapping[str, Scene], make_context: MakeToolContext, seed: int
+) -> list[GoldRun]:
+    """Run the reference programs of tasks with the real tools, and insert known faults into a selection of the runs.
 
     Args:
-        tasks: Tasks; only core tasks with a reference program are used.
-        worlds: The worlds of the tasks by name.
-        equip: Gives a camera its perception.
-        seed: Another seed puts other faults into other runs.
+        tasks: Tasks. Only core tasks with a reference program are used.
+        worlds: The scenes and variations of the tasks, by name.
+        make_context: Creates the tool context of a camera.
+        seed: Seed for the selection of runs and faults.
     """
-    stages = {name: ProgramRunner(world, equip, TASK_CAMERA) for name, world in worlds.items()}
+    runners = {name: ProgramRunner(world, make_context, TASK_CAMERA) for name, world in worlds.items()}
     settings = {
         name: FaultSetting({p.name: preset_at(p) for p in world.file.presets}, TASK_CAMERA) for name, world in worlds.items()
     }
     runs = []
     for task in tasks:
         if task.stratum == "core" and task.reference:
-            episode = await stages[task.world].run(task, task.reference, right_answers(task.expected)[0])
+            episode = await runners[task.world].run(task, task.reference, correct_answers(task.expected)[0])
             if score_episode(task, episode).headline == "correct":
                 runs.append((task, episode))
     return gold_runs(runs, settings, seed)
 
 
-HEADS = {
+COLUMN_NAMES = {
     "lack_of_tool_call": "lack", "tool_routing": "routing", "tool_args": "args", "hallucination": "halluc.",
     "vlm_counting": "counting", "vlm_query": "query",
 }  # fmt: skip
-"""Short names of error modes, for the columns of the matrix."""
+"""Short names of error modes, for the columns of the confusion matrix."""
 
 
 def matrix_lines(gold: Sequence[GoldRun]) -> Iterator[str]:
-    """Return the confusion matrix (rows: faults put in, columns: error modes reported), then every run off the diagonal."""
+    """Yield the confusion matrix (rows: inserted faults, columns: assigned error modes), then every run off the diagonal."""
     result = confusion_matrix(gold)
-    columns = [*(mode.value for mode in ErrorMode), *OTHER]
-    yield f"{'fault put in':<18}" + "".join(f"{HEADS.get(name, name):>11}" for name in columns)
+    columns = [*(mode.value for mode in ErrorMode), *WITHOUT_MODE]
+    yield f"{'inserted fault':<18}" + "".join(f"{COLUMN_NAMES.get(name, name):>11}" for name in columns)
     for mode in ErrorMode:
         yield f"{mode.value.replace('_', ' '):<18}" + "".join(
             f"{result.cells[mode.value, reported] or '.':>11}" for reported in columns
         )
     accepted = f"{result.accepted} judged correct, a false-accept rate of {result.false_accept_rate:.1%}"
-    yield f"{result.named} of {result.total} named correctly; {accepted}"
+    yield f"{result.named} of {result.total} error modes are correct; {accepted}"
     for task, fault, mode_in, reported in result.off_diagonal:
-        yield f"  {task}: {fault} ({mode_in}) was reported as {reported}"
+        yield f"  {task}: {fault} ({mode_in}) was assigned the mode {reported}"

@@ -1,7 +1,7 @@
-"""Faults in replies: wrong output of perception, and wrong final answers.
+"""Faults in replies: wrong results of perception, and wrong final answers.
 
-Every fault function takes a run that passes. It returns the run with the fault, or None when the fault does not apply to the run.
-The names of these functions are stored with gold runs.
+Each fault function takes a passing run and returns it with the fault, or None if the fault does not apply to the run. The names
+of these functions are stored with gold runs.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from scope_ptz.bench.scoring.episode import Episode, EpisodeCall
 from scope_ptz.bench.scoring.evidence import is_supported_by_tools, numbers_from_tools
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, wrong_answer
 from scope_ptz.taskgen.gold.agent_faults import FaultSetting, changed, count_of, replayed, with_result
 
-_TRIES = 24  # wrong answers that are tried until one has no support in the run
+_MAX_TRIES = 24  # maximum number of wrong answers that are tried until one has no support in the run
 _DECLINES = ("I cannot tell.", "I'm not sure.", "It is not possible to say.")
 
 
@@ -25,7 +25,7 @@ _DECLINES = ("I cannot tell.", "I'm not sure.", "It is not possible to say.")
 
 
 def miscount(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Let perception return wrong counts that lead to a wrong answer."""
+    """Make perception return wrong counts that lead to a wrong answer."""
     counts = [n for n, call in enumerate(episode.calls) if call.name == "count_objects"]
     answer = wrong_answer(task.expected, rng)
     if not counts or answer is None:
@@ -34,33 +34,33 @@ def miscount(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ra
         calls = list(episode.calls)
         for n, number in zip(counts, wrong, strict=True):
             calls[n] = recounted(calls[n], number)
-        made = replace(replayed(episode, calls, setting), answer=answer)
-        if is_supported_by_tools(task, made):
-            return made
+        faulty = replace(replayed(episode, calls, setting), answer=answer)
+        if is_supported_by_tools(task, faulty):
+            return faulty
     return None
 
 
 def _miscounts(expected: AnyExpected, answer: str, counts: list[EpisodeCall]) -> Iterator[list[int]]:
-    """Yield wrong counts that could explain a wrong answer."""
+    """Yield lists of counts, one for each counting call, that are consistent with a wrong answer."""
     numbers = [int((call.result or {})["count"]) for call in counts]
     if not isinstance(expected, Number | NoneThere | YesNo):
         exchanged = list(reversed(numbers)) if isinstance(expected, Relation) else [*numbers[1::-1], *numbers[2:]]
         yield exchanged if exchanged != numbers else [numbers[0] + 2, *numbers[1:]]
         return
     last = count_of(expected, answer, counts[-1])
-    off = last - round(expected.value) if isinstance(expected, Number) else 0
-    for number in (last, numbers[-1] + off, numbers[-1] - off):
+    error = last - round(expected.value) if isinstance(expected, Number) else 0
+    for number in (last, numbers[-1] + error, numbers[-1] - error):
         if number >= 0 and number != numbers[-1]:
             yield [*numbers[:-1], number]
 
 
 def recounted(call: EpisodeCall, number: int) -> EpisodeCall:
-    """Return a counting call with another result."""
+    """Return a counting call with a different count."""
     return with_result(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
 
 
 def misread(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Let perception answer a question wrongly."""
+    """Make perception return a wrong answer."""
     answer = wrong_answer(task.expected, rng)
     if answer is None or not any(call.name == "query_answer" for call in episode.calls):
         return None
@@ -72,7 +72,7 @@ def misread(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ran
 
 
 def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Let perception miss a target that is in view."""
+    """Make perception miss a target that is in view."""
     if not any(call.name == "zoom_to_object" for call in episode.calls) or not isinstance(task.expected, ActionOnly):
         return None
 
@@ -90,7 +90,7 @@ def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ra
 
 def make_up(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
     """Answer with something that no observation supports."""
-    for _ in range(_TRIES):
+    for _ in range(_MAX_TRIES):
         answer = wrong_answer(task.expected, rng)
         if answer is None:
             return None
@@ -107,7 +107,7 @@ def conclude_wrongly(task: Task, episode: Episode, setting: FaultSetting, rng: r
     if isinstance(expected, Number):
         others = sorted(n for n in numbers_from_tools(episode) if abs(n - expected.value) > expected.tolerance)
         if others and rng.random() < 0.5:
-            return replace(episode, answer=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
+            return replace(episode, answer=correct_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
     answer = wrong_answer(expected, rng)
     if answer is not None and rng.random() < 0.5 and is_supported_by_tools(task, replace(episode, answer=answer)):
         return replace(episode, answer=answer)

@@ -1,4 +1,4 @@
-"""Mapping of the expected tools and arguments of a row to the calls that a run must make."""
+"""Map the expected tools and arguments of a row to the calls that a run must make."""
 
 from __future__ import annotations
 
@@ -18,24 +18,25 @@ from scope_ptz.taskgen.importing.paper_names import (
     VIEW_ARGUMENTS,
     ZOOM_IN,
     ZOOM_OUT,
+    normalise,
     scope_of,
-    spelled,
 )
 from scope_ptz.taskgen.importing.structured_cells import structure
-from scope_ptz.taskgen.importing.tool_steps import shown, steps_in, unused_arguments, without_names
-from scope_ptz.tools.registry import TOOLS as OURS
+from scope_ptz.taskgen.importing.tool_steps import are_of_single_call, shown, steps_in, unused_arguments
+from scope_ptz.tools.registry import TOOLS as SCOPE_TOOLS
 from scope_ptz.tools.registry import parse_call
 
-DEGREES_WITHIN, ZOOM_SHARE, SECONDS_WITHIN = 0.5, 0.03, 0.5  # tolerances of expected arguments
+DEGREES_TOLERANCE, ZOOM_TOLERANCE, SECONDS_TOLERANCE = 0.5, 0.03, 0.5  # of expected arguments; that of zoom is a share
 _UNITS_S = {"": 1.0, "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 0.001, "min": 60.0, "minute": 60.0, "minutes": 60.0}
-_ARTICLES = frozenset({"the", "a", "an", "all", "any", "of", "in", "on", "with", "and", "view", "scene"})
-TOOL_FIELDS = {name: frozenset(tool.arguments.model_fields) for name, tool in OURS.items()}
+_STOP_WORDS = frozenset({"the", "a", "an", "all", "any", "of", "in", "on", "with", "and", "view", "scene"})
+TOOL_FIELDS = {name: frozenset(tool.arguments.model_fields) for name, tool in SCOPE_TOOLS.items()}
 PresetOf = Callable[[str], str | None]
+"""Returns the preset of the scene for a name in the file; None if there is none."""
 
 
 @dataclass
 class Expectation:
-    """The required calls of a row that could be mapped, and the findings about the others."""
+    """The required calls of a row, and the findings about tools and arguments that could not be mapped."""
 
     calls: list[RequiredCall] = field(default_factory=list)
     findings: list[RowFinding] = field(default_factory=list)
@@ -51,44 +52,50 @@ def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, prese
     Args:
         order_cell: The cell with the expected tools.
         arguments_cell: The cell with their arguments.
-        compare: Whether arguments are compared.
+        compare: Whether the arguments of a run must match those in the file.
         preset_of: Returns the preset of the scene for a name in the file.
+
+    Returns:
+        The required calls and the findings.
     """
-    made = Expectation()
-    order, given = _parse(order_cell, "expected_tool_order_json", made), _parse(arguments_cell, "expected_tool_args_json", made)
-    names = list(steps_in(order, lambda detail: made.note("unknown-tool", detail)))
-    if not names and isinstance(given, dict) and any(spelled(name) in TOOLS for name in given):
-        names = [(name, {}) for name in given]  # arguments by tool, without a list of tools
+    expectation = Expectation()
+    order, given = (
+        _parse(order_cell, "expected_tool_order_json", expectation),
+        _parse(arguments_cell, "expected_tool_args_json", expectation),
+    )
+    names = list(steps_in(order, lambda detail: expectation.note("unknown-tool", detail)))
+    if not names and isinstance(given, dict) and any(normalise(name) in TOOLS for name in given):
+        names = [(name, {}) for name in given]  # only the arguments are given, by tool
     for detail in unused_arguments(given, [name for name, _ in names]):
-        made.note("unchecked-argument", detail)
+        expectation.note("unchecked-argument", detail)
     for at, (name, own) in enumerate(names):
-        tool = TOOLS.get(spelled(name))
+        tool = TOOLS.get(normalise(name))
         if tool is None:
-            made.note("unknown-tool", name)
+            expectation.note("unknown-tool", name)
             continue
         further = _arguments_of(given, name, at, [n for n, _ in names[:at]].count(name), alone=len(names) == 1)
-        mapped = _mapped(tool, {**further, **own}, preset_of, made)
-        made.calls.append(RequiredCall(tool=tool, arguments=mapped if compare else {}))
-    return made
+        mapped = _mapped(tool, {**further, **own}, preset_of, expectation)
+        expectation.calls.append(RequiredCall(tool=tool, arguments=mapped if compare else {}))
+    return expectation
 
 
-def _parse(cell: str, column: str, made: Expectation) -> Any:
+def _parse(cell: str, column: str, expectation: Expectation) -> Any:
     try:
         return structure(cell)
     except ValueError as error:
-        made.note("unreadable-cell", f"{column}: {error}: {cell[:120]}")
+        expectation.note("unreadable-cell", f"{column}: {error}: {cell[:120]}")
         return None
 
 
-def _arguments_of(given: Any, name: str, at: int, times_before: int, *, alone: bool) -> Mapping[str, Any]:
+def _arguments_of(given: Any, name: str, at: int, earlier_calls: int, *, alone: bool) -> Mapping[str, Any]:
     """Return the arguments of one expected call, from a list by position or from an object by tool.
 
     Args:
         given: The arguments of all calls.
         name: The name of the tool in the file.
         at: Position of the call.
-        times_before: How many earlier calls are of the same tool.
-        alone: Whether this is the only call. Arguments without a tool name are then its own.
+        earlier_calls: Number of earlier calls of the same tool.
+        alone: Whether this is the only call. Arguments without a tool name then belong to it.
     """
     if isinstance(given, list):
         one = given[at] if at < len(given) else None
@@ -100,16 +107,16 @@ def _arguments_of(given: Any, name: str, at: int, times_before: int, *, alone: b
         return {}
     own: Any = given.get(name, given.get(str(at)))
     if isinstance(own, list):
-        own = own[min(times_before, len(own) - 1)] if own else {}
+        own = own[min(earlier_calls, len(own) - 1)] if own else {}
     if isinstance(own, dict):
         return dict(own)
     flat = not any(isinstance(value, dict | list) for value in given.values())
-    return dict(given) if at == 0 and (flat or (alone and without_names(given, [name]))) else {}
+    return dict(given) if at == 0 and (flat or (alone and are_of_single_call(given, [name]))) else {}
 
 
-def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, made: Expectation) -> dict[str, Argument]:
-    """Return the required arguments under the names of this project. Arguments that cannot be mapped are noted and not compared."""
-    given = {spelled(name): value for name, value in given.items() if value is not None and value != ""}
+def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, expectation: Expectation) -> dict[str, Argument]:
+    """Return the required arguments under SCOPE's names. Arguments that cannot be mapped are reported and not compared."""
+    given = {normalise(name): value for name, value in given.items() if value is not None and value != ""}
     required, call, used = dict[str, Argument](), dict[str, Any](), set[str]()
 
     def take(name: str, value: Any, argument: Argument | None) -> None:
@@ -118,101 +125,102 @@ def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, made:
             required[name] = argument
 
     if tool == "adjust_ptz":
-        _moves(given, take, used, made)
+        _moves(given, take, used, expectation)
     text = next((name for name in TEXT_ARGUMENTS.get(tool, ()) if isinstance(given.get(name), str)), None)
     if text is not None:
         used.add(text)
-        _text(tool, str(given[text]), preset_of, take, made)
+        _text(tool, str(given[text]), preset_of, take, expectation)
     view = next((name for name in VIEW_ARGUMENTS if name in given), None) if tool in ("count_objects", "query_answer") else None
     if view is not None:
         used.add(view)
         scope = scope_of(str(given[view]))
         if scope is None:
-            made.note("wrong-arguments", f"{tool}: {view} is {given[view]!r}")
+            expectation.note("wrong-arguments", f"{tool}: {view} is {given[view]!r}")
         else:
             take("view", scope, Argument(equals=scope))
     if tool == "track_object":
-        _duration(given, take, used, made)
+        _duration(given, take, used, expectation)
     texts = set(TEXT_ARGUMENTS.get(tool, ()))
     for name in sorted(texts & set(given) - used):
         if not isinstance(given[name], str):
-            made.note("wrong-arguments", f"{tool}: {name} is {shown(given[name])}, which is no text")
-        elif tool != "query_answer":  # the wording of a question is free
-            made.note("unchecked-argument", f"{tool}: {name} is {shown(given[name])}, and {text} was read")
+            expectation.note("wrong-arguments", f"{tool}: {name} is {shown(given[name])}, which is no text")
+        elif tool != "query_answer":  # any wording of a question is accepted
+            expectation.note("unchecked-argument", f"{tool}: {name} is {shown(given[name])}, and {text} was read")
     unused = sorted(set(given) - used - texts)
     if unused:
-        made.note("wrong-arguments", f"{tool} takes no {', '.join(unused)}")
-    _validate(tool, call, made)
+        expectation.note("wrong-arguments", f"{tool} takes no {', '.join(unused)}")
+    _validate(tool, call, expectation)
     return required
 
 
 Take = Callable[[str, Any, Argument | None], None]
+"""Adds an argument to a call by its name, with its value and its requirement; None for no requirement."""
 
 
-def _moves(given: Mapping[str, Any], take: Take, used: set[str], made: Expectation) -> None:
+def _moves(given: Mapping[str, Any], take: Take, used: set[str], expectation: Expectation) -> None:
     for name in ("pan_deg", "tilt_deg"):
         if name in given:
             used.add(name)
             degrees = _number(given[name])
             if degrees is None:
-                made.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
+                expectation.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
             else:
-                take(name, degrees, Argument(equals=degrees, within=DEGREES_WITHIN))
+                take(name, degrees, Argument(equals=degrees, within=DEGREES_TOLERANCE))
     if "zoom_factor" in given and "zoom_percent" in given:
-        made.note("wrong-arguments", "adjust_ptz takes zoom_factor or zoom_percent, not both; the latter was read")
+        expectation.note("wrong-arguments", "adjust_ptz takes zoom_factor or zoom_percent, not both; the latter was read")
     for name in ("zoom_factor", "zoom_percent"):
         if name in given:
             used.add(name)
             amount = _number(given[name])
             factor = 1 + amount / 100 if amount is not None and name == "zoom_percent" else amount
             if factor is None or factor <= 0:
-                made.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
+                expectation.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
             else:
-                take("zoom_factor", factor, Argument(equals=factor, within=factor * ZOOM_SHARE))
+                take("zoom_factor", factor, Argument(equals=factor, within=factor * ZOOM_TOLERANCE))
     full = next((name for name in ("zoom_full", "zoom_limit") if name in given), None)
     if full is not None:
         used.add(full)
-        word = "-1" if str(given[full]).strip() == "-1" else spelled(str(given[full]))
+        word = "-1" if str(given[full]).strip() == "-1" else normalise(str(given[full]))
         limit = "in" if word in ZOOM_IN else "out" if word in ZOOM_OUT else None
         if limit is not None:
             take("zoom_limit", limit, Argument(equals=limit))
         elif given[full] is not False:
-            made.note("unchecked-argument", f"adjust_ptz: {full} is {given[full]!r}, which does not say whether in or out")
+            expectation.note("unchecked-argument", f"adjust_ptz: {full} is {given[full]!r}, which does not say whether in or out")
     used.update(
-        name for name in ("unit", "units") if spelled(str(given.get(name, ""))) in ("deg", "degree", "degrees", "percent", "x")
+        name for name in ("unit", "units") if normalise(str(given.get(name, ""))) in ("deg", "degree", "degrees", "percent", "x")
     )
 
 
-def _text(tool: ToolName, text: str, preset_of: PresetOf, take: Take, made: Expectation) -> None:
+def _text(tool: ToolName, text: str, preset_of: PresetOf, take: Take, expectation: Expectation) -> None:
     if tool == "go_to_preset":
         preset = preset_of(text)
         if preset is None:
-            made.note("wrong-arguments", f"go_to_preset: there is no preset {text!r}")
+            expectation.note("wrong-arguments", f"go_to_preset: there is no preset {text!r}")
         else:
             take("name", preset, Argument(equals=preset))
     elif tool == "query_answer":
-        take("question", text, None)  # the wording of a question is free
+        take("question", text, None)  # any wording of a question is accepted
     else:
-        words = [word for word in plain_words(text) if word not in _ARTICLES and any(c.isalpha() or c.isdecimal() for c in word)]
+        words = [word for word in plain_words(text) if word not in _STOP_WORDS and any(c.isalpha() or c.isdecimal() for c in word)]
         head = words[-1:]
         take("description", text, Argument(mentions=tuple(dict.fromkeys((" ".join(words), *head)))) if words else None)
 
 
-def _duration(given: Mapping[str, Any], take: Take, used: set[str], made: Expectation) -> None:
+def _duration(given: Mapping[str, Any], take: Take, used: set[str], expectation: Expectation) -> None:
     name = next((name for name in DURATION_ARGUMENTS if name in given), None)
     used.add("unit")
     if name is None:
         return
     used.add(name)
-    amount, unit = _number(given[name]), _UNITS_S.get(spelled(str(given.get("unit", ""))))
+    amount, unit = _number(given[name]), _UNITS_S.get(normalise(str(given.get("unit", ""))))
     if amount is None or unit is None:
-        made.note("wrong-arguments", f"track_object: {name} is {given[name]!r} {given.get('unit', '')}".rstrip())
+        expectation.note("wrong-arguments", f"track_object: {name} is {given[name]!r} {given.get('unit', '')}".rstrip())
     else:
-        take("duration_s", amount * unit, Argument(equals=amount * unit, within=SECONDS_WITHIN))
+        take("duration_s", amount * unit, Argument(equals=amount * unit, within=SECONDS_TOLERANCE))
 
 
-def _validate(tool: ToolName, call: Mapping[str, Any], made: Expectation) -> None:
-    """Note a call that the tool would reject. A missing text is ignored, because files often leave it out."""
+def _validate(tool: ToolName, call: Mapping[str, Any], expectation: Expectation) -> None:
+    """Report a call that the tool would reject. Missing texts are ignored, because files often omit them."""
     filled = dict(call)
     for name in ("name", "description", "question"):
         if name in TOOL_FIELDS[tool] and name not in filled:
@@ -220,7 +228,7 @@ def _validate(tool: ToolName, call: Mapping[str, Any], made: Expectation) -> Non
     try:
         parse_call(tool, filled)
     except ToolCallError as error:
-        made.note("wrong-arguments", str(error))
+        expectation.note("wrong-arguments", str(error))
 
 
 def _number(value: Any) -> float | None:

@@ -1,4 +1,4 @@
-"""Read CSV files with byte order marks, several encodings, four separators, blank lines and ragged rows."""
+"""Read CSV files. Byte order marks, several encodings and separators, blank lines and rows of any length are supported."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pathlib import Path
 
 from scope_ptz.errors import InputError
 
-MOST_BYTES = 256 * 2**20
-_LONGEST_CELL = 4 * 2**20  # characters
+MAX_FILE_BYTES = 256 * 2**20
+_MAX_CELL_CHARS = 4 * 2**20
 _SEPARATORS = ",;\t|"
 _ENCODINGS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
-REQUIRED = ("question", "expected_answer")
+REQUIRED_COLUMNS = ("question", "expected_answer")
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +24,10 @@ class Row:
     """A row of the file.
 
     Attributes:
-        line: The line on which it begins.
-        cells: Stripped cells by column.
-        extra: Cells beyond the header.
-        short: Number of missing cells.
+        line: Number of the line on which the row begins.
+        cells: Cells by column, without surrounding white space.
+        extra: Cells after the last column of the header.
+        short: Number of cells that the row lacks.
     """
 
     line: int
@@ -38,7 +38,14 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A file: its columns in lower case, its rows, notes on what is unusual about it, and its encoding."""
+    """The content of a CSV file.
+
+    Attributes:
+        columns: Names of the columns, in lower case.
+        rows: The rows, without blank ones.
+        notes: Notes for the user about unusual properties of the file.
+        encoding: The encoding.
+    """
 
     columns: tuple[str, ...]
     rows: tuple[Row, ...]
@@ -50,7 +57,7 @@ def read_table(path: Path) -> Table:
     """Read a CSV file.
 
     Raises:
-        InputError: The file cannot be read, is not CSV, or lacks the columns that make a task.
+        InputError: The file cannot be read, is not CSV, or lacks a required column.
     """
     text, encoding, notes = _text(path)
     separator = _separator(text)
@@ -58,9 +65,9 @@ def read_table(path: Path) -> Table:
     try:
         _, header = next(lines)
     except StopIteration:
-        raise InputError(f"{path} is empty.") from None
+        raise InputError(f"{path} is empty. Choose a CSV file with a header and one row for each task.") from None
     columns = [_plain(name) for name in header]
-    missing = [name for name in REQUIRED if name not in columns]
+    missing = [name for name in REQUIRED_COLUMNS if name not in columns]
     if missing:
         raise InputError(
             f"{path} has no column {' and no column '.join(missing)}; it has: {', '.join(columns)[:500]}. "
@@ -69,15 +76,17 @@ def read_table(path: Path) -> Table:
     if repeated := sorted({name for name in columns if name and columns.count(name) > 1}):
         notes.append(f"columns that occur more than once (the first one is used): {', '.join(repeated)}")
     rows = tuple(_row(line, cells, columns) for line, cells in lines)
-    if _open_quote(text, separator):
+    if _has_open_quote(text, separator):
         notes.append("a quotation mark is never closed; the rows after it may have been read as one cell")
     return Table(tuple(columns), rows, tuple(notes), encoding)
 
 
 def _text(path: Path) -> tuple[str, str, list[str]]:
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"{path} is larger than {MOST_BYTES // 2**20} MB, which is too large for a file of tasks.")
+        if path.stat().st_size > MAX_FILE_BYTES:
+            raise InputError(
+                f"{path} is larger than {MAX_FILE_BYTES // 2**20} MB, the maximum for a task file. Check that it is the right file."
+            )
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from error
@@ -89,7 +98,10 @@ def _text(path: Path) -> tuple[str, str, list[str]]:
         return data.decode(name), name, []
     except UnicodeDecodeError as error:
         if marked:
-            raise InputError(f"{path} claims to be {name}, but is not: {error.reason} at byte {error.start}.") from error
+            raise InputError(
+                f"{path} has the byte order mark of {name}, but is not valid {name}: {error.reason} at byte {error.start}. "
+                "Save it as CSV in UTF-8."
+            ) from error
         return (
             data.decode("cp1252", errors="replace"),
             "cp1252",
@@ -98,16 +110,16 @@ def _text(path: Path) -> tuple[str, str, list[str]]:
 
 
 def _separator(text: str) -> str:
-    """Return the separator that splits the header into most columns."""
+    """Return the separator that splits the header into the most columns."""
     header = next((line for line in text.splitlines() if line.strip()), "")
     return max(_SEPARATORS, key=lambda mark: (header.count(mark), -_SEPARATORS.index(mark)))
 
 
 def _lines(text: str, separator: str, path: Path) -> Iterator[tuple[int, list[str]]]:
     """Yield the rows that are not blank, each with the line on which it begins."""
-    csv.field_size_limit(_LONGEST_CELL)
+    csv.field_size_limit(_MAX_CELL_CHARS)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
-    began = 1
+    first_line = 1
     while True:
         try:
             cells = next(reader)
@@ -116,11 +128,12 @@ def _lines(text: str, separator: str, path: Path) -> Iterator[tuple[int, list[st
         except csv.Error as error:
             raise InputError(f"{path}, line {reader.line_num}: {error}.") from error
         if any(cell.strip() for cell in cells):
-            yield began, cells
-        began = reader.line_num + 1
+            yield first_line, cells
+        first_line = reader.line_num + 1
 
 
-def _open_quote(text: str, separator: str) -> bool:
+def _has_open_quote(text: str, separator: str) -> bool:
+    """Return whether a quotation mark is never closed."""
     try:
         for _ in csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True):
             pass
@@ -130,7 +143,7 @@ def _open_quote(text: str, separator: str) -> bool:
 
 
 def _plain(name: str) -> str:
-    """Return the name of a column in lower case, with underscores for spaces and hyphens."""
+    """Return the name of a column in lower case, with underscores instead of spaces, hyphens, slashes and dots."""
     return re.sub(r"[\s\-/.]+", "_", name.strip().lower()).strip("_")
 
 

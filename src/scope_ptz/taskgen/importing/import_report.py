@@ -1,4 +1,4 @@
-"""The import of a file: every row with its task or the reasons why it has none, and the report."""
+"""Import a file: convert every row to a task, or report the reasons why that is impossible."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ PAPER_COUNTS: dict[Category, int] = {
     "counting": 95, "descriptor": 89, "location": 53, "ocr": 54, "single_call": 72, "multi_step_command": 57,
     "multi_step_reasoning": 54, "comparative": 62,
 }  # fmt: skip
-"""Tasks per category in the paper, for comparison."""
+"""Number of tasks per category in the paper, for comparison."""
 
-_MOST_LISTED = 12  # details and line numbers that the text report lists per finding
-_NAMING_LINES: frozenset[FindingKind] = frozenset({"duplicate", "contradiction", "same-at-every-preset", "id-repeated"})
-"""Findings whose detail already states the lines."""
+_MAX_LISTED = 12  # maximum number of details, and of line numbers, per finding in the text report
+_DETAIL_HAS_LINES: frozenset[FindingKind] = frozenset({"duplicate", "contradiction", "same-at-every-preset", "id-repeated"})
+"""Types of findings whose detail already contains line numbers."""
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,11 @@ class Imported:
     Attributes:
         source: Path of the file.
         encoding: Its encoding.
-        notes: What is unusual about the file as a whole.
+        notes: Notes for the user about unusual properties of the file.
         rows: All rows.
         ids: Task id by line.
         findings: Findings of each row by line.
-        tasks: The rows that can be run, in the order of the file.
+        tasks: The tasks of the rows that can be run, in the order of the file.
     """
 
     source: str
@@ -50,17 +50,17 @@ class Imported:
     tasks: tuple[ImportedTask, ...]
 
     @property
-    def left_out(self) -> tuple[ParsedRow, ...]:
+    def not_runnable(self) -> tuple[ParsedRow, ...]:
         """The rows that cannot be run."""
         ready = {task.line for task in self.tasks}
         return tuple(row for row in self.rows if row.line not in ready)
 
     def lines_with(self, kind: FindingKind) -> list[int]:
-        """Return the lines of the rows with a kind of finding."""
+        """Return the line numbers of the rows with a type of finding."""
         return [row.line for row in self.rows if any(finding.kind == kind for finding in self.findings[row.line])]
 
     def map_to_fill(self) -> dict[str, Any]:
-        """Return a template for a mapping file: the names of scenes and presets that were not found."""
+        """Return a template for a mapping file, with the names of scenes and presets that were not found."""
         presets: dict[str, dict[str, str]] = {}
         for row in self.rows:
             if row.scene is not None and row.preset is None:
@@ -100,7 +100,7 @@ class Imported:
 
 
 def import_file(path: Path, scene_names: SceneNames) -> Imported:
-    """Read, map and check a file. A row that cannot be run is reported, not raised.
+    """Import a file. Rows that cannot be run are part of the result and raise no error.
 
     Raises:
         InputError: The file cannot be read.
@@ -109,8 +109,8 @@ def import_file(path: Path, scene_names: SceneNames) -> Imported:
     dataset = "imported-" + (re.sub(r"[^a-z0-9]+", "-", path.stem.lower()).strip("-")[:40] or "tasks")
     rows = tuple(read_row(row, scene_names) for row in table.rows)
     ids = dict(zip((row.line for row in rows), ids_of([row.row for row in rows], dataset), strict=True))
-    doubtful = check_rows(rows)
-    findings = {row.line: (*row.findings, *doubtful.get(row.line, ())) for row in rows}
+    questionable = check_rows(rows)
+    findings = {row.line: (*row.findings, *questionable.get(row.line, ())) for row in rows}
     tasks = (row.task(dataset, ids[row.line], scene_names, findings[row.line]) for row in rows)
     return Imported(
         source=str(path),
@@ -124,7 +124,7 @@ def import_file(path: Path, scene_names: SceneNames) -> Imported:
 
 
 def report_lines(imported: Imported) -> Iterator[str]:
-    """Yield the report as lines of text: counts, rows that cannot be run and why, and doubtful rows."""
+    """Yield the report as lines of text: counts, rows that cannot be run with the reasons, and questionable rows."""
     content = imported.as_dict()
     runs = f"{content['runnable']} can be run, {content['left_out']} cannot"
     yield f"{content['rows']} rows in {imported.source} ({imported.encoding}): {runs}"
@@ -136,7 +136,7 @@ def report_lines(imported: Imported) -> Iterator[str]:
         yield f"{name:<24}{row['rows']:>6}{row['paper']:>14}"
     for title, kinds in (
         ("cannot be run", [kind for kind in MEANINGS if kind in BLOCKING]),
-        ("runs unchanged, but is doubtful", [kind for kind in MEANINGS if kind not in BLOCKING]),
+        ("can be run, but is questionable", [kind for kind in MEANINGS if kind not in BLOCKING]),
     ):
         if any(imported.lines_with(kind) for kind in kinds):
             yield ""
@@ -155,16 +155,18 @@ def _kind_lines(imported: Imported, kind: FindingKind) -> Iterator[str]:
         for finding in imported.findings[line]:
             if finding.kind == kind:
                 details.setdefault(finding.detail, []).append(line)
-    most_frequent = sorted(details, key=lambda detail: -len(details[detail]))[:_MOST_LISTED]
-    listed = [detail if kind in _NAMING_LINES else f"{detail} ({_lines(details[detail])})" for detail in most_frequent if detail]
+    most_frequent = sorted(details, key=lambda detail: -len(details[detail]))[:_MAX_LISTED]
+    listed = [
+        detail if kind in _DETAIL_HAS_LINES else f"{detail} ({_lines(details[detail])})" for detail in most_frequent if detail
+    ]
     yield from (f"         {''.join(c if c.isprintable() else ' ' for c in one)}" for one in listed)
     if not listed:
         yield f"         {_lines(lines)}"
-    elif len(details) > _MOST_LISTED:
-        yield f"         ... and {len(details) - _MOST_LISTED} more, in the report file"
+    elif len(details) > _MAX_LISTED:
+        yield f"         ... and {len(details) - _MAX_LISTED} more, in the report file"
 
 
 def _lines(lines: Sequence[int]) -> str:
     """Return "line 7" or "lines 2, 3, 5"."""
-    listed = ", ".join(map(str, lines[:_MOST_LISTED]))
-    return f"line{'s' if len(lines) > 1 else ''} {listed}{' ...' if len(lines) > _MOST_LISTED else ''}"
+    listed = ", ".join(map(str, lines[:_MAX_LISTED]))
+    return f"line{'s' if len(lines) > 1 else ''} {listed}{' ...' if len(lines) > _MAX_LISTED else ''}"

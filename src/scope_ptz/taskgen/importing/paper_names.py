@@ -1,4 +1,4 @@
-"""The names of tools, arguments, categories and modes in the paper's files, and their names in this project."""
+"""Map the names of tools, arguments, categories and modes in the paper's files to those of SCOPE."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ TEXT_ARGUMENTS: dict[ToolName, tuple[str, ...]] = {
     "track_object": _OBJECT_ARGUMENTS,
     "query_answer": ("instruction", "question", "object_of_interest", "query"),
 }
-"""Arguments that may hold the text of a tool call, in order of preference."""
+"""Arguments that may contain the text of a tool call, in order of preference."""
 
 VIEW_ARGUMENTS = ("view_type", "view", "answer_view")
 DURATION_ARGUMENTS = ("duration", "duration_s", "seconds")
@@ -106,34 +106,34 @@ _FULL = (
 _CURRENT = ("current", "current_view", "view", "now", "present", "local", "currentview", "single", "preset", "start")
 
 
-def spelled(text: str) -> str:
-    """Normalise a name: lower case, with one underscore for everything that is neither a letter nor a digit."""
+def normalise(text: str) -> str:
+    """Return a name in lower case, with one underscore instead of each sequence of other characters than letters and digits."""
     return re.sub(r"[^a-z0-9]+", "_", text.strip().lower()).strip("_")
 
 
 def category_of(text: str) -> Category | None:
-    """Return the category for any of its spellings, or None."""
-    return _BY_SPELLING.get(re.sub(r"^multistep", "multi_step", spelled(text)))
+    """Return the category for one of its spellings; None for an unknown name."""
+    return _BY_SPELLING.get(re.sub(r"^multistep", "multi_step", normalise(text)))
 
 
 def scope_of(text: str) -> Scope | None:
-    """Return "current" or "full", or None for anything else."""
-    name = spelled(text)
+    """Return the scope for one of its spellings; None for an unknown name."""
+    name = normalise(text)
     return "full" if name in _FULL else "current" if name in _CURRENT else None
 
 
 def policy_of(text: str) -> Policy | None:
-    """Return which of the expected tools are required, or None for an unknown word."""
-    return next((policy for policy, words in _POLICIES.items() if spelled(text) in words), None)
+    """Return which of the expected tools are required; None for an unknown word."""
+    return next((policy for policy, words in _POLICIES.items() if normalise(text) in words), None)
 
 
 def order_of(text: str) -> Literal["ordered", "any"] | None:
-    """Return whether the order of calls matters, or None for an unknown word. It does not matter for a single step."""
-    name = spelled(text)
+    """Return whether the order of calls matters, which it does not for a single step; None for an unknown word."""
+    name = normalise(text)
     return "ordered" if name in _ORDERED else "any" if name in _UNORDERED or name in _SINGLE else None
 
 
 def compares_arguments(text: str) -> bool | None:
-    """Return whether expected arguments are compared, or None for an unknown word."""
-    name = spelled(text)
+    """Return whether a run's arguments must match the expected ones; None for an unknown word."""
+    name = normalise(text)
     return False if name in _NO_CHECK else True if name in _CHECK else None

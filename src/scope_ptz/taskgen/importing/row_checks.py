@@ -1,6 +1,6 @@
-"""Checks for doubtful rows: duplicates, contradictions, answers in the question, requirements that do not fit the question.
+"""Find questionable rows: duplicates, contradictions, answers in the question, and requirements that contradict the question.
 
-No row is changed or dropped. A doubtful row runs like any other, and the report lists its findings.
+No row is changed or omitted. Questionable rows are imported like any other, and the report lists the findings about them.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ _ASSERTS_NOTHING = re.compile(
 _QUOTED = re.compile(r"[\"“”'‘]([^\"“”'’]{2,60})[\"“”'’]")
 _NUMBERS = {in_words(number): str(number) for number in range(21)}
 _UNINFORMATIVE = frozenset("the a an is are it there of in on yes no none not say says read reads i see".split())  # noqa: SIM905
-_MOST_ANSWER_WORDS = 6
+_MAX_ANSWER_WORDS = 6
 
 
 def check_rows(rows: Sequence[ParsedRow]) -> dict[int, tuple[RowFinding, ...]]:
-    """Return the findings about doubtful rows, by line number."""
+    """Return the findings about questionable rows, by line number."""
     found: dict[int, list[RowFinding]] = defaultdict(list)
     for row in rows:
         found[row.line] += _single_row_findings(row)
@@ -61,17 +61,17 @@ def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
 
 
 def answer_in_question(question: str, answer: str) -> str | None:
-    """Return the part of the answer that the question already contains, or None.
+    """Return the part of the answer that the question already contains; None if there is none.
 
-    The check covers quoted parts of the answer, and whole answers of up to six words. Yes, no, and options that the question offers
-    are ignored.
+    The check covers quoted parts of the answer, and whole answers of up to six words. Answers such as "yes" and "no" are ignored,
+    and so are questions that offer options.
     """
     if re.search(r"\bor\b", question, re.IGNORECASE):
         return None
     asked = comparable(question)
     candidates: list[str] = _QUOTED.findall(answer)
     words = comparable(answer)
-    if 0 < len(words) <= _MOST_ANSWER_WORDS:
+    if 0 < len(words) <= _MAX_ANSWER_WORDS:
         candidates.append(answer)
     for candidate in candidates:
         words = [word for word in comparable(candidate) if word not in _UNINFORMATIVE]
@@ -81,7 +81,7 @@ def answer_in_question(question: str, answer: str) -> str | None:
 
 
 def _row_group_findings(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFinding]]:
-    """Yield the line and the finding of every row that conflicts with, or repeats, other rows."""
+    """Yield the line number and the finding for every row that contradicts or repeats other rows."""
     by_question: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
     for row in rows:
         if row.question:
@@ -121,7 +121,7 @@ def _by_id(rows: Iterable[ParsedRow]) -> Mapping[str, list[ParsedRow]]:
 
 
 def _answer_key(answer: str) -> tuple[str, ...]:
-    """Return a key for comparing answers: the numbers in the answer if there are any, else its words."""
+    """Return a key for comparing answers: the numbers in the answer, or its words if it contains no number."""
     words = comparable(answer)
     numbers = tuple(sorted(word for word in words if word.replace(".", "", 1).isdigit()))
     return numbers or tuple(words)

@@ -1,4 +1,4 @@
-"""Reading of a row: its task, or the reasons why it cannot be run."""
+"""Convert a row to a task, or report the reasons why it cannot be run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.bench.tasks.task_wording import call_in_words
 from scope_ptz.taskgen.importing.call_mapping import Expectation, expected_calls
 from scope_ptz.taskgen.importing.csv_table import Row
-from scope_ptz.taskgen.importing.paper_names import category_of, compares_arguments, order_of, policy_of, scope_of, spelled
+from scope_ptz.taskgen.importing.paper_names import category_of, compares_arguments, normalise, order_of, policy_of, scope_of
 from scope_ptz.taskgen.importing.scene_names import SceneNames
 from scope_ptz.tools.registry import TOOLS
 
@@ -24,15 +24,16 @@ _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
     "easy": "easy", "simple": "easy", "low": "easy", "1": "easy", "medium": "medium", "moderate": "medium", "mid": "medium",
     "normal": "medium", "2": "medium", "hard": "hard", "difficult": "hard", "high": "hard", "3": "hard",
 }  # fmt: skip
-_MOST_CHARS = 4000  # longer questions are cut
+_MAX_QUESTION_CHARS = 4000  # longer questions are truncated
 Note = Callable[[FindingKind, str], None]
+"""Adds a finding with its type and its detail."""
 
 
 @dataclass(frozen=True)
 class ParsedRow:
-    """A row as it was understood.
+    """A row with its cells converted to SCOPE's types and names.
 
-    ``scene`` and ``preset`` are None when they were not found. ``place`` holds their names in the file.
+    ``scene`` and ``preset`` are None if they were not found. ``place`` contains their names in the file.
     """
 
     row: Row
@@ -56,7 +57,7 @@ class ParsedRow:
 
     @property
     def view(self) -> tuple[str, ...]:
-        """Scene and preset of the question, or their names in the file."""
+        """Scene and preset of the question. Those that were not found have their name in the file."""
         return (self.scene or self.place[0], self.preset or self.place[1])
 
     @property
@@ -66,11 +67,18 @@ class ParsedRow:
 
     @property
     def moves(self) -> bool:
-        """Whether a call that moves the camera is expected."""
+        """Whether one of the expected calls moves the camera."""
         return any(call.tool in MOVERS for call in self.calls)
 
     def task(self, dataset: str, name: str, scene_names: SceneNames, findings: tuple[RowFinding, ...]) -> ImportedTask | None:
-        """Return the task, or None when the row cannot be run."""
+        """Return the task of the row; None if it cannot be run.
+
+        Args:
+            dataset: Name of the dataset.
+            name: Id of the task.
+            scene_names: The available scenes.
+            findings: All findings about the row.
+        """
         if self.scene is None or self.preset is None or self.category is None or any(f.blocks for f in findings):
             return None
         notes = self.row.cells.get("evaluation_notes", "")
@@ -81,7 +89,7 @@ class ParsedRow:
             scene=self.scene,
             viewpoint=scene_names.viewpoint(self.scene, self.preset),
             preset=self.preset,
-            instruction=self.question[:_MOST_CHARS],
+            instruction=self.question[:_MAX_QUESTION_CHARS],
             category=self.category,
             scope=self.scope,
             difficulty=self.difficulty,
@@ -101,7 +109,7 @@ class ParsedRow:
 
 
 def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
-    """Map the cells of a row, and note everything that is unusual about them."""
+    """Convert the cells of a row, and add a finding for everything that is missing, unknown or unusual."""
     cells, notes = row.cells, list[RowFinding]()
 
     def note(kind: FindingKind, detail: str) -> None:
@@ -142,12 +150,12 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
 
 
 def ids_of(rows: list[Row], dataset: str) -> list[str]:
-    """Return an id for every row, made from its own id if it has one. Repeated ids get a number."""
+    """Return a unique task id for every row. It contains the row's own id, or its line number if it has none."""
     named = [f"{dataset}-{_slug(row.cells.get('question_id', '')) or f'line-{row.line}'}" for row in rows]
-    taken, ids = Counter[str](), list[str]()
+    uses, ids = Counter[str](), list[str]()
     for name in named:
-        taken[name] += 1
-        unique = name if taken[name] == 1 else f"{name}-x{taken[name]}"
+        uses[name] += 1
+        unique = name if uses[name] == 1 else f"{name}-x{uses[name]}"
         while unique in ids:
             unique += "x"
         ids.append(unique)
@@ -199,19 +207,19 @@ def _modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal["order
 
 
 def _scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
-    """Return the scope in ``answer_view``, or else the full scope if an expected call has it."""
+    """Return the scope in the cell ``answer_view``. If it names none, return "full" if an expected call has that scope."""
     given = cells.get("answer_view", "")
     scope = scope_of(given)
     if scope is not None:
         return scope
-    if given and spelled(given) not in ("none", "na", "n_a", "null", "any", "either"):
+    if given and normalise(given) not in ("none", "na", "n_a", "null", "any", "either"):
         note("unknown-value", f"answer_view: {given}")
     views = {call.arguments["view"].equals for call in expectation.calls if "view" in call.arguments}
     return "full" if "full" in views else "current"
 
 
 def _difficulty(given: str, note: Note) -> Literal["easy", "medium", "hard"]:
-    found = _DIFFICULTIES.get(spelled(given))
+    found = _DIFFICULTIES.get(normalise(given))
     if found is None and given:
         note("unknown-value", f"difficulty: {given}")
     return found or "medium"

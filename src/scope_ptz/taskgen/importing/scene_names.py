@@ -1,4 +1,4 @@
-"""Scenes and presets of imported tasks, found by the names that a file gives them."""
+"""Find the scenes and presets of imported tasks by their names in the file."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from scope_ptz.errors import InputError
 
-ANY = "*"
+ANY_NAME = "*"
 
 
 class SceneNameMap(BaseModel):
-    """A mapping file for scenes and presets. "*" stands for every name that is not listed.
+    """The content of a mapping file for scenes and presets. The name "*" matches every name that is not listed.
 
     Attributes:
-        scenes: Scene by file location or its stem.
-        presets: Preset by its name in the file, for each scene.
+        scenes: Scene by file location, or by the location's file name with or without its suffix.
+        presets: For each scene, the preset by its name in the file.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -36,7 +36,7 @@ class ScenePresets:
 
     Attributes:
         presets: Viewpoint by preset.
-        home: The preset at which a run starts when the file names none.
+        home: The preset at which a run starts if the file names none.
         start_s: Scene time at the start, in seconds.
     """
 
@@ -47,13 +47,16 @@ class ScenePresets:
 
 @dataclass(frozen=True)
 class SceneNames:
-    """The available scenes by name, and the mapping from the names in a file."""
+    """The available scenes by name, and the mapping from the names in an imported file."""
 
     scenes: Mapping[str, ScenePresets]
     mapping: SceneNameMap = field(default_factory=SceneNameMap)
 
     def scene(self, location: str) -> str | None:
-        """Return the scene for a file location: by the mapping, else by the stem of the file or the name of its folder."""
+        """Return the scene for a file location; None if it is not found.
+
+        The mapping takes precedence. Otherwise the name of the file without its suffix, or of its folder, must match a scene.
+        """
         given = self.mapping.scenes
         path = PurePosixPath(location.replace("\\", "/"))
         stem = path.stem if path.suffix else path.name
@@ -64,10 +67,10 @@ class SceneNames:
         for name in (stem, path.parent.name):
             if name and _normalised(name) in by_name:
                 return by_name[_normalised(name)]
-        return given[ANY] if given.get(ANY) in self.scenes else None
+        return given[ANY_NAME] if given.get(ANY_NAME) in self.scenes else None
 
     def preset(self, scene: str, name: str) -> str | None:
-        """Return the preset of a scene by its name in the file. Without a name it is the home preset."""
+        """Return the preset of a scene by its name in the file; None if it is not found. An empty name is the home preset."""
         known, given = self.scenes[scene], self.mapping.presets.get(scene, {})
         if name in given:
             return given[name] if given[name] in known.presets else None
@@ -77,7 +80,7 @@ class SceneNames:
         found = by_name.get(_normalised(name)) or by_name.get(
             _normalised(re.sub(r"(?i)^preset[\s_:-]*|[\s_:-]*preset$", "", name.strip()))
         )
-        return found or (given[ANY] if given.get(ANY) in known.presets else None)
+        return found or (given[ANY_NAME] if given.get(ANY_NAME) in known.presets else None)
 
     def viewpoint(self, scene: str, preset: str) -> str:
         """Return the viewpoint of a preset."""
@@ -88,7 +91,7 @@ def read_scene_names(path: Path) -> SceneNameMap:
     """Read a mapping file in YAML or JSON.
 
     Raises:
-        InputError: The file cannot be read or is not a mapping.
+        InputError: The file cannot be read or is not a valid mapping.
     """
     try:
         content: Any = yaml.safe_load(path.read_text("utf-8"))
@@ -104,5 +107,5 @@ def read_scene_names(path: Path) -> SceneNameMap:
 
 
 def _normalised(name: str) -> str:
-    """Return a name without case and separators: "Parking_Lot 2", "parkingLot2" and "parking-lot-2" are the same."""
+    """Return a name in lower case without separators, so that "Parking_Lot 2", "parkingLot2" and "parking-lot-2" are equal."""
     return re.sub(r"[^a-z0-9]+", "", name.lower())

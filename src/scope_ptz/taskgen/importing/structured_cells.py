@@ -1,4 +1,4 @@
-"""Parsing of cells that hold JSON, Python literals with single quotes, or plain lists of words."""
+"""Parse cells that contain JSON, Python literals with single quotes, or plain lists of words."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ import re
 from typing import Any
 
 _LIST = re.compile(r"\s*(?:->|→|;|,|\||\n)\s*")
-_MOST_CHARS = 100_000
-_NOTHING = frozenset({"", "null", "none", "n/a", "na", "nan", "-", "[]", "{}"})
+_MAX_CHARS = 100_000
+_EMPTY_VALUES = frozenset({"", "null", "none", "n/a", "na", "nan", "-", "[]", "{}"})
 
 
 def structure(text: str) -> Any:
-    """Return the content of a cell, or None for an empty one. Words without brackets are read as a list.
+    """Parse a cell. An empty cell is None, and words without brackets are a list.
 
     Raises:
-        ValueError: The cell begins like JSON or a literal and cannot be parsed.
+        ValueError: The cell begins like JSON or a Python literal, but cannot be parsed.
     """
     text = text.strip().strip("`")
-    if text.lower() in _NOTHING:
+    if text.lower() in _EMPTY_VALUES:
         return None
     if text[0] not in "[{(\"'":
         return [word for word in _LIST.split(text) if word]
-    if len(text) > _MOST_CHARS:
-        raise ValueError(f"it is longer than {_MOST_CHARS} characters")
-    for read in (_json, _literal):
+    if len(text) > _MAX_CHARS:
+        raise ValueError(f"it is longer than {_MAX_CHARS} characters")
+    for parse in (_json, _literal):
         try:
-            content = read(text)
+            content = parse(text)
         except (ValueError, SyntaxError, RecursionError, MemoryError):
             continue
         return structure(content) if isinstance(content, str) and content.strip()[:1] in ("[", "{") else content
@@ -40,7 +40,7 @@ def _json(text: str) -> Any:
 
 
 def _literal(text: str) -> Any:
-    """Parse a Python literal of types that JSON has as well."""
+    """Parse a Python literal that only contains types that JSON supports."""
     return _plain(ast.literal_eval(re.sub(r"\b(true|false|null)\b(?=\s*[,}\]])", _python_word, text)))
 
 

@@ -1,4 +1,4 @@
-"""The tool steps that a cell lists, and the arguments that belong to none of them."""
+"""Find the tool steps in a cell, and the arguments that belong to none of them."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from scope_ptz.taskgen.importing.paper_names import TOOLS, spelled
+from scope_ptz.taskgen.importing.paper_names import TOOLS, normalise
 
 _TOOL_KEYS = ("tool", "name", "tool_name", "function")
 
 
 def shown(value: Any) -> str:
-    """Return a part of a cell as findings show it."""
+    """Return a part of a cell as JSON text for a finding, truncated to 120 characters."""
     return json.dumps(value, ensure_ascii=False, default=str)[:120]
 
 
 def steps_in(order: Any, note: Callable[[str], None]) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Yield tool names with their own arguments, from a list of names or objects that may be nested.
+    """Yield the tools in a cell, each with the arguments that are given together with it. Lists and objects may be nested.
 
     Args:
-        order: The content of the cell.
-        note: Receives a line of text for every part that is not the name of a tool.
+        order: The parsed content of the cell.
+        note: Receives a line of text for every part that names no tool.
     """
     if isinstance(order, str):
         yield order, {}
@@ -36,7 +36,7 @@ def steps_in(order: Any, note: Callable[[str], None]) -> Iterator[tuple[str, Map
             note(f"{shown(order)} names no tool")
         else:
             for key, value in order.items():
-                if spelled(key) in TOOLS:
+                if normalise(key) in TOOLS:
                     yield key, value if isinstance(value, dict) else {}
                 else:
                     yield from steps_in(value, note)
@@ -52,8 +52,8 @@ def steps_in(order: Any, note: Callable[[str], None]) -> Iterator[tuple[str, Map
 def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
     """Yield a line of text for every argument that belongs to no expected call.
 
-    Arguments without the name or number of a call belong to the first call. If some of them are nested, that holds only for a
-    single call.
+    Arguments without the name or number of a call belong to the first call. If some of them are nested, this applies only if there
+    is a single call.
     """
     if given in (None, "", [], {}):
         return
@@ -65,14 +65,14 @@ def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
                 yield f"{shown(one)} (number {at + 1}): arguments of no expected call"
     elif not isinstance(given, dict):
         yield f"{shown(given)}: no arguments"
-    elif any(isinstance(value, dict | list) for value in given.values()) and not without_names(given, names):
+    elif any(isinstance(value, dict | list) for value in given.values()) and not are_of_single_call(given, names):
         for name, value in given.items():
             yield from _unused_arguments_of(name, value, names)
 
 
-def without_names(given: dict[str, Any], names: Sequence[str]) -> bool:
-    """Whether these are the arguments of a single call, and not arguments by name or number of several calls."""
-    return len(names) == 1 and not any(name in names or name == "0" or spelled(name) in TOOLS for name in given)
+def are_of_single_call(given: dict[str, Any], names: Sequence[str]) -> bool:
+    """Return whether these are the arguments of a single call, and not the arguments of several calls by name or number."""
+    return len(names) == 1 and not any(name in names or name == "0" or normalise(name) in TOOLS for name in given)
 
 
 def _unused_arguments_of(name: str, value: Any, names: Sequence[str]) -> Iterator[str]:

@@ -1,5 +1,5 @@
 """Validation of tasks: reference programs must pass, and adversarial programs and answers must fail.
 
-``adversarial`` makes the attempts at a task, ``consistency`` works its expected value out again from the scene, ``dataset_checks``
-compares tasks with one another, and ``validate`` runs everything and collects the ``validation_report``.
+``adversarial`` creates the attempts at a task, ``consistency`` recomputes its expected answer from the scene, and
+``dataset_checks`` compares the tasks with each other. ``validate`` runs all of these and returns a ``validation_report``.
 """

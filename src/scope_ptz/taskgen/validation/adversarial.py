@@ -1,7 +1,7 @@
 """Attempts at a task: correct programs, which must pass, and adversarial programs and answers, which must fail.
 
-An attempt is a list of calls, a final answer and an outcome. Adversarial attempts know the right answer wherever that makes them
-stronger. The names of the attempts are stored with the dataset.
+An attempt consists of tool calls, a final answer and an outcome. Some adversarial attempts give the correct answer without the
+necessary calls. The names of the attempts are stored with the dataset.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number
 from scope_ptz.bench.tasks.task import ProgramCall, Task
-from scope_ptz.taskgen.facts.answer_phrasing import offered, right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, offered, wrong_answer
 from scope_ptz.tools.registry import TOOLS
 
 PERCEPTION_TOOLS = frozenset({"count_objects", "query_answer"})
@@ -23,13 +23,13 @@ MOVING_TOOLS = TOOLS.moving
 
 @dataclass(frozen=True)
 class Attempt:
-    """A program with its answer.
+    """A program of tool calls with a final answer.
 
     Attributes:
         name: Name of the attempt in the report.
         program: The calls.
         text: The final answer.
-        outcome: How the run ends.
+        outcome: The outcome of the run.
     """
 
     name: str
@@ -39,9 +39,9 @@ class Attempt:
 
 
 def correct_attempts(task: Task) -> Iterator[Attempt]:
-    """Yield the reference program and two other correct programs, with different wordings of the right answer."""
+    """Yield the reference program and two other correct programs, with different wordings of the correct answer."""
     outcome = task.behaviour.outcomes[0]
-    texts = right_answers(task.expected) if outcome == "answered" else ("I am not sure what you mean: which one?",) * 5
+    texts = correct_answers(task.expected) if outcome == "answered" else ("I am not sure what you mean: which one?",) * 5
     yield Attempt("reference", task.reference, texts[0], outcome)
     if outcome != "answered":
         return
@@ -49,22 +49,25 @@ def correct_attempts(task: Task) -> Iterator[Attempt]:
     yield Attempt("twice", tuple(twice(task.reference)), texts[2], outcome)
 
 
-def other_right_wordings(task: Task) -> tuple[str, ...]:
-    """Return the remaining wordings of the right answer, which follow the reference program."""
-    return right_answers(task.expected)[3:] if task.behaviour.outcomes[0] == "answered" else ()
+def other_correct_wordings(task: Task) -> tuple[str, ...]:
+    """Return the wordings of the correct answer that ``correct_attempts`` does not use."""
+    return correct_answers(task.expected)[3:] if task.behaviour.outcomes[0] == "answered" else ()
 
 
 def detour(task: Task) -> tuple[ProgramCall, ...]:
-    """Return the reference program after listing the presets and, if it starts with a preset, after a turn elsewhere."""
+    """Return the reference program with additional calls before it.
+
+    They list the presets and, if the program begins by going to a preset, turn the camera.
+    """
     first = task.reference[0] if task.reference else None
-    ahead = (ProgramCall(tool="get_presets"),)
+    before = (ProgramCall(tool="get_presets"),)
     if first is None or first.tool not in ("go_to_preset", "go_home"):
-        return (*ahead, *task.reference)
-    return (*ahead, ProgramCall(tool="adjust_ptz", arguments={"pan_deg": -7.0, "tilt_deg": -2.0}), *task.reference)
+        return (*before, *task.reference)
+    return (*before, ProgramCall(tool="adjust_ptz", arguments={"pan_deg": -7.0, "tilt_deg": -2.0}), *task.reference)
 
 
 def twice(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
-    """Yield a program with every perception call repeated and every turn and zoom split into two halves."""
+    """Yield a program with every perception call made twice, and with every move split into two equal moves."""
     for call in program:
         if call.tool in PERCEPTION_TOOLS:
             yield from (call, call)
@@ -78,24 +81,24 @@ def twice(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
             yield call
 
 
-def common_answers(tasks: Sequence[Task], *, presences: bool = False) -> dict[str, str]:
-    """Return the most common answer of each category as a text.
+def common_answers(tasks: Sequence[Task], *, exclude_pairs: bool = False) -> dict[str, str]:
+    """Return the most common answer of each category as text.
 
     Args:
         tasks: The tasks.
-        presences: Whether to leave out tasks with a twin, and answers that there is none.
+        exclude_pairs: Whether to exclude tasks with a twin and tasks with the answer "there is none".
     """
     answers: dict[str, Counter[str]] = {}
     for task in tasks:
-        left_out = presences and (task.pair is not None or isinstance(task.expected, NoneThere))
-        if task.stratum == "core" and not isinstance(task.expected, ActionOnly) and not left_out:
+        excluded = exclude_pairs and (task.pair is not None or isinstance(task.expected, NoneThere))
+        if task.stratum == "core" and not isinstance(task.expected, ActionOnly) and not excluded:
             answers.setdefault(task.category, Counter())[_bare_answer(task.expected)] += 1
     return {category: counts.most_common(1)[0][0] for category, counts in answers.items()}
 
 
 def _bare_answer(expected: AnyExpected) -> str:
-    """Return a right answer without words of its question, so that it also answers other questions."""
-    return f"{expected.value:g}" if isinstance(expected, Number) else right_answers(expected)[0]
+    """Return a correct answer without words from its question, so that it is also an answer to other questions."""
+    return f"{expected.value:g}" if isinstance(expected, Number) else correct_answers(expected)[0]
 
 
 def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: random.Random) -> Iterator[Attempt]:
@@ -104,11 +107,11 @@ def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: rand
     Args:
         task: The task.
         common: The most common answer of its category.
-        sibling: The answer to a similar task, if there is one with another answer.
-        rng: Source of the wrong answers.
+        sibling: The answer to a similar task with a different answer; None if there is no such task.
+        rng: Random generator for the wrong answer.
     """
     blind = tuple(call for call in task.reference if call.tool not in PERCEPTION_TOOLS and call.tool != "zoom_to_object")
-    right = right_answers(task.expected)[0]
+    right = correct_answers(task.expected)[0]
     yield Attempt("nothing", (), "")
     for text in ("None.", "0", "Yes.", common):
         yield Attempt("guess", (), text)
@@ -128,11 +131,11 @@ def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: rand
 
 
 def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
-    """Yield fixed answers after the full reference program. Each passes where it happens to be right."""
-    seeing = [at for at, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"]
-    if not seeing or isinstance(task.expected, ActionOnly):
+    """Yield fixed answers after the perception calls of the reference program. They pass only if they happen to be correct."""
+    perceiving = [at for at, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"]
+    if not perceiving or isinstance(task.expected, ActionOnly):
         return
-    program = task.reference[: seeing[-1] + 1]
+    program = task.reference[: perceiving[-1] + 1]
     names = offered(task.expected, task.instruction)
     answers: dict[str, str | None] = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common}
     answers |= {f"{place} offered": name for place, name in zip(("first", "second", "third"), names, strict=False)}
@@ -143,7 +146,7 @@ def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
 
 
 def stay(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
-    """Yield the perception calls of a program, all made at the start view."""
+    """Yield a program without its moves, so that all perception calls are made at the start view."""
     for call in program:
         if call.tool in PERCEPTION_TOOLS:
             yield ProgramCall(tool=call.tool, arguments={**call.arguments, "view": "current"})

@@ -1,7 +1,7 @@
-"""Consistency of a task with its scene: the expected value is worked out again from the scene and the evidence.
+"""Check that a task is consistent with its scene: recompute its expected answer from the scene and the evidence.
 
-The rules use the finished task only, not the code that made it. They detect values that were changed by hand and scenes that were
-baked again.
+The rules use only the finished task, and not the code that created it. They detect answers that were changed by hand, and scenes
+that were baked again.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ TruthReader = Callable[[Scene, str, Perspective | Equirectangular, float], ViewT
 
 
 def inconsistencies(task: Task, scene: Scene, read_truth: TruthReader = view_truth) -> list[str]:
-    """Return what in a task disagrees with the ground truth of its scene, in words."""
+    """Return a description of each difference between a task and the ground truth of its scene."""
     if task.preset not in {preset.name for preset in scene.file.presets}:
         return [f"the scene has no preset {task.preset}"]
-    if gone := {view.aim.viewpoint for view in task.evidence} - {viewpoint.name for viewpoint in scene.file.viewpoints}:
-        return [f"the scene has no viewpoint {', '.join(sorted(gone))}"]
-    wrong = [w for view in task.evidence for w in _view(task, view, scene, read_truth)]
-    worked_out = _worked_out(task)
-    if worked_out is not None and worked_out != _value(task.expected):
-        wrong.append(f"the evidence gives {worked_out}, but {_value(task.expected)} is expected")
-    wrong += _facts(task, scene)
-    return wrong
+    if missing := {view.aim.viewpoint for view in task.evidence} - {viewpoint.name for viewpoint in scene.file.viewpoints}:
+        return [f"the scene has no viewpoint {', '.join(sorted(missing))}"]
+    found = [reason for view in task.evidence for reason in _view(task, view, scene, read_truth)]
+    computed = _answer_from_counts(task)
+    if computed is not None and computed != _value(task.expected):
+        found.append(f"the evidence gives {computed}, but {_value(task.expected)} is expected")
+    found += _facts(task, scene)
+    return found
 
 
 def _value(expected: AnyExpected) -> object:
@@ -50,7 +50,7 @@ def _value(expected: AnyExpected) -> object:
 
 
 def _view(task: Task, view: EvidenceView, scene: Scene, read_truth: TruthReader) -> Iterator[str]:
-    """Count the objects of a view again."""
+    """Recount the objects in a view, and yield the differences."""
     if not view.must_look:
         return
     at = None if view.scope == "full" else Pose(view.aim.pan_deg, view.aim.tilt_deg, view.aim.zoom)
@@ -69,7 +69,7 @@ def _view(task: Task, view: EvidenceView, scene: Scene, read_truth: TruthReader)
         case NoneThere():
             kind = kinds.get(view.shows.subject[0], Kind(view.shows.subject[0]))
             if any(kind.fits(s.instance) and s.pixels > TRACE_PX for s in truth.sightings):
-                # Tasks about half a frame are made only where the whole frame has none.
+                # Tasks with this answer about half a frame are only created if the whole frame has no such object.
                 yield f"a {view.shows.subject[0]} is in view"
         case YesNo() if view.shows.value and view.shows.affirms and "verification" not in task.tags:
             kind = kinds.get(view.shows.affirms[0], Kind(view.shows.affirms[0]))
@@ -77,8 +77,8 @@ def _view(task: Task, view: EvidenceView, scene: Scene, read_truth: TruthReader)
                 yield f"no {view.shows.affirms[0]} is visible"
 
 
-def _worked_out(task: Task) -> object:
-    """Return the answer that follows from the counts in the evidence, or None when the answer does not rest on counts."""
+def _answer_from_counts(task: Task) -> object:
+    """Return the answer that follows from the counts in the evidence; None if the answer does not depend on counts."""
     question_type = next((tag.removeprefix("sort:") for tag in task.tags if tag.startswith("sort:")), "")
     counts = [_value(view.shows) for view in task.evidence if isinstance(view.shows, Number | NoneThere)]
     numbers = [n for n in counts if isinstance(n, float)]
@@ -101,7 +101,7 @@ def _worked_out(task: Task) -> object:
 
 
 def _compared(expected: Choice | Ordering, numbers: Sequence[float], *, fewest: bool) -> object:
-    """Return the option with the most (or fewest) objects. Options are in the order of the evidence."""
+    """Return the option with the most (or fewest) objects. Options and evidence have the same order."""
     if isinstance(expected, Ordering):
         return expected.value if len(set(numbers)) == len(numbers) else None
     if len(set(numbers)) == 1:
@@ -111,7 +111,7 @@ def _compared(expected: Choice | Ordering, numbers: Sequence[float], *, fewest: 
 
 
 def _facts(task: Task, scene: Scene) -> Iterator[str]:
-    """Yield attributes, texts and positions in the frame that disagree with the items of the evidence."""
+    """Yield a description of each attribute, text or position in the evidence that differs from the scene."""
     for view in task.evidence:
         for item in view.items:
             thing = scene.by_id.get(item.instance)
@@ -134,7 +134,7 @@ def _facts(task: Task, scene: Scene) -> Iterator[str]:
 
 
 def _halves(view: EvidenceView, item: Item) -> set[str]:
-    """Return the halves of the reference frame that hold the centre of an item."""
+    """Return the halves of the evidence view in which the centre of an item is."""
     frame = TASK_CAMERA.view(Pose(view.aim.pan_deg, view.aim.tilt_deg, view.aim.zoom))
     points = frame.points(box_directions(item.box_deg))
     x, y = (float(v) for v in (np.min(points, axis=0) + np.max(points, axis=0)) / 2)

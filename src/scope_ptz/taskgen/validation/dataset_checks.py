@@ -1,4 +1,4 @@
-"""Checks between the tasks of a dataset: unique texts, pairs, paraphrases, and answers to similar tasks."""
+"""Checks that compare the tasks of a dataset: unique texts, pairs, paraphrases, and fixed answers."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from collections.abc import Sequence
 from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
-MOST_GUESSED_SHARE = 0.03
-"""Largest share of the core tasks that a fixed answer may pass, where both tasks of a pair must pass to count."""
+MAX_GUESSED_SHARE = 0.03
+"""Maximum share of the core tasks that a fixed answer may pass. A task of a pair counts only if both tasks of the pair pass."""
 
-_FEWEST_FOR_SHARES = 300  # with fewer core tasks, such a share is not checked
+_MIN_TASKS_FOR_SHARE = 300  # the share is not checked for smaller numbers of core tasks
 
 
-def structure(tasks: Sequence[Task], dataset: Sequence[Task] = ()) -> list[ValidationFault]:
-    """Check that no text occurs twice, that twins refer to each other, and that paraphrases expect what their task expects.
+def structural_faults(tasks: Sequence[Task], dataset: Sequence[Task] = ()) -> list[ValidationFault]:
+    """Check that instructions are unique, twins refer to each other, and paraphrases have the expected answer of their task.
 
     Args:
         tasks: The tasks to check.
-        dataset: The dataset that the tasks are a selection of. Twins and paraphrased tasks may be there.
+        dataset: The whole dataset, if ``tasks`` is a selection from it. It may contain twins and paraphrased tasks.
     """
     faults = []
     by_id = {task.id: task for task in (*dataset, *tasks)}
@@ -42,7 +42,10 @@ def structure(tasks: Sequence[Task], dataset: Sequence[Task] = ()) -> list[Valid
 
 
 def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
-    """Return, by task id, the right answer to a similar task with another answer: the twin, or the next task of its category."""
+    """Return, by task id, the correct answer to a similar task: the twin, or the next task of the category.
+
+    Only answers that are wrong for the task itself are included.
+    """
     by_id = {task.id: task for task in tasks}
     found = {}
     for at, task in enumerate(tasks):
@@ -52,7 +55,7 @@ def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
         later = (*tasks[at + 1 :], *tasks[:at])
         others = [twin] if twin else [t for t in later if t.category == task.category and t.expected.kind == task.expected.kind]
         for other in others:
-            text = right_answers(other.expected)[0]
+            text = correct_answers(other.expected)[0]
             if agrees(task.expected, parse_answer(task.expected, text)) is not True:
                 found[task.id] = text
                 break
@@ -60,12 +63,12 @@ def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
 
 
 def check_guesses(report: ValidationReport, tasks: Sequence[Task]) -> None:
-    """Record a fault where a fixed answer passes both tasks of a pair, or too many tasks."""
+    """Record a fault for each fixed answer that passes both tasks of a pair or too many tasks."""
     twins = {task.id: task.pair for task in tasks}
     core = report.by_stratum["core"]
     for name, ids in report.guessed.items():
         both = sorted(task for task in ids if twins[task] in ids)
         report.faults += [ValidationFault(task, name, f"also passes {twins[task]}") for task in both]
         report.pairs_passed[name] = len(both) + sum(twins[task] is None for task in ids)
-        if core >= _FEWEST_FOR_SHARES and report.pairs_passed[name] > MOST_GUESSED_SHARE * core:
+        if core >= _MIN_TASKS_FOR_SHARE and report.pairs_passed[name] > MAX_GUESSED_SHARE * core:
             report.faults.append(ValidationFault("all", name, f"passes {report.pairs_passed[name]} of {core} tasks"))

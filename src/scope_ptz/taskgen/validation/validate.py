@@ -1,4 +1,4 @@
-"""Validation of a dataset: every attempt at every task is run through the real tools and scored."""
+"""Validate a dataset: run every attempt at every task with the real tools, and score it."""
 
 from __future__ import annotations
 
@@ -21,43 +21,47 @@ from scope_ptz.taskgen.validation.adversarial import (
     common_answers,
     correct_attempts,
     guess_attempts,
-    other_right_wordings,
+    other_correct_wordings,
 )
 from scope_ptz.taskgen.validation.consistency import TruthReader, inconsistencies
-from scope_ptz.taskgen.validation.dataset_checks import check_guesses, sibling_answers, structure
+from scope_ptz.taskgen.validation.dataset_checks import check_guesses, sibling_answers, structural_faults
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 Progress = Callable[[int, int], None]
+"""Receives the number of validated tasks and the total."""
 
-_FALLBACK_GUESS = "2"  # for a category without a most common answer
+_FALLBACK_GUESS = "2"  # used as the most common answer of a category that has none
 
 
 async def validate(
     tasks: Sequence[Task],
     scenes: Mapping[str, Scene],
-    equip: MakeToolContext,
+    make_context: MakeToolContext,
     *,
     seed: int = 1,
     read_truth: TruthReader = view_truth,
     progress: Progress | None = None,
     dataset: Sequence[Task] = (),
 ) -> ValidationReport:
-    """Make every attempt at every task. Correct attempts must pass, adversarial attempts must fail.
+    """Run every attempt at every task. Correct attempts must pass, and adversarial attempts must fail.
 
     Args:
         tasks: The tasks.
-        scenes: Their scenes, by world.
-        equip: Provides the tools for a camera.
-        seed: Seed of the wrong answers.
-        read_truth: Reads the ground truth of a view. A reader that remembers views saves most of the time.
-        progress: Receives the number of validated tasks and the total after every task.
-        dataset: The dataset that ``tasks`` is a selection of. Twins and paraphrased tasks may be there.
+        scenes: The scenes and variations of the tasks, by name.
+        make_context: Creates the tool context of a camera.
+        seed: Seed for the wrong answers.
+        read_truth: Reads the ground truth of a view. A function with a cache makes validation much faster.
+        progress: Receives the progress after every task.
+        dataset: The whole dataset, if ``tasks`` is a selection from it. It may contain twins and paraphrased tasks.
+
+    Returns:
+        The report.
     """
-    report, common, usual = ValidationReport(), common_answers(tasks), common_answers(tasks, presences=True)
+    report, common, common_unpaired = ValidationReport(), common_answers(tasks), common_answers(tasks, exclude_pairs=True)
     siblings = sibling_answers(tasks)
-    stages = {name: ProgramRunner(scene, equip, TASK_CAMERA) for name, scene in scenes.items()}
+    runners = {name: ProgramRunner(scene, make_context, TASK_CAMERA) for name, scene in scenes.items()}
     world = ""
-    # Tasks are ordered by world, and its layers are released afterwards. All worlds together would take too much memory.
+    # Tasks are sorted by scene, and the images of a scene are released after its last task to save memory.
     for number, task in enumerate(sorted(tasks, key=lambda task: task.world), 1):
         if world and world != task.world:
             scenes[world].release()
@@ -66,14 +70,14 @@ async def validate(
         reasons = inconsistencies(task, scenes[task.world], read_truth)
         report.faults += [ValidationFault(task.id, "truth", reason) for reason in reasons]
         if task.preset not in {preset.name for preset in scenes[task.world].file.presets}:
-            continue  # no program can start there
-        validation = _TaskValidation(report, task, stages[task.world])
+            continue  # programs cannot start without their preset
+        validation = _TaskValidation(report, task, runners[task.world])
         await validation.run(common.get(task.category, _FALLBACK_GUESS), siblings.get(task.id), seed)
         if task.stratum == "core":
-            await validation.guess(usual.get(task.category, _FALLBACK_GUESS))
+            await validation.guess(common_unpaired.get(task.category, _FALLBACK_GUESS))
         if progress is not None:
             progress(number, len(tasks))
-    report.faults += structure(tasks, dataset)
+    report.faults += structural_faults(tasks, dataset)
     check_guesses(report, tasks)
     return report
 
@@ -88,50 +92,58 @@ def _count(report: ValidationReport, task: Task) -> None:
 
 
 class _TaskValidation:
-    """All attempts at one task. A program that several attempts share is run once."""
+    """Runs all attempts at one task. A program that several attempts share is run only once."""
 
-    def __init__(self, report: ValidationReport, task: Task, stage: ProgramRunner) -> None:
-        self.report, self.task, self.stage = report, task, stage
-        self._ran: dict[str, Episode] = {}
+    def __init__(self, report: ValidationReport, task: Task, runner: ProgramRunner) -> None:
+        self.report, self.task, self.runner = report, task, runner
+        self._episodes: dict[str, Episode] = {}
 
     async def run(self, common: str, sibling: str | None, seed: int) -> None:
-        """Make the correct and the adversarial attempts."""
+        """Run the correct and the adversarial attempts."""
         for attempt in correct_attempts(self.task):
             await self._check(attempt, attempt.name, passes=True)
-        for text in other_right_wordings(self.task):
+        for text in other_correct_wordings(self.task):
             await self._check(Attempt("worded", self.task.reference, text, self.task.behaviour.outcomes[0]), "worded", passes=True)
         self._compare_with_evidence(await self._episode(Attempt("reference", self.task.reference, "")))
         tried = set[str]()
         for attempt in adversarial_attempts(self.task, common, sibling, random.Random(f"{seed}:{self.task.id}")):
-            # The four guesses are counted as one attempt.
-            again = attempt.name in tried
+            # The four guesses count as one attempt.
+            counted = attempt.name in tried
             tried.add(attempt.name)
-            await self._check(attempt, attempt.name, passes=False, again=again)
+            await self._check(attempt, attempt.name, passes=False, counted=counted)
 
-    async def guess(self, usual: str) -> None:
-        """Record which fixed answers happen to be right."""
-        for attempt in guess_attempts(self.task, usual):
+    async def guess(self, common: str) -> None:
+        """Record which fixed answers happen to be correct."""
+        for attempt in guess_attempts(self.task, common):
             passed = self.report.guessed.setdefault(attempt.name, set())
             if score_episode(self.task, await self._episode(attempt)).headline == "correct":
                 passed.add(self.task.id)
 
     async def _episode(self, attempt: Attempt) -> Episode:
         key = str([(call.tool, call.arguments) for call in attempt.program])
-        if key not in self._ran:
-            self._ran[key] = await self.stage.run(self.task, attempt.program, attempt.text, attempt.outcome)
-        return replace(self._ran[key], answer=attempt.text, outcome=attempt.outcome)
+        if key not in self._episodes:
+            self._episodes[key] = await self.runner.run(self.task, attempt.program, attempt.text, attempt.outcome)
+        return replace(self._episodes[key], answer=attempt.text, outcome=attempt.outcome)
 
-    async def _check(self, attempt: Attempt, name: str, *, passes: bool, again: bool = False) -> None:
+    async def _check(self, attempt: Attempt, name: str, *, passes: bool, counted: bool = False) -> None:
+        """Run an attempt, and record a fault if its result is not the expected one.
+
+        Args:
+            attempt: The attempt.
+            name: Its name in the report.
+            passes: Whether it must pass.
+            counted: Whether an attempt of this name has already been counted for the task.
+        """
         verdict = score_episode(self.task, await self._episode(attempt))
         passed = verdict.headline == "correct"
-        self.report.tried[name] += not again
+        self.report.tried[name] += not counted
         self.report.passed[name] += passed
         if passed != passes:
             fault = ValidationFault(self.task.id, name, f"{attempt.text!r}: {verdict.reason}")
             (self.report.faults if passes else self.report.adversarial_passes).append(fault)
 
     def _compare_with_evidence(self, episode: Episode) -> None:
-        """Record where perception counts or answers differently from the evidence."""
+        """Record the counts and answers of perception that differ from the evidence."""
         if wrong_reads(self.task, episode):
             answers = "; ".join(str(call.result["answer"]) for call in episode.calls if call.result and "answer" in call.result)
             reason = f"the evidence does not agree with the answers: {answers}"

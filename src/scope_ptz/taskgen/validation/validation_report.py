@@ -1,4 +1,4 @@
-"""The result of a validation. ``as_dict`` is the stored form."""
+"""The report of a validation. Datasets store the data that ``as_dict`` returns."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ CORRECT_ATTEMPTS = ("reference", "detour", "twice", "worded")
 
 @dataclass(frozen=True)
 class ValidationFault:
-    """An attempt that passed or failed against expectation, or a check that a task fails.
+    """An attempt with the wrong result, or a check that a task fails.
 
     Attributes:
         task: Id of the task.
         attempt: Name of the attempt or check.
-        reason: What happened.
+        reason: Description of the fault.
     """
 
     task: str
@@ -31,17 +31,18 @@ class ValidationReport:
 
     Attributes:
         tasks: Number of tasks.
-        by_category: Core tasks per category.
-        by_stratum: Tasks per stratum.
-        passed: How often each attempt passed.
-        tried: For how many tasks each attempt was made.
-        absences: Core tasks whose answer is that there is none, each with a twin.
-        from_start: Core tasks that need neither a move, nor a zoom, nor a sweep.
-        guessed: The core tasks that a fixed answer passes, by the name of the guess.
-        pairs_passed: The number of these tasks, where both tasks of a pair must pass to count.
+        by_category: Number of core tasks per category.
+        by_stratum: Number of tasks per stratum.
+        passed: Number of passes of each attempt.
+        tried: Number of tasks for which each attempt was made.
+        absences: Number of core tasks with the answer "there is none", each of which has a twin.
+        from_start: Number of core tasks that can be answered from the start view.
+        guessed: Ids of the core tasks that a fixed answer passes, by the name of the guess.
+        pairs_passed: Number of those tasks, if a task of a pair counts only if both tasks of the pair pass.
         faults: Correct attempts that failed, and failed checks.
         adversarial_passes: Adversarial attempts that passed.
-        disagreements: Where ground-truth perception counts or answers differently from the evidence. They are reported only.
+        disagreements: Counts and answers of ground-truth perception that differ from the evidence. They do not make a dataset
+            unsound.
     """
 
     tasks: int = 0
@@ -64,11 +65,11 @@ class ValidationReport:
 
     @property
     def sound(self) -> bool:
-        """Whether every correct attempt passed, every check held, and no adversarial attempt passed."""
+        """Whether all correct attempts and checks passed, and no adversarial attempt passed."""
         return bool(self.tasks) and not self.faults and not self.adversarial_passes
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the report as JSON data. Its keys are those of the published dataset."""
+        """Return the report as JSON data, with the keys of the published dataset."""
         core = max(1, self.by_stratum["core"])
         correct = [name for name in CORRECT_ATTEMPTS if self.tried[name]]
         return {

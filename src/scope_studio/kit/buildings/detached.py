@@ -95,7 +95,7 @@ def shed(
 
 
 def house(*, brick: Rgb, roof: Rgb, door: Rgb, width_m: float = 10.0, depth_m: float = 7.5, seed: int = 0) -> Built:
-    """Build a two-storey brick house facing north, with gabled tile roof, chimney, and framed windows on all four sides."""
+    """Build a two-storey brick house facing north, with a gabled tile roof, a chimney, and framed windows at the front and back."""
     rng = random.Random(f"house-{seed}")
     tag = f"{brick[0]:.2f} {roof[0]:.2f}"
     wall, tile = brick_material(f"brick {tag}", brick), tile_material(f"tiles {tag}", roof)
@@ -147,6 +147,7 @@ def house(*, brick: Rgb, roof: Rgb, door: Rgb, width_m: float = 10.0, depth_m: f
 def _window(
     at: Point, side: int, frame: bpy.types.Material, glass: bpy.types.Material, blind: bpy.types.Material | None
 ) -> list[bpy.types.Object]:
+    """Create a framed window at a position, on the front (``side`` 1) or the back (-1)."""
     x, y, z = at
     parts = [
         box("pane", (1.25, 0.04, 1.15), (x, y + side * 0.012, z), glass, bevel_m=0),
@@ -167,7 +168,7 @@ def _window(
 
 
 def barn(*, width_m: float = 22.0, depth_m: float = 12.0, height_m: float = 5.2) -> Built:
-    """Build an open-fronted farm barn facing north: timber above block walls, a rusty roof, and straw bales inside."""
+    """Build an open-fronted barn facing north, with timber above block walls, a rusty roof, and straw bales inside."""
     wood = cladding_material("barn boards", (0.105, 0.080, 0.058), 0.15)
     rust = cladding_material("barn roof", (0.22, 0.125, 0.085), 0.25)
     w, d, h = width_m / 2, depth_m / 2, height_m

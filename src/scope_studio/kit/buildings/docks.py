@@ -1,4 +1,7 @@
-"""Loading docks: shelters with roller doors, levellers, traffic lights, wheel guides, numbers. Walls are y = 0, fronts face +y."""
+"""Loading docks: shelters with roller doors, levellers, traffic lights, wheel guides, numbers.
+
+The wall is the plane y = 0, and fronts face +y.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
 
 OPEN_SHARE = {"closed": 0.0, "half open": 0.5, "open": 0.94}
+"""Fraction of the opening that the door leaves free, for each state."""
 
 
 def roller_door(
@@ -35,7 +39,7 @@ def roller_door(
 
 
 def shelter() -> Built:
-    """Build the padded frame that a trailer backs against, with yellow guide stripes, and rubber buffers below."""
+    """Build the padded frame that a trailer backs against, with yellow guide stripes and with rubber buffers below it."""
     s = Solid("dock shelter")
     pad, yellow = rubber(), sheet("yellow", dirt=0.4)
     w, low, tall = DOCK_WIDE_M / 2, DOCK_SILL_M - 0.15, DOCK_TALL_M + 0.35
@@ -50,7 +54,7 @@ def shelter() -> Built:
 
 
 def leveller(*, lowered: bool = True) -> Built:
-    """Build a hinged steel dock plate in the sill. Its lip hangs down, or stands proud when the plate is raised."""
+    """Build a hinged steel dock plate in the sill. Its lip hangs down, or sticks out when the plate is raised."""
     s = Solid("dock leveller")
     z = DOCK_SILL_M
     s.box((2.0, 2.2, 0.04), (0, -1.12, z - 0.02 if lowered else z + 0.10), steel(dark=True), 0.004)

@@ -18,8 +18,8 @@ from scope_studio.kit.light.glow import glowing_face, lit_lens
 def window(*, wide: float = 1.5, tall: float = 1.3, lit: bool = True, blind: float = 0.0, seed: int = 0) -> Built:
     """Build a framed window, either dark or with a shallow lit room behind it.
 
-    The room has a ceiling lamp, shelves, and a desk with a screen. The wall is y = 0, with a hole cut for the window. ``blind``
-    is the share of the height that a blind covers.
+    The room has a ceiling lamp, shelves, and a desk with a screen. The wall is the plane y = 0 and needs a hole for the
+    window. ``blind`` is the fraction of the height that a blind covers.
     """
     s = Solid("window")
     rng = random.Random(f"window {seed}")
@@ -73,7 +73,7 @@ def _room_wall(warm: tuple[float, float, float]) -> bpy.types.Material:
 
 
 def wing(*, width: float, depth: float, height: float, openings: Sequence[Opening], colour: tuple[float, float, float]) -> Built:
-    """Build an office wing with openings for windows in its front (y = 0), flat roof, parapet and plinth."""
+    """Build an office wing with a flat roof, a parapet, a plinth, and openings for windows in its front (y = 0)."""
     s = Solid("office")
     skin = office_panel(colour)
     wall(s, -width / 2, width / 2, 0.0, height, openings, skin)
@@ -91,7 +91,7 @@ def wing(*, width: float, depth: float, height: float, openings: Sequence[Openin
 
 
 def office_panel(colour: tuple[float, float, float]) -> bpy.types.Material:
-    """Return flat composite panels, 1.2 m wide, with dark joints and rain marks."""
+    """Return the material of flat composite panels, 1.2 m wide, with dark joints and rain marks."""
     found = bpy.data.materials.get("office panel")
     if found is not None:
         return found
@@ -111,7 +111,7 @@ def office_panel(colour: tuple[float, float, float]) -> bpy.types.Material:
 
 
 def door(*, glazed: bool = True, lit: bool = True, tall: float = 2.2, wide: float = 1.1) -> Built:
-    """Build a personnel door on y = 0, standing on z = 0. When glazed and lit, it has a bright room behind it."""
+    """Build a personnel door on the plane y = 0, standing on z = 0. When glazed and lit, it shows a bright room."""
     s = Solid("door")
     frame = paint("dark grey", dirt=0.2)
     for x in (-wide / 2 - 0.05, wide / 2 + 0.05):
@@ -129,7 +129,7 @@ def door(*, glazed: bool = True, lit: bool = True, tall: float = 2.2, wide: floa
 
 
 def glowing_room() -> bpy.types.Material:
-    """Return the image of a lit lobby behind a door: bright above, darker at the floor, with blurred furniture."""
+    """Return a material that shows a lit lobby behind a door: bright above, darker at the floor, with blurred furniture."""
     found = bpy.data.materials.get("glowing lobby")
     if found is not None:
         return found

@@ -1,6 +1,6 @@
 """Shop fronts with transparent display windows: pilasters, glass, fascias, and doors of shops and houses.
 
-Everything shares the frame of its building: the wall line is y = 0, and the street lies towards +y.
+All parts are modelled in the frame of their building: its wall is the plane y = 0, and the street lies towards +y.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ INSIDE_M = 2.6
 class Front:
     """A shop front ``width_m`` wide, with the middle of its door at ``door_x``.
 
-    For someone who looks at the front, x grows to the left. ``room`` is the colour of the walls inside; ``lit`` turns on the
+    For a viewer in front of it, x increases to the left. ``room`` is the colour of the walls inside; ``lit`` turns on the
     lamps inside.
     """
 
@@ -42,7 +42,7 @@ class Front:
 
 
 def shop_front(spec: Front) -> Built:
-    """Build the woodwork, the glass and the room behind as one thing. Door and fascia are built separately."""
+    """Build the woodwork, the glass and the room behind it as one object. The door and the fascia are built separately."""
     s = Solid("shop front")
     wood = paint(spec.colour, dirt=0.10, roughness=0.34)
     w = spec.width_m / 2
@@ -124,7 +124,7 @@ STOCK = ("red", "navy", "cream", "green", "white", "amber", "brown", "light blue
 
 
 def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
-    """Fill the shelves on the back wall with runs of similar boxes, jars and packets."""
+    """Fill the shelves on the back wall with groups of similar boxes, jars and packets."""
     for z in (0.77, 1.27, 1.77, 2.22):
         x = -half_m
         while x < half_m - 0.3:
@@ -140,7 +140,7 @@ def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
 
 
 def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.types.Material:
-    """Return an indoor surface that is slightly emissive. This renders faster and with less noise than lamps behind glass."""
+    """Return a slightly emissive indoor material. It renders faster and with less noise than lamps behind glass."""
     full = f"inside {name}"
     found = bpy.data.materials.get(full)
     if found is not None:
@@ -152,7 +152,7 @@ def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.t
 
 
 def shop_glass() -> bpy.types.Material:
-    """Return a clean, mostly transparent pane whose reflection of the street grows at grazing angles."""
+    """Return the material of a clean, mostly transparent pane that reflects the street more strongly at grazing angles."""
     found = bpy.data.materials.get("shop glass")
     if found is not None:
         return found
@@ -171,7 +171,7 @@ def shop_glass() -> bpy.types.Material:
 
 
 def _tiles(colour: str) -> bpy.types.Material:
-    """Return glazed tiles, as below a shop window."""
+    """Return the material of glazed tiles below a shop window."""
     name = f"glazed tiles {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -184,10 +184,7 @@ def _tiles(colour: str) -> bpy.types.Material:
 
 
 def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | None = None, cap_m: float = 0.27) -> Built:
-    """Build the board over a shop with its name and, optionally, a smaller line at the right end.
-
-    Heights are those on the building.
-    """
+    """Build the name board over a shop at its height on the building, with an optional line of ``small`` text at its right end."""
     s = Solid(f"{name} sign")
     board = width_m - 2 * PILASTER_M - 0.04
     s.box((board, 0.10, 0.52), (0, 0.08, 3.085), paint(colour, dirt=0.15, roughness=0.30), 0.012)
@@ -249,7 +246,7 @@ def house_door(colour: str, *, number: str | None = None) -> Built:
 def plate(lines: Sequence[str], cap_m: float, colour: str, ink: str, *, border: bool = True, pad: float = 0.6) -> Built:
     """Build a flat sign for a wall or pane, such as a name plate or a card, with centred lines.
 
-    Its middle is at the origin and it faces +y.
+    It is centred on the origin and faces +y.
     """
     s = Solid(f"{lines[0]} sign")
     wide = max(extent(line, cap_m) for line in lines) + cap_m * 2 * pad

@@ -1,4 +1,4 @@
-"""Lit buildings on an evening horizon: sheds and flats with windows, silos, a chimney with aircraft lights, distant lights."""
+"""Lit buildings on an evening horizon: sheds, blocks of flats, silos, a chimney with warning lights, and distant lights."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Rgb = tuple[float, float, float]
 
 
 def lit_glass(tint: str, strength: float = 0.8) -> bpy.types.Material:
-    """Return a lit window at a distance, "warm", "cool" or "dim": brighter above, with shadows of things on the sill."""
+    """Return the material of a distant lit window, "warm", "cool" or "dim": brighter above, with shadows of objects on the sill."""
     name = f"lit window {tint} {strength:g}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -117,7 +117,7 @@ def flats(
 
 
 def chimney(height: float = 46.0) -> Built:
-    """Build a tapered concrete stack with bands near the top and red aircraft lights on two levels."""
+    """Build a tapered concrete stack with bands near the top and red aircraft warning lights on two levels."""
     s = Solid("chimney")
     body, red = concrete(), paint("dark red", dirt=0.4)
     s.lathe([(2.2, 0.0), (1.35, height * 0.82)], body, steps=28)

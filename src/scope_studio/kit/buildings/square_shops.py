@@ -1,4 +1,4 @@
-"""Shop fronts of a market square: dark plate glass, sign boards, awnings with lettered valances, a pharmacy's cross."""
+"""Shop fronts of a market square: dark plate glass, sign boards, awnings with lettered valances, and a pharmacy cross."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from scope_studio.kit.core.stage import Built
 def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> Built:
     """Build a timber shop front, 0.3 m deep, in front of y = 0.
 
-    It has pilasters, stall risers, transoms, and plate glass with goods behind. A dark gap 1.1 m wide in the middle is left for
-    a ``shop_door``.
+    It has pilasters, stall risers, transoms, and plate glass with goods behind it. A dark gap in the middle, 1.1 m wide, is
+    left for a ``shop_door``.
     """
     s = Solid("shop front")
     rng = random.Random(f"shop front {seed}")
@@ -120,7 +120,7 @@ def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: s
 
 
 def pharmacy_cross(size: float = 0.9, *, lit: bool = True) -> Built:
-    """Build a green cross on a bracket, readable from both sides (+x and -x). Its wall is the plane y = 0."""
+    """Build a green cross on a bracket, visible from both sides (+x and -x). The wall is the plane y = 0."""
     s = Solid("pharmacy cross")
     s.rod((0, 0, 0), (0, 0.5, 0), 0.03, paint("dark grey"))
     arm, cy = size / 3, 0.5 + size / 2

@@ -1,4 +1,4 @@
-"""A small-town railway station of dressed stone: a gabled centre with three arches, two wings under iron canopies."""
+"""A small-town railway station of dressed stone: a gabled centre with three arches, and two wings with iron canopies."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 CENTRE_M = 14.4
-"""Width of the gabled centre, which projects from the wings by ``PROJECTION_M``."""
+"""Width in metres of the gabled centre, which projects from the wings by ``PROJECTION_M``."""
 PROJECTION_M = 1.6
 WING_M = 16.0
 WING_EAVES_M = 6.6
@@ -50,7 +50,7 @@ def arch_panel(
 
 
 def arch_trim(
-    s: Solid, half: float, spring: float, material: bpy.types.Material, *, proud: float = 0.07, band: float = 0.28
+    s: Solid, half: float, spring: float, material: bpy.types.Material, *, projection: float = 0.07, band: float = 0.28
 ) -> None:
     """Add the voussoirs of an arch, with a keystone."""
     outer, inner = arc((0, spring), half + band, 0, 180, 14), arc((0, spring), half - 0.01, 0, 180, 14)
@@ -59,13 +59,13 @@ def arch_trim(
         quad = [inner[k], outer[k], outer[k + 1], inner[k + 1]]
         mid = (sum(u for u, _ in quad) / 4, sum(v for _, v in quad) / 4)
         s.prism([(mid[0] + (u - mid[0]) * (1 - gap * 4), mid[1] + (v - mid[1]) * (1 - gap * 4)) for u, v in quad],
-                (-0.1, proud), material, "XZ")  # fmt: skip
+                (-0.1, projection), material, "XZ")  # fmt: skip
     s.prism([(-0.14, spring + half - 0.06), (0.14, spring + half - 0.06), (0.20, spring + half + band + 0.12),
-             (-0.20, spring + half + band + 0.12)], (-0.1, proud + 0.06), material, "XZ")  # fmt: skip
+             (-0.20, spring + half + band + 0.12)], (-0.1, projection + 0.06), material, "XZ")  # fmt: skip
 
 
 def station_house(name: str) -> Built:
-    """Build the station without its doors, clock and board.
+    """Build the station without its doors, clock and departures board.
 
     It is 46 m wide and faces +y; the front of the centre is the plane y = 0.
     """

@@ -20,8 +20,8 @@ Rgb = tuple[float, float, float]
 def overbridge(*, span_m: float, width_m: float = 9.0, deck_m: float = 6.9, number: str = "", banner: Sequence[str] = ()) -> Built:
     """Build a two-span concrete road bridge along x, with its pier at the origin.
 
-    A number plate and a banner are on both faces. ``deck_m`` is the height of the road surface on the bridge. Abutments stand
-    at both ends of ``span_m``.
+    Both faces have a number plate and a banner. ``deck_m`` is the height of the road surface on the bridge, and ``span_m`` is the
+    distance between the abutments.
     """
     concrete = concrete_material()
     half, edge = span_m / 2, width_m / 2
@@ -63,13 +63,14 @@ def overbridge(*, span_m: float, width_m: float = 9.0, deck_m: float = 6.9, numb
             parts.append(letters)
             marks.append(mark)
         if banner:
-            made, written = _banner(banner, side, facing, edge, deck_m)
-            parts += made
-            marks += written
+            objects, banner_marks = _banner(banner, side, facing, edge, deck_m)
+            parts += objects
+            marks += banner_marks
     return Built.of("overbridge", parts, marks)
 
 
 def _piers(edge: float, under: float, concrete: bpy.types.Material) -> list[bpy.types.Object]:
+    """Create the piers in the middle of the span."""
     parts = [box("crosshead", (1.3, 2 * edge - 1.2, 0.9), (0, 0, under - 1.05), concrete, bevel_m=0.06)]
     for k in (-1, 0, 1):
         parts.append(
@@ -79,7 +80,7 @@ def _piers(edge: float, under: float, concrete: bpy.types.Material) -> list[bpy.
 
 
 def _abutments(half: float, edge: float, deck_m: float, under: float, concrete: bpy.types.Material) -> list[bpy.types.Object]:
-    """Add bank seats on paved slopes, and wing walls that retain the embankments."""
+    """Create bank seats on paved slopes, and wing walls that retain the embankments."""
     parts = []
     for side in (-1, 1):
         parts.append(box("bank seat", (1.4, 2 * edge - 0.2, 2.2), (side * (half + 0.4), 0, under - 1.3), concrete, bevel_m=0.05))
@@ -101,7 +102,7 @@ def _abutments(half: float, edge: float, deck_m: float, under: float, concrete: 
 
 
 def paving_material() -> bpy.types.Material:
-    """Return square concrete setts of 0.3 m, for a slope."""
+    """Return the material of square concrete setts, 0.3 m wide, on a slope."""
     s = Shader("slope paving")
     _, y, z = s.xyz(s.object_coords())
     joint = s.math("MINIMUM", s.math("PINGPONG", y, 0.15), s.math("PINGPONG", s.math("MULTIPLY", z, 1.7), 0.15))
@@ -112,23 +113,24 @@ def paving_material() -> bpy.types.Material:
 
 
 def _rails(span_m: float, edge: float, deck_m: float) -> list[bpy.types.Object]:
+    """Create the handrails on both parapets."""
     steel = plain("galvanised", (0.42, 0.44, 0.45), 0.45, 0.7)
     parts = []
     reach = span_m / 2 + 4.4
     for y in (-edge, edge):
-        made = [tube("rail", [(-reach, y, deck_m + 1.12), (reach, y, deck_m + 1.12)], 0.04, steel)]
+        objects = [tube("rail", [(-reach, y, deck_m + 1.12), (reach, y, deck_m + 1.12)], 0.04, steel)]
         count = int(reach * 2 / 2.2)
         for k in range(count + 1):
             x = -reach + 2 * reach * k / count
-            made.append(box("post", (0.07, 0.05, 0.30), (x, y, deck_m + 0.98), steel, bevel_m=0))
-        parts.append(join("rails", made))
+            objects.append(box("post", (0.07, 0.05, 0.30), (x, y, deck_m + 0.98), steel, bevel_m=0))
+        parts.append(join("rails", objects))
     return parts
 
 
 def _banner(
     lines: Sequence[str], side: int, facing: str, edge: float, deck_m: float
 ) -> tuple[list[bpy.types.Object], list[TextMark]]:
-    """Add a tied vinyl sheet on the parapet. ``side`` -1 is the south face."""
+    """Create a banner, a vinyl sheet tied to the parapet. ``side`` -1 is the south face."""
     y = side * (edge + 0.145)
     x = -side * 9.0
     width = max(len(line) for line in lines) * 0.27 + 0.9
@@ -203,7 +205,7 @@ def pylon(height_m: float = 30.0) -> Built:
 
 
 Bar = tuple[Point, Point, float]
-"""Start, end and half thickness of a straight member."""
+"""Start, end and half thickness of a straight bar."""
 
 
 def lattice(name: str, bars: Sequence[Bar], material: bpy.types.Material) -> bpy.types.Object:

@@ -26,10 +26,10 @@ WHITE = (0.66, 0.655, 0.62)
 
 @dataclass(frozen=True)
 class Terrace:
-    """One building of a row.
+    """Parameters of one building of a row.
 
-    ``wall`` is (kind, colour) of ``wet_masonry.wall``. ``lit`` lists (floor, column) of lit windows. ``shop`` leaves the ground
-    floor of the front open for a shop front; otherwise it has windows and a door opening.
+    ``wall`` is the kind and colour that ``wet_masonry.wall`` takes. ``lit`` lists (floor, column) of lit windows. ``shop`` leaves
+    the ground floor of the front open for a shop front; otherwise it has windows and a door opening.
     """
 
     width_m: float
@@ -52,14 +52,14 @@ class Terrace:
 
 
 def terrace(spec: Terrace) -> Built:
-    """Build the terraced building as one mesh."""
+    """Build a terraced building as one mesh."""
     s = Solid(f"{spec.wall[1]} {spec.wall[0]} building")
     rng = Random(f"terrace {spec.seed} {spec.width_m}")
     face = wall(*spec.wall)
     low = GROUND_M - 0.1 if spec.shop else 0.0
-    holes = _holes(spec)
+    holes = _upper_holes(spec)
     if not spec.shop:
-        holes += _house_holes(spec)
+        holes += _ground_floor_holes(spec)
     _pierced(s, spec.width_m, low, spec.eaves_m + (0.75 if spec.parapet else 0.0), holes, face)
     _shell(s, spec, face)
     for x, z, w, h, floor, column in holes:
@@ -78,30 +78,34 @@ def terrace(spec: Terrace) -> Built:
 
 
 Hole = tuple[float, float, float, float, int, int]
-"""Middle x, bottom z, width, height, floor (0 = ground, -1 = a door), column."""
+"""Hole in a wall: middle x, bottom z, width, height, floor (0 = ground, -1 = a door), column."""
 
 
-def _holes(spec: Terrace) -> list[Hole]:
-    made: list[Hole] = []
+def _upper_holes(spec: Terrace) -> list[Hole]:
+    """Return the window holes of the upper floors."""
+    holes: list[Hole] = []
     pitch = spec.width_m / spec.columns
     for floor in range(1, spec.storeys):
         height = 1.75 if floor == 1 else 1.35
         base = GROUND_M + STOREY_M * (floor - 1) + 0.72
-        made += [(pitch * (k + 0.5) - spec.width_m / 2, base, min(1.2, pitch * 0.5), height, floor, k) for k in range(spec.columns)]
-    return made
+        holes += [
+            (pitch * (k + 0.5) - spec.width_m / 2, base, min(1.2, pitch * 0.5), height, floor, k) for k in range(spec.columns)
+        ]
+    return holes
 
 
-def _house_holes(spec: Terrace) -> list[Hole]:
+def _ground_floor_holes(spec: Terrace) -> list[Hole]:
+    """Return the window and door holes of a ground floor without a shop."""
     pitch = spec.width_m / spec.columns
-    made: list[Hole] = []
+    holes: list[Hole] = []
     for k in range(spec.columns):
         x = pitch * (k + 0.5) - spec.width_m / 2
-        made.append((x, 0.0, 1.0, 2.25, -1, k) if k == spec.columns - 1 else (x, 0.85, min(1.2, pitch * 0.5), 1.75, 0, k))
-    return made
+        holes.append((x, 0.0, 1.0, 2.25, -1, k) if k == spec.columns - 1 else (x, 0.85, min(1.2, pitch * 0.5), 1.75, 0, k))
+    return holes
 
 
 def _pierced(s: Solid, width: float, low: float, high: float, holes: list[Hole], face: bpy.types.Material) -> None:
-    """Add the front wall as a grid of quads with holes, and the reveals of the holes, 0.13 m deep."""
+    """Add the front wall as a grid of quads with holes, and the reveals of the holes, which are 0.13 m deep."""
     xs = sorted({-width / 2, width / 2, *(x - w / 2 for x, _, w, *_ in holes), *(x + w / 2 for x, _, w, *_ in holes)})
     zs = sorted({low, high, *(z for _, z, *_ in holes), *(z + h for _, z, _, h, *_ in holes)})
     zs = [z for z in zs if low <= z <= high]
@@ -124,7 +128,7 @@ def _shell(s: Solid, spec: Terrace, face: bpy.types.Material) -> None:
     """Add side walls with their gables, and the back wall."""
     w, d, h = spec.width_m / 2, DEPTH_M, spec.eaves_m
     top = h + (0.75 if spec.parapet else 0.0)
-    ridge = h + _rise(spec)
+    ridge = h + _roof_rise(spec)
     for x in (-w, w):
         outline = [(x, 0, 0), (x, -d, 0), (x, -d, h), (x, -d / 2, ridge), (x, -0.3, h + 0.1), (x, -0.3, top), (x, 0, top)]
         s.add(outline, [tuple(range(7)) if x < 0 else tuple(range(7))[::-1]], face)
@@ -136,7 +140,8 @@ def _shell(s: Solid, spec: Terrace, face: bpy.types.Material) -> None:
         s.box((spec.width_m, 0.09, 0.12), (0, 0.03, h - 0.22), trim(spec.stone), 0.02)
 
 
-def _rise(spec: Terrace) -> float:
+def _roof_rise(spec: Terrace) -> float:
+    """Return the height of the ridge above the eaves in metres."""
     return DEPTH_M / 2 * (0.80 if spec.roof == "clay" else 0.68)
 
 
@@ -155,7 +160,7 @@ def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: Terrace, rng: 
         [(1, 0, 3, 2)],
         pane,
     )
-    _dressing(s, x, z, w, h, back, rng, lit=lit)
+    _curtains(s, x, z, w, h, back, rng, lit=lit)
     for side in (-1, 1):
         s.box((0.07, 0.07, h), (x + side * (w / 2 - 0.035), back + 0.03, z + h / 2), joinery, 0.006)
     for v, deep in ((0.035, 0.09), (h - 0.035, 0.07), (h * 0.52, 0.06)):
@@ -186,7 +191,8 @@ def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: Terrace, rng: 
         s.box((w + 0.30, 0.06, 0.16), (x, 0.03, z + h + 0.08), stone, 0.012)
 
 
-def _dressing(s: Solid, x: float, z: float, w: float, h: float, back: float, rng: Random, *, lit: bool) -> None:
+def _curtains(s: Solid, x: float, z: float, w: float, h: float, back: float, rng: Random, *, lit: bool) -> None:
+    """Add curtains or a blind behind a window, or neither, at random."""
     kind = rng.random()
     cloth = plain(
         f"curtain {rng.randrange(4)} {lit}",
@@ -219,12 +225,12 @@ def _front_door(s: Solid, x: float, w: float, h: float) -> None:
 
 
 def dark_pane() -> bpy.types.Material:
-    """Return the window glass of an unlit room: reflections on a dark surface."""
+    """Return the material of an unlit window, a dark surface with reflections."""
     return plain("unlit pane", (0.016, 0.018, 0.020), 0.03)
 
 
 def lit_pane() -> bpy.types.Material:
-    """Return the window of a lit room: warm lamplight, brightest below the middle."""
+    """Return the material of a lit window, with warm lamplight that is brightest below the middle."""
     found = bpy.data.materials.get("lit pane")
     if found is not None:
         return found
@@ -236,7 +242,7 @@ def lit_pane() -> bpy.types.Material:
 
 def _roof(s: Solid, spec: Terrace) -> None:
     cover = roofing(spec.roof)
-    w, d, h, rise = spec.width_m / 2, DEPTH_M, spec.eaves_m, _rise(spec)
+    w, d, h, rise = spec.width_m / 2, DEPTH_M, spec.eaves_m, _roof_rise(spec)
     front = -0.32 if spec.parapet else 0.28
     slope = rise / (d / 2)
     z0 = h - slope * front
@@ -261,7 +267,7 @@ def _roof(s: Solid, spec: Terrace) -> None:
 def _chimney(s: Solid, spec: Terrace, rng: Random) -> None:
     side = rng.choice((-1, 1))
     x, y = side * (spec.width_m / 2 - 0.35), -DEPTH_M / 2 + rng.choice((-0.6, 0.5))
-    top = spec.eaves_m + _rise(spec) + 1.25
+    top = spec.eaves_m + _roof_rise(spec) + 1.25
     stack = wall("brick", "brown" if spec.wall[0] != "brick" else spec.wall[1])
     s.box((0.62, 1.15, 2.6), (x, y, top - 1.3), stack, 0.01)
     s.box((0.74, 1.27, 0.12), (x, y, top - 0.10), stack, 0.02)

@@ -1,6 +1,6 @@
-"""Town houses for terraces: real window openings, shutters, cornices, slate roofs with dormers and chimneys.
+"""Town houses for terraces, with modelled window openings, shutters, cornices, and roofs with dormers and chimneys.
 
-A house faces north with its front wall in the plane y = 0, so that rows follow a building line. Its body extends towards -y.
+A house faces north (+y), and its body extends towards -y. Its front wall is the plane y = 0, so that the fronts of a row align.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def wall_with_openings(
 ) -> None:
     """Add a wall band in the plane y = 0 that faces +y, with openings and their reveals.
 
-    ``openings`` are (centre x, width, low z, high z), all with the same heights.
+    ``openings`` are (centre x, width, low z, high z), where all low z are equal and all high z are equal.
     """
     low, high = (openings[0][2], openings[0][3]) if openings else (z0, z0)
 
@@ -102,7 +102,7 @@ def sash(s: Solid, x: float, w: float, za: float, zb: float, rng: random.Random,
 
 
 def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str) -> None:
-    """Add louvred shutters, folded back on the wall beside a window."""
+    """Add louvred shutters, folded back against the wall on both sides of a window."""
     skin = paint(colour, dirt=0.25, roughness=0.5)
     leaf = w / 2 - 0.02
     for sign in (-1, 1):
@@ -119,7 +119,7 @@ def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str
 
 
 def town_house(h: House) -> Built:
-    """Build a house. A shop front for its ground floor is built separately, by ``square_shops``."""
+    """Build a town house. A shop front for its ground floor is built separately, by ``square_shops``."""
     rng = random.Random(f"town house {h.seed}")
     s = Solid("town house")
     trim, tile = paint(h.trim, dirt=0.35, roughness=0.8), tile_material(f"roof {h.roof[0]:.2f}", h.roof)

@@ -10,7 +10,7 @@ Rgb = tuple[float, float, float]
 
 
 def cladding_material(name: str, colour: Rgb, pitch_m: float = 0.2) -> bpy.types.Material:
-    """Return profiled metal sheet with vertical ribs, rain marks, and dirt near the ground."""
+    """Return the material of metal sheet with vertical ribs, rain marks, and dirt near the ground."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -27,7 +27,7 @@ def cladding_material(name: str, colour: Rgb, pitch_m: float = 0.2) -> bpy.types
 
 
 def brick_material(name: str, colour: Rgb) -> bpy.types.Material:
-    """Return brickwork in running bond with pale mortar and stains."""
+    """Return the material of brickwork in running bond, with pale mortar and stains."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -49,7 +49,7 @@ def brick_material(name: str, colour: Rgb) -> bpy.types.Material:
 
 
 def tile_material(name: str, colour: Rgb) -> bpy.types.Material:
-    """Return roof tiles in courses."""
+    """Return the material of a tiled roof."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -64,7 +64,7 @@ def tile_material(name: str, colour: Rgb) -> bpy.types.Material:
 
 
 def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.345, 0.315)) -> bpy.types.Material:
-    """Return board-marked concrete with rain streaks, lifts every 1.2 m and dirt near the ground."""
+    """Return the material of board-marked concrete cast in lifts of 1.2 m, with rain streaks and dirt near the ground."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -84,7 +84,7 @@ def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.34
 
 
 def stucco(name: str, colour: Rgb) -> bpy.types.Material:
-    """Return painted render with trowel marks, rain streaks under edges, and damp near the ground."""
+    """Return the material of painted render, with trowel marks, rain streaks under edges, and damp near the ground."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -102,7 +102,7 @@ def stucco(name: str, colour: Rgb) -> bpy.types.Material:
 
 
 def ashlar(name: str, colour: Rgb, block: tuple[float, float] = (0.72, 0.36)) -> bpy.types.Material:
-    """Return dressed stone in courses, each block with its own tone. ``block`` is the width and height of a block in metres."""
+    """Return the material of dressed stone in courses. ``block`` is the width and height in metres of a block."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found

@@ -1,7 +1,7 @@
-"""A distribution warehouse: clad front with dock openings, lit hall, and canopy.
+"""A distribution warehouse: a metal-clad front with dock openings, a lit hall, and a canopy.
 
-Fronts face +y, with the outer face of the wall on y = 0; the building extends towards -y. Positions along the front are x,
-which grows to the left for someone who looks at the front.
+Fronts face +y, with the outer face of the wall on y = 0; the building extends towards -y. Positions along
+the front are values of x, which increases to the left for a viewer in front of it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from scope_studio.kit.light.glow import glowing_face, lit_lens
 
 DOCK_SILL_M, DOCK_WIDE_M, DOCK_TALL_M = 1.20, 2.9, 3.0
 Opening = tuple[float, float, float, float]
-"""x from, x to, z from, z to."""
+"""Opening in a wall: x from, x to, z from, z to (metres)."""
 
 
 def wall(
@@ -34,7 +34,7 @@ def wall(
     material: bpy.types.Material,
     depth: float = 0.22,
 ) -> None:
-    """Add a wall on y = 0 from ``x0`` to ``x1`` with rectangular holes. It is cut into upright strips at the edges of the holes."""
+    """Add a wall on y = 0 from ``x0`` to ``x1`` with holes. It is divided into strips at the vertical edges of the holes."""
     cuts = sorted({x0, x1, *(x for a, b, _, _ in openings for x in (a, b) if x0 < x < x1)})
     for a, b in pairwise(cuts):
         holes = sorted((c, d) for p, q, c, d in openings if p < (a + b) / 2 < q)
@@ -57,7 +57,8 @@ def shell(
 ) -> Built:
     """Build the warehouse: front with openings, other walls, parapet, low roof with roof lights and vents, and the hall inside.
 
-    The hall's floor is at dock height, but at yard level where x is below ``ramp_to``. Its back wall is 13 m behind the front.
+    The hall's floor is at dock height, except where x is below ``ramp_to``; there it is at yard level. The hall's back wall is 13 m
+    behind the front.
     """
     s = Solid("warehouse")
     skin, trim = cladding_material("warehouse cladding", colour, 0.25), plain("warehouse band", band, 0.45)
@@ -107,7 +108,7 @@ def _roof(s: Solid, w: float, depth: float, h: float) -> None:
 
 
 def roof_light() -> bpy.types.Material:
-    """Return translucent roof sheet over a lit hall."""
+    """Return the material of a translucent roof sheet over a lit hall."""
     found = bpy.data.materials.get("roof light")
     if found is not None:
         return found
@@ -167,7 +168,7 @@ def canopy(width: float, reach: float = 3.2, height: float = 5.0) -> Built:
 
 
 def letters(body: str, cap: float, *, lit: bool = True) -> Built:
-    """Build flat-cut letters on a rail, emissive white when lit. The wall behind is y = 0, their middle is z = 0."""
+    """Build flat-cut letters on a rail, emissive white when lit. The wall is the plane y = 0, and their middle is at z = 0."""
     s = Solid("wall letters")
     face = glowing_face("white", 1.5) if lit else paint("white", dirt=0.25)
     width, _ = s.text(body, cap, (0, 0.12, 0), face, facing="+Y")

@@ -27,7 +27,7 @@ STONES: dict[str, Rgb] = {"honey": (0.40, 0.30, 0.175), "grey": (0.29, 0.28, 0.2
 
 
 def wall(kind: str, colour: str) -> bpy.types.Material:
-    """Return a wall's material. ``kind`` is "brick", "render" or "stone"; the colour is a key of that kind's table."""
+    """Return a wall's material. ``kind`` is "brick", "render" or "stone"; ``colour`` is a key of the table for that kind."""
     name = f"wall {kind} {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -47,7 +47,7 @@ def wall(kind: str, colour: str) -> bpy.types.Material:
 
 
 def _courses(s: Shader, kind: str, colour: str, x: Value, y: Value, z: Value) -> tuple[Value, Value]:
-    """Return colour and joints of bricks or ashlar on walls along either axis."""
+    """Return the colour and the bump height of brickwork or ashlar, for walls along either axis."""
     base = BRICKS[colour] if kind == "brick" else STONES[colour]
     size = (0.225, 0.075, 0.0055) if kind == "brick" else (0.62, 0.30, 0.006)
     plane = s.node("ShaderNodeCombineXYZ")
@@ -70,7 +70,7 @@ def _courses(s: Shader, kind: str, colour: str, x: Value, y: Value, z: Value) ->
 
 
 def _weather(s: Shader, where: Value, z: Value, tint: Value, amount: float) -> Value:
-    """Return the tint with soot in patches, rain streaks, and damp rising from the pavement."""
+    """Return ``tint`` with patches of soot, rain streaks, and rising damp near the pavement."""
     moved = s.node("ShaderNodeVectorMath", operation="ADD")
     s.feed(moved.inputs[0], where)
     s.feed(moved.inputs[1], s.math("MULTIPLY", s.random(), 53.0))
@@ -83,7 +83,7 @@ def _weather(s: Shader, where: Value, z: Value, tint: Value, amount: float) -> V
 
 
 def roofing(kind: str) -> bpy.types.Material:
-    """Return a wet roof covering in courses: "slate" or "clay"."""
+    """Return the material of a wet roof covering in courses, "slate" or "clay"."""
     name = f"roof {kind}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -112,7 +112,7 @@ def roofing(kind: str) -> bpy.types.Material:
 
 
 def trim(colour: Rgb = (0.62, 0.61, 0.57)) -> bpy.types.Material:
-    """Return painted joinery or dressed stone trim, with dirt in the corners."""
+    """Return the material of painted joinery or stone trim, with dirt in the corners."""
     name = f"trim {colour[0]:.2f} {colour[1]:.2f} {colour[2]:.2f}"
     found = bpy.data.materials.get(name)
     if found is not None:

@@ -1,8 +1,8 @@
-"""Materials of manufactured things: painted metal, plastic, steel, reflective sheet, concrete, rubber, wood, canvas, lamps.
+"""Materials of manufactured objects: painted metal, plastic, steel, reflective sheet, concrete, rubber, wood, canvas, lamps.
 
-Each function returns one material per colour, made on first use. Dirt and wear depend on object coordinates: objects are
-modelled standing on z = 0, so splashes stay near the ground. The coordinates are shifted by the object's random number, so that
-linked copies differ.
+Each function returns one material per colour, which is created on first use. Dirt and wear depend on object coordinates: objects
+are modelled standing on z = 0, so splashes stay near the ground. The coordinates are shifted by a random number of the object,
+so that linked copies look different.
 """
 
 from __future__ import annotations
@@ -42,22 +42,23 @@ PALETTE: dict[str, Colour] = {
     "denim": (0.040, 0.075, 0.16),
     "silver": (0.52, 0.53, 0.54),
 }
-"""Linear RGB of the plain colour names."""
+"""Linear RGB by plain colour name."""
 
 DIRT: Colour = (0.085, 0.070, 0.052)
 
 
 def _shared(name: str, make: Callable[[Shader], bpy.types.Material]) -> bpy.types.Material:
+    """Return the material with this name, which ``make`` creates on first use."""
     found = bpy.data.materials.get(name)
     return found if found is not None else make(Shader(name))
 
 
 def _coords(s: Shader) -> Value:
     """Return object coordinates with an offset that differs between objects."""
-    made = s.node("ShaderNodeVectorMath", operation="ADD")
-    s.feed(made.inputs[0], s.object_coords())
-    s.feed(made.inputs[1], s.math("MULTIPLY", s.random(), 37.0))
-    return made.outputs[0]
+    node = s.node("ShaderNodeVectorMath", operation="ADD")
+    s.feed(node.inputs[0], s.object_coords())
+    s.feed(node.inputs[1], s.math("MULTIPLY", s.random(), 37.0))
+    return node.outputs[0]
 
 
 def soiled(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> Value:
@@ -82,7 +83,7 @@ def paint(colour: str, *, dirt: float = 0.30, roughness: float = 0.38) -> bpy.ty
 
 
 def steel(*, dark: bool = False) -> bpy.types.Material:
-    """Return weathered galvanised steel, with its spangle."""
+    """Return the material of weathered galvanised steel with a spangled surface."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
@@ -96,7 +97,7 @@ def steel(*, dark: bool = False) -> bpy.types.Material:
 
 
 def sheet(colour: str, *, dirt: float = 0.16) -> bpy.types.Material:
-    """Return retroreflective sheeting: an even, slightly emissive colour with a faint cell pattern and dirt streaks."""
+    """Return the material of retroreflective sheet: an even, slightly emissive colour with a faint cell pattern and dirt."""
 
     def make(s: Shader) -> bpy.types.Material:
         cells = s.ramp(s.voronoi(s.object_coords(), 160.0, "DISTANCE_TO_EDGE"), 0.0, 0.12, 0.90, 1.0)
@@ -122,22 +123,22 @@ def lens(colour: str) -> bpy.types.Material:
 
 
 def glass() -> bpy.types.Material:
-    """Return dark, opaque glazing, as windows look from outside by day."""
+    """Return the material of dark, opaque glazing, as windows look from outside by day."""
     return _shared("glazing", lambda s: s.surface(base_color=(0.018, 0.021, 0.023), roughness=0.04))
 
 
 def clear_glass() -> bpy.types.Material:
-    """Return clear, mostly transparent glass with a green tint."""
+    """Return the material of clear, mostly transparent glass with a green tint."""
     return _shared("clear pane", lambda s: s.surface(base_color=(0.55, 0.62, 0.60), roughness=0.04, alpha=0.22))
 
 
 def rubber() -> bpy.types.Material:
-    """Return dirty black rubber."""
+    """Return the material of dirty black rubber."""
     return _shared("rubber", lambda s: s.surface(base_color=soiled(s, (0.018, 0.018, 0.018), 0.5, 0.2), roughness=0.75))
 
 
 def concrete(*, light: bool = True) -> bpy.types.Material:
-    """Return cast concrete with blotches, air holes and stains from the top."""
+    """Return the material of cast concrete, with blotches, air holes and stains that run down from the top."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
@@ -153,7 +154,7 @@ def concrete(*, light: bool = True) -> bpy.types.Material:
 
 
 def timber(*, fresh: bool = True) -> bpy.types.Material:
-    """Return sawn softwood with the grain along the local x axis."""
+    """Return the material of sawn softwood with the grain along the local x axis."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = s.scaled(_coords(s), (2.0, 26.0, 26.0))
@@ -169,7 +170,7 @@ def timber(*, fresh: bool = True) -> bpy.types.Material:
 
 
 def granular(name: str, low: Colour, high: Colour, grain_scale: float) -> bpy.types.Material:
-    """Return loose material such as sand, gravel or soil."""
+    """Return the material of loose ground such as sand, gravel or soil."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = s.object_coords()
@@ -183,7 +184,7 @@ def granular(name: str, low: Colour, high: Colour, grain_scale: float) -> bpy.ty
 
 
 def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
-    """Return woven or tarpaulin-like cloth with creases."""
+    """Return the material of woven or tarpaulin-like cloth with creases."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
@@ -194,7 +195,7 @@ def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
 
 
 def pane(tint: float = 0.25) -> bpy.types.Material:
-    """Return clear glass that transmits most of the light and mirrors the share ``tint``."""
+    """Return the material of clear glass that transmits most of the light and reflects the fraction ``tint``."""
     name = f"pane {tint:.2f}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -213,7 +214,7 @@ def pane(tint: float = 0.25) -> bpy.types.Material:
 
 
 def stripes(name: str, first: str, second: str, pitch_m: float) -> bpy.types.Material:
-    """Return canvas striped across the local x axis. It is plain when both colours are equal, and a third of the light passes."""
+    """Return the material of canvas that is striped along the local x axis and lets a third of the light through."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found

@@ -1,6 +1,6 @@
 """Lettering as meshes with exact cap heights, in two weights of Blender's built-in sans serif font.
 
-Blender's other Latin fonts are unsuitable: the contours of Inter overlap, which spoils the filling of K, R and A, and Noto Sans
+Blender's other Latin fonts are unsuitable: the contours of Inter overlap, so K, R and A are filled incorrectly, and Noto Sans
 CJK takes 15 s to load.
 """
 
@@ -13,15 +13,15 @@ import bpy
 from scope_studio.kit.core.mesh import Point
 
 EMBOLDEN = ((-0.040, -0.026), (-0.040, 0.026), (0.040, -0.026), (0.040, 0.026))
-"""Shifts, in cap heights, of the copies that together make the bold weight. Offsetting the outline would break the counters."""
+"""Shifts of the copies that together form the bold weight, as multiples of the cap height. Offsetting outlines breaks counters."""
 
 
 def letters(
     body: str, cap_height_m: float, *, bold: bool = True, spacing: float | None = None
 ) -> tuple[list[Point], list[tuple[int, ...]]]:
-    """Return points and faces of flat letters in the xy plane, with the line's baseline on y = 0 and its start near x = 0.
+    """Return points and faces of flat letters in the xy plane, with the baseline on y = 0 and the start of the line near x = 0.
 
-    The copies that make the bold weight lie 0.05 mm apart in z.
+    The copies that form the bold weight lie 0.05 mm apart in z.
     """
     outline, polygons = _outline(body, _spacing(bold, spacing))
     points: list[Point] = []
@@ -42,19 +42,21 @@ def extent(body: str, cap_height_m: float, *, bold: bool = True, spacing: float 
 
 
 def _spacing(bold: bool, spacing: float | None) -> float:
+    """Return the given letter spacing, or the default of the weight."""
     return spacing if spacing is not None else (1.12 if bold else 1.06)
 
 
 @cache
 def _outline(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
     """Return points and faces of a line with cap height 1."""
-    points, faces = _filled(body, spacing)
-    cap = max(y for _, y in _filled("H", 1.0)[0])
+    points, faces = _font_mesh(body, spacing)
+    cap = max(y for _, y in _font_mesh("H", 1.0)[0])
     return [(x / cap, y / cap) for x, y in points], faces
 
 
 @cache
-def _filled(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
+def _font_mesh(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
+    """Return points and faces of a line as Blender's font generates them."""
     curve = bpy.data.curves.new("letters", "FONT")
     curve.body = body
     curve.space_character = spacing

@@ -1,4 +1,4 @@
-"""Mesh objects from numbers: boxes, surfaces of revolution, tubes, text."""
+"""Functions that create mesh objects: boxes, surfaces of revolution, tubes, text."""
 
 from __future__ import annotations
 
@@ -93,26 +93,26 @@ def tube(
     spline.points.add(len(path) - 1)
     for point, (x, y, z) in zip(spline.points, path, strict=True):
         point.co = (x, y, z, 1.0)
-    made = bpy.data.objects.new(name, curve)
-    bpy.context.scene.collection.objects.link(made)
+    obj = bpy.data.objects.new(name, curve)
+    bpy.context.scene.collection.objects.link(obj)
     if material is not None:
         curve.materials.append(material)
-    return to_mesh(made)
+    return to_mesh(obj)
 
 
 def to_mesh(obj: bpy.types.Object) -> bpy.types.Object:
-    """Replace a curve, text or modified object by its evaluated mesh, in place."""
+    """Replace a curve, text or modified object with its evaluated mesh, in place."""
     graph = bpy.context.evaluated_depsgraph_get()
     mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
-    made = bpy.data.objects.new(obj.name, mesh)
-    made.matrix_world = obj.matrix_world.copy()
-    bpy.context.scene.collection.objects.link(made)
+    converted = bpy.data.objects.new(obj.name, mesh)
+    converted.matrix_world = obj.matrix_world.copy()
+    bpy.context.scene.collection.objects.link(converted)
     bpy.data.objects.remove(obj, do_unlink=True)
-    return made
+    return converted
 
 
 def join(name: str, parts: Sequence[bpy.types.Object]) -> bpy.types.Object:
-    """Join meshes into one object, which renders and exports faster. The parts are consumed."""
+    """Join mesh objects into one, which renders and exports faster. The original objects no longer exist afterwards."""
     with bpy.context.temp_override(active_object=parts[0], selected_editable_objects=list(parts), selected_objects=list(parts)):
         bpy.ops.object.join()
     parts[0].name = name
@@ -134,10 +134,11 @@ def text(
     """Create flat lettering and its text mark.
 
     Args:
-        facing: Direction towards the reader: "-Y", "+Y", "+X", "-X" or "+Z".
-        centre: Middle of the block when ``align`` is "CENTER", its left edge when it is "LEFT".
+        facing: Direction that the lettering faces: "-Y", "+Y", "+X", "-X" or "+Z".
+        centre: Middle of the text block if ``align`` is "CENTER", or its left edge if ``align`` is "LEFT".
 
-    The size in the mark is measured from the generated letters.
+    Returns:
+        The object, and its text mark with the measured size of the letters.
     """
     curve = bpy.data.curves.new(name, "FONT")
     curve.body = body

@@ -1,4 +1,4 @@
-"""One mesh from many simple solids. Vehicles and machines are assembled with it into a single Blender object."""
+"""A builder that collects simple solids into one mesh, used for vehicles and machines."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AXES = {
 
 
 class Parts:
-    """A collection of polygons with materials. ``matrix`` is the frame in which further parts are added."""
+    """A collection of polygons with materials. ``matrix`` transforms the points of parts that are added from then on."""
 
     def __init__(self) -> None:
         self.matrix = Matrix.Identity(4)
@@ -31,7 +31,7 @@ class Parts:
         self._smooth: list[bool] = []
 
     def slot(self, material: bpy.types.Material) -> int:
-        """Return the slot number of a material. It is added on first use."""
+        """Return the slot number of a material, which is added on first use."""
         if material not in self.materials:
             self.materials.append(material)
         return self.materials.index(material)
@@ -115,16 +115,16 @@ class Parts:
         segments: int = 1,
         smooth: bool = False,
     ) -> None:
-        """Add an outline extruded along ``axis`` from ``low`` to ``high``.
+        """Add a closed outline, extruded along ``axis`` from ``low`` to ``high``.
 
         The outline is (y, z), (x, z) or (x, y) for axis X, Y or Z.
         """
         bm = bmesh.new()
         place = _AXES[axis]
         face = bm.faces.new([bm.verts.new(place(a, b, low)) for a, b in outline])
-        made = bmesh.ops.extrude_face_region(bm, geom=[face])
+        extruded = bmesh.ops.extrude_face_region(bm, geom=[face])
         shift = Vector(place(0, 0, high - low))
-        bmesh.ops.translate(bm, vec=shift, verts=[g for g in made["geom"] if isinstance(g, bmesh.types.BMVert)])
+        bmesh.ops.translate(bm, vec=shift, verts=[g for g in extruded["geom"] if isinstance(g, bmesh.types.BMVert)])
         bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
         if bevel_m > 0:
             bmesh.ops.bevel(bm, geom=bm.edges[:], offset=bevel_m, segments=segments, profile=0.5, affect="EDGES")
@@ -143,7 +143,7 @@ class Parts:
         smooth: bool = True,
         caps: bool = True,
     ) -> None:
-        """Add a surface of revolution from ``(radius, height)`` pairs about ``axis`` through ``centre``, closed by ``caps``."""
+        """Add a surface of revolution about ``axis`` from ``(radius, height)`` pairs. ``caps`` closes its ends."""
         place = _AXES[axis]
         points: list[Point] = []
         for radius, height in profile:
@@ -220,16 +220,17 @@ class Parts:
 
     def build(self, name: str) -> bpy.types.Mesh:
         """Return the assembled mesh datablock."""
-        made = bpy.data.meshes.new(name)
-        made.from_pydata([tuple(p) for p in self._points], [], self._faces)
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata([tuple(p) for p in self._points], [], self._faces)
         for material in self.materials:
-            made.materials.append(material)
-        made.polygons.foreach_set("material_index", self._slots)
-        made.polygons.foreach_set("use_smooth", self._smooth)
-        made.update()
-        return made
+            mesh.materials.append(material)
+        mesh.polygons.foreach_set("material_index", self._slots)
+        mesh.polygons.foreach_set("use_smooth", self._smooth)
+        mesh.update()
+        return mesh
 
 
 def _outward(points: Sequence[Point], face: tuple[int, ...], middle: Vector) -> tuple[int, ...]:
+    """Return the face with the order of points that makes it face away from ``middle``."""
     a, b, c = (Vector(points[k]) for k in face[:3])
     return face if (b - a).cross(c - b).dot(a - middle) > 0 else face[::-1]

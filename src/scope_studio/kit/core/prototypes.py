@@ -1,4 +1,4 @@
-"""A cache of built things, so that repeated objects share their mesh data."""
+"""A cache of built objects, so that repeated objects share their mesh data."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from scope_studio.kit.core.stage import Built
 
 
 class Prototypes:
-    """Builds each kind of thing once and returns linked copies afterwards."""
+    """Builds each kind of object once and returns linked copies afterwards."""
 
     def __init__(self) -> None:
         self._built: dict[str, Built] = {}
 
     def get(self, key: str, make: Callable[[], Built]) -> Built:
-        """Return the thing for this key: built by ``make`` on the first call, a linked copy on later calls."""
+        """Return the object for ``key``: built by ``make`` on the first call, a linked copy on later calls."""
         if key in self._built:
             return self._built[key].copy()
         self._built[key] = make()

@@ -1,4 +1,4 @@
-"""Cycles materials written as expressions: each method of ``Shader`` adds one node."""
+"""Cycles materials written as expressions, in which each method of ``Shader`` adds one node."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ class Shader:
         self.bsdf = next(n for n in self.tree.nodes if n.type == "BSDF_PRINCIPLED")
 
     def node(self, kind: str, **settings: Any) -> bpy.types.Node:
-        """Add a node of this kind and set its properties."""
-        made = self.tree.nodes.new(kind)
+        """Add a node of type ``kind`` and set its properties."""
+        node = self.tree.nodes.new(kind)
         for key, value in settings.items():
-            setattr(made, key, value)
-        return made
+            setattr(node, key, value)
+        return node
 
     def feed(self, socket: bpy.types.NodeSocket, value: Value) -> None:
-        """Link a socket to an input, or set a constant. Tuples of 3 are extended by alpha 1 for colour inputs."""
+        """Link a socket to an input, or set a constant. For colour inputs, an alpha of 1 is appended to tuples of 3."""
         if value is None:
             return
         if isinstance(value, bpy.types.NodeSocket):
@@ -56,48 +56,48 @@ class Shader:
 
     def xyz(self, vector: Value) -> tuple[Value, Value, Value]:
         """Return the three components of a vector."""
-        made = self.node("ShaderNodeSeparateXYZ")
-        self.feed(made.inputs[0], vector)
-        return made.outputs[0], made.outputs[1], made.outputs[2]
+        node = self.node("ShaderNodeSeparateXYZ")
+        self.feed(node.inputs[0], vector)
+        return node.outputs[0], node.outputs[1], node.outputs[2]
 
     def scaled(self, vector: Value, scale: tuple[float, float, float], offset: tuple[float, float, float] = (0, 0, 0)) -> Value:
-        """Return the vector scaled by component and shifted."""
-        made = self.node("ShaderNodeMapping")
-        self.feed(made.inputs["Vector"], vector)
-        made.inputs["Scale"].default_value = scale
-        made.inputs["Location"].default_value = offset
-        return made.outputs[0]
+        """Return ``vector`` multiplied by ``scale`` and shifted by ``offset``, component by component."""
+        node = self.node("ShaderNodeMapping")
+        self.feed(node.inputs["Vector"], vector)
+        node.inputs["Scale"].default_value = scale
+        node.inputs["Location"].default_value = offset
+        return node.outputs[0]
 
     def noise(self, vector: Value, scale: float, detail: float = 4.0, roughness: float = 0.55, distortion: float = 0.0) -> Value:
         """Return fractal noise in [0, 1]."""
-        made = self.node("ShaderNodeTexNoise")
-        self.feed(made.inputs["Vector"], vector)
+        node = self.node("ShaderNodeTexNoise")
+        self.feed(node.inputs["Vector"], vector)
         for key, value in {"Scale": scale, "Detail": detail, "Roughness": roughness, "Distortion": distortion}.items():
-            made.inputs[key].default_value = value
-        return made.outputs[0]
+            node.inputs[key].default_value = value
+        return node.outputs[0]
 
     def voronoi(self, vector: Value, scale: float, feature: str = "F1", output: str = "Distance") -> Value:
         """Return a Voronoi feature such as the distance to the nearest cell centre."""
-        made = self.node("ShaderNodeTexVoronoi", feature=feature)
-        self.feed(made.inputs["Vector"], vector)
-        made.inputs["Scale"].default_value = scale
-        return made.outputs[output]
+        node = self.node("ShaderNodeTexVoronoi", feature=feature)
+        self.feed(node.inputs["Vector"], vector)
+        node.inputs["Scale"].default_value = scale
+        return node.outputs[output]
 
     def math(self, operation: str, a: Value, b: Value = None, *, clamp: bool = False) -> Value:
-        """Return the result of a scalar operation."""
-        made = self.node("ShaderNodeMath", operation=operation, use_clamp=clamp)
-        self.feed(made.inputs[0], a)
-        self.feed(made.inputs[1], b)
-        return made.outputs[0]
+        """Return the result of a scalar operation of Blender's Math node."""
+        node = self.node("ShaderNodeMath", operation=operation, use_clamp=clamp)
+        self.feed(node.inputs[0], a)
+        self.feed(node.inputs[1], b)
+        return node.outputs[0]
 
     def ramp(
         self, value: Value, low: float, high: float, to_low: float = 0.0, to_high: float = 1.0, *, smooth: bool = True
     ) -> Value:
-        """Map ``low..high`` to ``to_low..to_high``, clamped. Most masks are built from it."""
-        made = self.node("ShaderNodeMapRange", interpolation_type="SMOOTHSTEP" if smooth else "LINEAR")
+        """Map ``low..high`` to ``to_low..to_high``, clamped. Most masks use it."""
+        node = self.node("ShaderNodeMapRange", interpolation_type="SMOOTHSTEP" if smooth else "LINEAR")
         for index, number in enumerate([value, low, high, to_low, to_high]):
-            self.feed(made.inputs[index], number)
-        return made.outputs[0]
+            self.feed(node.inputs[index], number)
+        return node.outputs[0]
 
     def band(self, value: Value, low: float, high: float, soft: float = 0.002) -> Value:
         """Return 1 where ``low < value < high`` and 0 elsewhere, with soft edges."""
@@ -105,19 +105,19 @@ class Shader:
 
     def mix(self, factor: Value, a: Value, b: Value, blend: str = "MIX") -> Value:
         """Mix two colours: ``a`` where the factor is 0, ``b`` where it is 1."""
-        made = self.node("ShaderNodeMix", data_type="RGBA", blend_type=blend)
-        self.feed(made.inputs[0], factor)
-        self.feed(made.inputs[6], a)
-        self.feed(made.inputs[7], b)
-        return made.outputs[2]
+        node = self.node("ShaderNodeMix", data_type="RGBA", blend_type=blend)
+        self.feed(node.inputs[0], factor)
+        self.feed(node.inputs[6], a)
+        self.feed(node.inputs[7], b)
+        return node.outputs[2]
 
     def bump(self, height: Value, strength: float = 0.3, distance: float = 0.01) -> Value:
         """Return the normal of a surface that is displaced by ``height``."""
-        made = self.node("ShaderNodeBump")
-        made.inputs["Strength"].default_value = strength
-        made.inputs["Distance"].default_value = distance
-        self.feed(made.inputs["Height"], height)
-        return made.outputs[0]
+        node = self.node("ShaderNodeBump")
+        node.inputs["Strength"].default_value = strength
+        node.inputs["Distance"].default_value = distance
+        self.feed(node.inputs["Height"], height)
+        return node.outputs[0]
 
 
 def plain(name: str, colour: tuple[float, float, float], roughness: float = 0.5, metallic: float = 0.0) -> bpy.types.Material:

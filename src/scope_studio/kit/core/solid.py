@@ -1,4 +1,4 @@
-"""A builder that collects primitives with their materials and texts and makes a single mesh object of them."""
+"""A builder that collects primitives with their materials and texts and creates one mesh object from them."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ READER = {
     "-X": ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
     "+Z": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
 }
-"""Side towards the reader -> (right, up) of the lettering."""
+"""Directions (right, up) of lettering, for each direction that it can face."""
 
 SHARP_ANGLE = math.radians(38)
 
 
 class Solid:
-    """Geometry collected under a movable frame. Materials become slots in order of first use."""
+    """A collection of geometry. Points are added in the current ``frame``. Materials become slots in order of first use."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -49,7 +49,7 @@ class Solid:
         pitch: float = 0.0,
         roll: float = 0.0,
     ) -> Iterator[None]:
-        """Work in a frame that is moved to ``(x, y, z)`` and rotated (degrees) about z, then x (pitch), then y (roll)."""
+        """While the context is active, use a frame moved to ``(x, y, z)`` and rotated (degrees) about z, x (pitch) and y (roll)."""
         saved = self.frame
         rotation = Matrix.Rotation(math.radians(turn), 4, "Z")
         rotation @= Matrix.Rotation(math.radians(pitch), 4, "X") @ Matrix.Rotation(math.radians(roll), 4, "Y")
@@ -68,7 +68,7 @@ class Solid:
     ) -> None:
         """Add polygons in the current frame.
 
-        ``rest`` gives each point a value of the "rest" attribute, which shaders use for masks.
+        ``rest`` gives each point a value for the "rest" attribute, which shaders use for masks.
         """
         if material not in self.slots:
             self.slots.append(material)
@@ -208,7 +208,7 @@ class Solid:
         material: bpy.types.Material,
         plane: str = "XZ",
     ) -> None:
-        """Add a polygon (convex or not) extruded between two depths along the axis that is normal to ``plane``."""
+        """Add a polygon (convex or not), extruded between two depths along the axis normal to ``plane``."""
         place = {"XZ": lambda u, v, d: (u, d, v), "XY": lambda u, v, d: (u, v, d), "YZ": lambda u, v, d: (d, u, v)}[plane]
         count = len(outline)
         area = sum(outline[i - 1][0] * outline[i][1] - outline[i][0] * outline[i - 1][1] for i in range(count))
@@ -234,10 +234,11 @@ class Solid:
         spacing: float | None = None,
         mark: bool = True,
     ) -> tuple[float, float]:
-        """Add one line of lettering towards ``facing``, with its exact text mark.
+        """Add one line of lettering that faces ``facing``, with its exact text mark.
 
         Args:
-            centre: Point at mid-height of the capitals; at the middle, left or right edge of the line, depending on ``align``.
+            centre: Point at half the height of the capitals and the middle, left end or right end of the line (see ``align``).
+            mark: Whether the line gets a text mark.
 
         Returns:
             Width and height of the letters in metres.

@@ -22,8 +22,8 @@ INSTANCE_PROP = "scope_instance"
 class TextMark:
     """One readable text on an object, in the object's own frame (before placement).
 
-    ``centre`` is the middle of the text block. ``right`` runs along the line of text as a reader sees it, and ``up`` towards
-    the top of the letters (unit vectors); the outward normal is ``right x up``. ``cap_height_m`` is the height of a capital
+    ``centre`` is the middle of the text block. ``right`` points along the line of text as a viewer sees it, and ``up`` towards
+    the top of the letters (unit vectors). The outward normal is ``right x up``. ``cap_height_m`` is the height of a capital
     letter.
     """
 
@@ -38,7 +38,7 @@ class TextMark:
 
 @dataclass
 class Built:
-    """The result of a builder: the Blender objects of one thing, all parented to ``root``, and its readable texts."""
+    """The result of a builder: Blender objects that are all parented to ``root``, and the readable texts on them."""
 
     root: bpy.types.Object
     objects: list[bpy.types.Object]
@@ -46,7 +46,7 @@ class Built:
 
     @classmethod
     def of(cls, name: str, objects: Iterable[bpy.types.Object], texts: Sequence[TextMark] = ()) -> Built:
-        """Parent ``objects`` (modelled around the origin) to a new empty and return them as one thing."""
+        """Parent ``objects``, which are modelled around the origin, to a new empty and return them as one."""
         root = bpy.data.objects.new(name, None)
         root.empty_display_size = 0.2
         bpy.context.scene.collection.objects.link(root)
@@ -57,7 +57,7 @@ class Built:
         return cls(root, parts, list(texts))
 
     def copy(self) -> Built:
-        """Return a linked duplicate. Mesh data are shared, so that a hundred cones need the memory of one."""
+        """Return a linked duplicate. It shares its mesh data, so a hundred cones need as much memory as one."""
         twins: dict[bpy.types.Object, bpy.types.Object] = {}
         for obj in [self.root, *self.objects]:
             twin = obj.copy()
@@ -72,7 +72,7 @@ class Built:
 
 @dataclass
 class Instance:
-    """An annotated thing of the scene. ``number`` is its value in the instance-number layer (also ``object.pass_index``)."""
+    """An annotated object of the scene. ``number`` is its value in the instance-number layer (also ``object.pass_index``)."""
 
     id: str
     number: int
@@ -85,7 +85,7 @@ class Instance:
 
 @dataclass
 class Viewpoint:
-    """One optical centre. ``pan0_bearing_deg`` is the world bearing at which the camera's pan reads 0."""
+    """The optical centre of a camera. ``pan0_bearing_deg`` is the world bearing at which its pan is 0."""
 
     name: str
     position: tuple[float, float, float]
@@ -107,10 +107,10 @@ class Preset:
 
 @dataclass
 class ActorPath:
-    """A moving thing: its builder, and its position over time.
+    """A moving object: its builder, and its position over time.
 
-    ``waypoints`` are ``(t_s, x, y, z)``. The actor moves between them at the implied speed and heads along its motion; the path
-    repeats every ``period_s``. ``build`` makes the object for one gait phase in [0, 1) (0 for things without legs).
+    ``waypoints`` are ``(t_s, x, y, z)``. The actor moves between them at constant speed and faces in the direction of motion. The
+    path repeats every ``period_s``. ``build`` builds the object for a gait phase in [0, 1), which is 0 for objects without legs.
     ``stride_m`` is the length of one gait cycle.
     """
 
@@ -125,16 +125,16 @@ class ActorPath:
     stride_m: float | None = None
 
 
-def _leave(*, skip: tuple[str, ...] = ()) -> None:
-    """Leave the materials as they are."""
+def _leave_materials(*, skip: tuple[str, ...] = ()) -> None:
+    """Leave the materials unchanged."""
 
 
 class Stage:
-    """Collects the things that a scene module builds.
+    """Collects the objects that a scene module builds.
 
     Ids are ``category-NN`` in order of placement and never change afterwards. ``finish`` is the last step for materials, for
-    example haze. It is called once after the scene is built, and again for each moving thing that is built later; ``skip`` then
-    names the materials that are finished already.
+    example adding haze. It is called once after the scene is built, and again for each moving object that is built later. Then
+    ``skip`` contains the names of the materials that are already finished.
     """
 
     def __init__(self, name: str, title: str) -> None:
@@ -147,7 +147,7 @@ class Stage:
         self.actors: list[ActorPath] = []
         self.absent: list[str] = []
         self.start_s = 0.0
-        self.finish: Callable[..., None] = _leave
+        self.finish: Callable[..., None] = _leave_materials
         self._numbers: dict[str, int] = {}
 
     def place(
@@ -163,7 +163,7 @@ class Stage:
         scale: float = 1.0,
         **attributes: Any,
     ) -> str:
-        """Place a built thing in the world and annotate it.
+        """Place a built object in the world and annotate it as an instance.
 
         Args:
             name: The plain English noun phrase that a person would use ("white van").
@@ -194,7 +194,7 @@ class Stage:
         lean_deg: tuple[float, float] = (0.0, 0.0),
         scale: float = 1.0,
     ) -> Built:
-        """Place a thing in the world without annotation (ground, distant scenery). Its pass index stays 0."""
+        """Place an object in the world without annotation (ground, distant scenery). Its pass index stays 0."""
         rotation = Matrix.Rotation(-math.radians(bearing_deg), 4, "Z")
         rotation @= Matrix.Rotation(math.radians(lean_deg[0]), 4, "X") @ Matrix.Rotation(math.radians(lean_deg[1]), 4, "Y")
         built.root.matrix_world = Matrix.Translation(Vector(location)) @ rotation @ Matrix.Scale(scale, 4)

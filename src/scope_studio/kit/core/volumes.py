@@ -1,7 +1,4 @@
-"""Soft bodies of people, animals and other rounded things.
-
-Capsules, ellipsoids and lofts are merged into one skin by a voxel remesh.
-"""
+"""Rounded bodies of people, animals and objects: capsules, ellipsoids and lofts that a voxel remesh merges into one skin."""
 
 from __future__ import annotations
 
@@ -14,7 +11,7 @@ from mathutils import Matrix, Vector, noise
 
 Vec = Vector | tuple[float, float, float]
 Skin = tuple[np.ndarray, list[tuple[int, ...]]]
-"""Points (n, 3) and faces."""
+"""Surface mesh: points (n, 3) and faces."""
 
 
 class Volume:
@@ -37,7 +34,7 @@ class Volume:
         self.faces.append(tuple(range(base + (len(rows) - 1) * n, base + len(rows) * n)))
 
     def capsule(self, a: Vec, b: Vec, ra: float, rb: float, *, sides: int = 16, flat: float = 1.0, across: Vec = (1, 0, 0)) -> None:
-        """Add a tapered bar with round ends. ``flat`` < 1 makes it thinner at right angles to ``across``."""
+        """Add a tapered capsule. A ``flat`` below 1 makes it thinner at right angles to ``across``."""
         a, b = Vector(a), Vector(b)
         axis = (b - a).normalized()
         u = Vector(across) - axis * axis.dot(Vector(across))
@@ -59,7 +56,7 @@ class Volume:
         self.rings(rows)
 
     def ellipsoid(self, centre: Vec, radii: tuple[float, float, float], frame: Matrix | None = None) -> None:
-        """Add an axis-aligned ellipsoid, optionally transformed by a frame."""
+        """Add an axis-aligned ellipsoid, transformed by ``frame`` if given."""
         rows = []
         for i in range(13):
             t = math.radians(-84 + 14 * i)
@@ -73,27 +70,27 @@ class Volume:
             rows.append(row)
         self.rings(rows)
 
-    def melt(self, voxel_m: float, smooth: int = 4) -> Skin:
+    def merge(self, voxel_m: float, smooth: int = 4) -> Skin:
         """Merge the shapes into one smoothed, watertight surface."""
-        mesh = bpy.data.meshes.new("melt")
+        mesh = bpy.data.meshes.new("merge")
         mesh.from_pydata(self.points, [], self.faces)
-        obj = bpy.data.objects.new("melt", mesh)
+        obj = bpy.data.objects.new("merge", mesh)
         remesh = obj.modifiers.new("remesh", "REMESH")
         remesh.mode, remesh.voxel_size = "VOXEL", voxel_m
         if smooth:
             soft = obj.modifiers.new("smooth", "SMOOTH")
             soft.factor, soft.iterations = 0.5, smooth
-        scratch = bpy.data.scenes.new("melt")  # evaluating a separate scene does not touch the rest of the stage
+        scratch = bpy.data.scenes.new("merge")  # evaluating a separate scene does not re-evaluate the stage
         scratch.collection.objects.link(obj)
         layer = scratch.view_layers[0]
         layer.update()
-        made = bpy.data.meshes.new_from_object(obj.evaluated_get(layer.depsgraph), depsgraph=layer.depsgraph)
-        points = np.empty(len(made.vertices) * 3)
-        made.vertices.foreach_get("co", points)
-        faces = [tuple(p.vertices) for p in made.polygons]
+        merged = bpy.data.meshes.new_from_object(obj.evaluated_get(layer.depsgraph), depsgraph=layer.depsgraph)
+        points = np.empty(len(merged.vertices) * 3)
+        merged.vertices.foreach_get("co", points)
+        faces = [tuple(p.vertices) for p in merged.polygons]
         bpy.data.scenes.remove(scratch)
         bpy.data.objects.remove(obj)
-        bpy.data.meshes.remove(made)
+        bpy.data.meshes.remove(merged)
         bpy.data.meshes.remove(mesh)
         return points.reshape(-1, 3), faces
 
@@ -118,7 +115,7 @@ def crease(
     """Return the skin displaced by noise that imitates the folds of cloth.
 
     Args:
-        amount: Metres, an array (n,) of metres, or a function of the points (n, 3) that returns either.
+        amount: Displacement in metres: a number, an array (n,), or a function of the points (n, 3) that returns either.
     """
     points, faces = skin
     size = amount(points) if callable(amount) else amount

@@ -14,7 +14,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 TABLE_M = 0.74
-"""Height of a table top."""
+"""Height of a table top in metres."""
 SEAT_M = 0.45
 
 
@@ -66,7 +66,7 @@ def chair(colour: str = "dark green") -> Built:
 
 
 def parasol(first: str, second: str | None = None, *, open: bool = True, text: str | None = None) -> Built:  # noqa: A002
-    """Build a nearly square market parasol on a concrete foot, 2.9 m across and 2.75 m high. It is folded when not ``open``."""
+    """Build a nearly square market parasol on a concrete foot, 2.9 m across and 2.75 m high. Unless ``open``, it is folded."""
     s = Solid("parasol")
     cloth = stripes(f"parasol {first} {second or first}", first, second or first, 0.7)
     s.box((0.55, 0.55, 0.10), (0, 0, 0.05), concrete(light=False), 0.03)

@@ -11,7 +11,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def dial(s: Solid, radius: float, hour: int, minute: int, *, rim: str = "black", lift: float = 0.0) -> None:
-    """Add a clock face in the plane y = ``lift`` towards +y.
+    """Add a clock face in the plane y = ``lift``, facing +y.
 
     It has a minute track, hour batons, four numerals, and hands at the given time.
     """
@@ -39,7 +39,7 @@ def dial(s: Solid, radius: float, hour: int, minute: int, *, rim: str = "black",
 
 
 def wall_clock(radius: float, hour: int, minute: int, *, rim: str = "black") -> Built:
-    """Build a wall clock centred on the origin. Its face looks towards +y and lies 0.1 m in front of y = 0."""
+    """Build a wall clock centred on the origin. Its dial faces +y and lies 0.1 m in front of the plane y = 0."""
     s = Solid("wall clock")
     dial(s, radius, hour, minute, rim=rim, lift=0.10)
     return s.built()

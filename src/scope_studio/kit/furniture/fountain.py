@@ -16,9 +16,9 @@ from scope_studio.kit.core.stage import Built
 
 
 def fountain_basin(radius: float = 3.0) -> Built:
-    """Build a stone basin with moulded rim, water and four low jets.
+    """Build a stone basin with a moulded rim, water, and eight low jets.
 
-    In the middle, a base 1.2 m square and 0.5 m high takes a pedestal.
+    A base in the middle, 1.5 m square and 0.6 m high, supports a pedestal.
     """
     s = Solid("fountain")
     stone = _basin_stone()
@@ -65,7 +65,7 @@ def _water() -> bpy.types.Material:
 
 
 def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> Built:
-    """Build a stone pedestal with a moulded foot and cap, and an inscription cut into its +y face."""
+    """Build a stone pedestal with a moulded foot and cap, and an inscribed slate tablet on its +y face."""
     s = Solid("plinth")
     stone = _basin_stone()
     s.box((side + 0.5, side + 0.5, 0.35), (0, 0, 0.17), stone, 0.04)
@@ -83,7 +83,7 @@ def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> B
 
 
 def bronze(built: Built) -> Built:
-    """Return the same figure in weathered bronze."""
+    """Give all parts of ``built`` the material of weathered bronze, and return it."""
     metal = _bronze()
     for obj in built.objects:
         for slot in obj.material_slots:
@@ -93,12 +93,12 @@ def bronze(built: Built) -> Built:
 
 
 def _bronze() -> bpy.types.Material:
-    made = bpy.data.materials.get("statue bronze")
-    if made is None:
+    material = bpy.data.materials.get("statue bronze")
+    if material is None:
         s = Shader("statue bronze")
         p = s.object_coords()
         _, _, z = s.xyz(s.node("ShaderNodeNewGeometry").outputs["Normal"])
         patina = s.math("MULTIPLY", s.ramp(z, -0.1, 0.7), s.ramp(s.noise(p, 5.0, 6.0, 0.65), 0.38, 0.62, 0.25, 0.95))
         colour = s.mix(patina, (0.055, 0.035, 0.020), (0.16, 0.30, 0.23))
-        made = s.surface(base_color=colour, metallic=0.55, roughness=0.48)
-    return made
+        material = s.surface(base_color=colour, metallic=0.55, roughness=0.48)
+    return material

@@ -16,7 +16,7 @@ from scope_studio.kit.furniture.stalls import flowers
 
 
 def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4.4, lit: bool = False) -> Built:
-    """Build a cast lamp post with 1 lantern on top, or 2 on a cross arm."""
+    """Build a cast-iron lamp post with one lantern on top, or two on a cross arm."""
     s = Solid("lantern post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
     s.lathe(
@@ -61,7 +61,7 @@ def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4
 
 
 def planter(bloom: str = "red", second: str = "yellow", *, side: float = 0.95, seed: int = 0) -> Built:
-    """Build a square timber planter full of flowers."""
+    """Build a square timber planter full of flowers in two colours."""
     s = Solid("planter")
     rng = random.Random(f"planter {seed}")
     wood = timber(fresh=False)
@@ -79,7 +79,7 @@ def planter(bloom: str = "red", second: str = "yellow", *, side: float = 0.95, s
 
 
 def post_box(*, hours: str = "9.30 AM") -> Built:
-    """Build a red cast-iron pillar box, 1.6 m high, with slot and collection plate towards +y."""
+    """Build a red cast-iron pillar box, 1.6 m high, with its slot and collection plate towards +y."""
     s = Solid("post box")
     red = paint("red", dirt=0.15, roughness=0.3)
     s.lathe([(0.28, 0.0), (0.28, 0.16)], paint("black", dirt=0.3), steps=40)
@@ -114,7 +114,7 @@ def recycling_bin(colour: str, word: str) -> Built:
 
 
 def ticket_machine(*, lit: bool = True) -> Built:
-    """Build a ticket machine, 0.75 x 0.55 x 1.85 m, with lettered head, and screen, slots and keypad towards +y."""
+    """Build a ticket machine, 0.75 x 0.55 x 1.85 m, with a lettered panel at the top. Screen, slots and keypad face +y."""
     s = Solid("ticket machine")
     body = paint("blue", dirt=0.15, roughness=0.35)
     s.box((0.75, 0.50, 1.60), (0, 0, 0.80), body, 0.02)
@@ -131,7 +131,7 @@ def ticket_machine(*, lit: bool = True) -> Built:
 
 
 def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white", "red"), seed: int = 0) -> Built:
-    """Build a white pole with a flag of vertical stripes that streams towards +x."""
+    """Build a white pole with a flag of vertical stripes that flies towards +x."""
     s = Solid("flagpole")
     rng = random.Random(f"flag {seed}")
     s.lathe(
@@ -168,7 +168,7 @@ def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white"
 def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
     """Build a newspaper kiosk, 2.6 x 2.1 x 3.1 m, with angled front corners.
 
-    Counter and racks of papers face +y; the fascia is lettered on four sides.
+    The counter and the newspaper racks face +y; the fascia is lettered on four sides.
     """
     s = Solid("kiosk")
     wood = paint(colour, dirt=0.18, roughness=0.35)
@@ -210,7 +210,7 @@ def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
 
 
 def headline_board(paper: str, lines: Sequence[str], *, cap: float = 0.085) -> Built:
-    """Build a wire-fronted newspaper bill on an A-frame, 0.62 x 0.95 m, facing +y."""
+    """Build a newspaper headline board with a wire front on an A-frame, 0.62 x 0.95 m, facing +y."""
     s = Solid("headline board")
     with s.at(0, 0.18, 0.0, pitch=12.0):
         s.box((0.66, 0.03, 0.98), (0, 0, 0.52), paint("red", dirt=0.25), 0.01)

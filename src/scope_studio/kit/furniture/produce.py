@@ -13,7 +13,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 CRATE_M = (0.56, 0.38, 0.16)
-"""Width, depth and height of a produce crate."""
+"""Width, depth and height of a produce crate in metres."""
 
 
 def crate(colour: str = "timber") -> Built:
@@ -24,6 +24,7 @@ def crate(colour: str = "timber") -> Built:
 
 
 def _crate(s: Solid, colour: str) -> None:
+    """Add an empty crate."""
     w, d, h = CRATE_M
     stuff = timber() if colour == "timber" else paint(colour, dirt=0.25, roughness=0.55)
     s.box((w, d, 0.012), (0, 0, 0.008), stuff, 0.0)
@@ -41,6 +42,7 @@ Maker = Callable[[Solid, random.Random, float, float, float], None]
 
 
 def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.92, name: str) -> Maker:
+    """Return a function that adds a round piece in one of the colours."""
     profile = [(0.15, -0.95), (0.7, -0.7), (1.0, 0.0), (0.75, 0.72), (0.3, 0.93), (0.08, 0.82)]
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
@@ -53,6 +55,8 @@ def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.9
 
 
 def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip: float = 0.3, name: str) -> Maker:
+    """Return a function that adds a long piece in one of the colours."""
+
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
         k = rng.randrange(len(tints))
         a = math.radians(rng.uniform(-14, 14))
@@ -64,6 +68,8 @@ def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip
 
 
 def _leafy(radius: float, low: tuple[float, float, float], high: tuple[float, float, float], name: str) -> Maker:
+    """Return a function that adds a leafy vegetable."""
+
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
         for k in range(7):
             a = 2 * math.pi * k / 7 + rng.uniform(-0.3, 0.3)
@@ -113,11 +119,11 @@ PRODUCE: dict[str, tuple[Maker, float]] = {
     "lettuces": (_leafy(0.080, (0.17, 0.33, 0.045), (0.28, 0.43, 0.085), "lettuce"), 0.140),
     "cheeses": (_ball(0.085, (0.66, 0.42, 0.08), (0.62, 0.50, 0.26), squash=0.5, name="cheese"), 0.165),
 }
-"""Kinds of produce: the pieces that fill a crate, and their spacing (m)."""
+"""For each kind of produce, a function that adds one piece to a crate, and the spacing of pieces in metres."""
 
 
 def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
-    """Build a crate heaped with one kind of ``PRODUCE``."""
+    """Build a crate heaped with one kind of produce, a key of ``PRODUCE``."""
     s = Solid(f"crate of {kind}")
     rng = random.Random(f"{kind} {seed}")
     _crate(s, colour)
@@ -142,7 +148,7 @@ def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
 
 
 def price_card(text: str, *, cap: float = 0.055, colour: str = "white") -> Built:
-    """Build a card on a stick with a word and a price, on one line or two (split at the newline).
+    """Build a card on a stick with a word and a price. A newline splits the text into two lines.
 
     The foot of the stick is at the origin.
     """

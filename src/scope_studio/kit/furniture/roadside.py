@@ -1,6 +1,6 @@
 """Roadside furniture: lamp posts, guardrail, noise barrier, camera mast, emergency phone, cabinets, drains, chevrons.
 
-Things that follow a road (guardrail, noise barrier) run along y and have their traffic face towards +x.
+Objects that follow a road (guardrail, noise barrier) run along y, and the side towards the traffic faces +x.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from scope_studio.kit.signs.faces import board
 
 
 def lamp_post(height: float = 10.0, arms: int = 1, *, lit: bool = False) -> Built:
-    """Build a galvanised column with flat LED lanterns on one arm (towards +y) or two (also towards -y)."""
+    """Build a galvanised column with a flat LED lantern on one arm (towards +y) or on each of two (also towards -y)."""
     s = Solid("lamp post")
     s.lathe([(0.20, 0.0), (0.20, 0.02)], steel(dark=True), steps=8)
     s.lathe([(0.105, 0.02), (0.105, 1.35), (0.085, 1.42), (0.055, height - 0.9), (0.05, height - 0.85)], steel(), steps=20)
@@ -36,7 +36,7 @@ def lamp_post(height: float = 10.0, arms: int = 1, *, lit: bool = False) -> Buil
 def guardrail(length: float = 4.0, *, double: bool = False) -> Built:
     """Build a W-beam safety barrier along y, 0.75 m high, on posts every 2 m.
 
-    The beam faces +x; with ``double``, beams are on both sides.
+    The beam faces +x. ``double`` adds a beam on the other side.
     """
     s = Solid("guardrail")
     wave = [
@@ -128,7 +128,7 @@ def cctv_pole(height: float = 8.0) -> Built:
 
 
 def emergency_phone(number: str = "174") -> Built:
-    """Build an orange roadside telephone with SOS on its faces and its own number."""
+    """Build an orange roadside telephone with "SOS" on its faces and a number that identifies it."""
     s = Solid("emergency phone")
     orange = paint("orange", dirt=0.22, roughness=0.35)
     s.box((0.50, 0.44, 0.06), (0, 0, 0.03), concrete(), 0.01)
@@ -198,7 +198,7 @@ def drain() -> Built:
 
 
 def chevron_board(width: float = 1.6, *, direction: str = "right") -> Built:
-    """Build a black board on two posts, facing +y, with white chevrons that point to the reader's right or left."""
+    """Build a black board on two posts, facing +y, with white chevrons that point to the right or left as seen by a driver."""
     s = Solid("chevron board")
     height = 0.55
     with s.at(0, 0, 0.75 + height / 2):

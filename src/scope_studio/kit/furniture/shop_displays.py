@@ -1,4 +1,4 @@
-"""Things that shopkeepers put out: awnings, projecting signs, pavement boards, crates of fruit, buckets of flowers."""
+"""Objects outside shops: awnings, projecting signs, pavement boards, crates of fruit, buckets of flowers."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from scope_studio.kit.signs.faces import write
 
 
 def _stripes(first: str, second: str) -> bpy.types.Material:
+    """Return the material of striped canvas."""
     name = f"awning {first} {second}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -31,7 +32,7 @@ def _stripes(first: str, second: str) -> bpy.types.Material:
 
 
 def awning(width_m: float, first: str, second: str = "white", *, out_m: float = 1.35, open: bool = True) -> Built:  # noqa: A002
-    """Build a striped shop awning with its roller at the origin on the wall. When shut, only the roll and the valance show."""
+    """Build a striped shop awning with its roller at the origin. When closed, only the roll and valance are visible."""
     s = Solid(f"{first} awning")
     cloth, metal = _stripes(first, second), paint("dark grey", dirt=0.2)
     w = width_m / 2
@@ -58,7 +59,7 @@ def awning(width_m: float, first: str, second: str = "white", *, out_m: float = 
 
 
 def _valance(s: Solid, w: float, y: float, z: float, cloth: bpy.types.Material) -> None:
-    """Add the scalloped front edge."""
+    """Add the scalloped front edge of an awning."""
     count = max(4, round(2 * w / 0.22))
     step = 2 * w / count
     for k in range(count):
@@ -72,7 +73,7 @@ def _valance(s: Solid, w: float, y: float, z: float, cloth: bpy.types.Material) 
 def hanging_sign(lines: Sequence[str], colour: str, ink: str, *, cap_m: float = 0.10) -> Built:
     """Build a projecting sign on an iron bracket.
 
-    The wall is at the origin. The board hangs over +y and has the lines on both sides.
+    The bracket is fixed to the wall at the origin and extends towards +y. The board has the lines on both sides.
     """
     s = Solid(f"{lines[0]} hanging sign")
     iron = paint("black", dirt=0.15)
@@ -124,13 +125,13 @@ FRUIT: dict[str, tuple[tuple[float, float, float], float]] = {
     "potatoes": ((0.30, 0.20, 0.10), 0.042),
     "cabbages": ((0.16, 0.30, 0.09), 0.085),
 }
-"""Fruit and vegetables: colour and radius (m)."""
+"""Colour (linear RGB) and radius in metres of fruit and vegetables."""
 
 
 def crate(load: str | None = None, *, colour: str | None = None) -> Built:
     """Build a slatted crate of timber or plastic, 0.55 x 0.38 x 0.24 m, with its long side along x.
 
-    It is empty or heaped with a kind of ``FRUIT``.
+    It is empty, or heaped with ``load``, a key of ``FRUIT``.
     """
     s = Solid(f"crate of {load}" if load else "empty crate")
     body = timber() if colour is None else paint(colour, dirt=0.2, roughness=0.5)
@@ -174,7 +175,7 @@ PETALS = {
 def blooms(
     s: Solid, colours: Sequence[str], spread_m: float, low: float, high: float, count: int, seed: int, *, ball: bool = False
 ) -> None:
-    """Add flower heads among leaves between two heights. ``ball`` makes them trail over an edge instead of standing up."""
+    """Add flower heads among leaves between two heights. With ``ball``, they trail over an edge instead of standing upright."""
     rng = Random(f"blooms {seed} {colours}")
     green = [plain("flower leaf 0", (0.085, 0.190, 0.040), 0.6), plain("flower leaf 1", (0.15, 0.27, 0.07), 0.6)]
     for k in range(count * 6):
@@ -194,6 +195,7 @@ def blooms(
 
 
 def _leaf(s: Solid, at: Point, size: float, turn: float, lift: float, material: bpy.types.Material) -> None:
+    """Add a flat leaf that grows from ``at``."""
     (x, y, z), c, w = at, size * math.cos(turn), size * math.sin(turn)
     up = lift * size
     points = [

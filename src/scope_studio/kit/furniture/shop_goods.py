@@ -16,8 +16,8 @@ from scope_studio.kit.core.volumes import Volume
 Rgb = tuple[float, float, float]
 
 
-def _ware(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) -> bpy.types.Material:
-    """Return the material of goods in a lit shop window. It glows slightly, so that the goods look brighter than the street."""
+def _goods_material(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) -> bpy.types.Material:
+    """Return a material for goods in a lit shop window. It is slightly emissive, so that they look brighter than the street."""
     full = f"ware {name}"
     found = bpy.data.materials.get(full)
     if found is not None:
@@ -28,27 +28,27 @@ def _ware(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) ->
 
 
 def loaf(seed: int = 0) -> Built:
-    """Build a crusty loaf with slashes, 0.30 m along x."""
+    """Build a crusty loaf of bread, 0.30 m along x."""
     s, rng = Solid("loaf of bread"), Random(f"loaf {seed}")
     v = Volume()
     half = rng.uniform(0.09, 0.13)
     v.capsule((-half, 0, 0.055), (half, 0, 0.055), 0.062, 0.062, flat=0.9)
-    skin = v.melt(0.012, 2)
-    s.add(skin[0].tolist(), skin[1], _ware("crust", (0.36, 0.165, 0.055), 0.7))
+    skin = v.merge(0.012, 2)
+    s.add(skin[0].tolist(), skin[1], _goods_material("crust", (0.36, 0.165, 0.055), 0.7))
     for k in range(4):
         with s.at(-half + 2 * half * k / 3, 0, 0.113, turn=35):
-            s.box((0.018, 0.085, 0.010), (0, 0, 0), _ware("crumb", (0.66, 0.46, 0.24), 0.8), 0.004)
+            s.box((0.018, 0.085, 0.010), (0, 0, 0), _goods_material("crumb", (0.66, 0.46, 0.24), 0.8), 0.004)
     return s.built()
 
 
 def cake(colour: str = "pink") -> Built:
     """Build a two-tier iced cake with cherries on a stand, 0.36 m high."""
     s = Solid(f"{colour} cake")
-    china, icing = _ware("china", (0.62, 0.62, 0.60), 0.15), _ware(f"icing {colour}", PALETTE[colour], 0.45)
+    china, icing = _goods_material("china", (0.62, 0.62, 0.60), 0.15), _goods_material(f"icing {colour}", PALETTE[colour], 0.45)
     s.lathe([(0.08, 0.0), (0.03, 0.02), (0.025, 0.08), (0.16, 0.10), (0.165, 0.11)], china, steps=24)
     s.lathe([(0.135, 0.11), (0.14, 0.12), (0.14, 0.20), (0.13, 0.215)], icing, steps=28)
     s.lathe([(0.085, 0.215), (0.09, 0.22), (0.09, 0.29), (0.08, 0.30)], icing, steps=24)
-    cherry = _ware("cherry", (0.45, 0.012, 0.02), 0.15)
+    cherry = _goods_material("cherry", (0.45, 0.012, 0.02), 0.15)
     for k in range(9):
         a = 2 * math.pi * k / 9
         s.lathe([(0.002, -0.014), (0.014, 0.0), (0.002, 0.014)], cherry, (0.112 * math.cos(a), 0.112 * math.sin(a), 0.225), steps=8)
@@ -57,47 +57,49 @@ def cake(colour: str = "pink") -> Built:
 
 
 def ham() -> Built:
-    """Build a ham on its hook. The top of the hook is at the origin."""
+    """Build a ham that hangs from a hook. The top of the hook is at the origin."""
     s = Solid("ham")
     s.tube([(0, 0, 0), (0, 0, -0.10), (0.02, 0, -0.13), (0, 0, -0.15)], 0.005, steel(), sides=6)
     v = Volume()
     v.capsule((0, 0, -0.16), (0, 0, -0.30), 0.030, 0.075)
     v.ellipsoid((0.01, 0, -0.40), (0.105, 0.085, 0.13))
-    skin = v.melt(0.012, 3)
-    s.add(skin[0].tolist(), skin[1], _ware("ham", (0.40, 0.085, 0.055), 0.35))
+    skin = v.merge(0.012, 3)
+    s.add(skin[0].tolist(), skin[1], _goods_material("ham", (0.40, 0.085, 0.055), 0.35))
     return s.built()
 
 
 def bottle(colour: str = "green") -> Built:
-    """Build a chemist's round jar or bottle with label and stopper, 0.34 m high."""
+    """Build a chemist's round bottle with label and stopper, 0.34 m high."""
     s = Solid(f"{colour} bottle")
-    glass = _ware(f"bottle {colour}", PALETTE[colour], 0.08, 0.25)
+    glass = _goods_material(f"bottle {colour}", PALETTE[colour], 0.08, 0.25)
     s.lathe(
         [(0.065, 0.0), (0.075, 0.01), (0.075, 0.19), (0.05, 0.235), (0.026, 0.25), (0.026, 0.285), (0.034, 0.29)], glass, steps=20
     )
     s.lathe([(0.022, 0.29), (0.034, 0.31), (0.02, 0.34), (0.004, 0.345)], glass, steps=14)
-    s.lathe([(0.0765, 0.05), (0.0765, 0.14)], _ware("label", (0.66, 0.62, 0.50), 0.6), steps=20)
+    s.lathe([(0.0765, 0.05), (0.0765, 0.14)], _goods_material("label", (0.66, 0.62, 0.50), 0.6), steps=20)
     return s.built()
 
 
 def book(colour: str = "red", *, seed: int = 0) -> Built:
-    """Build a book that stands open, 0.26 m high, with its cover towards +y."""
+    """Build an upright book that leans back, about 0.26 m high, with its front cover towards +y."""
     s, rng = Solid(f"{colour} book"), Random(f"book {seed}")
-    cover, page = _ware(f"book {colour}", PALETTE[colour], 0.4), _ware("pages", (0.66, 0.63, 0.54), 0.8)
+    cover, page = _goods_material(f"book {colour}", PALETTE[colour], 0.4), _goods_material("pages", (0.66, 0.63, 0.54), 0.8)
     tall, wide = rng.uniform(0.23, 0.28), rng.uniform(0.155, 0.19)
     with s.at(0, 0, 0, pitch=14):
         s.box((wide, 0.006, tall), (0, 0.016, tall / 2), cover, 0.002)
         s.box((wide, 0.006, tall), (0, -0.016, tall / 2), cover, 0.002)
         s.box((wide - 0.01, 0.026, tall - 0.012), (0.003, 0, tall / 2), page, 0.001)
         s.box((wide * 0.7, 0.002, tall * 0.14), (0, 0.0195, tall * 0.74), page, 0.0)
-        s.box((wide * 0.5, 0.002, tall * 0.30), (0, 0.0195, tall * 0.36), _ware("book plate", (0.55, 0.40, 0.10), 0.4), 0.0)
+        s.box(
+            (wide * 0.5, 0.002, tall * 0.30), (0, 0.0195, tall * 0.36), _goods_material("book plate", (0.55, 0.40, 0.10), 0.4), 0.0
+        )
     return s.built()
 
 
 def teapot(colour: str = "blue") -> Built:
-    """Build a round teapot, 0.2 m, with its spout towards +x."""
+    """Build a round teapot, 0.2 m high, with its spout towards +x."""
     s = Solid(f"{colour} teapot")
-    china = _ware(f"teapot {colour}", PALETTE[colour], 0.1)
+    china = _goods_material(f"teapot {colour}", PALETTE[colour], 0.1)
     s.lathe([(0.06, 0.0), (0.095, 0.03), (0.105, 0.08), (0.085, 0.13), (0.05, 0.15)], china, steps=24)
     s.lathe([(0.055, 0.15), (0.035, 0.17), (0.012, 0.175), (0.018, 0.19), (0.004, 0.20)], china, steps=18)
     s.tube([(0.09, 0, 0.06), (0.14, 0, 0.08), (0.165, 0, 0.14)], 0.020, china, radius_b=0.011)
@@ -108,17 +110,17 @@ def teapot(colour: str = "blue") -> Built:
 def table_lamp(colour: str = "cream", *, lit: bool = True) -> Built:
     """Build a lamp with a turned foot and a cloth shade, 0.5 m high."""
     s = Solid(f"{colour} lamp")
-    foot = _ware("lamp foot", (0.30, 0.16, 0.06), 0.3)
+    foot = _goods_material("lamp foot", (0.30, 0.16, 0.06), 0.3)
     s.lathe([(0.08, 0.0), (0.08, 0.02), (0.02, 0.04), (0.045, 0.12), (0.03, 0.20), (0.012, 0.24), (0.012, 0.32)], foot, steps=20)
-    shade = _ware(f"lamp shade {colour} {lit}", PALETTE[colour], 0.8, 1.6 if lit else 0.1)
+    shade = _goods_material(f"lamp shade {colour} {lit}", PALETTE[colour], 0.8, 1.6 if lit else 0.1)
     s.lathe([(0.16, 0.28), (0.10, 0.50), (0.09, 0.50), (0.15, 0.285)], shade, steps=28)
     return s.built()
 
 
 def mannequin(colour: str = "red", *, dress: bool = True) -> Built:
-    """Build a headless dressmaker's figure on a stand, 1.55 m high. It wears a dress, or a coat when ``dress`` is false."""
+    """Build a headless mannequin on a stand, 1.55 m high. It wears a dress, or a coat when ``dress`` is false."""
     s = Solid(f"mannequin in {colour}")
-    s.lathe([(0.17, 0.0), (0.17, 0.02), (0.02, 0.03), (0.016, 0.75)], _ware("stand", (0.25, 0.15, 0.07), 0.3), steps=20)
+    s.lathe([(0.17, 0.0), (0.17, 0.02), (0.02, 0.03), (0.016, 0.75)], _goods_material("stand", (0.25, 0.15, 0.07), 0.3), steps=20)
     v = Volume()
     v.ellipsoid((0, 0, 1.22), (0.165, 0.105, 0.17))
     v.ellipsoid((0, 0, 1.02), (0.135, 0.095, 0.16))
@@ -128,8 +130,8 @@ def mannequin(colour: str = "red", *, dress: bool = True) -> Built:
         v.capsule((side * 0.15, 0, 1.32), (side * 0.20, 0.02, 1.05), 0.055, 0.042)
         if not dress:
             v.capsule((side * 0.20, 0.02, 1.05), (side * 0.19, 0.09, 0.82), 0.042, 0.036)
-    skin = v.melt(0.016, 3)
-    s.add(skin[0].tolist(), skin[1], _ware(f"garment {colour}", PALETTE[colour], 0.85))
+    skin = v.merge(0.016, 3)
+    s.add(skin[0].tolist(), skin[1], _goods_material(f"garment {colour}", PALETTE[colour], 0.85))
     n, rows = 28, []
     flare = (0.165, 0.24, 0.33) if dress else (0.165, 0.185, 0.21)
     for i, r in enumerate(flare):
@@ -139,6 +141,8 @@ def mannequin(colour: str = "red", *, dress: bool = True) -> Built:
             for t in (2 * math.pi * k / n for k in range(n))
         ]
     faces = [(i * n + (k + 1) % n, i * n + k, (i + 1) * n + k, (i + 1) * n + (k + 1) % n) for i in range(2) for k in range(n)]
-    s.add(rows, [f[::-1] for f in faces], _ware(f"garment {colour}", PALETTE[colour], 0.85))
-    s.lathe([(0.05, 1.44), (0.048, 1.47), (0.02, 1.49), (0.002, 1.50)], _ware("neck cap", (0.30, 0.18, 0.08), 0.3), steps=16)
+    s.add(rows, [f[::-1] for f in faces], _goods_material(f"garment {colour}", PALETTE[colour], 0.85))
+    s.lathe(
+        [(0.05, 1.44), (0.048, 1.47), (0.02, 1.49), (0.002, 1.50)], _goods_material("neck cap", (0.30, 0.18, 0.08), 0.3), steps=16
+    )
     return s.built()

@@ -1,4 +1,4 @@
-"""Market stalls: canvas, counters, flowers, hand carts. Customers stand towards +y."""
+"""Market stalls: canopies, counters, flowers and hand carts. The customers' side is +y."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 COUNTER_M = 0.78
-"""Height of a stall's counter at its front edge."""
+"""Height in metres of a stall's counter at its front edge."""
 
 
 def stall(first: str, second: str | None = None, *, sign: str | None = None, table: bool = True, rolled: bool = False) -> Built:
     """Build a stall, 3.0 x 2.2 m: steel poles, ridged canopy, sloping counter with a skirt, and a name board.
 
-    The canopy is plain, or striped with ``second``. The name board hangs under its front edge. With ``rolled``, the
+    The canopy is plain, or striped when ``second`` is given. The name board hangs under its front edge. With ``rolled``, the
     canvas is rolled up at the back of the bare frame.
     """
     s = Solid("market stall")

@@ -48,7 +48,7 @@ def bench() -> Built:
 
 
 def bus_shelter(name: str = "MARKET STREET", *, route: str = "7") -> Built:
-    """Build a glazed bus shelter, 4.0 x 1.5 m, open towards +y, with a seat, a stop flag, and a name board on the roof edge."""
+    """Build a glazed bus shelter, 4.0 x 1.5 m, open towards +y, with a seat, a stop sign, and a name board on the roof edge."""
     s = Solid("bus shelter")
     metal = paint("dark grey", dirt=0.25)
     pane = clear_glass()

@@ -17,7 +17,7 @@ from scope_studio.kit.signs.faces import write
 
 
 def post_box() -> Built:
-    """Build a cast-iron pillar box, 1.65 m high, with slot and collection plate towards +y."""
+    """Build a cast-iron pillar box, 1.65 m high, with its slot and collection plate towards +y."""
     s = Solid("post box")
     red, black = paint("red", dirt=0.14, roughness=0.24), paint("black", dirt=0.3)
     s.lathe([(0.275, 0.0), (0.275, 0.22), (0.255, 0.25)], black, steps=36)
@@ -64,7 +64,7 @@ def phone_box() -> Built:
 
 
 def street_lamp(height_m: float = 5.2, *, lit: bool = False) -> Built:
-    """Build a fluted lamp standard with a four-sided lantern, and two arms for baskets along x at 3.3 m."""
+    """Build a fluted lamp standard with a four-sided lantern and, at 3.3 m, two arms along x for hanging baskets."""
     s = Solid("street lamp")
     iron = paint("dark green", dirt=0.15)
     s.lathe([(0.22, 0.0), (0.22, 0.10), (0.17, 0.16), (0.14, 0.75), (0.17, 0.80), (0.10, 0.90), (0.075, 1.05)], iron, steps=20)
@@ -175,7 +175,7 @@ def belisha_beacon(*, lit: bool = True) -> Built:
 
 
 def bracket_clock(hour: int, minute: int, *, radius_m: float = 0.42) -> Built:
-    """Build a drum clock on a bracket over +y, with a face on either side (towards +x and -x)."""
+    """Build a drum clock on a bracket that extends towards +y, with faces towards +x and -x."""
     s = Solid("clock")
     iron = paint("black", dirt=0.15)
     reach = radius_m + 0.28

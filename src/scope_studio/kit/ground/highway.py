@@ -17,7 +17,7 @@ from scope_studio.kit.ground import markings
 
 @dataclass(frozen=True)
 class Carriageway:
-    """A straight dual road along +y that bends in the distance. Offsets are measured from the middle of the central reserve."""
+    """A dual carriageway along +y that bends in the distance. Offsets are measured from the middle of the central reserve."""
 
     reserve_m: float = 1.55
     edge_m: float = 15.5
@@ -53,7 +53,7 @@ def strip(
 
 
 def carriageways(road: Carriageway) -> Built:
-    """Build both carriageways with their paint, and the hardened reserve between them."""
+    """Build both carriageways with their paint, and the paved central reserve between them."""
     asphalt = asphalt_material(road)
     concrete = slab_material()
     parts = [
@@ -70,7 +70,7 @@ def carriageways(road: Carriageway) -> Built:
 
 
 def asphalt_material(road: Carriageway) -> bpy.types.Material:
-    """Return worn asphalt with aggregate, wheel tracks, oil, seams, cracks, patches and paint, in road coordinates."""
+    """Return the material of worn asphalt, with wheel tracks, oil, seams, cracks, patches and paint, in road coordinates."""
     s = Shader("asphalt carriageway")
     uv = s.node("ShaderNodeUVMap", uv_map="road").outputs[0]
     u, v, _ = s.xyz(uv)
@@ -110,12 +110,12 @@ def asphalt_material(road: Carriageway) -> bpy.types.Material:
 
 
 def _cracks(s: Shader, uv: Value) -> Value:
-    """Return thin irregular cracks, dense in a few weathered stretches and absent elsewhere."""
+    """Return a mask of thin irregular cracks, dense in a few weathered stretches and absent elsewhere."""
     warp = s.noise(uv, 0.9, detail=5.0)
-    made = s.node("ShaderNodeVectorMath", operation="ADD")
-    s.feed(made.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
-    s.feed(made.inputs[1], warp)
-    distance = s.voronoi(made.outputs[0], 0.34, feature="DISTANCE_TO_EDGE")
+    node = s.node("ShaderNodeVectorMath", operation="ADD")
+    s.feed(node.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
+    s.feed(node.inputs[1], warp)
+    distance = s.voronoi(node.outputs[0], 0.34, feature="DISTANCE_TO_EDGE")
     thin = s.ramp(distance, 0.0008, 0.0045, 1.0, 0.0)
     return s.math("MULTIPLY", thin, s.ramp(s.noise(uv, 0.06, detail=3.0), 0.50, 0.58))
 
@@ -132,6 +132,7 @@ def _patches(
     colour: Value,
     rough: Value,
 ) -> tuple[Value, Value]:
+    """Apply the patches to the colour and roughness of the asphalt, and return both."""
     old = s.mix(fine, (0.030, 0.030, 0.031), (0.052, 0.051, 0.050))
     fresh = s.mix(s.math("MULTIPLY", s.math("ADD", fine, grain), 0.5), (0.010, 0.010, 0.011), (0.026, 0.026, 0.027))
     groove = s.ramp(s.math("PINGPONG", u, 0.03), 0.004, 0.022)
@@ -150,7 +151,7 @@ def _patches(
 
 
 def slab_material() -> bpy.types.Material:
-    """Return weathered concrete hardening with joints every 5 m, stains, and weeds in the joints."""
+    """Return the material of weathered concrete paving with stains, and weeds in its joints, which are 5 m apart."""
     s = Shader("reserve concrete")
     uv = s.node("ShaderNodeUVMap", uv_map="road").outputs[0]
     u, v, _ = s.xyz(uv)

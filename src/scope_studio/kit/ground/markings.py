@@ -1,4 +1,4 @@
-"""Road paint and pavement repairs as shader masks over road coordinates, so that edges stay sharp at any distance."""
+"""Road paint and pavement repairs as shader masks in road coordinates, whose edges stay sharp at any distance."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from scope_studio.kit.core.shading import Shader, Value
 
 @dataclass(frozen=True)
 class Line:
-    """A longitudinal line at ``offset_m`` from the centre, on both sides of it. A ``mark_m`` of 0 means a solid line."""
+    """A painted line along the road, ``offset_m`` from its middle on both sides.
+
+    ``mark_m`` is the length of a dash (0 for a solid line), and ``gap_m`` is the distance between dashes.
+    """
 
     offset_m: float
     width_m: float = 0.15
@@ -43,7 +46,7 @@ class Stencil:
 
 
 def paint(s: Shader, u: Value, v: Value, lines: Sequence[Line], stencils: Sequence[Stencil] = ()) -> Value:
-    """Return 1 where there is paint. Its edges are ragged by millimetres, and wear makes holes in it."""
+    """Return a mask that is 1 where there is paint. Its edges are ragged by millimetres, and it has holes from wear."""
     place = _vector(s, u, v)
     ragged = s.ramp(s.noise(place, 9.0, detail=3.0), 0.3, 0.7, -0.014, 0.014)
     across = s.math("ADD", s.math("ABSOLUTE", u), ragged)
@@ -62,13 +65,14 @@ def paint(s: Shader, u: Value, v: Value, lines: Sequence[Line], stencils: Sequen
 
 
 def inside(s: Shader, u: Value, v: Value, patch: Patch, soft_m: float = 0.01, grow_m: float = 0.0) -> Value:
-    """Return 1 inside the rectangle, grown by ``grow_m``."""
+    """Return a mask that is 1 inside the patch, enlarged by ``grow_m`` on all sides and softened over ``soft_m`` at its edges."""
     across = s.band(u, patch.u0 - grow_m, patch.u1 + grow_m, soft_m)
     return s.math("MULTIPLY", across, s.band(v, patch.v0 - grow_m, patch.v1 + grow_m, soft_m))
 
 
 def _vector(s: Shader, u: Value, v: Value) -> Value:
-    made = s.node("ShaderNodeCombineXYZ")
-    s.feed(made.inputs[0], u)
-    s.feed(made.inputs[1], v)
-    return made.outputs[0]
+    """Combine u and v into a vector."""
+    node = s.node("ShaderNodeCombineXYZ")
+    s.feed(node.inputs[0], u)
+    s.feed(node.inputs[1], v)
+    return node.outputs[0]

@@ -14,21 +14,21 @@ from scope_studio.kit.core.stage import Built
 
 Rgb = tuple[float, float, float]
 Area = tuple[float, float, float, float]
-"""West, east, south and north edges in metres."""
+"""Rectangle, given by its west, east, south and north edges in metres."""
 
 
 def _courses(
     s: Shader, where: Value, size: tuple[float, float], joint_m: float, low: Rgb, high: Rgb, joint: Rgb
 ) -> tuple[Value, Value]:
-    """Return bonded rectangular stones, each with its own tone: the colour, and a mask that is 1 in the joints."""
-    made = s.node("ShaderNodeTexBrick")
-    s.feed(made.inputs["Vector"], where)
+    """Return the colour of bonded rectangular stones, each with its own tone, and a mask that is 1 in the joints."""
+    node = s.node("ShaderNodeTexBrick")
+    s.feed(node.inputs["Vector"], where)
     settings = {"Scale": 1.0, "Mortar Size": joint_m, "Mortar Smooth": 0.35, "Brick Width": size[0], "Row Height": size[1]}
     for key, value in settings.items():
-        made.inputs[key].default_value = value
+        node.inputs[key].default_value = value
     for key, colour in {"Color1": low, "Color2": high, "Mortar": joint}.items():
-        s.feed(made.inputs[key], colour)
-    return made.outputs["Color"], made.outputs["Fac"]
+        s.feed(node.inputs[key], colour)
+    return node.outputs["Color"], node.outputs["Fac"]
 
 
 def _wobbly(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
@@ -44,7 +44,7 @@ def _wobbly(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
 
 
 def _worn(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35) -> bpy.types.Material:
-    """Return the material of worn stone: blotches, spills, chewing gum, grit in the joints, and a bump of joints and pits."""
+    """Return the material of worn stone, with blotches, spills, chewing gum, grit in the joints, and bumps for joints and pits."""
     _x, _y, _ = s.xyz(p)
     broad = s.noise(p, 0.16, 7.0, 0.62)
     colour = s.mix(s.ramp(broad, 0.40, 0.72, 0.0, 0.42), colour, (0.085, 0.078, 0.068))
@@ -63,7 +63,7 @@ def _worn(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35
 
 
 def slab_material(name: str = "square paving", *, pitch_m: float = 7.2) -> bpy.types.Material:
-    """Return buff and grey stone slabs in a grid of dark sett bands, ``pitch_m`` apart, in world coordinates."""
+    """Return the material of buff and grey slabs between dark bands of setts, ``pitch_m`` apart, in world coordinates."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -82,7 +82,7 @@ def slab_material(name: str = "square paving", *, pitch_m: float = 7.2) -> bpy.t
 
 
 def flag_material(name: str = "pavement flags") -> bpy.types.Material:
-    """Return the grey concrete and stone flags of a pavement."""
+    """Return the material of a pavement of grey concrete and stone flags."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -93,7 +93,7 @@ def flag_material(name: str = "pavement flags") -> bpy.types.Material:
 
 
 def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.types.Material:
-    """Return the granite setts of a carriageway, polished and darkened along its wheel tracks."""
+    """Return the material of granite setts, polished and darkened along the wheel tracks."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -109,14 +109,15 @@ def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.t
 
 
 def _blend(s: Shader, factor: Value, a: Value, b: Value) -> Value:
-    made = s.node("ShaderNodeMix", data_type="FLOAT")
+    """Mix two numbers: ``a`` where the factor is 0, ``b`` where it is 1."""
+    node = s.node("ShaderNodeMix", data_type="FLOAT")
     for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
-        s.feed(made.inputs[socket], value)
-    return made.outputs[0]
+        s.feed(node.inputs[socket], value)
+    return node.outputs[0]
 
 
 def floor(name: str, areas: list[Area], z: float, material: bpy.types.Material) -> Built:
-    """Build level rectangles of one surface."""
+    """Build flat rectangles at height ``z`` with one material."""
     points, faces = [], []
     for west, east, south, north in areas:
         base = len(points)
@@ -126,7 +127,7 @@ def floor(name: str, areas: list[Area], z: float, material: bpy.types.Material) 
 
 
 def kerb_material() -> bpy.types.Material:
-    """Return the granite of kerb stones."""
+    """Return the material of granite kerb stones."""
     found = bpy.data.materials.get("granite kerb")
     if found is not None:
         return found
@@ -141,7 +142,7 @@ def kerb_material() -> bpy.types.Material:
 
 
 def kerbs(lines: list[tuple[tuple[float, float], tuple[float, float]]], *, drop_m: float = 0.10) -> Built:
-    """Build kerb stones, 0.16 m wide, along axis-parallel lines. Their tops lie at z = 0.005, their faces reach ``drop_m`` down."""
+    """Build kerb stones, 0.16 m wide, along axis-parallel lines. Their tops are at z = 0.005; their faces are ``drop_m`` high."""
     s = Solid("kerbs")
     for (x0, y0), (x1, y1) in lines:
         size = (abs(x1 - x0) + 0.16, abs(y1 - y0) + 0.16, drop_m + 0.05)

@@ -14,10 +14,10 @@ from scope_studio.kit.ground.highway import Carriageway
 
 
 def terrain(road: Carriageway, bare: Sequence[tuple[float, float, float, float]], *, extent_m: float = 3200.0) -> Built:
-    """Build the land: flat beside the road, rolling fields beyond, hills at the horizon.
+    """Build the land: flat next to the road, rolling fields farther away, and hills at the horizon.
 
     Args:
-        bare: Worn yards as (x0, x1, y0, y1) in metres.
+        bare: Rectangles of worn ground without grass, as (x0, x1, y0, y1) in metres.
     """
     rings = [0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 125.0, 150.0]
     while rings[-1] < extent_m:
@@ -39,7 +39,7 @@ def terrain(road: Carriageway, bare: Sequence[tuple[float, float, float, float]]
 
 
 def hills(road: Carriageway) -> Callable[[float, float], float]:
-    """Return the height of the land above the road as a function of x and y (m).
+    """Return a function that gives the height of the land above the road at (x, y), all in metres.
 
     It is 0 near the road and rises to about 90 m at a distance of 2 to 3 km.
     """
@@ -58,12 +58,13 @@ def hills(road: Carriageway) -> Callable[[float, float], float]:
 
 
 def _smooth(value: float, low: float, high: float) -> float:
+    """Return 0 below ``low``, 1 above ``high``, and a smooth transition between them."""
     t = max(0.0, min(1.0, (value - low) / (high - low)))
     return t * t * (3 - 2 * t)
 
 
 def land_material(road: Carriageway, bare: Sequence[tuple[float, float, float, float]]) -> bpy.types.Material:
-    """Return mown verges and yards near the road, and a patchwork of fields with hedgerows and woods beyond."""
+    """Return the material of the land: mown verges and worn ground near the road, and fields with hedgerows and woods beyond."""
     s = Shader("land")
     p = s.position()
     x, y, _ = s.xyz(p)
@@ -99,6 +100,7 @@ def land_material(road: Carriageway, bare: Sequence[tuple[float, float, float, f
 
 
 def _fields(s: Shader, p: Value, large: Value, middle: Value) -> Value:
+    """Return the colour of fields: crops, stubble and ploughed land in Voronoi cells, with tractor tracks."""
     cell = s.node("ShaderNodeTexVoronoi", distance="CHEBYCHEV")
     s.feed(cell.inputs["Vector"], s.scaled(p, (0.0055, 0.0042, 0.0), (0.37, 0.21, 0)))
     cell.inputs["Scale"].default_value = 1.0

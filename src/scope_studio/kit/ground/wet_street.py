@@ -13,22 +13,23 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.ground.markings import Stencil
 
 KERB_M = 0.12
-"""Height of the footways above the road."""
+"""Height of the footways above the road, in metres."""
 
 LIFT_M = 0.004
-"""Thickness of paint on the road."""
+"""Height of paint above the road, in metres."""
 
 Outline = Sequence[tuple[float, float]]
 
 
 def carriageway(half_m: float, gutters: Sequence[Stencil]) -> Built:
-    """Build one sheet of asphalt on z = 0 that extends ``half_m`` to all sides. Water stands along the ``gutters``."""
+    """Build a square of asphalt on z = 0, ``half_m`` from its middle to its edges, with standing water along the ``gutters``."""
     h = half_m
     sheet = from_data("asphalt", [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [(0, 1, 2, 3)], _asphalt(gutters))
     return Built.of("asphalt", [sheet])
 
 
 def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
+    """Return the material of wet asphalt with puddles, which are larger along the gutters."""
     s = Shader("wet asphalt")
     p = s.position()
     x, y, _ = s.xyz(p)
@@ -54,7 +55,7 @@ def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
 
 
 def _patchwork(s: Shader, p: Value, fine: Value) -> Value:
-    """Return trenches of newer, darker asphalt: a few cells of a stretched Chebyshev Voronoi pattern."""
+    """Return a mask of trenches filled with newer, darker asphalt: a few cells of a stretched Chebyshev Voronoi pattern."""
     cell = s.node("ShaderNodeTexVoronoi", distance="CHEBYCHEV")
     s.feed(cell.inputs["Vector"], s.scaled(p, (0.30, 0.085, 0.0)))
     cell.inputs["Scale"].default_value = 1.0
@@ -72,7 +73,7 @@ def markings(bars: Sequence[Stencil], colour: str) -> Built:
 
 
 def road_paint(colour: str) -> bpy.types.Material:
-    """Return thermoplastic paint under a film of water. Asphalt shows through where it is worn."""
+    """Return the material of thermoplastic paint under a film of water. Asphalt shows through where the paint is worn."""
     found = bpy.data.materials.get(f"road paint {colour}")
     if found is not None:
         return found
@@ -87,6 +88,7 @@ def road_paint(colour: str) -> bpy.types.Material:
 
 
 def _edges(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:
+    """Return a mask that is 1 along the gutters, with soft edges."""
     total: Value = 0.0
     for bar in gutters:
         mask = s.math("MULTIPLY", s.band(x, bar.u0, bar.u1, 0.35), s.band(y, bar.v0, bar.v1, 0.35))
@@ -95,7 +97,7 @@ def _edges(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:
 
 
 def footway(outline: Outline, *, slab: tuple[float, float] = (0.60, 0.45)) -> Built:
-    """Build paving over a convex outline (anticlockwise), with its top at ``KERB_M`` and granite kerbs all round."""
+    """Build paving over a convex outline (anticlockwise), with its top at ``KERB_M`` and granite kerbs on all sides."""
     s = Solid("footway")
     ring = [(x, y, KERB_M) for x, y in outline]
     s.add(ring, [tuple(range(len(ring)))], _paving(slab))
@@ -113,7 +115,7 @@ def footway(outline: Outline, *, slab: tuple[float, float] = (0.60, 0.45)) -> Bu
 
 def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
     """Return the convex outline moved inwards."""
-    made = []
+    corners = []
     n = len(outline)
     for i in range(n):
         (x0, y0), (x1, y1), (x2, y2) = outline[i - 1], outline[i], outline[(i + 1) % n]
@@ -121,12 +123,12 @@ def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
         la, lb = (ax * ax + ay * ay) ** 0.5, (bx * bx + by * by) ** 0.5
         nx, ny = -ay / la - by / lb, ax / la + bx / lb
         scale = 2 * by_m / max(1e-6, nx * nx + ny * ny)
-        made.append((x1 + nx * scale, y1 + ny * scale))
-    return made
+        corners.append((x1 + nx * scale, y1 + ny * scale))
+    return corners
 
 
 def _paving(slab: tuple[float, float]) -> bpy.types.Material:
-    """Return wet concrete flags in running bond, with blotches, chewing gum, and water in the joints of a few loose ones."""
+    """Return the material of wet concrete flags in running bond, with blotches, chewing gum and small puddles."""
     s = Shader(f"wet paving {slab[0]:.2f}")
     p = s.position()
     brick = s.node("ShaderNodeTexBrick")
@@ -160,6 +162,7 @@ def _paving(slab: tuple[float, float]) -> bpy.types.Material:
 
 
 def _kerbstone() -> bpy.types.Material:
+    """Return the material of wet granite kerb stones."""
     found = bpy.data.materials.get("wet kerb")
     if found is not None:
         return found

@@ -1,1 +1,1 @@
-"""Skies, sunlight, haze and the colour management that belongs to them: daylight, overcast and dusk."""
+"""Sky, light, haze and matching colour management for daylight, overcast weather and dusk."""

@@ -1,7 +1,7 @@
 """Dusk: a deep blue sky over a warm horizon, pools of lamplight, evening haze, and a long exposure.
 
-There is no sun: soft light comes from the whole sky. Every lamp is an area light of at least 0.3 m, because smaller ones are
-noisy at few samples. The camera does not see these lights; it sees the emissive lens of the fitting that the light belongs to.
+There is no sun: soft light comes from the whole sky. Every lamp is an area light of at least 0.3 m, because smaller lights are
+noisy at few samples. These lights are invisible to the camera, which sees the emissive lens of the lamp instead.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from mathutils import Vector
 from scope_studio.kit.core.shading import Shader, Value
 
 GLOW_BEARING_DEG = 312.0
-"""Bearing of the sunset glow."""
+"""Bearing of the sunset glow, in degrees clockwise from north."""
 
 ZENITH = (0.050, 0.095, 0.235)
 MIDDLE = (0.150, 0.225, 0.400)
@@ -28,7 +28,7 @@ WARM = (1.0, 0.80, 0.56)
 """Linear RGB of lamp light."""
 
 DIMMED = ("paint ", "vehicle lamp", "sheet ")
-"""Name prefixes of materials (lamp covers, reflective sheet) that glow faintly by day and would look like lit lamps at dusk."""
+"""Name prefixes of materials (lamp covers, reflective sheet) that are slightly emissive and would look like lit lamps at dusk."""
 
 
 class _WorldShader(Shader):
@@ -40,7 +40,7 @@ class _WorldShader(Shader):
 
 
 def setup(scene: bpy.types.Scene, *, sky_strength: float = 0.36, exposure: float = 1.5) -> None:
-    """Give ``scene`` its evening sky, view transform, and light paths that are free of noise at eight samples."""
+    """Set the evening sky, the view transform, and light path limits that avoid noise at eight samples."""
     _world(scene, sky_strength)
     scene.display_settings.display_device = "sRGB"
     scene.view_settings.view_transform = "AgX"
@@ -55,7 +55,7 @@ def setup(scene: bpy.types.Scene, *, sky_strength: float = 0.36, exposure: float
 
 
 def _world(scene: bpy.types.Scene, strength: float) -> None:
-    """Build the world. Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which needs few samples."""
+    """Build the world. Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which needs fewer samples."""
     world = bpy.data.worlds.new("Dusk")
     scene.world = world
     s = _WorldShader(world)
@@ -81,7 +81,7 @@ def _world(scene: bpy.types.Scene, strength: float) -> None:
 
 
 def _clouds(s: Shader, x: Value, y: Value, height: Value, towards: Value, clear: Value) -> Value:
-    """Return thin sheets of evening cloud, dark above and lit from below on the side of the sunset."""
+    """Return the sky colour with thin evening clouds, dark above and lit from below on the side of the sunset."""
     depth = s.math("ADD", height, 0.10)
     plane = s.node("ShaderNodeCombineXYZ")
     s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
@@ -105,9 +105,9 @@ def pool(
     spread_deg: float = 150.0,
     stretch: float = 1.0,
 ) -> None:
-    """Add the light of a lamp without its fitting: a disc that shines along ``aim``.
+    """Add a pool of lamplight: a disc-shaped area light that shines along ``aim``. The lamp itself is modelled elsewhere.
 
-    ``stretch`` turns the disc into an ellipse with that ratio of height to width.
+    ``stretch`` makes the disc an ellipse with this ratio of height to width.
     """
     light = bpy.data.lights.new("lamp light", "AREA")
     light.shape = "ELLIPSE" if stretch != 1.0 else "DISK"
@@ -125,11 +125,11 @@ def pool(
 
 
 def finish_materials(*, visibility_m: float = 1500.0, skip: tuple[str, ...] = ()) -> None:
-    """Finish the scene's materials: add evening haze, turn off unlit lamps, and sample no mesh as a lamp.
+    """Finish the scene's materials: add evening haze, turn off unlit lamps, and exclude meshes from light sampling.
 
     Args:
-        visibility_m: Distance at which 63% of a thing's light is replaced by haze.
-        skip: Names of materials that stay as they are.
+        visibility_m: Distance in metres at which haze replaces 63% of an object's light.
+        skip: Names of materials to leave unchanged.
     """
     for material in bpy.data.materials:
         if material.name in skip or material.node_tree is None:
@@ -141,13 +141,14 @@ def finish_materials(*, visibility_m: float = 1500.0, skip: tuple[str, ...] = ()
 
 
 def _dim(tree: bpy.types.NodeTree) -> None:
+    """Reduce the emission of a material to 5%."""
     for node in tree.nodes:
         if node.type == "BSDF_PRINCIPLED":
             node.inputs["Emission Strength"].default_value *= 0.05
 
 
 def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
-    """Mix in the colour of the haze by distance, for camera rays only."""
+    """Mix a material with the colour of the haze by distance, for camera rays only."""
     output = next((n for n in tree.nodes if n.type == "OUTPUT_MATERIAL" and n.is_active_output), None)
     if output is None or not output.inputs["Surface"].is_linked:
         return
@@ -156,14 +157,14 @@ def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
     camera_ray = tree.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"]
 
     def math_node(operation: str, a: Value, b: Value | None = None) -> Value:
-        made = tree.nodes.new("ShaderNodeMath")
-        made.operation = operation
-        for socket, value in zip(made.inputs, (a, b), strict=False):
+        node = tree.nodes.new("ShaderNodeMath")
+        node.operation = operation
+        for socket, value in zip(node.inputs, (a, b), strict=False):
             if isinstance(value, bpy.types.NodeSocket):
                 tree.links.new(value, socket)
             elif value is not None:
                 socket.default_value = value
-        return made.outputs[0]
+        return node.outputs[0]
 
     share = math_node("SUBTRACT", 1.0, math_node("EXPONENT", math_node("MULTIPLY", distance, -1.0 / visibility_m)))
     glow = tree.nodes.new("ShaderNodeEmission")

@@ -9,7 +9,7 @@ from scope_studio.kit.light import dusk
 
 
 def glowing_face(colour: str, strength: float) -> bpy.types.Material:
-    """Return the translucent face of an illuminated sign."""
+    """Return the material of the translucent face of an illuminated sign."""
     rgb = {
         "white": (0.95, 0.97, 1.0),
         "blue": (0.08, 0.28, 0.95),
@@ -24,7 +24,7 @@ def glowing_face(colour: str, strength: float) -> bpy.types.Material:
 
 
 def lit_lens(kind: str, strength: float = 5.0) -> bpy.types.Material:
-    """Return the emissive lens of a lamp: "sodium", "led" or "warm"."""
+    """Return the emissive material of a lamp's lens: "sodium", "led" or "warm"."""
     rgb = {"sodium": dusk.SODIUM, "led": dusk.LED, "warm": dusk.WARM}[kind]
     name = f"lit lens {kind} {strength:g}"
     return bpy.data.materials.get(name) or Shader(name).surface(

@@ -1,4 +1,4 @@
-"""A dull sky just after rain: a low grey cloud layer, soft light from all sides, and haze from half a kilometre."""
+"""An overcast sky just after rain: a low grey cloud layer, soft light from all sides, and haze from half a kilometre."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def setup(
     sun_bearing_deg: float = 215.0,
     exposure: float = 0.50,
 ) -> None:
-    """Give ``scene`` a grey world, a veiled sun, and its view transform."""
+    """Set a grey world, a weak sun and the view transform of ``scene``."""
     world = bpy.data.worlds.new("Overcast")
     scene.world = world
     s = _WorldShader(world)
@@ -52,7 +52,7 @@ def setup(
 
 
 def _layer(s: Shader, x: Value, y: Value, height: Value) -> Value:
-    """Return stratus seen from below: pale and dark bands that converge towards the horizon, with one brighter break."""
+    """Return the colour of stratus cloud: pale and dark bands that converge towards the horizon, with one brighter break."""
     depth = s.math("ADD", height, 0.16)
     plane = s.node("ShaderNodeCombineXYZ")
     s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
@@ -68,6 +68,7 @@ def _layer(s: Shader, x: Value, y: Value, height: Value) -> Value:
 
 
 def _sun(scene: bpy.types.Scene, bearing_deg: float, strength: float) -> None:
+    """Add a weak, large sun lamp."""
     light = bpy.data.lights.new("Veiled sun", "SUN")
     light.energy = strength
     light.angle = math.radians(28)

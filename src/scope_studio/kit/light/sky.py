@@ -12,7 +12,7 @@ from scope_studio.kit.core.shading import Shader, Value
 HORIZON = (0.62, 0.74, 0.88)
 ZENITH = (0.10, 0.26, 0.62)
 HAZE = (0.50, 0.60, 0.70)
-"""Colour of distant things. It is slightly darker than the horizon, so that far hills stand out against the sky."""
+"""Colour of the haze over distant objects. It is slightly darker than the horizon, so that far hills stand out against the sky."""
 
 
 class _WorldShader(Shader):
@@ -33,7 +33,7 @@ def setup(
     cloud_cover: float = 0.5,
     exposure: float = 0.30,
 ) -> None:
-    """Give ``scene`` its world, sun and view transform. The sun's bearing is clockwise from north."""
+    """Set the world, sun and view transform of ``scene``. The sun's bearing is clockwise from north."""
     _world(scene, sky_strength, cloud_cover)
     _sun(sun_bearing_deg, sun_elevation_deg, sun_strength)
     scene.display_settings.display_device = "sRGB"
@@ -44,6 +44,7 @@ def setup(
 
 
 def _sun(bearing_deg: float, elevation_deg: float, strength: float) -> None:
+    """Add the sun lamp."""
     light = bpy.data.lights.new("Sun", "SUN")
     light.energy = strength
     light.angle = math.radians(2.5)
@@ -56,7 +57,7 @@ def _sun(bearing_deg: float, elevation_deg: float, strength: float) -> None:
 
 
 def _world(scene: bpy.types.Scene, strength: float, cover: float) -> None:
-    """Build the world. Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which needs few samples."""
+    """Build the world. Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which needs fewer samples."""
     world = bpy.data.worlds.new("Sky")
     scene.world = world
     s = _WorldShader(world)
@@ -78,7 +79,7 @@ def _world(scene: bpy.types.Scene, strength: float, cover: float) -> None:
 
 
 def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: float) -> Value:
-    """Return cumulus in a flat layer seen from below: noise that converges towards the horizon, with grey undersides."""
+    """Return the sky colour with a flat layer of cumulus: noise that converges towards the horizon, with grey undersides."""
     depth = s.math("ADD", height, 0.11)
     plane = s.node("ShaderNodeCombineXYZ")
     s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
@@ -98,11 +99,11 @@ def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: f
 
 
 def finish_materials(*, visibility_m: float = 3600.0, skip: tuple[str, ...] = ()) -> None:
-    """Finish the scene's materials: add aerial haze, and sample no mesh as a lamp, which would only add noise.
+    """Finish the scene's materials: add aerial haze, and exclude meshes from light sampling, which would only add noise.
 
     Args:
-        visibility_m: Distance at which 63% of a thing's light is replaced by haze.
-        skip: Names of materials that stay as they are.
+        visibility_m: Distance in metres at which haze replaces 63% of an object's light.
+        skip: Names of materials to leave unchanged.
     """
     for material in bpy.data.materials:
         if material.name in skip or material.node_tree is None:
@@ -112,6 +113,7 @@ def finish_materials(*, visibility_m: float = 3600.0, skip: tuple[str, ...] = ()
 
 
 def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
+    """Mix a material with the colour of the haze by distance."""
     output = next((n for n in tree.nodes if n.type == "OUTPUT_MATERIAL" and n.is_active_output), None)
     if output is None or not output.inputs["Surface"].is_linked:
         return

@@ -1,4 +1,4 @@
-"""Town pigeons."""
+"""Pigeons that stand, peck or sit."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ PLUMAGE = {
     "brown": ((0.16, 0.075, 0.045), (0.34, 0.27, 0.22)),
     "white": ((0.62, 0.62, 0.60), (0.75, 0.75, 0.73)),
 }
-"""Back and wing colours of a pigeon, by plain colour name."""
+"""Back and wing colours of a pigeon (linear RGB), by plain colour name."""
 
 
 def pigeon(colour: str = "grey", *, pose: str = "stand") -> Built:
-    """Build a town pigeon facing +y, about 0.30 m long. ``pose`` is "stand", "peck" (head down) or "rest" (squatting)."""
+    """Build a town pigeon facing +y, about 0.30 m long. ``pose`` is "stand", "peck" (head down) or "rest" (sitting)."""
     s = Solid(f"{colour} pigeon")
     lift = {"stand": 0.0, "peck": -0.004, "rest": -0.055}[pose]
     tip = Matrix.Rotation(-0.32 if pose == "peck" else 0.18 if pose == "stand" else 0.0, 4, "X")
@@ -53,7 +53,7 @@ _AIM = {"stand": Vector((0, 1, -0.30)), "peck": Vector((0, 0.65, -0.9)), "rest":
 
 
 def _body(frame: Matrix, pose: str) -> Skin:
-    """Return breast, back, neck, head, folded wings and tail as one skin, in world coordinates of the bird."""
+    """Return the body with neck, head, folded wings and tail as one skin, transformed by ``frame``."""
     v = Volume()
     v.ellipsoid((0, 0.02, 0.0), (0.058, 0.088, 0.056))
     v.ellipsoid((0, -0.055, 0.004), (0.046, 0.082, 0.040))
@@ -63,7 +63,7 @@ def _body(frame: Matrix, pose: str) -> Skin:
     for side in (-1, 1):
         v.capsule((side * 0.050, 0.045, 0.010), (side * 0.020, -0.155, 0.012), 0.032, 0.011, flat=0.42, across=(0, 0, 1))
     v.capsule((0, -0.10, 0.0), (0, -0.20, -0.012), 0.034, 0.030, flat=0.22, across=(1, 0, 0))
-    points, faces = v.melt(0.006, 2)
+    points, faces = v.merge(0.006, 2)
     turn = np.array(frame)
     return points @ turn[:3, :3].T + turn[:3, 3], faces
 
@@ -78,7 +78,7 @@ def _leg(s: Solid, side: int, body: Matrix) -> None:
 
 
 def _feathers(colour: str) -> bpy.types.Material:
-    """Return plumage with a dark head, a sheen on the neck, two wing bars and a dark tail tip. Masks are in the body's frame."""
+    """Return the material of plumage with a dark head, a sheen on the neck, two wing bars and a dark tail tip."""
     name = f"pigeon {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:

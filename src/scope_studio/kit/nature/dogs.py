@@ -20,7 +20,7 @@ COATS = {
     "brown": ((0.075, 0.034, 0.016), (0.13, 0.065, 0.03)),
     "white": ((0.55, 0.53, 0.49), (0.68, 0.66, 0.62)),
 }
-"""Darkest and lightest coat colours of a dog, by plain colour name."""
+"""Darkest and lightest tone of a dog's coat (linear RGB), by plain colour name."""
 
 
 def dog(colour: str = "black", *, phase: float | None = None, lead_to: Point | None = None, collar: str = "red") -> Built:
@@ -45,7 +45,7 @@ def dog(colour: str = "black", *, phase: float | None = None, lead_to: Point | N
     wag = 0.05 * math.sin(2 * math.pi * (phase or 0.0))
     v.capsule((0, -0.33, 0.49), (wag, -0.47, 0.45), 0.030, 0.021)
     v.capsule((wag, -0.47, 0.45), (2 * wag, -0.60, 0.50), 0.021, 0.011)
-    skin = crease(v.melt(0.011, 3), 0.0025, (30.0, 12.0, 30.0), 3.0)
+    skin = crease(v.merge(0.011, 3), 0.0025, (30.0, 12.0, 30.0), 3.0)
     s.add(skin[0].tolist(), skin[1], _coat(colour))
     dark = plain("dog nose", (0.008, 0.007, 0.007), 0.25)
     s.lathe([(0.008, 0.0), (0.017, 0.008), (0.006, 0.020)], dark, (0, 0.613, 0.648), "Y", 12)
@@ -61,6 +61,7 @@ def dog(colour: str = "black", *, phase: float | None = None, lead_to: Point | N
 
 
 def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
+    """Add one leg, posed for the gait phase."""
     y, x = (0.20, 0.062) if front else (-0.27, 0.062)
     swing, lift = 0.0, 0.0
     if phase is not None:
@@ -76,12 +77,14 @@ def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
 
 
 def _collar() -> list[Point]:
+    """Return the points of a collar around the neck."""
     middle, along = Vector((0, 0.335, 0.565)), Vector((0, 0.14, 0.14)).normalized()
     u, v = Vector((1, 0, 0)), along.cross(Vector((1, 0, 0)))
     return [tuple(middle + 0.073 * (u * math.cos(a) + v * math.sin(a))) for a in (math.pi * k / 10 for k in range(20))]
 
 
 def _coat(colour: str) -> bpy.types.Material:
+    """Return the material of a dog's coat."""
     name = f"dog {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:

@@ -1,4 +1,4 @@
-"""Plants: trees of several species, hedges, bushes and rough grass. Build each once and place linked copies."""
+"""Plants: trees of several species, hedges, bushes and rough grass. They are large: build each once and place linked copies."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ Rgb = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Species:
-    """Parameters of a tree's growth.
+    """Parameters of a tree species.
 
-    ``crown`` is the outline: "round", "column", "cone" or "weeping". The colours are those of dark and bright leaves.
+    ``crown`` is the outline: "round", "column", "cone" or "weeping". ``dark`` and ``bright`` are the two colours of its leaves.
     """
 
     name: str
@@ -60,11 +60,11 @@ def tree(species: Species, seed: int, *, detail: float = 1.0) -> Built:
 
 
 Limb = tuple[list[Vector], float, float]
-"""Centre line, start radius, end radius."""
+"""Limb of a tree: centre line, start radius, end radius."""
 
 
 def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vector, Vector]]]:
-    """Return the limbs (trunk, boughs, branches, twigs) and the (start, end) of every twig that bears leaves."""
+    """Return the limbs (trunk, boughs, branches, twigs) and the (start, end) of every twig that has leaves."""
     limbs: list[Limb] = []
     twigs: list[tuple[Vector, Vector]] = []
     girth = 0.020 * sp.height_m + 0.02
@@ -83,29 +83,29 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
         index = z_share * sp.height_m / top * 8
         base = _along(trunk, min(index, 7.99))
         azimuth += 2.4 + rng.uniform(-0.5, 0.5)
-        rise, reach = _habit(sp, share)
+        rise, reach = _bough_shape(sp, share)
         reach *= rng.uniform(0.82, 1.12)
         heading = Vector((math.cos(azimuth) * math.cos(rise), math.sin(azimuth) * math.cos(rise), math.sin(rise)))
         bough = _limb(base, heading, reach, rng, 6, 0.20, _droop(sp))
         radius = max(0.022, girth * (0.42 - 0.26 * share))
         limbs.append((bough, radius, radius * 0.3))
         for j in range(7):
-            at = 1.2 + 4.7 * (j + rng.random()) / 7
-            side = _fork(bough, at, rng, 0.75)
-            branch = _limb(_along(bough, at), side, reach * rng.uniform(0.26, 0.46), rng, 4, 0.25, _droop(sp))
+            fork_at = 1.2 + 4.7 * (j + rng.random()) / 7
+            side = _fork(bough, fork_at, rng, 0.75)
+            branch = _limb(_along(bough, fork_at), side, reach * rng.uniform(0.26, 0.46), rng, 4, 0.25, _droop(sp))
             limbs.append((branch, radius * 0.34, 0.007))
             for _ in range(5):
-                spot = rng.uniform(0.8, 3.99)
-                start = _along(branch, spot)
-                end = start + _fork(branch, spot, rng, 0.9) * reach * rng.uniform(0.12, 0.24)
+                position = rng.uniform(0.8, 3.99)
+                start = _along(branch, position)
+                end = start + _fork(branch, position, rng, 0.9) * reach * rng.uniform(0.12, 0.24)
                 twigs.append((start, end))
             twigs.append((branch[-2], branch[-1]))
         twigs.append((bough[-2], bough[-1]))
     return limbs, twigs
 
 
-def _habit(sp: Species, share: float) -> tuple[float, float]:
-    """Return the rise angle (radians) and length of a bough at a relative height in the crown."""
+def _bough_shape(sp: Species, share: float) -> tuple[float, float]:
+    """Return the rise angle (radians) and length (m) of a bough at ``share`` of the crown's height."""
     r = sp.crown_radius_m
     if sp.crown == "round":
         return 0.05 + 1.15 * share**1.4, r * (0.80 + 0.34 * math.sin(math.pi * min(1.0, share * 0.95 + 0.12)) - 0.32 * share)
@@ -117,12 +117,14 @@ def _habit(sp: Species, share: float) -> tuple[float, float]:
 
 
 def _droop(sp: Species) -> float:
+    """Return how strongly limbs bend upwards (positive) or downwards at each step."""
     return {"round": -0.03, "column": 0.12, "cone": -0.06, "weeping": -0.22}[sp.crown]
 
 
 def _limb(
     start: Vector, heading: Vector, length: float, rng: random.Random, steps: int, wander: float, lift: float
 ) -> list[Vector]:
+    """Return a random path that starts at ``start`` in direction ``heading``, bent upwards by ``lift`` at each step."""
     points, direction = [start.copy()], heading.copy()
     for _ in range(steps):
         direction += Vector((rng.uniform(-wander, wander), rng.uniform(-wander, wander), rng.uniform(-wander, wander) + lift))
@@ -132,11 +134,13 @@ def _limb(
 
 
 def _along(points: Sequence[Vector], index: float) -> Vector:
+    """Return the point of a path at a fractional index."""
     low = min(int(index), len(points) - 2)
     return points[low].lerp(points[low + 1], index - low)
 
 
 def _fork(points: Sequence[Vector], index: float, rng: random.Random, angle: float) -> Vector:
+    """Return a random direction that branches off a path at about ``angle`` radians."""
     low = min(int(index), len(points) - 2)
     ahead = (points[low + 1] - points[low]).normalized()
     turned = ahead.orthogonal().normalized()
@@ -148,6 +152,7 @@ def _fork(points: Sequence[Vector], index: float, rng: random.Random, angle: flo
 
 
 def _tubes(limbs: Sequence[Limb], sides: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points and quads of tapered tubes around the limbs."""
     points, faces, base = [], [], 0
     ring = [(math.cos(2 * math.pi * k / sides), math.sin(2 * math.pi * k / sides)) for k in range(sides)]
     for line, r0, r1 in limbs:
@@ -168,7 +173,7 @@ def _tubes(limbs: Sequence[Limb], sides: int) -> tuple[np.ndarray, np.ndarray]:
 def _leaves(
     sp: Species, twigs: Sequence[tuple[Vector, Vector]], rng: random.Random, detail: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return folded leaf cards in loose sprays around the twigs: fewer and larger ones when ``detail`` is low."""
+    """Return the points, quads and tints of leaves around the twigs. A lower ``detail`` gives fewer and larger leaves."""
     gen = np.random.default_rng(rng.randrange(2**31))
     each = max(5, round(42 * detail))
     size = sp.leaf_m * detail**-0.42
@@ -214,7 +219,7 @@ Part = tuple[np.ndarray, np.ndarray, bpy.types.Material]
 
 
 def _combine(name: str, parts: Sequence[Part], tints: np.ndarray) -> bpy.types.Object:
-    """Return one mesh from groups of quads with one material each. ``tints`` belong to the points of the last group."""
+    """Create one mesh from groups of quads with one material each. ``tints`` has a value for each point of the last group."""
     mesh = bpy.data.meshes.new(name)
     points = np.concatenate([p for p, _, _ in parts]).astype(np.float32)
     offsets = np.cumsum([0] + [len(p) for p, _, _ in parts])
@@ -239,7 +244,7 @@ def _combine(name: str, parts: Sequence[Part], tints: np.ndarray) -> bpy.types.O
 
 
 def leaf_material(sp: Species) -> bpy.types.Material:
-    """Return leaves of two tones, paler in patches, with a third of the light passing through them."""
+    """Return the material of leaves: two tones, paler in patches, with a third of the light passing through."""
     found = bpy.data.materials.get(f"{sp.name} leaves")
     if found is not None:
         return found
@@ -263,7 +268,7 @@ def leaf_material(sp: Species) -> bpy.types.Material:
 
 
 def bark_material(sp: Species) -> bpy.types.Material:
-    """Return the bark of a species."""
+    """Return the material of a species' bark."""
     found = bpy.data.materials.get(f"{sp.name} bark")
     if found is not None:
         return found
@@ -281,7 +286,7 @@ HAWTHORN = Species("hawthorn", 1.9, 0.7, 0.0, "round", 0.085, (0.049, 0.087, 0.0
 
 
 def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed: int = 0, detail: float = 1.0) -> Built:
-    """Build a field hedge along x: leaf cards over an uneven dark core."""
+    """Build a field hedge along x: leaves over an uneven dark core."""
     gen = np.random.default_rng(7919 + seed)
     count = int(900 * length_m * detail)
     along = gen.uniform(-length_m / 2, length_m / 2, count)
@@ -307,7 +312,7 @@ def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed:
 
 
 def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowers: int = 0) -> Built:
-    """Build a square of uneven grass tufts with a few flower heads. It is meant to be scattered as linked copies."""
+    """Build a square of uneven grass tufts with some flower heads, to be scattered as linked copies."""
     gen = np.random.default_rng(104729 + seed)
     tufts = gen.uniform(-size_m / 2, size_m / 2, size=(max(1, blades // 7), 2))
     roots = tufts[gen.integers(len(tufts), size=blades)] + gen.normal(size=(blades, 2)) * 0.075

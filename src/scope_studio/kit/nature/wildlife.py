@@ -1,4 +1,4 @@
-"""Wild animals that visit a yard at dusk: a fox, standing or trotting."""
+"""Wild animals: a fox, standing or trotting."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.core.volumes import Volume
 
 TROT_M = 0.78
-"""Length of one gait cycle of the fox."""
+"""Length in metres of one gait cycle of a trotting fox."""
 
 
 def fox(*, phase: float | None = None) -> Built:
@@ -33,7 +33,7 @@ def fox(*, phase: float | None = None) -> Built:
     v.capsule((0, -0.25, 0.335), (sway * 0.5, -0.38, 0.29), 0.030, 0.050)
     v.capsule((sway * 0.5, -0.38, 0.29), (sway, -0.58, 0.26), 0.052, 0.046)
     v.capsule((sway, -0.58, 0.26), (sway * 1.3, -0.70, 0.265), 0.044, 0.012)
-    points, faces = v.melt(0.009, 3)
+    points, faces = v.merge(0.009, 3)
     s.add(points.tolist(), faces, _coat(), points.tolist())
     dark = plain("fox nose", (0.008, 0.007, 0.007), 0.3)
     s.lathe([(0.004, 0.0), (0.010, 0.006), (0.004, 0.012)], dark, (0, 0.463, 0.430), "Y", 10)
@@ -49,6 +49,7 @@ def fox(*, phase: float | None = None) -> Built:
 
 
 def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
+    """Add one leg, posed for the gait phase."""
     y, x = (0.17, 0.040) if front else (-0.19, 0.040)
     swing = lift = 0.0
     if phase is not None:
@@ -64,7 +65,7 @@ def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
 
 
 def _coat() -> bpy.types.Material:
-    """Return a coat that is red above, with white throat, belly and tail tip, and black legs and ears."""
+    """Return the material of a fox's coat: red above, with white throat, belly and tail tip, and black legs and ears."""
     found = bpy.data.materials.get("fox coat")
     if found is not None:
         return found

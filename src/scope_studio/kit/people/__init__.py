@@ -1,1 +1,1 @@
-"""People: figures, heads, clothing, poses, and the things that they carry or push."""
+"""People: figures, heads, clothing, poses, and the objects that they carry or push."""

@@ -1,7 +1,7 @@
 """Road workers and pedestrians of varied height, build, skin and hair, in relaxed poses or walking.
 
-A person stands at the origin facing +y, with about 45,000 points in one object. Appearance and small asymmetries are drawn from
-``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry". One cycle
+A person stands at the origin facing +y, with about 45,000 points in one object. Appearance and small asymmetries are random and
+depend on ``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry". One cycle
 covers ``STRIDE_M`` times the person's height over 1.77 m.
 """
 
@@ -25,7 +25,7 @@ from scope_studio.kit.people.poses import Joints, Pose, named, solve
 
 @dataclass(frozen=True)
 class _Appearance:
-    """Physical features of a person, drawn from the seed."""
+    """Physical features of a person."""
 
     height_m: float
     girth: float
@@ -36,11 +36,12 @@ class _Appearance:
     stubble: bool
 
 
-def _looks(random: Random, hair: str | None, woman_share: float) -> _Appearance:
+def _random_appearance(random: Random, hair: str | None, woman_share: float) -> _Appearance:
+    """Draw a random appearance. ``hair`` overrides the random hair colour."""
     woman = random.random() < woman_share
     height = random.gauss(1.67, 0.04) if woman else random.gauss(1.78, 0.045)
     tone = random.choices(range(6), (30, 26, 16, 12, 10, 6))[0]
-    usual = ["black"] if tone >= 3 else ["black", "brown", "brown", "light brown", "blond", "ginger", "grey"]
+    hair_colours = ["black"] if tone >= 3 else ["black", "brown", "brown", "light brown", "blond", "ginger", "grey"]
     style = random.choice(["long", "tail", "bun"]) if woman else random.choice(["short", "short", "crop"])
     girth = random.uniform(0.96, 1.10) if woman else random.uniform(0.98, 1.30)
     return _Appearance(
@@ -48,25 +49,29 @@ def _looks(random: Random, hair: str | None, woman_share: float) -> _Appearance:
         girth,
         woman,
         tone,
-        hair or random.choice(usual),
+        hair or random.choice(hair_colours),
         style,
         not woman and random.random() < 0.45,
     )
 
 
-def _wear(s: Solid, skin: Skin, material: object, rest: np.ndarray | None = None) -> None:
+def _add_skin(s: Solid, skin: Skin, material: object, rest: np.ndarray | None = None) -> None:
+    """Add a skin with a material and, optionally, rest coordinates of its points."""
     points, faces = skin
     s.add(points.tolist(), faces, material, None if rest is None else rest.tolist())
 
 
-def _head(s: Solid, joints: Joints, looks: _Appearance, covered: bool) -> None:
-    skin = heads.face(woman=looks.woman, stout=0.9 + 0.12 * (looks.girth - 0.95) / 0.25)
-    _wear(s, heads.place(skin, joints.head), clothing.skin(looks.tone, looks.hair, stubble=looks.stubble), skin[0])
-    if looks.hair is None or looks.hair == "bald":
+def _head(s: Solid, joints: Joints, appearance: _Appearance, covered: bool) -> None:
+    """Add head and hair. ``covered`` shortens the hair under a helmet."""
+    skin = heads.face(woman=appearance.woman, stout=0.9 + 0.12 * (appearance.girth - 0.95) / 0.25)
+    _add_skin(
+        s, heads.place(skin, joints.head), clothing.skin(appearance.tone, appearance.hair, stubble=appearance.stubble), skin[0]
+    )
+    if appearance.hair is None or appearance.hair == "bald":
         return
-    style = "crop" if covered and looks.style in ("short", "bun") else looks.style
-    hair = heads.hair_cap(style, 0.004 if style == "crop" else 0.009, looks.height_m * 10)
-    _wear(s, heads.place(hair, joints.head), clothing.hair(looks.hair), hair[0])
+    style = "crop" if covered and appearance.style in ("short", "bun") else appearance.style
+    hair = heads.hair_cap(style, 0.004 if style == "crop" else 0.009, appearance.height_m * 10)
+    _add_skin(s, heads.place(hair, joints.head), clothing.hair(appearance.hair), hair[0])
 
 
 def _helmet(s: Solid, joints: Joints, colour: str) -> None:
@@ -98,7 +103,7 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
 
 @dataclass(frozen=True)
 class _Outfit:
-    """Clothes of a person. ``vest`` and ``helmet`` make a worker."""
+    """Clothes of a person. Only workers have a ``vest`` and a ``helmet``."""
 
     top: str
     legs: str
@@ -110,8 +115,10 @@ class _Outfit:
     helmet: str | None
 
 
-def _dress(s: Solid, joints: Joints, random: Random, looks: _Appearance, outfit: _Outfit, curls: tuple[float, float]) -> None:
-    """Add clothes and hands."""
+def _add_body(
+    s: Solid, joints: Joints, random: Random, appearance: _Appearance, outfit: _Outfit, curls: tuple[float, float]
+) -> None:
+    """Add the clothed body and the hands."""
     seed = random.uniform(0, 50)
     vest = outfit.vest
     loose = random.uniform(0.004, 0.012)
@@ -120,24 +127,26 @@ def _dress(s: Solid, joints: Joints, random: Random, looks: _Appearance, outfit:
         joints,
         swell=-0.012 if vest else loose * 0.6,
         low=low,
-        girth=looks.girth,
-        woman=looks.woman,
+        girth=appearance.girth,
+        woman=appearance.woman,
         neck=outfit.neck,
         seed=seed,
     )
-    _wear(s, body, clothing.top(outfit.top, outfit.style, outfit.inner, low), rest)
+    _add_skin(s, body, clothing.top(outfit.top, outfit.style, outfit.inner, low), rest)
     sleeve, along = figure.sleeves(joints, loose=0.008 if vest else loose * 0.7, seed=seed + 4)
     bands = (0.17, 0.40) if outfit.top.startswith("hi-vis") else ()
-    _wear(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb(along))
+    _add_skin(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb(along))
     if vest:
-        skin, rest = figure.trunk(joints, swell=0.024, low=0.835, girth=looks.girth, woman=looks.woman, flare=0.007, seed=seed + 1)
-        _wear(s, skin, clothing.vest(vest, outfit.top), rest)
-    leg_skin, along = figure.trousers(joints, loose=0.008 if vest else 0.002, girth=looks.girth, seed=seed + 2)
+        skin, rest = figure.trunk(
+            joints, swell=0.024, low=0.835, girth=appearance.girth, woman=appearance.woman, flare=0.007, seed=seed + 1
+        )
+        _add_skin(s, skin, clothing.vest(vest, outfit.top), rest)
+    leg_skin, along = figure.trousers(joints, loose=0.008 if vest else 0.002, girth=appearance.girth, seed=seed + 2)
     bands = (0.27, 0.40) if outfit.legs.startswith("hi-vis") else ()
-    _wear(s, leg_skin, clothing.cloth(outfit.legs, bands=bands), _limb(along))
+    _add_skin(s, leg_skin, clothing.cloth(outfit.legs, bands=bands), _limb(along))
     shoe = vest is None
     upper = paint("black" if shoe else random.choice(["brown", "black", "dark grey"]), dirt=0.38, roughness=0.6)
-    _wear(s, figure.boots(joints, shoe=shoe), upper)
+    _add_skin(s, figure.boots(joints, shoe=shoe), upper)
     for i, side in enumerate((-1, 1)):
         low, high = figure.sole_outline(joints.feet[i], side, 0.0, 0.026)
         n = len(low)
@@ -150,11 +159,13 @@ def _dress(s: Solid, joints: Joints, random: Random, looks: _Appearance, outfit:
             ],
             rubber(),
         )
-    paw = figure.hands(joints, curls, glove=outfit.glove is not None)
+    hands = figure.hands(joints, curls, glove=outfit.glove is not None)
     if outfit.glove:
-        _wear(s, paw, paint(outfit.glove, dirt=0.5, roughness=0.8))
+        _add_skin(s, hands, paint(outfit.glove, dirt=0.5, roughness=0.8))
     else:
-        _wear(s, paw, clothing.skin(looks.tone, looks.hair, stubble=False), np.full_like(paw[0], 5.0) + normals(paw))
+        _add_skin(
+            s, hands, clothing.skin(appearance.tone, appearance.hair, stubble=False), np.full_like(hands[0], 5.0) + normals(hands)
+        )
 
 
 def _limb(along: np.ndarray) -> np.ndarray:
@@ -162,8 +173,8 @@ def _limb(along: np.ndarray) -> np.ndarray:
     return np.column_stack([np.zeros((len(along), 2)), along])
 
 
-IN_HAND = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
-"""The objects that a pose holds by default."""
+DEFAULT_PROP = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
+"""The prop that a person in a pose holds by default."""
 
 
 def _person(
@@ -171,23 +182,24 @@ def _person(
     pose: str,
     phase: float,
     random: Random,
-    looks: _Appearance,
+    appearance: _Appearance,
     outfit: _Outfit,
     holding: str | None,
-    own_stance: Pose | None = None,
+    own_pose: Pose | None = None,
 ) -> Built:
+    """Build a person in a pose, with clothes and a prop."""
     if holding is not None and holding not in HOLDABLE:
-        raise ValueError(f"cannot hold {holding!r}; known: {sorted(HOLDABLE)}")
-    stance = own_stance or named(pose, phase, random)
+        raise ValueError(f"no prop named {holding!r}; known props: {sorted(HOLDABLE)}")
+    stance = own_pose or named(pose, phase, random)
     joints = solve(stance)
     s = Solid(name)
-    scale = looks.height_m / 1.77
-    s.frame = Matrix.Diagonal((scale * (0.93 if looks.woman else 1.0), scale, scale, 1.0))
-    _dress(s, joints, random, looks, outfit, (stance.arms[0].curl, stance.arms[1].curl))
-    _head(s, joints, looks, outfit.helmet is not None)
+    scale = appearance.height_m / 1.77
+    s.frame = Matrix.Diagonal((scale * (0.93 if appearance.woman else 1.0), scale, scale, 1.0))
+    _add_body(s, joints, random, appearance, outfit, (stance.arms[0].curl, stance.arms[1].curl))
+    _head(s, joints, appearance, outfit.helmet is not None)
     if outfit.helmet:
         _helmet(s, joints, outfit.helmet)
-    prop = holding or IN_HAND.get(pose)
+    prop = holding or DEFAULT_PROP.get(pose)
     if prop:
         hold(s, joints, prop)
     return s.built()
@@ -207,20 +219,20 @@ def worker(
     """Build a road worker in a high-visibility vest ("orange" or "yellow").
 
     Args:
-        helmet: A colour, or None.
+        helmet: Colour of the helmet, or None for no helmet.
         pose: "stand", "walk", "point", "carry", "kneel", "shovel", "phone" or "clipboard".
-        holding: Replaces what the pose holds by default.
-        stance: The caller's own pose, instead of a named one.
+        holding: Name of a prop that replaces the default prop of the pose; see ``HOLDABLE``.
+        stance: A pose to use instead of the one that ``pose`` names.
     """
     random = Random(f"worker {seed}")
-    looks = _looks(random, None, 0.15)
+    appearance = _random_appearance(random, None, 0.15)
     legs = trousers or random.choice(["navy", "dark grey", f"hi-vis {vest}", "khaki", "navy"])
     top = random.choice(["navy", "dark grey", "grey", f"hi-vis {vest}", "navy"])
     glove = random.choice(["dark grey", "hi-vis orange", "black", None])
     if pose in ("phone", "clipboard"):
         glove = None
     outfit = _Outfit(top, legs, "shirt", "white", "collar", glove, vest, helmet)
-    return _person(f"worker in {vest}", pose, phase, random, looks, outfit, holding, stance)
+    return _person(f"worker in {vest}", pose, phase, random, appearance, outfit, holding, stance)
 
 
 def pedestrian(
@@ -234,13 +246,13 @@ def pedestrian(
     stance: Pose | None = None,
     seed: int = 0,
 ) -> Built:
-    """Build a passer-by in everyday clothes.
+    """Build a pedestrian in everyday clothes.
 
-    Colours have plain names and are drawn from the seed when not given. ``stance`` is the caller's own pose, instead of a named
-    one.
+    Colours have plain names; those that are not given are random and depend on the seed. ``stance`` is a pose to use instead of
+    the one that ``pose`` names.
     """
     random = Random(f"pedestrian {seed}")
-    looks = _looks(random, hair, 0.5)
+    appearance = _random_appearance(random, hair, 0.5)
     upper = top or random.choice(["dark red", "navy", "grey", "green", "beige", "light blue", "black", "purple", "yellow"])
     choices = ["denim", "denim", "black", "dark grey", "beige", "khaki"]
     legs = trousers or random.choice([c for c in choices if c != upper])
@@ -249,4 +261,4 @@ def pedestrian(
     )
     inner = random.choice([c for c in ("white", "light grey", "black", "light blue") if c != upper])
     outfit = _Outfit(upper, legs, style, inner, neck, None, None, None)
-    return _person(f"pedestrian in {upper}", pose, phase, random, looks, outfit, holding, stance)
+    return _person(f"pedestrian in {upper}", pose, phase, random, appearance, outfit, holding, stance)

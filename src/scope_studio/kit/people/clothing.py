@@ -1,6 +1,6 @@
-"""Materials of people: skin with a painted face, hair, cloth, reflective vests.
+"""Materials of people: skin with facial features, hair, cloth, reflective vests.
 
-Their masks read the "rest" attribute (upright coordinates).
+Their masks use the "rest" attribute, the position on the upright figure.
 """
 
 from __future__ import annotations
@@ -35,13 +35,14 @@ HAIR: dict[str, Colour] = {
 
 
 def _rest(s: Shader) -> Value:
+    """Return the rest coordinates of the shading point."""
     return s.node("ShaderNodeAttribute", attribute_name=REST).outputs["Vector"]
 
 
 def _near(
     s: Shader, where: Value, centre: tuple[float, float, float], radii: tuple[float, float, float], soft: float = 0.35
 ) -> Value:
-    """Return 1 inside an ellipsoid of rest space, 0 outside."""
+    """Return a mask that is 1 inside an ellipsoid in rest coordinates and 0 outside."""
     moved = s.scaled(where, tuple(1 / r for r in radii), tuple(-c / r for c, r in zip(centre, radii, strict=True)))
     length = s.node("ShaderNodeVectorMath", operation="LENGTH")
     s.feed(length.inputs[0], moved)
@@ -49,7 +50,7 @@ def _near(
 
 
 def skin(tone: int, hair: str | None, *, stubble: bool) -> bpy.types.Material:
-    """Return the skin of head or hands. Eyes, brows, lips and stubble are masks in head coordinates."""
+    """Return the material of skin, for head and hands. Eyes, brows, lips and stubble are masks in head coordinates."""
     name = f"skin {tone} {hair} {stubble}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -90,7 +91,7 @@ def skin(tone: int, hair: str | None, *, stubble: bool) -> bpy.types.Material:
 
 
 def hair(colour: str) -> bpy.types.Material:
-    """Return hair of a colour."""
+    """Return the material of hair."""
     name = f"hair {colour}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -102,9 +103,9 @@ def hair(colour: str) -> bpy.types.Material:
 
 
 def _woven(s: Shader, colour: str) -> tuple[Value, Value, Value]:
-    """Return tone, fold height and weave of a cloth in a plain colour.
+    """Return the colour, fold height and weave height of plain cloth.
 
-    It is paler where it rubs, soiled in patches, and dark in the folds.
+    The colour is paler where the cloth is worn, soiled in patches, and dark in the folds.
     """
     where = s.object_coords()
     base = PALETTE[colour]
@@ -116,7 +117,7 @@ def _woven(s: Shader, colour: str) -> tuple[Value, Value, Value]:
 
 
 def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
-    """Return woven cloth. ``bands`` are positions of 5 cm reflective tape along the limb (m, the third rest coordinate)."""
+    """Return the material of woven cloth. ``bands`` are the positions of 5 cm reflective tape along the limb (m)."""
     name = f"garment {colour} {bands}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -131,7 +132,7 @@ def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
 
 
 def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
-    """Return the body of an upper garment with its hem at height ``low``.
+    """Return the material of the body of an upper garment with its hem at height ``low``.
 
     ``style`` is "jumper" (ribbed hem), "jacket" (open on an ``inner`` shirt, with zip and pockets) or "shirt" (button line,
     paler collar).
@@ -174,7 +175,7 @@ def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
 
 
 def vest(colour: str, lining: str) -> bpy.types.Material:
-    """Return a high-visibility waistcoat: two hoops, two braces, dark piping, a zip, and an open neck that shows ``lining``."""
+    """Return the material of a high-visibility vest with reflective tape, a zip, and an open neck that shows ``lining``."""
     name = f"vest {colour} over {lining}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]

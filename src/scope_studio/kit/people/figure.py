@@ -1,4 +1,4 @@
-"""The clothed human figure: trunk, sleeves, trousers, boots and hands around solved joints."""
+"""The clothed human figure: trunk, sleeves, trousers, boots and hands, modelled around solved joints."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ TRUNK = [
 
 
 def _trunk_rows(joints: Joints, swell: float, girth: float, low: float, high: float) -> list[list[Vector]]:
+    """Return rings of points around the posed trunk, one for every 2 cm of height from ``low`` to ``high``."""
     rows = []
     heights = np.arange(low, high + 1e-6, 0.02)
     table = np.array(TRUNK)
@@ -57,8 +58,8 @@ def trunk(
     """Return the body of a garment, and the upright (rest) coordinates of its points.
 
     Args:
-        swell: Distance of the cloth from the body (m).
-        low: Height of the hem.
+        swell: Distance between the cloth and the body (m).
+        low: Height of the hem (m).
         neck: "collar", "hood" or None.
         flare: Extra looseness of the folds at the hem (m).
     """
@@ -81,7 +82,7 @@ def trunk(
         heights = ((1.45, 0.080), (1.49, 0.074), (1.528, 0.072))
         v.rings([[(r * math.cos(t), -0.012 + r * 0.95 * math.sin(t), z - 0.014 * math.sin(t)) for t in turns] for z, r in heights])
     skin = crease(
-        v.melt(0.012, 4),
+        v.merge(0.012, 4),
         lambda p: 0.004 + (0.004 + flare) * np.clip((1.15 - p[:, 2]) / 0.3, 0, 1),
         (7.0, 7.0, 10.0),
         seed,
@@ -94,7 +95,7 @@ def trunk(
 def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndarray]:
     """Return both sleeves, and the distance of each point from the shoulder along the arm (m).
 
-    ``loose`` is extra cloth (m).
+    ``loose`` is the extra width of the sleeve (m).
     """
     v = Volume()
     for i in range(2):
@@ -103,7 +104,7 @@ def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndar
         v.capsule(shoulder.lerp(elbow, 0.5), elbow, 0.053 + loose, 0.046 + loose)
         v.capsule(elbow, elbow.lerp(wrist, 0.45), 0.046 + loose, 0.043 + loose)
         v.capsule(elbow.lerp(wrist, 0.45), elbow.lerp(wrist, 0.93), 0.043 + loose, 0.034 + loose)
-    points, faces = v.melt(0.012, 4)
+    points, faces = v.merge(0.012, 4)
     bones = []
     for i in range(2):
         bones.append((joints.shoulders[i], joints.elbows[i], 0.0, 0.295))
@@ -129,7 +130,7 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
         v.capsule(hip.lerp(knee, 0.5), knee, 0.078 + loose * 0.6, 0.062 + loose)
         v.capsule(knee, knee.lerp(ankle, 0.4), 0.062 + loose, 0.060 + loose)
         v.capsule(knee.lerp(ankle, 0.4), cuff, 0.060 + loose, 0.054 + loose)
-    points, faces = v.melt(0.013, 4)
+    points, faces = v.merge(0.013, 4)
     bones = []
     for i in range(2):
         bones.append((joints.hips[i], joints.knees[i], 0.92, 0.495))
@@ -146,7 +147,7 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
 def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
     """Return for each point a value that is interpolated between the ends of its nearest bone.
 
-    Bones are (from, to, value, value).
+    Bones are (from, to, value at from, value at to).
     """
     best = np.full(len(points), 1e9)
     value = np.zeros(len(points))
@@ -171,7 +172,7 @@ def boots(joints: Joints, *, shoe: bool) -> Skin:
         v.ellipsoid((0, -0.045, 0.048), (0.040, 0.044, 0.044), f)
         if not shoe:
             v.capsule(f @ Vector((0, -0.012, 0.07)), joints.ankles[i].lerp(joints.knees[i], 0.22), 0.048, 0.049)
-    return v.melt(0.009, 3)
+    return v.merge(0.009, 3)
 
 
 def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[tuple[float, float, float]]]:
@@ -219,4 +220,4 @@ def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
         joint = root + along * 0.036 + thumb_side * 0.022 + normal * 0.014
         v.capsule(root, joint, 0.014 + fat, 0.011 + fat, sides=8)
         v.capsule(joint, joint + along * 0.028 + normal * 0.010 * (1 + max(0.0, curl)), 0.011 + fat, 0.008 + fat, sides=8)
-    return v.melt(0.0055, 2)
+    return v.merge(0.0055, 2)

@@ -1,4 +1,4 @@
-"""Hand-held props: tools, phones, boards, boxes, bags. They are placed between the solved hands."""
+"""Objects that people hold, such as tools, phones, boxes and bags. They are placed in the hands of a solved pose."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_studio.kit.people.poses import Joints
 
 
 def _grip(joints: Joints, index: int, reach: float = 0.085) -> Vector:
-    """Return the middle of a closed hand (0 left, 1 right)."""
+    """Return the middle of the closed left (``index`` 0) or right (1) hand."""
     wrist, elbow = joints.wrists[index], joints.elbows[index]
     return wrist + (wrist - elbow).normalized() * reach
 
@@ -131,11 +131,11 @@ HOLDABLE: dict[str, Callable[[Solid, Joints], None]] = {
     "torch": _torch,
     "trowel": _trowel,
 }
-"""Names that ``holding`` accepts."""
+"""The functions that add a prop, by the name that ``hold`` accepts."""
 
 
 def hold(s: Solid, joints: Joints, name: str) -> None:
-    """Add a prop to the hands."""
+    """Add the prop with this name to the hands."""
     saved = s.frame
     HOLDABLE[name](s, joints)
     s.frame = saved

@@ -41,7 +41,7 @@ def face(*, woman: bool, stout: float) -> Skin:
         0.052 * stout * (0.88 if woman else 1),
         0.060 * stout * (0.88 if woman else 1),
     )
-    points, faces = v.melt(0.0058, 2)
+    points, faces = v.merge(0.0058, 2)
     for x, y, z in EYES:  # eye sockets
         d = (points - (x, y, z)) / (0.021, 0.030, 0.0125)
         points[:, 1] -= 0.0125 * np.exp(-(d**2).sum(axis=1))
@@ -69,7 +69,7 @@ def hair_cap(style: str, thickness: float, seed: float) -> Skin:
     if style == "tail":
         v.capsule((0, -0.108, 0.045), (0, -0.150, 0.010), 0.020, 0.026)
         v.capsule((0, -0.150, 0.010), (0, -0.128, -0.130), 0.026, 0.010)
-    points, faces = v.melt(0.0075, 2)
+    points, faces = v.merge(0.0075, 2)
     shift = np.array([noise.noise((x * 60 + seed, y * 26, z * 26)) for x, y, z in points])
     points = points + normals((points, faces)) * (0.0045 * shift)[:, None]
     wobble = np.array([noise.noise((x * 70, y * 40, z * 40 + seed)) for x, y, z in points]) * 0.008
@@ -81,7 +81,7 @@ def hair_cap(style: str, thickness: float, seed: float) -> Skin:
 def _hairline(points: np.ndarray, style: str) -> np.ndarray:
     """Return the height of the hair's lower edge, which depends on how far forward a point is.
 
-    It is high over the brow, above the ears, and low at the nape.
+    The edge is high at the forehead, just above the ears, and low at the back of the neck.
     """
     y = points[:, 1]
     table = [

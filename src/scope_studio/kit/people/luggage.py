@@ -9,7 +9,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def suitcase(colour: str = "navy", *, height: float = 0.66, handle: bool = True) -> Built:
-    """Build a ribbed hard-shell case on four wheels, with its broad side towards +y. ``handle`` pulls out the telescopic handle."""
+    """Build a ribbed hard-shell case on four wheels, with its broad side towards +y. ``handle`` extends the handle."""
     s = Solid(f"{colour} suitcase")
     _case(s, colour, height, handle)
     return s.built()
@@ -37,7 +37,7 @@ def _case(s: Solid, colour: str, height: float, handle: bool) -> None:
 
 
 def trailing_case(colour: str, hand: Point, *, height: float = 0.66) -> Built:
-    """Build a suitcase that is tipped on two wheels behind a walker who heads +y. Its handle ends in the ``hand``."""
+    """Build a suitcase tilted on two wheels behind a person who walks towards +y. Its handle ends at the position ``hand``."""
     s = Solid(f"{colour} suitcase")
     with s.at(hand[0], hand[1] - 0.62, 0.0, pitch=-38.0):
         _case(s, colour, height, True)

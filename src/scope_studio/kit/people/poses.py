@@ -9,10 +9,10 @@ from random import Random
 from mathutils import Matrix, Vector
 
 SIDES = (-1, 1)
-"""Left (x < 0), right (x > 0). All pairs below are in this order."""
+"""Left (x < 0) and right (x > 0). All pairs below are in this order."""
 
 STRIDE_M = 1.32
-"""Length of one gait cycle (two steps) of a person of average height."""
+"""Length in metres of one gait cycle (two steps) of a person of average height."""
 
 HIP, WAIST, NECK = 0.925, 1.06, 1.525
 THIGH, SHIN, ANKLE = 0.435, 0.410, 0.085
@@ -22,7 +22,7 @@ SHOULDER = (0.178, -0.008, 1.412)
 
 @dataclass(frozen=True)
 class Foot:
-    """Position of a foot: ground point under the ankle (m), toe-out and pitch in degrees (positive = toe up), lift (m)."""
+    """Position of a foot: point under the ankle (m), outward rotation and pitch (degrees, positive = toe up), and lift (m)."""
 
     x: float
     y: float
@@ -35,7 +35,8 @@ class Foot:
 class Arm:
     """The position of an arm.
 
-    Either swing angles (``forward``, ``out``, ``bend`` in degrees), or a ``hand`` to reach, in the upright body's frame.
+    It is given by angles in degrees (``forward``, ``out``, ``bend``), or by a point that the ``hand`` reaches, in the frame of the
+    upright body. ``curl`` closes the fingers: -1 points the index finger, 0 is flat, and 1 is a fist.
     """
 
     forward: float = 4.0
@@ -66,7 +67,7 @@ class Pose:
 
 @dataclass
 class Joints:
-    """A solved pose: frames (rest coordinates -> posed) and joint positions, in the pair order of ``SIDES``."""
+    """A solved pose: frames that transform rest to posed coordinates, and joint positions. Pairs are in the order of ``SIDES``."""
 
     pelvis: Matrix
     chest: Matrix
@@ -80,20 +81,21 @@ class Joints:
     wrists: list[Vector] = field(default_factory=list)
 
     def torso(self, rest: Vector) -> Vector:
-        """Return a point of the upright trunk, bent with the spine."""
+        """Return the posed position of a point of the upright trunk."""
         t = min(1.0, max(0.0, (rest.z - 0.96) / 0.24))
         t = t * t * (3 - 2 * t)
         return (self.pelvis @ rest).lerp(self.chest @ rest, t)
 
 
 def _turn(pivot: tuple[float, float, float], lean: float, tilt: float, yaw: float) -> Matrix:
+    """Return a rotation (degrees) about a pivot."""
     rotation = Matrix.Rotation(math.radians(yaw), 4, "Z") @ Matrix.Rotation(math.radians(tilt), 4, "Y")
     rotation @= Matrix.Rotation(-math.radians(lean), 4, "X")
     return Matrix.Translation(pivot) @ rotation @ Matrix.Translation(-Vector(pivot))
 
 
 def _bend(a: Vector, target: Vector, first: float, second: float, pole: Vector) -> tuple[Vector, Vector]:
-    """Return the middle joint and the reached end of a two-bone chain."""
+    """Return the middle joint and the end of a two-bone chain that reaches towards ``target``."""
     reach = target - a
     d = min(reach.length, (first + second) * 0.9995)
     axis = reach.normalized()
@@ -105,13 +107,14 @@ def _bend(a: Vector, target: Vector, first: float, second: float, pole: Vector) 
 
 
 def _foot_frame(foot: Foot, side: int) -> Matrix:
+    """Return the transform of a foot from rest to posed coordinates."""
     pivot = (0.0, 0.135, 0.0) if foot.pitch < 0 else (0.0, -0.07, 0.0)
     rotation = Matrix.Translation(pivot) @ Matrix.Rotation(math.radians(foot.pitch), 4, "X") @ Matrix.Translation(-Vector(pivot))
     return Matrix.Translation((foot.x, foot.y, foot.lift)) @ Matrix.Rotation(-side * math.radians(foot.out), 4, "Z") @ rotation
 
 
 def solve(pose: Pose) -> Joints:
-    """Return the joint positions of a pose. The pelvis is lowered as far as the feet require."""
+    """Return the joint positions of a pose. The pelvis is lowered as far as necessary for the feet to reach the ground."""
     feet = [_foot_frame(f, s) for f, s in zip(pose.feet, SIDES, strict=True)]
     ankles = [f @ Vector((0, 0, ANKLE)) for f in feet]
     turn = Matrix.Translation(pose.hip) @ _turn((0, 0, HIP), pose.hip_lean, pose.hip_roll, pose.hip_yaw)
@@ -141,6 +144,7 @@ def solve(pose: Pose) -> Joints:
 
 
 def _arm(arm: Arm, side: int, shoulder: Vector, chest: Matrix) -> tuple[Vector, Vector]:
+    """Return the positions of the elbow and the wrist."""
     if arm.hand is not None:
         pole = chest.to_3x3() @ Vector((side * arm.elbow[0], arm.elbow[1], arm.elbow[2]))
         return _bend(shoulder, chest @ Vector(arm.hand), UPPER_ARM, FOREARM, pole)
@@ -153,7 +157,7 @@ def _arm(arm: Arm, side: int, shoulder: Vector, chest: Matrix) -> tuple[Vector, 
 
 
 def _gait_foot(phase: float, x: float) -> Foot:
-    """Return one foot of the walk, relative to the body. Phase 0 is its heel strike; stance lasts 0.6 of the cycle."""
+    """Return the position of a foot during a walk. Phase 0 is its heel strike; it is on the ground for 0.6 of the cycle."""
     p = phase % 1.0
     start, stop = 0.33, 0.33 - 0.6 * STRIDE_M
     if p < 0.6:
@@ -171,7 +175,7 @@ def _gait_foot(phase: float, x: float) -> Foot:
 
 
 def walking(phase: float) -> Pose:
-    """Return the walk at a gait phase in [0, 1)."""
+    """Return the pose of a walking person at a gait phase in [0, 1)."""
     swing = math.cos(2 * math.pi * phase)
     right, left = _gait_foot(phase, 0.075), _gait_foot(phase + 0.5, -0.075)
     arms = tuple(Arm(5 + s * 22 * swing * -1, 8, 18 + 12 * max(0.0, -s * swing)) for s in SIDES)
@@ -189,7 +193,7 @@ def walking(phase: float) -> Pose:
 
 
 def standing(random: Random) -> Pose:
-    """Return a stance with the weight on one leg and the arms at rest in one of a few ways."""
+    """Return a standing pose with the weight on one leg and a random position of the arms."""
     lead = random.choice(SIDES)
     feet = [Foot(-0.105, 0.0, 10 + random.uniform(0, 8)), Foot(0.105, 0.0, 10 + random.uniform(0, 8))]
     free = 0 if lead > 0 else 1
@@ -214,7 +218,7 @@ def standing(random: Random) -> Pose:
 
 
 def named(name: str, phase: float, random: Random) -> Pose:
-    """Return the pose with this name. Unknown names raise an error."""
+    """Return the pose with this name. Raises ValueError if the name is unknown."""
     base = standing(random)
     relaxed = Arm(3, 9, 18)
     if name == "stand":

@@ -11,7 +11,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def pram(colour: str = "navy") -> Built:
-    """Build a pram heading +y with its handle behind: carrycot, folding hood, sprung frame, four spoked wheels, a blanket."""
+    """Build a pram facing +y, with carrycot, folding hood, frame, four spoked wheels, blanket, and its handle towards -y."""
     s = Solid(f"{colour} pram")
     fabric, chrome = cloth(colour, 0.7), steel()
     sections = [(-0.36, 0.10, 0.10), (-0.30, 0.19, 0.20), (0.0, 0.215, 0.24), (0.34, 0.205, 0.22), (0.42, 0.12, 0.12)]

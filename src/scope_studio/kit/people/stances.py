@@ -1,4 +1,4 @@
-"""Stances of townspeople who hold, sit on, push or ride something."""
+"""Poses of people who hold, push, ride or sit on something."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from scope_studio.kit.people.poses import Arm, Foot, Pose, solve, standing, walk
 from scope_studio.kit.vehicles import cycles
 
 UMBRELLA_GRIP: Point = (0.17, 0.24, 1.24)
-"""Position of the right hand of ``with_umbrella`` on the stick, metres."""
+"""Position in metres of the right hand of ``with_umbrella`` on the handle."""
 PRAM_HANDLE: Point = (0.17, 0.40, 1.04)
-"""Position of the right hand of ``pushing``; the left hand mirrors it."""
+"""Position in metres of the right hand of ``pushing``. The left hand is its mirror image."""
 LEAD_GRIP: Point = (0.27, 0.22, 0.98)
-"""Position of the right hand of ``leading``, which holds a dog's lead."""
+"""Position in metres of the right hand of ``leading``, which holds a dog's lead."""
 HAND_M = 0.085
-"""Distance from the wrist to the middle of a closed hand."""
+"""Distance in metres from the wrist to the middle of a closed hand."""
 
 
 def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = None, drop: float = -0.5) -> Pose:
@@ -36,26 +36,26 @@ def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = Non
 
 
 def with_umbrella(phase: float | None = None, *, seed: int = 0) -> Pose:
-    """Return a stance, or a walk at a gait phase, with the right hand at ``UMBRELLA_GRIP``."""
+    """Return a standing pose, or a walking one at a gait phase, with the right hand at ``UMBRELLA_GRIP``."""
     random = Random(f"umbrella {seed}")
     base = standing(random) if phase is None else walking(phase)
     return reaching(replace(base, twist=0.0), right=UMBRELLA_GRIP, drop=-0.9)
 
 
 def leading(phase: float | None = None, *, seed: int = 0) -> Pose:
-    """Return a stance, or a walk at a gait phase, with a lead in the right hand at ``LEAD_GRIP``."""
+    """Return a standing pose, or a walking one at a gait phase, with the right hand at ``LEAD_GRIP``."""
     base = standing(Random(f"lead {seed}")) if phase is None else walking(phase)
     return reaching(replace(base, twist=0.0), right=LEAD_GRIP, drop=-0.9)
 
 
 def pushing(phase: float) -> Pose:
-    """Return a walk with both hands on a handle at ``PRAM_HANDLE``."""
+    """Return a walking pose with both hands on a handle at ``PRAM_HANDLE``."""
     x, y, z = PRAM_HANDLE
     return reaching(replace(walking(phase), lean=9, twist=0.0), left=(-x, y, z), right=PRAM_HANDLE)
 
 
 def sitting(seat_m: float = 0.46, *, seed: int = 0, crossed: bool = False) -> Pose:
-    """Return a stance of someone who sits facing +y, hips over the origin, hands in the lap. ``crossed`` crosses the ankles."""
+    """Return a sitting pose facing +y, with hips over the origin and hands in the lap. ``crossed`` crosses the ankles."""
     random = Random(f"sit {seed}")
     spread = random.uniform(0.10, 0.15)
     near = random.uniform(0.36, 0.44)
@@ -76,7 +76,7 @@ def sitting(seat_m: float = 0.46, *, seed: int = 0, crossed: bool = False) -> Po
 
 
 def riding(crank_deg: float) -> Pose:
-    """Return a stance on the saddle of a ``cycles.bicycle`` at the origin, with hands on its grips and feet on its pedals."""
+    """Return the pose of a rider on a ``cycles.bicycle`` at the origin, with hands on its grips and feet on its pedals."""
     feet = []
     for side in (-1, 1):
         y, z = cycles.pedal(crank_deg, side)

@@ -16,7 +16,7 @@ RIBS = 8
 
 
 def umbrella(colour: str, *, second: str | None = None, radius_m: float = 0.54) -> Built:
-    """Build an open umbrella with the grip of its handle at the origin. ``second`` is the colour of every other panel."""
+    """Build an open umbrella with its handle at the origin. ``second`` is the colour of every other panel."""
     s = Solid(f"{colour} umbrella")
     top = 0.72
     s.rod((0, 0, 0.05), (0, 0, top + 0.05), 0.0055, steel())
@@ -39,7 +39,7 @@ def umbrella(colour: str, *, second: str | None = None, radius_m: float = 0.54) 
 
 
 def _canopy(turn: float, share: float, radius_m: float, top: float, sag: float) -> Point:
-    """Return a point of the canopy. Between ribs (``sag`` up to 1) the cloth hangs inwards and the edge curves back."""
+    """Return a point of the canopy. Between ribs (``sag`` up to 1) the cloth sags and its edge curves inwards."""
     r = radius_m * share * (1 - 0.07 * sag * share)
     drop = 0.24 * share**2.2 + 0.012 * sag * share * (1 - share) * 4
     a = 2 * math.pi * turn / RIBS

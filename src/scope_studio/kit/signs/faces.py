@@ -1,6 +1,6 @@
 """Sign faces: rounded reflective boards with borders, lettering, arrows, route patches and pictograms.
 
-A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions are given as the reader sees them:
+A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions are given as a viewer sees them:
 ``u`` to the right, ``v`` up (so x = -u).
 """
 
@@ -18,11 +18,11 @@ from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shapes import rounded
 from scope_studio.kit.core.solid import Solid
 
-PROUD_M = 0.0035
-"""Distance of lettering from its board, large enough to avoid z-fighting at any distance."""
+LIFT_M = 0.0035
+"""Distance in metres between lettering and its board, large enough to avoid z-fighting in distant views."""
 
 INK = {"blue": "white", "green": "white", "red": "white", "dark green": "white", "brown": "white", "black": "white"}
-"""Lettering colour by background; black for backgrounds not listed."""
+"""Lettering colour for each background colour. On other backgrounds, lettering is black."""
 
 ARROW_TURN = {
     "up": 0.0,
@@ -40,9 +40,9 @@ ARROW_TURN = {
 class Panel:
     r"""A direction or information sign, sizes in metres.
 
-    A tab inside a line sends the rest of it to the right edge ("Halden\t12"). ``arrows`` gives a direction (a key of
-    ``ARROW_TURN``) or None for each line, or a single one for the whole panel. ``route`` is a road number on a patch in the
-    first row.
+    In a line, the text after a tab is aligned to the right edge ("Halden\t12"). ``arrows`` gives a direction (a key of
+    ``ARROW_TURN``) or None for each line, or a single direction for the whole panel. ``route`` is a road number that is shown
+    on a patch in the first row.
     """
 
     lines: Sequence[str]
@@ -81,14 +81,12 @@ def board(
             s.box((width * 0.96, 0.03, 0.045), (0, -0.026, z), steel(), 0.003)
 
 
-def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, lift: float = PROUD_M) -> None:
-    """Add a flat shape on the face. ``outline`` is in reader coordinates."""
+def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, lift: float = LIFT_M) -> None:
+    """Add a flat shape on the face. ``outline`` is in (u, v) coordinates."""
     s.prism([(-u, v) for u, v in outline], (lift - 0.002, lift), material, "XZ")
 
 
-def stroke(
-    s: Solid, path: Sequence[tuple[float, float]], width: float, material: bpy.types.Material, lift: float = PROUD_M
-) -> None:
+def stroke(s: Solid, path: Sequence[tuple[float, float]], width: float, material: bpy.types.Material, lift: float = LIFT_M) -> None:
     """Add a thick line with round ends, made of flat shapes."""
     for (u1, v1), (u2, v2) in itertools.pairwise(path):
         length = math.hypot(u2 - u1, v2 - v1)
@@ -98,7 +96,7 @@ def stroke(
         disc(s, u, v, width / 2, material, lift)
 
 
-def disc(s: Solid, u: float, v: float, radius: float, material: bpy.types.Material, lift: float = PROUD_M, sides: int = 24) -> None:
+def disc(s: Solid, u: float, v: float, radius: float, material: bpy.types.Material, lift: float = LIFT_M, sides: int = 24) -> None:
     """Add a filled circle on the face."""
     angles = [2 * math.pi * k / sides for k in range(sides)]
     flat(s, [(u + radius * math.cos(a), v + radius * math.sin(a)) for a in angles], material, lift)
@@ -119,7 +117,7 @@ def arrow(s: Solid, u: float, v: float, size: float, direction: str, material: b
     ]
     a = math.radians(ARROW_TURN[direction])
     c, w = math.cos(a) * size, math.sin(a) * size
-    flat(s, [(u + x * c - y * w, v + x * w + y * c) for x, y in shape], material, PROUD_M + 0.0005)
+    flat(s, [(u + x * c - y * w, v + x * w + y * c) for x, y in shape], material, LIFT_M + 0.0005)
 
 
 def write(
@@ -132,7 +130,7 @@ def write(
     *,
     align: str = "CENTER",
     bold: bool = True,
-    lift: float = PROUD_M,
+    lift: float = LIFT_M,
 ) -> float:
     """Add one line of lettering and return its width in metres."""
     return s.text(
@@ -160,7 +158,7 @@ def panel_face(s: Solid, spec: Panel) -> None:
         room -= spec.height * 0.34
     beside = 2.05 if arrows and not whole else 0.0
     patch = extent(spec.route, 1.0) + 1.8 if spec.route else 0.0
-    needs = [_need(line) + beside + (patch if i == 0 else 0.0) for i, line in enumerate(spec.lines)]
+    needs = [_relative_width(line) + beside + (patch if i == 0 else 0.0) for i, line in enumerate(spec.lines)]
     cap = min([cap, *(room / need for need in needs if need > 0)])
     arrow_size = cap * 1.5
     for i, line in enumerate(spec.lines):
@@ -181,13 +179,14 @@ def panel_face(s: Solid, spec: Panel) -> None:
         arrow(s, spec.width / 2 - margin - size * 0.45, 0.0, size, whole, sheet(ink))
 
 
-def _need(line: str) -> float:
-    """Return the width of a line in cap heights: both its parts and the gap between them."""
+def _relative_width(line: str) -> float:
+    """Return the width of a line, including the gap at a tab, as a multiple of the cap height."""
     head, _, tail = line.partition("\t")
     return extent(head, 1.0) + (extent(tail, 1.0) + 1.2 if tail else 0.0)
 
 
 def _line(s: Solid, line: str, cap: float, left: float, right: float, v: float, ink: str, align: str) -> None:
+    """Add one line of text. The part after a tab is aligned to ``right``."""
     head, _, tail = line.partition("\t")
     if head:
         write(s, head, cap, {"LEFT": left, "CENTER": (left + right) / 2, "RIGHT": right}[align], v, ink, align=align)

@@ -1,4 +1,4 @@
-"""A motorway gantry: a box truss on two braced legs with walkway, rails, lamps, hung panels and lane signals."""
+"""A motorway gantry: a box truss on two braced legs, with a walkway, rails, lamps, suspended panels and lane signals."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import Panel, panel_face
 
 TRUSS_M = (1.1, 1.3)
-"""Depth along the road and height of the truss."""
+"""Depth (along the road) and height of the truss in metres."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ def gantry(
 ) -> Built:
     """Build a gantry along x with legs at x = +-span/2.
 
-    ``panels`` and ``signals`` hang at the given x, with their lower edges ``clearance_m`` above the road. ``readable`` "-Y"
-    turns them to drivers who travel towards +y, "+Y" to drivers in the other direction.
+    ``panels`` and ``signals`` hang at the given x, with their lower edges ``clearance_m`` above the road. ``readable`` is
+    the direction that they face: "-Y" for drivers who travel towards +y, "+Y" for drivers in the other direction.
     """
     s = Solid("gantry")
     depth, tall = TRUSS_M

@@ -15,7 +15,7 @@ from scope_studio.kit.signs.stands import posts_at
 
 
 def _dots(body: str, cap: float, rows: int) -> list[tuple[float, float]]:
-    """Return the centres of the lit dots of a line of matrix letters, centred across, with the baseline on 0."""
+    """Return the centres of the lit dots of a line of matrix letters, centred horizontally, with the baseline at 0."""
     points, faces = letters(body, cap, bold=True, spacing=1.18)
     p = np.array(points)[:, :2]
     pitch = cap / rows
@@ -38,7 +38,7 @@ def _dots(body: str, cap: float, rows: int) -> list[tuple[float, float]]:
 def variable_message(
     lines: Sequence[str], *, width: float = 3.4, height: float = 1.7, post_height: float = 2.6, colour: str = "amber"
 ) -> Built:
-    """Build a black matrix sign on posts, with lit letters of dots and a pair of corner lanterns."""
+    """Build a black matrix sign on posts, with letters made of lit dots, and a pair of lanterns at its corners."""
     s = Solid("variable message sign")
     cap = min(
         0.34,

@@ -68,8 +68,8 @@ def _rounded_triangle(side: float, corner: float) -> list[tuple[float, float]]:
     return points
 
 
-def _digger(s: Solid, k: float) -> None:
-    """Add the "man at work" pictogram, about 2k wide and high, around the origin."""
+def _man_digging(s: Solid, k: float) -> None:
+    """Add the "road works" pictogram, a man digging, about 2k wide and high and centred on the origin."""
     ink = sheet("black", dirt=0.05)
     disc(s, -0.10 * k, 0.62 * k, 0.15 * k, ink)
     stroke(s, [(-0.20 * k, 0.36 * k), (-0.40 * k, -0.10 * k)], 0.26 * k, ink)
@@ -99,7 +99,7 @@ def triangle(
     stand: str = "frame",
     post_height: float = 1.9,
 ) -> Built:
-    """Build a warning triangle with a "works" or "exclamation" symbol and an optional ``plate`` of words below.
+    """Build a warning triangle with a "works" or "exclamation" symbol and, if ``plate`` is given, a text plate below.
 
     ``stand`` is "frame" (temporary, on the ground) or "post".
     """
@@ -114,7 +114,7 @@ def triangle(
         s.prism([(u * 0.70, v * 0.70) for u, v in outline], (-0.003, 0.0), sheet("white"), "XZ")
         with s.at(0, 0, -0.02 * side):
             if symbol == "works":
-                _digger(s, side * 0.19)
+                _man_digging(s, side * 0.19)
             else:
                 ink = sheet("black", dirt=0.05)
                 flat(
@@ -143,7 +143,7 @@ def triangle(
 def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | None = "400 m", *, stand: str = "frame") -> Built:
     """Build a lane diagram on white: an arrow for each open lane, a red T for each closed one.
 
-    ``closed`` counts lanes from the reader's left, starting at 0.
+    ``closed`` lists the indices of the closed lanes, counted from the left as seen by a driver.
     """
     s = Solid("lane closed sign")
     width, height = 0.32 * lanes + 0.30, 1.05
@@ -170,7 +170,7 @@ def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | No
 
 
 def works_access(lines: Sequence[str] = ("WORKS", "ACCESS"), *, direction: str | None = "left", stand: str = "frame") -> Built:
-    """Build the sign where site traffic leaves the road, white on red."""
+    """Build the white-on-red sign at the exit for site traffic."""
     s = Solid("works access sign")
     low, height = (0.35 if stand == "frame" else 1.7), 0.22 + 0.24 * len(lines)
     width = max(extent(line, 0.15) for line in lines) + (0.62 if direction else 0.25)
@@ -191,8 +191,8 @@ def project_board(
 ) -> Built:
     """Build a large information board.
 
-    The first line is the title on a coloured band, the second is large, the last two are small print, and the rest is body
-    text.
+    The first line is the title on a coloured band, the second is in large letters, the last two are in small print, and the
+    others are body text.
     """
     s = Solid("project board")
     with s.at(0, 0, post_height + height / 2):
@@ -276,9 +276,9 @@ def marker_post(number: str, *, kind: str = "kilometre") -> Built:
 def warning_plate(
     text: str, *, background: str = "yellow", cap_height: float = 0.06, posts: bool = True, post_height: float = 1.1
 ) -> Built:
-    """Build a small plate with one line of text for each newline, its lower edge at ``post_height``.
+    """Build a small plate with one or more lines of text, separated by newlines. Its lower edge is at ``post_height``.
 
-    It stands on a short post, or is bare, to be fixed to something.
+    It stands on a short post, or has none when ``posts`` is false, so that it can be fixed to another object.
     """
     s = Solid("warning plate")
     lines = text.split("\n")

@@ -1,4 +1,4 @@
-"""Stands of signs: galvanised posts, and temporary frames with sandbags."""
+"""Supports for signs: galvanised posts, and temporary frames with sandbags."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def posts_at(s: Solid, spread: float, top: float, radius: float, y: float = -0.1
 
 
 def frame_stand(s: Solid, width: float, low: float) -> None:
-    """Add a temporary steel stand with sandbags, for signs on the road."""
+    """Add a temporary steel stand, weighted with sandbags, for signs on the road."""
     for x in (-width * 0.28, width * 0.28):
         s.rod((x, -0.035, low + 0.5), (x, -0.035, 0.02), 0.016, steel(dark=True))
         s.rod((x, -0.03, low + 0.5), (x, -0.46, 0.02), 0.016, steel(dark=True))

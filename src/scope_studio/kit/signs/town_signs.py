@@ -1,4 +1,4 @@
-"""Signs of a town square: finger posts, town plan, no-entry sign, small signs on posts."""
+"""Signs of a town square: finger posts, a town map, a no-entry sign, and small signs on posts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_studio.kit.signs.faces import arrow, board, disc, flat, write
 def finger_post(fingers: Sequence[tuple[str, float]], *, colour: str = "dark green", height: float = 3.1) -> Built:
     """Build a sign post with lettered fingers, topmost first.
 
-    Each finger is (text, bearing in degrees that it points to).
+    ``fingers`` gives the text of each finger and the bearing in degrees in which it points.
     """
     s = Solid("finger post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
@@ -46,7 +46,7 @@ def finger_post(fingers: Sequence[tuple[str, float]], *, colour: str = "dark gre
 
 
 def map_board(title: str = "TOWN MAP") -> Built:
-    """Build a town plan on two posts, 1.3 x 1.5 m, facing +y, with streets, blocks, a park, a river and a "you are here" mark."""
+    """Build a town map on two posts, 1.3 x 1.5 m, facing +y, with streets, blocks, a park, a river and a "you are here" mark."""
     s = Solid("map board")
     rng = random.Random(title)
     for x in (-0.66, 0.66):

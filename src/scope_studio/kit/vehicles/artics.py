@@ -1,7 +1,7 @@
 """Articulated lorries: tractor units and trailers (curtain-sided, box, skeletal with a container).
 
-The tractor's fifth wheel is at ``COUPLING_Y`` in its own frame. A trailer's origin is the middle of its length, with its nose
-at +y.
+The tractor's fifth wheel is at ``COUPLING_Y`` in its own frame. A trailer's origin is the middle of its length, and its front
+faces +y.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from scope_studio.kit.yard.containers import LENGTH_M, container
 TRAILER_M = 13.6
 _FRONT, _REAR = 3.10, -2.75
 COUPLING_Y = -1.25
-"""Position of a trailer's kingpin in the tractor's frame."""
+"""Position along y of a trailer's kingpin in the frame of the tractor, in metres."""
 KINGPIN_M = 1.25
-"""Distance from the trailer's nose back to its kingpin."""
+"""Distance in metres from the front of a trailer back to its kingpin."""
 
 
 def _tractor_parts() -> Parts:
@@ -61,7 +61,7 @@ def _tractor_parts() -> Parts:
 def tractor(colour: str, *, plate: str, name: str | None = None, lit: bool = False) -> Built:
     """Build a two-axle tractor unit with a high sleeper cab, 5.9 m long.
 
-    ``name`` is lettered over the windscreen. ``lit`` turns on headlamps and marker lamps.
+    ``name`` is the lettering above the windscreen. ``lit`` turns on the headlamps and marker lamps.
     """
     own, letters = bw.plates(plate, (_FRONT + 0.14, 0.60), (_REAR - 0.03, 0.98))
     if name:
@@ -76,7 +76,7 @@ def tractor(colour: str, *, plate: str, name: str | None = None, lit: bool = Fal
 
 
 def _bogie(parts: Parts, *, bed_m: float) -> None:
-    """Add frame, three axles, landing legs, guards, underrun bar and lamps below a bed.
+    """Add the parts below the bed of a trailer: frame, three axles, landing legs, guards, underrun bar and lamps.
 
     ``bed_m`` is the height of the bed's underside.
     """
@@ -181,7 +181,7 @@ def _curtain() -> bpy.types.Material:
 
 
 def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, front: str = "white") -> Built:
-    """Build a 13.6 m semi-trailer: "curtain" (with coloured curtains) or "box" (refrigerated).
+    """Build a 13.6 m semi-trailer with coloured curtains ("curtain"), or a refrigerated one ("box").
 
     ``front`` is the colour of a curtain trailer's headboard and doors.
     """
@@ -222,12 +222,12 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
         bevel_m=0.003,
     )
     letters.append(plate_letters[1])
-    made = bw.finish("skeletal trailer", mesh, [], letters, own)
+    built = bw.finish("skeletal trailer", mesh, [], letters, own)
     load = container(colour, code, feet=feet, livery=livery)
     lift = Matrix.Translation((0, -TRAILER_M / 2 + LENGTH_M[feet] / 2 + 0.25, 1.24)) @ Matrix.Rotation(math.pi, 4, "Z")
     for obj in load.objects:
         obj.data.transform(lift)
-        obj.parent = made.root
+        obj.parent = built.root
     turned = []
     for mark in load.texts:
         turned.append(
@@ -242,7 +242,7 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
             )
         )
     bpy.data.objects.remove(load.root)
-    return Built(made.root, [*made.objects, *load.objects], [*made.texts, *turned])
+    return Built(built.root, [*built.objects, *load.objects], [*built.texts, *turned])
 
 
 def _skeletal_parts() -> Parts:

@@ -1,4 +1,4 @@
-"""Car bodies: lofted shells with glazing, number plates, lettering, and the assembly of a painted vehicle."""
+"""Car bodies: lofted shells with windows, number plates, lettering, and the assembly of a painted vehicle."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Station:
     """A cross-section of a body at ``y``.
 
     Its right-hand ``(x, z)`` points run from the middle of the floor to the middle of the roof. ``dy`` moves single points
-    along y, which rakes and bows the section.
+    along y, which slants and curves the section.
     """
 
     y: float
@@ -33,7 +33,7 @@ class Station:
 
 @dataclass(frozen=True)
 class Pane:
-    """A window: the cage between two stations and two rows, on both sides, or joined ``across`` the middle."""
+    """A window between two stations and two rows of section points, on both sides, or in one piece ``across`` the middle."""
 
     stations: tuple[int, int]
     rows: tuple[int, int]
@@ -54,8 +54,8 @@ def shell(
     """Return a closed body, lofted through ``stations`` from front to rear and subdivided, with windows framed in black trim.
 
     Args:
-        creases: (row, strength, first station, last station).
-        bulge: How far the front and rear ends bow outwards.
+        creases: Edges to sharpen: (row, strength, first station, last station).
+        bulge: Distances in metres by which the front and rear ends bulge outwards.
         cutters: Solids to subtract (wheel arches). The cut faces keep the material of the cutter.
     """
     bm = bmesh.new()
@@ -93,12 +93,14 @@ def shell(
 
 
 def _ring_point(station: Station, j: int, rows: int) -> Point:
+    """Return point ``j`` of a station's closed ring: the right side upwards, then the left side downwards."""
     row = j if j < rows else 2 * rows - 2 - j
     x, z = station.section[row]
     return (x if j < rows else -x, station.y + station.dy.get(row, 0.0), z)
 
 
 def _cap(bm: bmesh.types.BMesh, end: list[bmesh.types.BMVert], rows: int, push: float) -> None:
+    """Close an end of the body with quads that bulge by ``push`` metres."""
     ring = 2 * rows - 2
     spine = [end[0]]
     for row in range(2, rows - 2):
@@ -119,6 +121,7 @@ def _glaze(
     crease: bmesh.types.BMLayerItem,
     corner: bmesh.types.BMLayerItem,
 ) -> None:
+    """Turn a region of faces into a window with a sharp frame of black trim."""
     bmesh.ops.inset_region(bm, faces=region, thickness=pane.frame_m, use_even_offset=True, use_boundary=True)
     _crease_border(region, 0.9, crease, corner)
     rim = bmesh.ops.inset_region(bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True)
@@ -132,6 +135,7 @@ def _glaze(
 def _crease_border(
     region: list[bmesh.types.BMFace], strength: float, crease: bmesh.types.BMLayerItem, corner: bmesh.types.BMLayerItem
 ) -> None:
+    """Sharpen the edges around a region and the corners of its outline."""
     inside = set(region)
     for face in region:
         for edge in face.edges:
@@ -143,6 +147,7 @@ def _crease_border(
 
 
 def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.types.Mesh:
+    """Return the mesh after subdivision and subtraction of the cutters."""
     collection = bpy.context.scene.collection
     obj = bpy.data.objects.new("shell", data)
     collection.objects.link(obj)
@@ -155,20 +160,20 @@ def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.
         cut = obj.modifiers.new("cut", "BOOLEAN")
         cut.object, cut.operation, cut.solver, cut.material_mode = tool, "DIFFERENCE", "EXACT", "TRANSFER"
     graph = bpy.context.evaluated_depsgraph_get()
-    made = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
+    mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
     for used in (obj, tool):
         if used is not None:
-            spent = used.data
+            used_mesh = used.data
             bpy.data.objects.remove(used, do_unlink=True)
-            bpy.data.meshes.remove(spent)
-    return made
+            bpy.data.meshes.remove(used_mesh)
+    return mesh
 
 
 class Surface:
-    """Ray casts against a finished mesh. They find where fittings and lettering touch the body."""
+    """A finished mesh to cast rays against, which finds where fittings and lettering touch the body."""
 
-    def __init__(self, made: bpy.types.Mesh) -> None:
-        self.tree = BVHTree.FromPolygons([v.co for v in made.vertices], [p.vertices for p in made.polygons])
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
+        self.tree = BVHTree.FromPolygons([v.co for v in mesh.vertices], [p.vertices for p in mesh.polygons])
 
     def side(self, y: float, z: float) -> float:
         """Return the body's half width at ``(y, z)`` on the right."""
@@ -176,7 +181,7 @@ class Surface:
         return hit.x if hit is not None else 0.0
 
     def end(self, x: float, z: float, front: bool) -> float:
-        """Return the y of the body's front or rear at ``(x, z)``."""
+        """Return the y coordinate of the body's front or rear at ``(x, z)``."""
         sign = 1.0 if front else -1.0
         hit = self.tree.ray_cast(Vector((x, 20.0 * sign, z)), Vector((0, -sign, 0)))[0]
         return hit.y if hit is not None else 0.0
@@ -189,7 +194,7 @@ class Surface:
 
 @dataclass
 class Lettering:
-    """A line of letters in its place on a vehicle, and its text mark."""
+    """A line of letters in its position on a vehicle, and its text mark."""
 
     points: list[Point]
     faces: list[tuple[int, ...]]
@@ -217,11 +222,11 @@ def words(
 ) -> Lettering:
     """Return a line of lettering around ``centre``, narrowed to fit ``width_m``.
 
-    ``onto`` lays it on a curved side instead of a plane.
+    ``onto`` projects it on a curved side instead of a plane.
     """
     flat, faces = lettering.letters(body, cap_m)
     if onto is not None:
-        flat, faces = _fine(flat, faces)
+        flat, faces = _subdivided(flat, faces)
     xs, ys = [p[0] for p in flat], [p[1] for p in flat]
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     squeeze = min(1.0, width_m / width)
@@ -239,7 +244,7 @@ def words(
     return Lettering(points, faces, colour, TextMark(body, centre, right, up, width * squeeze, height, cap_m))
 
 
-def _fine(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
+def _subdivided(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
     """Split long triangles, so that letters can follow a curve."""
     bm = bmesh.new()
     verts = [bm.verts.new(p) for p in points]
@@ -253,9 +258,9 @@ def _fine(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point
             break
         bmesh.ops.subdivide_edges(bm, edges=long, cuts=1)
     bm.verts.index_update()
-    made = [tuple(v.co) for v in bm.verts], [tuple(v.index for v in f.verts) for f in bm.faces]
+    result = [tuple(v.co) for v in bm.verts], [tuple(v.index for v in f.verts) for f in bm.faces]
     bm.free()
-    return made
+    return result
 
 
 def both_sides(
@@ -271,7 +276,7 @@ def both_sides(
 ) -> list[Lettering]:
     """Return the same lettering for the right and the left side.
 
-    It stands in front of the panel at ``x``, or is laid ``onto`` the surface.
+    It is on the planes at ``x`` and -``x``, or is projected ``onto`` a surface.
     """
     return [
         words(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
@@ -282,7 +287,7 @@ def both_sides(
 def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
     """Return UK number plates, white in front and yellow at the rear.
 
-    ``front`` and ``rear`` are the (y, z) of the plate's face.
+    ``front`` and ``rear`` are the positions (y, z) of the faces of the plates.
     """
     parts, letters = Parts(), []
     for (y, z), colour, rgb, sign in (
@@ -297,7 +302,7 @@ def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) ->
 
 
 def body_mesh(model: str, make: Callable[[], Parts]) -> bpy.types.Mesh:
-    """Return the mesh of a model. It is made on first use and shared by all vehicles of the model in the file."""
+    """Return the mesh of a model, which ``make`` creates on first use and which all vehicles of the model share."""
     return bpy.data.meshes.get(f"kit {model}") or make().build(f"kit {model}")
 
 
@@ -308,7 +313,7 @@ def finish(
     letters: Sequence[Lettering] = (),
     fittings: Parts | None = None,
 ) -> Built:
-    """Assemble a vehicle: the shared mesh in its own paint, and a second object with its lettering and fittings."""
+    """Assemble a vehicle from the shared mesh in its own paint, and a second object with its lettering and fittings."""
     obj = bpy.data.objects.new(name, body)
     bpy.context.scene.collection.objects.link(obj)
     for number, material in enumerate(paints):
@@ -329,10 +334,10 @@ def finish(
 
 
 def arches(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
-    """Return cutters for the wheel arches of axles at the given y. They reach from ``inner_x`` outwards on both sides."""
-    tools = Parts()
+    """Return cutters for the wheel arches of axles at the given y. They extend outwards from ``inner_x`` on both sides."""
+    cutters = Parts()
     for y in axles:
         for sign in (-1, 1):
             low, high = sorted((sign * inner_x, sign * 1.6))
-            tools.disc(radius, low, high, (0, y, radius * 0.86), wheels.shade(), axis="X", steps=40)
-    return tools
+            cutters.disc(radius, low, high, (0, y, radius * 0.86), wheels.shade(), axis="X", steps=40)
+    return cutters

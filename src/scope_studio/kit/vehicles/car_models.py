@@ -1,4 +1,4 @@
-"""Shapes of the car models: sections, windows, printed details.
+"""Shapes of the car models: cross-sections, windows, and details drawn on the paint.
 
 Lengths are in metres. y points forward, and the wheelbase is centred on 0.
 """
@@ -16,7 +16,7 @@ from scope_studio.kit.vehicles.paintwork import AMBER, GAP, REAR_LAMP, TRIM, Pat
 
 @dataclass(frozen=True)
 class Cabin:
-    """The visible interior: seats between ``front_y`` (dashboard) and ``rear_y``, below the ``belt_z`` line."""
+    """The interior that is visible through the windows, between ``front_y`` (dashboard) and ``rear_y`` and below ``belt_z``."""
 
     front_y: float
     rear_y: float
@@ -53,6 +53,7 @@ class CarModel:
 
 
 def _lower(width: float, floor: float = 0.19) -> list[tuple[float, float]]:
+    """Return the section points below the waist of a car."""
     return [(0.0, floor), (width - 0.14, floor), (width - 0.01, floor + 0.13), (width, 0.60)]
 
 
@@ -203,6 +204,7 @@ SUV = CarModel(
 
 
 def _van_side(width: float, belt: float, base: float) -> list[tuple[float, float]]:
+    """Return the section points of a van's side."""
     return [(0.0, 0.24), (width - 0.12, 0.24), (width - 0.01, 0.36), (width, 0.75), (width, belt), (width - 0.02, base)]
 
 

@@ -15,14 +15,15 @@ from scope_studio.kit.vehicles.car_models import HATCHBACK, PICKUP, SALOON, SUV,
 
 
 def _body(model: CarModel) -> Parts:
+    """Return the parts of a model that all its cars share: shell, wheels, interior and fittings."""
     radius = model.wheel_radius
     cutters = bw.arches(model.axles, radius + 0.055, model.track_x - model.tyre_width / 2 - 0.10)
     for size, centre in model.extra_cutters:
         cutters.box(size, centre, shading.plain("pickup bed liner", (0.055, 0.056, 0.058), 0.75), bevel_m=0.0)
-    made = bw.shell(model.stations, model.panes, creases=model.creases, bulge=model.bulge, cutters=cutters)
+    shell = bw.shell(model.stations, model.panes, creases=model.creases, bulge=model.bulge, cutters=cutters)
     parts = Parts()
-    parts.mesh(made)
-    surface = bw.Surface(made)
+    parts.mesh(shell)
+    surface = bw.Surface(shell)
     for y in model.axles:
         for sign in (-1, 1):
             centre = (sign * model.track_x, y, radius)
@@ -109,6 +110,7 @@ def _arch_lip(parts: Parts, surface: bw.Surface, y: float, radius: float, sign: 
 
 
 def _mirror(parts: Parts, surface: bw.Surface, y: float, z: float, sign: int) -> None:
+    """Add a door mirror."""
     x = surface.side(y - 0.05, z - 0.03)
     parts.tube([(sign * (x - 0.03), y, z - 0.03), (sign * (x + 0.09), y + 0.01, z)], 0.022, pw.black_trim(), sides=6)
     outline = [
@@ -139,6 +141,7 @@ def _car(
     letters: list[bw.Lettering] | None = None,
     fittings: Parts | None = None,
 ) -> Built:
+    """Build a car of a model in a paint colour, with number plates."""
     mesh = bw.body_mesh(model.name, lambda: _body(model))
     surface = bw.Surface(mesh)
     front = max(surface.end(x, model.plate_z[0], True) for x in (0.0, 0.24)) + 0.008
@@ -176,7 +179,7 @@ def suv(colour: str, *, plate: str) -> Built:
 
 
 def van(colour: str, *, plate: str, lettering: str | None, roof_beacon: bool = False) -> Built:
-    """Build a high-roof panel van, 5.5 m long, with lettering (lines separated by newlines) on both sides."""
+    """Build a high-roof panel van, 5.5 m long, with ``lettering`` (lines separated by newlines) on both sides."""
     surface = bw.Surface(bw.body_mesh(VAN.name, lambda: _body(VAN)))
     letters: list[bw.Lettering] = []
     if lettering:
@@ -188,6 +191,7 @@ def van(colour: str, *, plate: str, lettering: str | None, roof_beacon: bool = F
 
 
 def _light_bar(y: float, z: float, width: float) -> Parts:
+    """Return an orange light bar for a roof."""
     parts = Parts()
     parts.box((width, 0.22, 0.035), (0, y, z + 0.02), pw.black_trim())
     for sign in (-1, 1):

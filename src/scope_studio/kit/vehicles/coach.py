@@ -1,4 +1,4 @@
-"""A single-deck coach with seats behind its windows and a lit destination screen."""
+"""A single-deck coach with seats behind its windows and a lit destination display."""
 
 from __future__ import annotations
 

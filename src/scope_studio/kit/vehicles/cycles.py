@@ -1,4 +1,4 @@
-"""Bicycles, and the hoops that they are locked to."""
+"""Bicycles, and stands to lock them to."""
 
 from __future__ import annotations
 
@@ -20,15 +20,12 @@ CRANK: Point = (0.0, -0.08, 0.29)
 CRANK_M = 0.165
 SADDLE: Point = (0.0, -0.27, 0.96)
 GRIP: Point = (0.27, 0.24, 1.05)
-"""Position of the right hand; the left hand mirrors it."""
+"""Position of the right hand in metres. The left hand is its mirror image."""
 
 
 @dataclass(frozen=True)
 class _Kind:
-    """Properties of a kind of bicycle.
-
-    They are the tyre radius, and the path of the right half of the handlebar, from the stem outwards.
-    """
+    """Parameters of a kind of bicycle. ``bar`` is the path of the right half of the handlebar, from the stem outwards."""
 
     tyre_m: float
     bar: tuple[Point, ...]
@@ -61,8 +58,8 @@ def bicycle(
 
     Args:
         basket: Add a wicker basket in front.
-        front_wheel: Without it, the bicycle stands on its fork ends.
-        crank_deg: Angle of the right pedal forward of the top.
+        front_wheel: Add the front wheel. Without it, the bicycle stands on its fork.
+        crank_deg: Angle of the right crank, measured forwards from the top.
     """
     s = Solid(f"{colour} bicycle")
     model, painted = KINDS[kind], paint(colour, dirt=0.12, roughness=0.25)
@@ -78,6 +75,7 @@ def bicycle(
 
 
 def _ring(hub: Point, radius: float, start: float = 0.0, stop: float = 360.0, steps: int = 36) -> list[Point]:
+    """Return points of a circular arc around a hub, in the plane of the wheel."""
     count = steps if stop - start >= 360 else steps + 1
     angles = [math.radians(start + (stop - start) * k / steps) for k in range(count)]
     return [(0.0, hub[1] + radius * math.cos(a), hub[2] + radius * math.sin(a)) for a in angles]
@@ -139,6 +137,7 @@ def _bars(s: Solid, model: _Kind) -> None:
 
 
 def _drive(s: Solid, crank_deg: float) -> None:
+    """Add chain ring, chain, cranks and pedals."""
     black, chrome = paint("black", dirt=0.1), steel()
     s.lathe([(0.02, -0.004), (0.085, -0.002), (0.085, 0.002)], chrome, (0.055, CRANK[1], CRANK[2]), "X", 28)
     for z, end in ((0.372, 0.385), (0.208, 0.305)):
@@ -150,7 +149,7 @@ def _drive(s: Solid, crank_deg: float) -> None:
 
 
 def pedal(crank_deg: float, side: int) -> tuple[float, float]:
-    """Return the (y, z) of the right (+1) or left (-1) pedal in metres."""
+    """Return the position (y, z) in metres of the right (``side`` +1) or left (-1) pedal."""
     a = math.radians(crank_deg) + (0.0 if side > 0 else math.pi)
     return CRANK[1] + CRANK_M * math.sin(a), CRANK[2] + CRANK_M * math.cos(a)
 
@@ -175,7 +174,7 @@ def _basket(s: Solid) -> None:
 
 
 def bike_stand() -> Built:
-    """Build a steel hoop, 0.75 m high and long, set across the kerb. A bicycle leans on either side, along y."""
+    """Build a bicycle stand: a steel hoop along y, 0.75 m high and long. A bicycle can lean on each side."""
     s = Solid("bike stand")
     bend = [(0.0, 0.375 - 0.09 + 0.09 * math.sin(a), 0.66 + 0.09 * math.cos(a)) for a in (k * math.pi / 12 for k in range(7))]
     path = [(0.0, 0.375, 0.0), *bend[::-1], *[(0.0, -y, z) for _, y, z in bend], (0.0, -0.375, 0.0)]

@@ -1,4 +1,4 @@
-"""A double-deck town bus: two rows of windows with seats behind them, a lit destination screen, side advertisements."""
+"""A double-deck town bus with seats behind its two rows of windows, a lit destination display, and side advertisements."""
 
 from __future__ import annotations
 
@@ -95,8 +95,8 @@ def _side(parts: Parts, *, kerb: bool) -> None:
 def double_decker(colour: str, *, plate: str, route: str, destination: str, operator: str, poster: str) -> Built:
     """Build a double-deck bus, 10.4 m long and 4.3 m high, with its door on the left.
 
-    A lit display at the front shows the route and destination. ``operator`` is lettered above the lower windows.
-    ``poster`` is an advertisement between the decks.
+    A lit display at the front shows the route and destination. ``operator`` is the lettering above the lower windows, and
+    ``poster`` is the text of an advertisement between the decks.
     """
     own, letters = bw.plates(plate, (FRONT_M + 0.01, 0.50), (REAR_M - 0.012, 0.60))
     letters.append(bw.words(f"{route} {destination}", 0.17, (0, FRONT_M - 0.106, 2.72), "+Y", "display", width_m=1.75))

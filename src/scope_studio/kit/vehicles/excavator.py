@@ -1,4 +1,4 @@
-"""A tracked excavator with a posable arm."""
+"""A tracked excavator with a movable arm."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _turn(origin: Point, degrees: float) -> Matrix:
 def _cylinder(parts: Parts, start: Vector, end: Vector, radius: float, stroke: float) -> None:
     """Add a hydraulic cylinder: a dark barrel from ``start`` and a chromed rod to ``end``.
 
-    ``stroke`` is the barrel's share of the length.
+    ``stroke`` is the length of the barrel as a fraction of the whole.
     """
     joint = start + (end - start) * stroke
     parts.tube([tuple(start), tuple(joint)], radius, pw.paint_slot(), sides=12)
@@ -159,10 +159,10 @@ def excavator(
     """Build a 20-tonne tracked excavator with its tracks along y, 3.9 m long.
 
     Args:
-        boom_deg: Elevation of the boom's foot.
+        boom_deg: Elevation of the lower part of the boom.
         stick_deg, bucket_deg: Elevations of stick and bucket. Negative values point down; values below -90 point back towards
             the cab.
-        slew_deg: Rotation of the upper works, clockwise as seen from above.
+        slew_deg: Rotation of the upper structure, clockwise as seen from above.
     """
     parts = Parts()
     parts.slot(pw.paint_slot())
@@ -224,7 +224,7 @@ _BOOM, _STICK = 5.5, 2.8
 
 
 def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_deg: float) -> None:
-    """Add boom, stick and bucket with their cylinders, in the plane x = 0.1 of the upper works."""
+    """Add boom, stick and bucket with their cylinders, in the plane x = 0.1 of the upper structure."""
     paint, iron = pw.paint_slot(), fittings.iron()
     x, foot = 0.12, Vector((0.12, 0.85, 1.75))
     for side in (-0.34, 0.34):
@@ -238,7 +238,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
     chord = _turn((0, 0, 0), boom_deg - 21.0)
     boom = upper @ Matrix.Translation(foot) @ chord
     parts.matrix = boom
-    # The boom is cranked: its foot rises more steeply than the chord, its nose less steeply.
+    # The boom is bent: its lower part rises more steeply than the chord, and its upper part less steeply.
     bend: Flat = (_BOOM * 0.42, 1.10)
     low: list[Flat] = [
         (-0.16, -0.18),
@@ -328,7 +328,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
 def _bucket(parts: Parts) -> None:
     """Add a digging bucket that hangs from the origin.
 
-    Its mouth opens towards -z, which is towards the cab when the bucket points down.
+    It opens towards -z, which is towards the cab when the bucket points down.
     """
     wear, half = fittings.worn_steel(), 0.62
     spine: list[Flat] = [(0.05, 0.34), (0.35, 0.46), (0.75, 0.42), (1.08, 0.20), (1.22, -0.10), (1.22, -0.48)]

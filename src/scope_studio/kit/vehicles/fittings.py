@@ -10,16 +10,16 @@ from scope_studio.kit.core.parts import Flat, Parts
 from scope_studio.kit.vehicles import paintwork as pw
 
 DARK_PAINTS = {"black", "blue", "dark blue", "red", "dark red", "green", "dark green", "grey", "purple", "brown"}
-"""Paints that take white lettering."""
+"""Paints on which lettering is white."""
 
 
 def contrast(colour: str) -> str:
-    """Return the lettering colour that reads best on a paint."""
+    """Return the lettering colour that is easiest to read on a paint."""
     return "white" if colour in DARK_PAINTS else "dark blue"
 
 
 def mirrored(parts: Parts, sign: int) -> None:
-    """Work on the right-hand side (+1) or on its mirror image (-1)."""
+    """Set the frame of ``parts``, so that parts are added as modelled (``sign`` +1) or mirrored to the left side (-1)."""
     parts.matrix = Matrix.Scale(sign, 4, (1, 0, 0))
 
 
@@ -31,7 +31,7 @@ def aluminium() -> bpy.types.Material:
 def seats_behind_glass(parts: Parts, places: list[Flat], sill: float, face: float, axis: str) -> None:
     """Add flat seat backs with head rests directly behind glass.
 
-    ``places`` are (across, height) on the plane ``axis`` = ``face``.
+    ``places`` are positions (across, height) in the plane that is normal to ``axis`` at ``face``.
     """
     cloth = shading.plain("lorry seat cloth", (0.10, 0.105, 0.12), 0.9)
     for across, height in places:
@@ -59,7 +59,7 @@ def chrome() -> bpy.types.Material:
 
 
 def worn_steel() -> bpy.types.Material:
-    """Return worn steel with rust."""
+    """Return the material of worn steel with rust."""
     found = bpy.data.materials.get("machine worn steel")
     if found is not None:
         return found
@@ -69,7 +69,7 @@ def worn_steel() -> bpy.types.Material:
 
 
 def machine_paint(model: str, colour: str) -> bpy.types.Material:
-    """Return the paint of a machine, with dirt."""
+    """Return the material of a machine's paint, with dirt."""
     return pw.paint(model, colour, dirt_top_m=1.3, dirt=0.6, gloss=0.2)
 
 

@@ -57,7 +57,7 @@ _SEAMS = [Patch((0.22, 0.22, 0.22), x=(1.2, 9), y=(y - 0.006, y + 0.006), roughn
 def box_lorry(cab_colour: str, box_colour: str, *, plate: str, lettering: str) -> Built:
     """Build a two-axle rigid lorry, 8 m long, with a box body and barn doors.
 
-    It is lettered on both sides and on the doors.
+    ``lettering`` is on both sides and on the doors.
     """
     body = bw.body_mesh("box lorry", _box_parts)
     own, letters = bw.plates(plate, (3.86, 0.60), (-4.30, 0.98))
@@ -115,7 +115,7 @@ def _tipper_parts() -> Parts:
 
 
 def _load(parts: Parts, y0: float, y1: float, z: float) -> None:
-    """Add a heap of crushed stone in the body."""
+    """Add a heap of crushed stone as the load of a tipper."""
     stone = bpy.data.materials.get("lorry aggregate")
     if stone is None:
         sh = shading.Shader("lorry aggregate")
@@ -157,6 +157,7 @@ def tipper(cab_colour: str, body_colour: str, *, plate: str) -> Built:
 
 
 def _tank_outline(grow: float = 0.0) -> list[Flat]:
+    """Return the cross-section of the tank, enlarged by ``grow`` metres."""
     return [
         ((1.20 + grow) * math.cos(a), 2.12 + (0.90 + grow) * math.sin(a)) for a in (2 * math.pi * (k + 0.5) / 40 for k in range(40))
     ]

@@ -1,4 +1,4 @@
-"""Parts that all rigid lorries share: the day cab, and the chassis with its running gear."""
+"""Parts of all rigid lorries: the day cab, and the chassis with its running gear."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_studio.kit.vehicles import paintwork as pw
 
 
 def chassis_paint() -> bpy.types.Material:
-    """Return the paint of chassis parts."""
+    """Return the material of chassis parts."""
     return shading.plain("lorry chassis", (0.030, 0.030, 0.032), 0.6)
 
 

@@ -1,4 +1,4 @@
-"""A parked motorcycle: naked frame, tank, seat, engine, exhaust, wheels with discs, lamps, side stand."""
+"""A motorcycle without fairing: frame, tank, seat, engine, exhaust, wheels with disc brakes, lamps, side stand."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def motorcycle(colour: str = "red", *, plate: str = "KM21 BYK") -> Built:
-    """Build a mid-size motorcycle, 2.1 m long, heading +y. It is upright: lean it when you place it."""
+    """Build a mid-size motorcycle, 2.1 m long, heading +y. It is upright; ``Stage.place`` can lean it."""
     s = Solid(f"{colour} motorcycle")
     skin, black = paint(colour, dirt=0.12, roughness=0.22), paint("black", dirt=0.2)
     chrome, iron = (

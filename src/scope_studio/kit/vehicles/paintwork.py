@@ -1,4 +1,4 @@
-"""Vehicle materials: paints, glass, lamps. Details such as lamps and door gaps are printed on the paint."""
+"""Vehicle materials: paints, glass, lamps. Details such as lamps and door gaps are drawn by the shader of the paint."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ ANY: Range = (-99.0, 99.0)
 
 @dataclass(frozen=True)
 class Patch:
-    """A detail printed on the paint: everything with ``|x|``, y and z inside the ranges (metres, object frame).
+    """A detail drawn on the paint where ``|x|``, y and z are inside the ranges (metres, object frame).
 
-    ``y_per_z`` slants upright lines; ``z_per_x`` and ``z_per_y`` slant level ones. A ``round`` patch is the ellipse inside its
-    x and z ranges.
+    ``y_per_z`` slants vertical lines; ``z_per_x`` and ``z_per_y`` slant horizontal ones. A ``round`` patch is the ellipse that
+    fits its x and z ranges.
     """
 
     colour: tuple[float, float, float]
@@ -72,7 +72,7 @@ def paint(
     dirt: float = 0.55,
     gloss: float = 0.45,
 ) -> bpy.types.Material:
-    """Return lacquered paint of one colour, with the model's patches and road dirt that fades out at ``dirt_top_m``.
+    """Return the material of lacquered paint, with the model's patches and road dirt that fades out at ``dirt_top_m``.
 
     ``gloss`` is the weight of the lacquer. It stays below 1, so that a white sky does not wash out the colour.
     """
@@ -80,17 +80,18 @@ def paint(
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
-    # Building hundreds of nodes takes a second, copying them a millisecond, so that all colours share one pattern.
+    # Building hundreds of nodes takes a second and copying them a millisecond, so all colours copy the same pattern.
     pattern = bpy.data.materials.get(f"paint {model}") or _pattern(f"paint {model}", patches, dirt_top_m, dirt, gloss)
-    made = pattern.copy()
-    made.name = name
-    nodes = made.node_tree.nodes
+    material = pattern.copy()
+    material.name = name
+    nodes = material.node_tree.nodes
     nodes["Colour"].outputs[0].default_value = (*PAINTS[colour], 1.0)
     nodes["Flake"].outputs[0].default_value = 0.35 if colour in _METALLIC else 0.0
-    return made
+    return material
 
 
 def _pattern(name: str, patches: Sequence[Patch], dirt_top_m: float, dirt: float, gloss: float) -> bpy.types.Material:
+    """Return the material that all colours of a model copy: patches, dirt and lacquer."""
     sh = shading.Shader(name)
     coords = sh.object_coords()
     x, y, z = sh.xyz(coords)
@@ -124,21 +125,23 @@ def _pattern(name: str, patches: Sequence[Patch], dirt_top_m: float, dirt: float
 
 
 def _blend(sh: shading.Shader, factor: shading.Value, a: shading.Value, b: shading.Value) -> shading.Value:
-    made = sh.node("ShaderNodeMix", data_type="FLOAT")
+    """Mix two numbers: ``a`` where the factor is 0, ``b`` where it is 1."""
+    node = sh.node("ShaderNodeMix", data_type="FLOAT")
     for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
-        sh.feed(made.inputs[socket], value)
-    return made.outputs[0]
+        sh.feed(node.inputs[socket], value)
+    return node.outputs[0]
 
 
 def _within(sh: shading.Shader, value: shading.Value, limits: Range) -> shading.Value:
-    """Return 1 between the limits and 0 elsewhere, with hard edges. It needs one node where a soft band needs three."""
-    made = sh.node("ShaderNodeMath", operation="COMPARE")
+    """Return 1 between the limits and 0 elsewhere. The hard edges need one node; ``Shader.band`` needs three."""
+    node = sh.node("ShaderNodeMath", operation="COMPARE")
     for socket, number in enumerate((value, sum(limits) / 2, (limits[1] - limits[0]) / 2)):
-        sh.feed(made.inputs[socket], number)
-    return made.outputs[0]
+        sh.feed(node.inputs[socket], number)
+    return node.outputs[0]
 
 
 def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.Value, z: shading.Value) -> shading.Value:
+    """Return a mask that is 1 inside a patch."""
     if patch.y_per_z:
         y = sh.math("SUBTRACT", y, sh.math("MULTIPLY", z, patch.y_per_z))
     if patch.y_per_x:
@@ -160,24 +163,24 @@ def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.V
 
 
 def upright_gap(y: float, z: Range, *, x: Range = (0.5, 9.0), y_per_z: float = 0.0, width: float = 0.009) -> Patch:
-    """Return a door's edge: an upright dark line on the sides at ``y`` (at z = 0 if slanted)."""
+    """Return the edge of a door: a vertical dark line on the sides at ``y`` (at z = 0 if slanted)."""
     return Patch(GAP, x=x, y=(y - width / 2, y + width / 2), z=z, y_per_z=y_per_z, roughness=0.9)
 
 
 def level_gap(z: float, y: Range, *, x: Range = (0.5, 9.0), z_per_y: float = 0.0, width: float = 0.009) -> Patch:
-    """Return a door's bottom edge or a swage line: a level dark line on the sides at height ``z`` (at y = 0 if slanted)."""
+    """Return the bottom edge of a door, or a swage line: a horizontal dark line on the sides at ``z`` (at y = 0 if slanted)."""
     return Patch(GAP, x=x, y=y, z=(z - width / 2, z + width / 2), z_per_y=z_per_y, roughness=0.9)
 
 
 def glass() -> bpy.types.Material:
-    """Return the dark glass of windows without an interior."""
+    """Return the material of dark glass, for windows without an interior."""
     return shading.plain("vehicle glass", (0.012, 0.015, 0.017), 0.03)
 
 
 def clear_glass(tint: float = 0.55) -> bpy.types.Material:
-    """Return glass through which the cabin is visible.
+    """Return the material of glass through which the cabin is visible.
 
-    ``tint`` is its opacity. It stays above one half, so that instance-number renders hit the glass.
+    ``tint`` is its opacity. Above one half, renders of instance numbers hit the glass.
     """
     name = f"vehicle clear glass {tint:.2f}"
     return bpy.data.materials.get(name) or shading.Shader(name).surface(
@@ -186,12 +189,12 @@ def clear_glass(tint: float = 0.55) -> bpy.types.Material:
 
 
 def black_trim() -> bpy.types.Material:
-    """Return black plastic trim."""
+    """Return the material of black plastic trim."""
     return shading.plain("vehicle black trim", TRIM, 0.55)
 
 
 def lamp(colour: str) -> bpy.types.Material:
-    """Return a lamp cover: "white", "red", "amber", or "beacon" (a lit orange warning light)."""
+    """Return the material of a lamp cover: "white", "red", "amber", or "beacon" (a lit orange warning light)."""
     rgb, glow = {
         "white": (HEADLAMP, 0.35),
         "red": (REAR_LAMP, 0.25),
@@ -205,12 +208,12 @@ def lamp(colour: str) -> bpy.types.Material:
 
 
 def paint_slot(number: int = 0) -> bpy.types.Material:
-    """Return the placeholder that ``finish`` replaces by the vehicle's own paint."""
+    """Return the placeholder material that ``bodywork.finish`` replaces with the paint of the vehicle."""
     return shading.plain(f"vehicle paint slot {number}", (0.5, 0.5, 0.5))
 
 
 def ink(colour: str) -> bpy.types.Material:
-    """Return lettering film in a paint's colour. "display" is the emissive amber of a destination screen."""
+    """Return the material of lettering in a paint's colour. "display" is the emissive amber of a destination display."""
     if colour == "display":
         amber, name = (1.0, 0.50, 0.03), "vehicle display letters"
         return bpy.data.materials.get(name) or shading.Shader(name).surface(

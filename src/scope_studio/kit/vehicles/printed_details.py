@@ -1,4 +1,4 @@
-"""Lamps, grilles and door gaps as patches printed on a car's paint. They need no geometry and are sharp at any zoom."""
+"""Lamps, grilles and door gaps as patches on a car's paint. They need no geometry and are sharp at any zoom."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from scope_studio.kit.vehicles.paintwork import AMBER, TRIM, Patch
 
 
 def headlamp(x: tuple[float, float], y: float, z: tuple[float, float], rise: float = 0.0) -> list[Patch]:
-    """Return a wrap-round headlamp from ``x`` outwards and from ``y`` forwards.
+    """Return a wrap-around headlamp, from ``x`` outwards and from ``y`` forwards.
 
     It has a dark housing, two lenses, a daytime running light and an indicator.
     """
@@ -38,7 +38,7 @@ def headlamp(x: tuple[float, float], y: float, z: tuple[float, float], rise: flo
 
 
 def rear_lamp(x: tuple[float, float], y: float, z: tuple[float, float]) -> list[Patch]:
-    """Return a wrap-round rear lamp: dark red cover with lit strips, reversing lamp and indicator."""
+    """Return a wrap-around rear lamp: a dark red cover with lit strips, a reversing lamp and an indicator."""
     (x0, x1), (z0, z1) = x, z
     third = (z1 - z0) / 3
     return [
@@ -71,7 +71,7 @@ def rear_lamp(x: tuple[float, float], y: float, z: tuple[float, float]) -> list[
 
 
 def grille(x: float, y: float, z: tuple[float, float], bars: int) -> list[Patch]:
-    """Return a black opening of half width ``x`` with bright bars and a badge."""
+    """Return a grille: a black opening of half width ``x`` with bright bars and a badge."""
     z0, z1 = z
     step = (z1 - z0) / (bars + 1)
     bright = [
@@ -90,7 +90,7 @@ def grille(x: float, y: float, z: tuple[float, float], bars: int) -> list[Patch]
 
 
 def intake(x: float, y: float, z: tuple[float, float]) -> list[Patch]:
-    """Return the bumper's lower opening with round fog lamps beside it."""
+    """Return the air intake in the bumper, with round fog lamps on both sides."""
     fog = (z[0] + 0.01, z[0] + 0.10)
     return [
         Patch(TRIM, x=(-1, x), y=(y, 9), z=z, roughness=0.7),

@@ -1,4 +1,4 @@
-"""Tramway: an articulated tram, its stop's shelter and signs, overhead poles. The tram heads +y and stands on z = 0."""
+"""A tramway: an articulated tram that faces +y, the shelter and signs of its stop, and overhead poles."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from scope_studio.kit.vehicles import paintwork
 LENGTH_M = 19.6
 HALF_WIDTH_M = 1.2
 RAKE = 0.20
-"""Slope of the front, in metres backwards per metre of height."""
+"""Slope of the front: metres backwards per metre of height."""
 
 SECTION = [
     (0.0, 0.32),
@@ -34,6 +34,7 @@ SECTION = [
 
 
 def _ring(y: float, narrow: float = 1.0, *, front: bool = False) -> list[tuple[float, float, float]]:
+    """Return a cross-section of the body at ``y``, narrowed by a factor. ``front`` slants it like the front."""
     half = [(x * narrow, z) for x, z in SECTION]
     outline = [*half, *[(-x, z) for x, z in half[-2:0:-1]]]
     lean = math.copysign(RAKE, y) if front else 0.0
@@ -41,6 +42,7 @@ def _ring(y: float, narrow: float = 1.0, *, front: bool = False) -> list[tuple[f
 
 
 def _hull(s: Solid, stations: list[tuple[float, float, bool]], material: bpy.types.Material) -> None:
+    """Add a closed hull through the cross-sections at ``stations``, which are arguments of ``_ring``."""
     rings = [_ring(*station[:2], front=station[2]) for station in stations]
     n = len(rings[0])
     points = [p for ring in rings for p in ring]
@@ -95,6 +97,7 @@ def _end(s: Solid, sign: int, colour: str, line: str, destination: str, number: 
 
 
 def _led() -> bpy.types.Material:
+    """Return the emissive material of a destination display."""
     found = bpy.data.materials.get("tram led")
     return found or Shader("tram led").surface(
         base_color=(1.0, 0.55, 0.06), emission_color=(1.0, 0.50, 0.04), emission_strength=1.5
@@ -154,6 +157,7 @@ def tram(colour: str, *, line: str, destination: str, number: str, company: str,
 
 
 def _bellows(s: Solid, y: float) -> None:
+    """Add the bellows between two parts of the tram."""
     rubber = plain("tram bellows", (0.03, 0.03, 0.032), 0.9)
     for k in range(5):
         at = y - 0.32 + 0.16 * k
@@ -163,7 +167,7 @@ def _bellows(s: Solid, y: float) -> None:
 def shelter(name: str) -> Built:
     """Build a glazed tram shelter, 4.4 x 1.5 m, open towards +y, with a bench.
 
-    The lettered roof edge is readable from both sides.
+    The name on the roof edge is readable from both sides.
     """
     s = Solid("tram shelter")
     metal, pane = paint("dark grey", dirt=0.2), clear_glass()

@@ -1,4 +1,4 @@
-"""Road wheels: lathed tyres with alloy, steel and lorry rims. All turn about the x axis."""
+"""Wheels of road vehicles: tyres with alloy, steel and lorry rims. Their axles are along x."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def steel() -> bpy.types.Material:
 
 
 def shade() -> bpy.types.Material:
-    """Return the dark material behind spokes."""
+    """Return the dark material of the space behind spokes."""
     return shading.plain("vehicle shade", (0.006, 0.006, 0.006), 0.9)
 
 
 def _frame(centre: Point, side: int) -> Matrix:
-    """Return a frame whose +x points outwards from the vehicle on either side."""
+    """Return a frame whose +x points away from the vehicle, on the right (``side`` +1) or left (-1)."""
     mirror = Matrix.Scale(-1, 4, (1, 0, 0)) if side < 0 else Matrix.Identity(4)
     return Matrix.Translation(centre) @ mirror
 
@@ -108,7 +108,7 @@ def steel_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width:
 
 
 def lorry_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.29, twin: bool = False) -> None:
-    """Add a lorry wheel: dished outwards with a proud hub, or deeply dished inwards when ``twin`` (driven axles)."""
+    """Add a lorry wheel: curved outwards with a projecting hub, or curved inwards if ``twin`` (driven axles)."""
     outer, rim = parts.matrix.copy(), radius * 0.60
     parts.matrix = outer @ _frame(centre, side)
     _tyre(parts, radius, width, rim)

@@ -1,7 +1,7 @@
 """Traffic cones, drums and barriers.
 
-Pieces that are placed side by side (boards, water barriers) span x and have their front towards +y. The cast barrier is laid
-along a lane and runs along y.
+Pieces that are placed side by side (boards, water barriers) extend along x, and their fronts face +y. The concrete barrier
+follows a lane and extends along y.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def cone(height: float = 0.75) -> Built:
 
 
 def drum() -> Built:
-    """Build a channelizer drum: an orange barrel, 1.0 m high, with white bands, on a rubber ring."""
+    """Build a channelizer drum: an orange barrel with white bands, 1.0 m high, on a rubber ring."""
     s = Solid("drum")
     orange, white = paint("orange", dirt=0.34, roughness=0.46), sheet("white", dirt=0.26)
     s.lathe([(0.36, 0.0), (0.37, 0.02), (0.36, 0.07), (0.30, 0.085)], rubber(), steps=36)
@@ -186,7 +186,7 @@ def water_barrier(colour: str = "red") -> Built:
 
 
 def concrete_barrier(length: float = 3.0) -> Built:
-    """Build a cast safety barrier (New Jersey profile), 0.81 m high and ``length`` metres long, along y.
+    """Build a concrete safety barrier (New Jersey profile), 0.81 m high and ``length`` metres long, along y.
 
     It has drain slots, lifting loops and reflectors.
     """

@@ -11,7 +11,7 @@ from scope_studio.kit.works.materials import heap
 
 
 def wheel(s: Solid, x: float, y: float, radius: float, width: float) -> None:
-    """Add a small road wheel that stands on the ground, with its axle along x."""
+    """Add a small wheel with a tyre that stands on the ground, with its axle along x."""
     half = width / 2
     tyre = [
         (radius * 0.62, -half),
@@ -60,9 +60,9 @@ def _trailer(s: Solid, width: float, length: float, colour: str) -> None:
 
 
 def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
-    """Build a trailer with a black board whose lamps show an arrow to the reader's left or right, facing +y.
+    """Build a trailer with a black board whose lamps show an arrow to the left or right as seen by a driver, facing +y.
 
-    The board stands on red and white stripes.
+    Below the board are red and white stripes.
     """
     s = Solid("arrow board")
     _trailer(s, 1.6, 1.9, "orange")
@@ -140,7 +140,7 @@ def generator(colour: str = "green") -> Built:
 
 
 def plate_compactor() -> Built:
-    """Build a vibrating plate with engine and water tank, and a handle towards -y."""
+    """Build a vibrating plate with an engine, a water tank, and a handle towards -y."""
     s = Solid("plate compactor")
     yellow = paint("yellow", dirt=0.45)
     s.prism(
@@ -170,7 +170,7 @@ def plate_compactor() -> Built:
 
 
 def wheelbarrow(colour: str = "green", *, load: bool = True) -> Built:
-    """Build a builder's wheelbarrow with its wheel towards +y, optionally with sand."""
+    """Build a builder's wheelbarrow with its wheel towards +y. ``load`` fills it with sand."""
     s = Solid("wheelbarrow")
     body = paint(colour, dirt=0.45)
     low, high = (

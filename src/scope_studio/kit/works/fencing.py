@@ -1,4 +1,4 @@
-"""Mesh fencing and the site gate. They span x and have their front towards +y."""
+"""Mesh fence panels and a site gate. They extend along x, and their fronts face +y."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.works.barriers import striped_plank
 
 FENCE_PANEL_M = (3.45, 2.0)
-"""Width and height of a temporary mesh fence panel."""
+"""Width and height of a temporary mesh fence panel in metres."""
 
 
 def wire_mesh(s: Solid, width: float, low: float, high: float, cx: float = 0.0, *, pitch: float = 0.11) -> None:
-    """Add welded wires in the plane y = 0: close verticals, wider horizontals."""
+    """Add welded wires in the plane y = 0. Vertical wires are closer together than horizontal ones."""
     count = round(width / pitch)
     for i in range(1, count):
         x = cx - width / 2 + width * i / count
@@ -34,7 +34,7 @@ def frame(s: Solid, width: float, low: float, high: float, cx: float = 0.0, radi
 
 
 def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
-    """Build a temporary site fence panel in block feet. ``plate`` gives the lines of a small sign that is tied to it."""
+    """Build a temporary site fence panel on block feet. ``plate`` gives the lines of a small sign on it."""
     s = Solid("mesh fence panel")
     width, height = FENCE_PANEL_M
     frame(s, width - 0.04, 0.16, height)
@@ -53,7 +53,7 @@ def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
 def gate(open: bool = False) -> Built:  # noqa: A002
     """Build a double site gate, 6.2 m between posts and 2.2 m high.
 
-    It is closed across x, or has both leaves swung back towards -y.
+    The leaves are closed along x or, with ``open``, swung back towards -y.
     """
     s = Solid("site gate")
     leaf = 3.0

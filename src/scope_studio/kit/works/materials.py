@@ -1,4 +1,4 @@
-"""Building materials and small tools of a site: heaps, pipes, kerbs, bags, cable drums, hand tools, cans."""
+"""Building materials and small tools on a construction site: heaps, pipes, kerbs, bags, cable drums, hand tools, cans."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def heap(
     seed: float,
     square: bool = False,
 ) -> None:
-    """Add an irregular mound on z = 0. It is round, or fills a rectangle of half sizes ``radii`` when ``square``."""
+    """Add an irregular mound on z = 0. It is elliptical or, with ``square``, rectangular; ``radii`` are its half sizes."""
     rings, steps = 22, 56
     points = [(0.0, 0.0, height * (0.97 if not square else 1.0))]
     for i in range(1, rings + 1):
@@ -56,7 +56,7 @@ def sand_pile(radius: float = 1.6) -> Built:
 
 
 def gravel_pile(radius: float = 1.8) -> Built:
-    """Build a heap of crushed stone with stray stones around its foot."""
+    """Build a heap of crushed stone with loose stones around it."""
     s = Solid("gravel pile")
     stone = granular("gravel", (0.11, 0.11, 0.115), (0.40, 0.39, 0.38), 34.0)
     heap(s, stone, (radius, radius * 0.9), radius * 0.52, seed=7.0)
@@ -84,7 +84,7 @@ def _pallet(s: Solid) -> None:
 
 
 def pallet_of_kerbs() -> Built:
-    """Build concrete kerb stones strapped on a pallet."""
+    """Build concrete kerb stones strapped to a pallet."""
     s = Solid("pallet of kerbs")
     _pallet(s)
     for layer in range(3):
@@ -154,7 +154,7 @@ def cement_bags() -> Built:
 
 
 def _bag(s: Solid, material: bpy.types.Material) -> None:
-    """Add a stuffed bag, 0.38 x 0.47 x 0.115 m."""
+    """Add a full bag, 0.38 x 0.47 x 0.115 m."""
     n, m = 12, 14
     points = []
     for side in (1, -1):
@@ -169,7 +169,7 @@ def _bag(s: Solid, material: bpy.types.Material) -> None:
 
 
 def cable_drum(diameter: float = 1.4) -> Built:
-    """Build a timber cable drum with black cable wound on it, its axle along x."""
+    """Build a timber cable drum with black cable wound on it and its axis along x."""
     s = Solid("cable drum")
     r, half = diameter / 2, diameter * 0.34
     for side in (-1, 1):
@@ -221,7 +221,7 @@ def shovel_standing() -> Built:
 
 
 def broom() -> Built:
-    """Build a yard broom that stands on its bristles and leans on something behind it (-y)."""
+    """Build a yard broom that stands on its bristles and leans against an object behind it (-y)."""
     s = Solid("broom")
     with s.at(0, 0, 0, pitch=12):
         s.box((0.46, 0.07, 0.07), (0, 0, 0.04), paint("dark red", roughness=0.9), 0.015)

@@ -1,4 +1,4 @@
-"""Large units that are delivered to a site: portable toilet, cabin, skip. Fronts face +y."""
+"""Large units on a construction site: portable toilet, cabin, skip. Fronts face +y."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Works at a building and in its street: scaffolding, ladders, an open manhole."""
+"""Works at a building and in the street: scaffolding, a ladder, an open manhole."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def ladder(length_m: float = 5.0, lean_deg: float = 14.0) -> Built:
 
 
 def open_manhole() -> Built:
-    """Build a round manhole with its frame and a dark shaft. The cast cover lies beside it (towards +x)."""
+    """Build a round manhole with its frame and a dark shaft. The cast-iron cover lies next to it (towards +x)."""
     s = Solid("open manhole")
     iron = steel(dark=True)
     n = 32

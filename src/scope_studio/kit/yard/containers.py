@@ -1,4 +1,4 @@
-"""Shipping containers of twenty and forty feet: corrugated walls, corner castings, doors with lock rods, codes and liveries.
+"""Twenty- and forty-foot shipping containers: corrugated walls, corner castings, doors with lock rods, codes and liveries.
 
 The length runs along y, the door end faces +y, and a container stands on z = 0.
 """
@@ -19,7 +19,7 @@ RUST = (0.105, 0.040, 0.018)
 
 
 def container_paint(colour: str) -> bpy.types.Material:
-    """Return sea-worn container paint: chalked, scraped, with rust bleeding from chips."""
+    """Return the material of weathered container paint: faded, scraped, with rust around chips."""
     name = f"container paint {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -67,7 +67,7 @@ def container(
     doors: str = "closed",
     load: str | None = None,
 ) -> Built:
-    """Build one container.
+    """Build a container.
 
     Args:
         code: Owner letters, serial number and check digit, lettered on the doors, both sides and the blind end.
@@ -113,7 +113,7 @@ def container(
     if load == "cartons":
         _cartons(s, w, d)
     for facing, side in (("+X", 1), ("-X", -1)):
-        edge = -side * (d - 0.35)  # the right-hand end for the reader
+        edge = -side * (d - 0.35)  # the right-hand end as seen by a viewer
         s.text(code, 0.17, (side * (w + 0.006), -edge * 0.98, h - 0.30), ink, facing=facing, align="RIGHT")
         if livery:
             cap = min(0.82, (length - 1.2) / (0.95 * len(livery)))
@@ -134,7 +134,7 @@ def _doors(
     *,
     opened: bool,
 ) -> None:
-    """Add two leaves with four lock rods. The code is on the right-hand leaf."""
+    """Add the two leaves of the doors, with four lock rods. The code is on the right-hand leaf."""
     wide, tall = w - 0.13, h - 0.36
     for side in (-1, 1):
         turn = side * (-252.0 if opened else 0.0)

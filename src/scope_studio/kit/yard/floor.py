@@ -1,4 +1,4 @@
-"""The floor of a freight yard: asphalt and jointed concrete, damp in places, with painted markings as thin shapes on it."""
+"""The floor of a freight yard: asphalt and jointed concrete, damp in places, with painted markings modelled as thin shapes."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 Rect = tuple[float, float, float, float]
-"""West, east, south and north edges in metres."""
+"""Rectangle, given by its west, east, south and north edges in metres."""
 
 PAINT_M = 0.004
-"""Height of markings above the floor."""
+"""Height of markings above the floor, in metres."""
 
 
 def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Material:
-    """Return worn yard asphalt: aggregate, oil drips, tyre scuffs, repair seams, cracks, and damp hollows that mirror the sky."""
+    """Return the material of worn asphalt: oil drips, tyre marks, repair seams, cracks, and damp hollows that reflect the sky."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -42,7 +42,7 @@ def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Mater
 
 
 def slabs(name: str = "yard concrete", *, joint_m: float = 6.0) -> bpy.types.Material:
-    """Return brushed concrete bays with sealed joints, rust and oil stains, and the dark arcs of turning tyres."""
+    """Return the material of concrete slabs with sealed joints, rust and oil stains, and dark arcs from turning tyres."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -79,7 +79,7 @@ def _cracks(s: Shader, p: Value) -> Value:
 
 
 def _damp(s: Shader, p: Value, colour: Value, blotch: Value, height: Value) -> bpy.types.Material:
-    """Return the finished floor material. Hollows hold water and are darker and smoother than the rest, which is only moist."""
+    """Return the finished floor material. Hollows contain water, so they are darker and smoother than the rest."""
     hollow = s.noise(p, 0.13, detail=4.0, roughness=0.55)
     wet = s.ramp(s.math("ADD", hollow, s.math("MULTIPLY", s.math("SUBTRACT", blotch, 0.5), 0.22)), 0.57, 0.63)
     moist = s.ramp(hollow, 0.40, 0.60)
@@ -95,7 +95,7 @@ def _damp(s: Shader, p: Value, colour: Value, blotch: Value, height: Value) -> b
 
 
 def paint(colour: str) -> bpy.types.Material:
-    """Return road paint, "white", "yellow" or "green", worn through to the floor in places and slightly dirty."""
+    """Return the material of "white", "yellow" or "green" road paint, slightly dirty and worn through to the floor in places."""
     found = bpy.data.materials.get(f"yard paint {colour}")
     if found is not None:
         return found
@@ -118,7 +118,7 @@ def floor(name: str, rect: Rect, material: bpy.types.Material, z: float = 0.0) -
 
 
 def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, z: float = PAINT_M) -> None:
-    """Add one shape of paint, as a single upward face."""
+    """Add one painted shape, as a single face that points up."""
     area = sum(outline[i - 1][0] * outline[i][1] - outline[i][0] * outline[i - 1][1] for i in range(len(outline)))
     ring = list(outline) if area > 0 else list(outline)[::-1]
     s.add([(x, y, z) for x, y in ring], [tuple(range(len(ring)))], material)
@@ -158,7 +158,7 @@ def hatch(width: float, depth: float, *, colour: str = "yellow", pitch: float = 
         line(s, a, b, 0.12, ink)
     steps = int((width + depth) / pitch)
     for k in range(1, steps):
-        c = -w - d + k * pitch  # the bar x - y = c
+        c = -w - d + k * pitch  # the bar lies on x - y = c
         ends = [
             (x, y) for x, y in ((-w, -w - c), (w, w - c), (-d + c, -d), (d + c, d)) if abs(x) <= w + 1e-6 and abs(y) <= d + 1e-6
         ]
@@ -168,7 +168,7 @@ def hatch(width: float, depth: float, *, colour: str = "yellow", pitch: float = 
 
 
 def words(lines: Sequence[str], cap: float, *, colour: str = "white") -> Built:
-    """Build lettering on the floor, for a reader who looks along +y."""
+    """Build lettering on the floor that is upright for a viewer who looks along +y."""
     s = Solid("painted words")
     for k, body in enumerate(lines):
         s.text(body, cap, (0, (len(lines) / 2 - k - 0.5) * cap * 1.5, PAINT_M), paint(colour), facing="+Z", bold=True)
@@ -176,7 +176,7 @@ def words(lines: Sequence[str], cap: float, *, colour: str = "white") -> Built:
 
 
 def bay(number: str, *, width: float = 2.5, depth: float = 5.0, cap: float = 0.62, colour: str = "white") -> Built:
-    """Build a parking bay with its head at +y: a patch of floor, lines on three sides, and the number near its open end."""
+    """Build a parking bay open towards -y: a rectangle of floor, lines on three sides, and the number near the open end."""
     s = Solid(f"bay {number}")
     w, d = width / 2, depth / 2
     flat(s, [(-w, -d), (w, -d), (w, d), (-w, d)], asphalt("bay asphalt", tone=0.82), PAINT_M / 2)

@@ -14,7 +14,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
 
 PALLET_M = 0.144
-"""Height of a pallet."""
+"""Height of a pallet in metres."""
 
 
 def lay_pallet(s: Solid, *, fresh: bool = False) -> None:
@@ -43,7 +43,7 @@ def pallet_stack(count: int = 8, *, seed: int = 0) -> Built:
 def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 0, wrapped: bool = True) -> Built:
     """Build a loaded pallet: "cartons", "sacks" or "crates".
 
-    ``label`` is the text of its sheet, towards +y. ``wrapped`` adds stretch film.
+    ``label`` is the text on a sheet that faces +y. ``wrapped`` adds stretch film.
     """
     s = Solid(f"pallet of {kind}")
     rng = random.Random(f"load {kind} {seed}")
@@ -91,7 +91,7 @@ def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 
 
 
 def _film() -> bpy.types.Material:
-    """Return clear stretch film with bright creases."""
+    """Return the material of clear stretch film with bright creases."""
     found = bpy.data.materials.get("stretch film")
     if found is not None:
         return found
@@ -177,7 +177,7 @@ def tyre_stack(count: int = 5, *, seed: int = 0) -> Built:
 
 
 def tank(label: str = "LOAD 7") -> Built:
-    """Build a 1000-litre liquid container: a milky tank in a tube cage on a pallet, with tap and label towards +y."""
+    """Build a 1000-litre liquid container: a white tank in a tube cage on a pallet, with its tap and label towards +y."""
     s = Solid("intermediate bulk container")
     milk = plain("milky plastic", (0.62, 0.64, 0.60), 0.35)
     lay_pallet(s)
@@ -258,7 +258,7 @@ def carton(*, seed: int = 0, open: bool = False) -> Built:  # noqa: A002
 
 
 def ladder(length: float = 3.6) -> Built:
-    """Build an aluminium ladder that leans on something behind it (-y), with its foot at y = 0.75 and its head at y = -0.05."""
+    """Build an aluminium ladder that leans against an object behind it (-y), from y = 0.75 at its foot to y = -0.05 at its top."""
     s = Solid("ladder")
     pale = plain("ladder alloy", (0.50, 0.51, 0.52), 0.35, 0.7)
     foot, head = 0.75, -0.05

@@ -1,4 +1,4 @@
-"""Lamps of yards and buildings: masts, wall packs and strips. Their light comes from ``dusk.pool``."""
+"""Lamps of yards and buildings: masts, wall packs and strips. The lamps themselves emit little light; ``dusk.pool`` adds it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def mast(height: float = 10.0, *, kind: str = "led", heads: int = 2, lit: bool =
 def mast_light(
     x: float, y: float, bearing_deg: float, height: float = 10.0, *, kind: str = "led", heads: int = 2, power_w: float = 650.0
 ) -> None:
-    """Add the light of a mast placed at (x, y)."""
+    """Add the light of the lamps of a mast that is placed at (x, y)."""
     rgb = dusk.SODIUM if kind == "sodium" else dusk.LED
     b = math.radians(bearing_deg)
     for sign in (1, -1)[:heads]:
@@ -46,7 +46,7 @@ def mast_light(
 
 
 def wall_pack(*, kind: str = "sodium", lit: bool = True) -> Built:
-    """Build a prismatic wall lamp, 0.4 m wide, with its back on the plane y = 0 and its middle at z = 0."""
+    """Build a prismatic wall lamp, 0.4 m wide, with its back at y = 0 and its middle at z = 0."""
     s = Solid("wall lamp")
     s.box((0.40, 0.05, 0.26), (0, 0.025, 0), paint("dark grey", dirt=0.2), 0.01)
     s.prism([(0.04, 0.13), (0.24, 0.11), (0.26, 0.04), (0.04, 0.04)], (-0.20, 0.20), paint("dark grey", dirt=0.2), "YZ")
@@ -68,7 +68,7 @@ def strip(length: float = 1.5, *, kind: str = "led", strength: float = 5.0) -> B
 
 
 def floodlight() -> Built:
-    """Build a floodlight on a short arm, tipped down. The wall is y = 0 and its middle is z = 0."""
+    """Build a floodlight on a short arm, tilted down. The wall is the plane y = 0, and the middle of the lamp is at z = 0."""
     s = Solid("floodlight")
     s.tube([(0, 0, 0.10), (0, 0.45, 0.16), (0, 0.62, 0.06)], 0.025, steel(), sides=8)
     with s.at(0, 0.70, -0.04, pitch=-38):

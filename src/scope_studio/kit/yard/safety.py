@@ -16,11 +16,11 @@ from scope_studio.kit.signs.faces import INK, board, disc, flat, stroke, write
 from scope_studio.kit.signs.stands import posts_at
 
 FENCE_M = 3.0
-"""Length of a chain-link panel."""
+"""Length of a chain-link panel in metres."""
 
 
 def yard_bollard(colour: str = "yellow") -> Built:
-    """Build a steel tube set in concrete, 1.0 m high, with a black band and a scraped foot."""
+    """Build a steel tube set in concrete, 1.0 m high, with a black band and scratches near the ground."""
     s = Solid("bollard")
     skin = paint(colour, dirt=0.45)
     s.lathe([(0.084, -0.02), (0.084, 0.62)], skin, steps=24)
@@ -31,7 +31,7 @@ def yard_bollard(colour: str = "yellow") -> Built:
 
 
 def wheel_stop(colour: str = "yellow") -> Built:
-    """Build a low rubber kerb for the head of a bay, 1.65 m along x, with painted chevrons."""
+    """Build a low rubber kerb for the closed end of a parking bay, 1.65 m along x, with painted chevrons."""
     s = Solid("wheel stop")
     s.prism([(-0.075, 0.0), (0.075, 0.0), (0.05, 0.10), (-0.05, 0.10)], (-0.825, 0.825), rubber(), "YZ")
     for k in range(4):
@@ -43,7 +43,7 @@ def wheel_stop(colour: str = "yellow") -> Built:
 
 
 def bay_plate(number: str, *, background: str = "blue") -> Built:
-    """Build a bay's number plate on a low post, the same on both sides."""
+    """Build the number plate of a parking bay on a low post, with the same text on both sides."""
     s = Solid("bay plate")
     s.box((0.05, 0.05, 0.55), (0, 0, 0.275), steel(), 0.005)
     for turn in (0, 180):
@@ -56,7 +56,7 @@ def bay_plate(number: str, *, background: str = "blue") -> Built:
 def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = False) -> Built:
     """Build a chain-link panel along x with a post at each end and three barbed strands on top.
 
-    ``hole`` adds a hole that is cut and peeled open.
+    ``hole`` adds a cut in the mesh that is bent open.
     """
     s = Solid("chain-link panel")
     wire, pitch = steel(), 0.085
@@ -95,7 +95,7 @@ def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = Fal
 
 
 def _outside(ends: Sequence[tuple[float, float, float]]) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
-    """Return the pieces of a wire outside the hole (an arch 1.0 m wide and 1.25 m high)."""
+    """Return the parts of a wire that are outside the hole, an arch 1.0 m wide and 1.25 m high."""
     (x0, _, z0), (x1, _, z1) = ends
     pieces, steps, start = [], 48, None
     points = [(x0 + (x1 - x0) * t / steps, 0.0, z0 + (z1 - z0) * t / steps) for t in range(steps + 1)]
@@ -143,7 +143,7 @@ def hydrant() -> Built:
 
 
 def spill_kit() -> Built:
-    """Build a yellow, lettered chest on wheels for spill equipment, with a black lid."""
+    """Build a spill kit: a yellow, lettered chest on wheels with a black lid."""
     s = Solid("spill kit")
     skin = paint("yellow", dirt=0.25)
     s.box((0.95, 0.60, 0.80), (0, 0, 0.48), skin, 0.04)
@@ -157,7 +157,7 @@ def spill_kit() -> Built:
 
 
 def hose_reel() -> Built:
-    """Build a red hose reel on a wall bracket. The wall is y = 0, and the axle is at z = 0."""
+    """Build a red hose reel on a wall bracket. The wall is the plane y = 0, and the axle is at z = 0."""
     s = Solid("hose reel")
     red = paint("red", dirt=0.2)
     s.box((0.12, 0.18, 0.5), (0, 0.09, 0), steel(dark=True), 0.01)
@@ -268,7 +268,7 @@ def assembly_point(letter: str = "A") -> Built:
 
 
 def alarm_beacon(colour: str = "amber", *, lit: bool = True) -> Built:
-    """Build a wall beacon for a place over a door. The wall is y = 0."""
+    """Build an alarm beacon on a wall, for example above a door. The wall is the plane y = 0."""
     s = Solid("beacon")
     s.box((0.14, 0.10, 0.10), (0, 0.05, 0), paint("dark grey"), 0.01)
     s.lathe(
@@ -281,7 +281,7 @@ def alarm_beacon(colour: str = "amber", *, lit: bool = True) -> Built:
 
 
 def sliding_gate(length: float = 8.0, height: float = 2.2) -> Built:
-    """Build a barred steel gate along x on a low track, with a board in its middle."""
+    """Build a barred steel sliding gate along x on a low track, with a sign in its middle."""
     s = Solid("sliding gate")
     skin, half = paint("dark green", dirt=0.35), length / 2
     s.box((length, 0.14, 0.14), (0, 0, 0.17), skin, 0.01)

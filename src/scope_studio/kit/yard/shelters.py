@@ -1,4 +1,4 @@
-"""Small buildings and machines of a yard: gatehouse, barrier, cycle and smoking shelters, vending machine, charge point."""
+"""Small buildings and machines of a yard: gatehouse, barrier, shelters for bicycles and smokers, vending machine, charge point."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def barrier_arm(length: float = 4.2, *, raised: bool = False) -> Built:
 
 
 def traffic_head(state: str = "red") -> Built:
-    """Build a small red and green lane signal on a post beside a barrier."""
+    """Build a small red and green lane signal on a post, to be placed next to a barrier."""
     s = Solid("lane signal")
     s.rod((0, 0, 0), (0, 0, 2.1), 0.04, steel())
     s.box((0.22, 0.14, 0.44), (0, 0.02, 2.3), paint("black", dirt=0.1), 0.02)
@@ -119,7 +119,7 @@ def cycle_shelter(length: float = 5.0) -> Built:
 
 
 def smoking_shelter() -> Built:
-    """Build a small glazed shelter open towards +y, with a bench, an ash bin and its sign."""
+    """Build a small glazed smoking shelter open towards +y, with a bench, an ash bin and a sign."""
     s = Solid("smoking shelter")
     metal, clear = paint("dark grey", dirt=0.3), pane(0.25)
     for x in (-1.3, 1.3):
@@ -140,7 +140,7 @@ def smoking_shelter() -> Built:
 
 
 def vending_machine(name: str = "FIZZ", colour: str = "red") -> Built:
-    """Build a lit drinks machine, 0.95 x 0.8 x 1.85 m: lit window with rows of bottles, keypad, and lit head with its name."""
+    """Build a lit drinks machine, 0.95 x 0.8 x 1.85 m: lit window with bottles, keypad, and a lit panel with its name."""
     s = Solid("vending machine")
     rng = random.Random("vending")
     skin = paint(colour, dirt=0.15)

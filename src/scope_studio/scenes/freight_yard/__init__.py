@@ -1,4 +1,4 @@
-"""Freight yard: a distribution yard at dusk with its lamps just lit, seen from a mast at the gate and from above the docks."""
+"""Freight yard: a distribution yard at dusk with its lamps on, seen from a mast at the gate and from above the docks."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ ABSENT = (
     "aircraft", "ambulance", "boat", "bulldozer", "bus", "child", "cow", "crane", "dog", "excavator", "fire engine", "fountain",
     "horse", "police car", "post box", "sheep", "statue", "swimming pool", "taxi", "tent", "train", "tram", "umbrella",
 )  # fmt: skip
-"""Things that a person might ask for but that are not in the scene."""
+"""Objects that a question might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
     """Build the whole scene in an empty Blender file and fill the stage."""
     stage.start_s = 12.5  # the van, the guard, the forklift and the fox are all in the home view at that time
     dusk.setup(bpy.context.scene)
-    people.build(stage)  # people first, lettering next: both are slower the more objects the file holds
+    people.build(stage)  # people first, then lettering: both get slower with the number of objects in the file
     fixtures.build(stage)
     notices.build(stage)
     stock.build(stage)

@@ -1,4 +1,4 @@
-"""Freight yard: gate and gatehouse, fences, shelters, charging points, number plates of the bays."""
+"""Freight yard: gate and gatehouse, fences, shelters, charge points, and number plates of the bays."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ GATEHOUSE = (3.0, -39.0)
 
 
 def build(stage: Stage) -> None:
-    """Place everything that is fixed in the yard."""
+    """Place the fixed objects of the yard."""
     _gate(stage)
     _fences(stage)
     _shelters(stage)
@@ -85,7 +85,7 @@ def _gate(stage: Stage) -> None:
 
 
 def _fences(stage: Stage) -> None:
-    """Place the fences, one annotated run for each side. The cut panel in the west is an instance of its own."""
+    """Place the fences, one annotated run for each side. The damaged panel in the west is a separate instance."""
     prototype = yard_safety.chain_link()
     step = yard_safety.FENCE_M
     fresh = [True]

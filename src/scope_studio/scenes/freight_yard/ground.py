@@ -8,13 +8,13 @@ from scope_studio.kit.yard import floor as yard_floor
 from scope_studio.kit.yard import lamps as yard_lamps
 
 WEST, EAST, SOUTH, NORTH = -58.0, 50.0, -46.0, 30.0
-"""Fence lines in the west, east and south; the face of the warehouse in the north."""
+"""Edges of the yard in metres: fences in the west, east and south, and the front of the warehouse in the north."""
 IN_X, OUT_X = -1.2, 7.2
-"""Lanes through the gate. Entering traffic keeps left."""
+"""x coordinates of the lanes through the gate. Traffic drives on the left."""
 
 BAY_M = 2.6
 ROW_A = [(-45.4 + BAY_M * k, str(12 + k)) for k in range(12)]
-"""Middle (x) and number of each bay. Cars park with the nose to the north."""
+"""Middle (x) and number of each bay. Cars park facing north."""
 ROW_B = [(-45.4 + BAY_M * k, str(24 + k)) for k in range(12)]
 ROW_A_Y, ROW_B_Y = -14.5, -26.5
 VISITORS = [(-44.0 + 2.8 * k, str(36 + k)) for k in range(5)]
@@ -149,7 +149,7 @@ OCCUPIED = {
     "25": "green", "26": "yellow", "28": "silver", "29": "dark red", "31": "white", "33": "orange", "34": "grey", "37": "blue",
     "39": "beige", "61": "", "63": "", "64": "",
 }  # fmt: skip
-"""Number of each occupied bay, and the colour of the car in it."""
+"""Colour of the car in each occupied bay, by the number of the bay."""
 
 
 def _masts(stage: Stage) -> None:

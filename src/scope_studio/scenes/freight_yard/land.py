@@ -1,4 +1,4 @@
-"""Freight yard: the road outside, trees, neighbours, and the town between the yard and the hills."""
+"""Freight yard: the road outside, trees, neighbouring buildings, and the town between the yard and the hills."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_studio.kit.vehicles import cars
 from scope_studio.kit.yard import floor as yard_floor
 
 ROAD = highway.Carriageway(edge_m=-1.0, straight_m=900.0)
-"""Only its level strip is used; beyond it, the land rises to hills."""
+"""Carriageway that defines the terrain: a level strip with hills on both sides. The road itself is not built."""
 STREET_Y = -58.0
 
 
@@ -26,7 +26,7 @@ def build(stage: Stage) -> None:
     _street(stage)
     _neighbours(stage)
     _trees(stage)
-    _far(stage, height)
+    _background(stage, height)
 
 
 def _street(stage: Stage) -> None:
@@ -208,7 +208,7 @@ def _trees(stage: Stage) -> None:
         )
 
 
-def _far(stage: Stage, height) -> None:
+def _background(stage: Stage, height) -> None:
     """Place tree lines, blocks of flats and lights that become sparser towards the hills. They are not annotated."""
     rng = random.Random("far town")
     kinds = [
@@ -218,21 +218,21 @@ def _far(stage: Stage, height) -> None:
     hedge = vegetation.hedge(14.0, seed=3, detail=0.3)
     used: set[int] = set()
 
-    def strew(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
+    def scatter(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
         built = prototype.copy() if id(prototype) in used else prototype
         used.add(id(prototype))
         stage.put(built, (x, y, height(x, y) - 0.1), bearing, scale=scale)
 
     for x in range(-180, 190, 14):
-        strew(hedge, x, -67.0, 0, rng.uniform(0.95, 1.1))
+        scatter(hedge, x, -67.0, 0, rng.uniform(0.95, 1.1))
     for y in range(-40, 60, 14):
         for x in (-60.8, 53.0):
-            strew(hedge, x, y, 90, rng.uniform(0.9, 1.1))
+            scatter(hedge, x, y, 90, rng.uniform(0.9, 1.1))
     for _ in range(300):
         bearing, r = rng.uniform(0, 2 * math.pi), rng.uniform(118, 520)
         x, y = r * math.sin(bearing), r * math.cos(bearing)
         if abs(y - STREET_Y) > 12:
-            strew(kinds[rng.choices(range(4), (5, 4, 1, 2))[0]], x, y, rng.uniform(0, 360), rng.uniform(0.7, 1.2))
+            scatter(kinds[rng.choices(range(4), (5, 4, 1, 2))[0]], x, y, rng.uniform(0, 360), rng.uniform(0.7, 1.2))
     blocks = [
         skyline.flats(seed=k, floors=3 + k % 4, width=16 + 4 * (k % 3), colour=c)
         for k, c in enumerate(((0.20, 0.14, 0.11), (0.26, 0.25, 0.23), (0.17, 0.10, 0.08), (0.30, 0.28, 0.24)))
@@ -245,7 +245,7 @@ def _far(stage: Stage, height) -> None:
         bearing, r = rng.uniform(0, 2 * math.pi), rng.uniform(150, 460)
         x, y = r * math.sin(bearing), r * math.cos(bearing)
         if abs(y - STREET_Y) > 24:
-            strew(rng.choice([*blocks, *works]), x, y, math.degrees(bearing) + 180 + rng.uniform(-30, 30), rng.uniform(0.9, 1.1))
+            scatter(rng.choice([*blocks, *works]), x, y, math.degrees(bearing) + 180 + rng.uniform(-30, 30), rng.uniform(0.9, 1.1))
     lights = []
     for _ in range(520):
         bearing, r = rng.uniform(0, 2 * math.pi), 170 + 1900 * rng.random() ** 1.4

@@ -1,4 +1,4 @@
-"""Freight yard: all notices on posts and walls, and the clocks and beacons beside them."""
+"""Freight yard: notices on posts and walls, clocks and beacons."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from scope_studio.kit.core.stage import Built, Stage
 from scope_studio.kit.furniture import clocks
 from scope_studio.kit.signs import road_signs
 from scope_studio.kit.yard import safety as yard_safety
-from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y, GOODS_IN_X, OFFICE_X, OFFICE_Y
+from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y, OFFICE_X, OFFICE_Y, RECEIVING_X
 
 Row = tuple[Built, str, float, float, float, dict[str, str]]
-"""Built thing, its name, its place (x, y and a bearing; or x, y, z on a wall), attributes."""
+"""Built object, its name, its position (x, y and a bearing; or x, y, z on a wall), and its attributes."""
 
 
 def build(stage: Stage) -> None:
-    """Place the notices on posts and on walls."""
+    """Place the notices, clocks and beacons."""
     _standing(stage)
     _on_walls(stage)
 
@@ -249,7 +249,7 @@ def _on_walls(stage: Stage) -> None:
         (
             glowing("GOODS IN", 0.42),
             "lit goods in sign",
-            GOODS_IN_X,
+            RECEIVING_X,
             FRONT_Y,
             5.30,
             {"state": "lit", "kind": "name", "colour": "white"},

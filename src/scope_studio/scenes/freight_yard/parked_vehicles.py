@@ -1,4 +1,4 @@
-"""Freight yard: parked vehicles: lorries at the docks, trailers in their bays, cars, forklifts."""
+"""Freight yard: the parked vehicles (lorries at the docks, trailers in their bays, cars, forklifts)."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from scope_studio.kit.yard.goods import pallet_load
 from scope_studio.scenes.freight_yard import ground
 from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y
 
-SEAM_Y = FRONT_Y - 0.55
-"""Position of the rear of a docked lorry."""
+DOCKED_REAR_Y = FRONT_Y - 0.55
+"""y coordinate of the rear of a docked lorry."""
 
 MAKES = {
     "12": ("hatchback", "LD19 KRA"), "13": ("saloon", "MV70 TSE"), "15": ("hatchback", "YK18 BOW"), "16": ("suv", "PN22 FGH"),
@@ -22,7 +22,7 @@ MAKES = {
     "31": ("van", "GU19 NGF"), "33": ("hatchback", "FY68 JAM"), "34": ("pickup", "AK72 TOW"), "37": ("saloon", "WR66 VIS"),
     "39": ("suv", "DS21 HAT"),
 }  # fmt: skip
-"""Body and number plate of the car in each occupied bay."""
+"""Body style and number plate of the car in each occupied bay."""
 
 
 def build(stage: Stage) -> None:
@@ -42,7 +42,7 @@ def _combination(
     facts: dict[str, object],
     trailer_facts: dict[str, object],
 ) -> None:
-    """Place a tractor and its trailer facing south, with the trailer's rear at ``rear_y``."""
+    """Place a tractor unit and its trailer facing south, with the trailer's rear at ``rear_y``."""
     nose_y = rear_y - artics.TRAILER_M
     king_y = nose_y + artics.KINGPIN_M
     name = str(trailer_facts.pop("name"))
@@ -65,7 +65,7 @@ def _docked(stage: Stage) -> None:
         artics.tractor("blue", plate="KX20 HGF", name="NORTHGATE", lit=True),
         artics.trailer("blue", lettering="NORTHGATE FREIGHT", plate="KX20 HGF", front="blue"),
         DOCK_X[1],
-        SEAM_Y,
+        DOCKED_REAR_Y,
         {"colour": "blue", "plate": "KX20 HGF", "state": "parked", "lights": "lit", "dock": "2"},
         {
             "name": "blue curtain-sided trailer",
@@ -82,7 +82,7 @@ def _docked(stage: Stage) -> None:
         box,
         "trailer",
         "white refrigerated trailer",
-        (DOCK_X[3], SEAM_Y - artics.TRAILER_M / 2, 0),
+        (DOCK_X[3], DOCKED_REAR_Y - artics.TRAILER_M / 2, 0),
         180,
         colour="white",
         kind="refrigerated",
@@ -96,7 +96,7 @@ def _docked(stage: Stage) -> None:
         lorry,
         "lorry",
         "red and white box lorry",
-        (DOCK_X[6], SEAM_Y - 4.3, 0),
+        (DOCK_X[6], DOCKED_REAR_Y - 4.3, 0),
         180,
         colour="red",
         kind="box lorry",
@@ -236,7 +236,7 @@ def _trailers(stage: Stage) -> None:
 
 
 def _cars(stage: Stage) -> None:
-    makers = {"hatchback": cars.hatchback, "saloon": cars.saloon, "suv": cars.suv, "pickup": cars.pickup}
+    builders = {"hatchback": cars.hatchback, "saloon": cars.saloon, "suv": cars.suv, "pickup": cars.pickup}
     for row, y, bearing in (
         (ground.ROW_A, ground.ROW_A_Y, 0.0),
         (ground.ROW_B, ground.ROW_B_Y, 180.0),
@@ -251,12 +251,12 @@ def _cars(stage: Stage) -> None:
             facing = "north" if abs(turned % 360) < 20 or turned % 360 > 340 else "south"
             facts = {"colour": colour, "plate": plate, "state": "parked", "bay": number, "facing": facing}
             if body == "van":
-                made = cars.van(colour, plate=plate, lettering="NORTHGATE\nFREIGHT")
-                stage.place(made, "van", f"{colour} van", (x, y + 0.1, 0), turned, lettering="northgate freight", **facts)
+                van = cars.van(colour, plate=plate, lettering="NORTHGATE\nFREIGHT")
+                stage.place(van, "van", f"{colour} van", (x, y + 0.1, 0), turned, lettering="northgate freight", **facts)
                 continue
             category = "pickup truck" if body == "pickup" else "car"
             noun = {"suv": "SUV", "pickup": "pickup truck"}.get(body, body)
-            stage.place(makers[body](colour, plate=plate), category, f"{colour} {noun}", (x, y, 0), turned, kind=body, **facts)
+            stage.place(builders[body](colour, plate=plate), category, f"{colour} {noun}", (x, y, 0), turned, kind=body, **facts)
     patrol = cars.van("white", plate="OB69 JNS", lettering="ARGUS\nSECURITY", roof_beacon=True)
     stage.place(
         patrol,
@@ -349,6 +349,6 @@ def _forklifts(stage: Stage) -> None:
 
 
 def _turned(x: float, y: float, bearing_deg: float) -> tuple[float, float]:
-    """Rotate a point from a thing's own frame to world axes."""
+    """Rotate a point from the frame of an object with this bearing to world axes."""
     b = math.radians(bearing_deg)
     return x * math.cos(b) + y * math.sin(b), -x * math.sin(b) + y * math.cos(b)

@@ -1,4 +1,4 @@
-"""Freight yard: workers, drivers and visitors who stay where they are."""
+"""Freight yard: workers, drivers and visitors who do not move."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Freight yard: the warehouse with its docks and office, and the things fixed to it."""
+"""Freight yard: the warehouse with its docks and office, and the fixtures on its walls."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ WIDTH_M, HEIGHT_M = 58.0, 7.4
 DOCK_X = [-24.0 + 5.4 * k for k in range(8)]
 DOCK_STATES = ("closed", "open", "open", "open", "half open", "closed", "open", "closed")
 DOCK_LIGHTS = ("green", "red", "green", "red", "green", "unlit", "red", "green")
-GOODS_IN_X = 22.0
+RECEIVING_X = 22.0
 OFFICE_X, OFFICE_Y, OFFICE_M = -38.0, 27.0, (16.0, 24.0, 7.2)
 
 
@@ -24,15 +24,15 @@ def build(stage: Stage) -> None:
     _office(stage)
 
 
-def _local(x: float) -> float:
-    """Convert a world x to the position along the warehouse's front that its builder uses."""
+def _front_x(x: float) -> float:
+    """Convert a world x to the x coordinate along the warehouse's front that its builder uses."""
     return MIDDLE_X - x
 
 
 def _warehouse(stage: Stage) -> None:
     half = docks.DOCK_WIDE_M / 2
-    openings = [(_local(x) - half, _local(x) + half, docks.DOCK_SILL_M, docks.DOCK_SILL_M + docks.DOCK_TALL_M) for x in DOCK_X]
-    openings.append((_local(GOODS_IN_X) - 2.3, _local(GOODS_IN_X) + 2.3, 0.0, 4.6))
+    openings = [(_front_x(x) - half, _front_x(x) + half, docks.DOCK_SILL_M, docks.DOCK_SILL_M + docks.DOCK_TALL_M) for x in DOCK_X]
+    openings.append((_front_x(RECEIVING_X) - 2.3, _front_x(RECEIVING_X) + 2.3, 0.0, 4.6))
     shell = warehouse.shell(
         width=WIDTH_M,
         depth=34.0,
@@ -40,7 +40,7 @@ def _warehouse(stage: Stage) -> None:
         openings=openings,
         colour=(0.36, 0.38, 0.40),
         band=(0.02, 0.09, 0.28),
-        ramp_to=_local(17.6),
+        ramp_to=_front_x(17.6),
     )
     main = stage.place(
         shell,
@@ -68,7 +68,7 @@ def _warehouse(stage: Stage) -> None:
         docks.roller_door("open", wide=4.6, tall=4.6, sill=0.0, colour="blue"),
         "roller door",
         "wide blue roller door",
-        (GOODS_IN_X, FRONT_Y, 0),
+        (RECEIVING_X, FRONT_Y, 0),
         180,
         parent=main,
         state="open",

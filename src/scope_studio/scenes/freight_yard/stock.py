@@ -12,7 +12,7 @@ from scope_studio.kit.yard import goods as yard_goods
 from scope_studio.kit.yard import safety as yard_safety
 
 STACKS = (
-    # feet, x, y, then (colour, code, livery) of each container from the ground up
+    # length in feet, x, y, then (colour, code, livery) of each container from the ground up
     (20, 20.5, -14.5, (("blue", "KVRU 482915 3", "KESTREL"), ("dark red", "TSLU 610382 7", None))),
     (
         20,
@@ -42,8 +42,8 @@ def build(stage: Stage) -> None:
     """Place containers, goods, equipment and bollards."""
     _containers(stage)
     _goods(stage)
-    _gear(stage)
-    _guards(stage)
+    _equipment(stage)
+    _barriers(stage)
 
 
 def _containers(stage: Stage) -> None:
@@ -165,7 +165,7 @@ def _goods(stage: Stage) -> None:
     stage.place(yard_goods.carton(seed=7), "box", "cardboard box", (18.15, -24.0, 0.43), 34, material="cardboard", state="closed")
 
 
-def _gear(stage: Stage) -> None:
+def _equipment(stage: Stage) -> None:
     rows: list[tuple[Built, str, str, float, float, float, dict[str, str]]] = [
         (yard_goods.gas_cage(), "gas cage", "cage of gas cylinders", 30.6, 27.6, 180, {"material": "steel", "state": "closed"}),
         (site_units.skip("yellow"), "skip", "yellow skip", 45.0, 24.0, 95, {"colour": "yellow", "state": "full"}),
@@ -212,8 +212,8 @@ def _gear(stage: Stage) -> None:
         )
 
 
-def _guards(stage: Stage) -> None:
-    """Place bollards, concrete blocks and cones."""
+def _barriers(stage: Stage) -> None:
+    """Place bollards, concrete and water-filled barriers, and cones."""
     prototypes = Prototypes()
     bollards = [
         (19.2, 28.9),

@@ -1,4 +1,4 @@
-"""Freight yard: moving actors: a shuttling forklift, an arriving van, a patrolling guard and a fox."""
+"""Freight yard: the moving actors (a forklift, an arriving van, a patrolling guard and a fox)."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from scope_studio.scenes.freight_yard import ground
 from scope_studio.scenes.freight_yard.parked_vehicles import driver
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer, far above the numbers of the instances."""
+"""Number of the first actor in the instance-number layer, well above the numbers of the instances."""
 
 
 def _loaded_forklift(_phase: float) -> Built:
-    """Return the shuttling forklift with its driver and load as one body."""
+    """Return the moving forklift with its driver and load as one object."""
     truck = forklift.forklift("orange", number="5", fork_m=0.30)
     for part, (x, y, z) in (
         (driver("yellow", "blue", 17), (0.0, forklift.SEAT[1], forklift.SEAT[2] - 0.46)),

@@ -8,7 +8,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import overcast, sky
-from scope_studio.scenes.high_street import kerb, land, people, shops, traffic, wares
+from scope_studio.scenes.high_street import goods, land, people, shops, street_furniture, traffic
 
 NAME = "high-street"
 TITLE = "High street"
@@ -17,18 +17,18 @@ ABSENT = (
     "horse", "lorry", "motorcycle", "parking barrier", "petrol pump", "police car", "skip", "statue", "suitcase", "swimming pool",
     "tractor", "train", "tram", "wheelchair", "wind turbine",
 )  # fmt: skip
-"""Things that a person might ask for but that are not in the scene."""
+"""Objects that a question might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
     """Build the whole scene in an empty Blender file and fill the stage."""
     stage.start_s = 17.0  # car, cyclist, walkers and dog are all in the street at that time
     overcast.setup(bpy.context.scene)
-    people.build(stage)  # first: merging bodies is slower the more objects the file holds
+    people.build(stage)  # first, because building people gets slower with the number of objects in the file
     traffic.build(stage)
     shop_ids = shops.build(stage)
-    wares.build(stage, shop_ids)
-    kerb.build(stage)
+    goods.build(stage, shop_ids)
+    street_furniture.build(stage)
     land.build(stage)
     _cameras(stage)
     stage.absent = list(ABSENT)

@@ -1,4 +1,4 @@
-"""High street: roads, footways and their paint, houses that close the view in every direction, trees behind the roofs."""
+"""High street: roads, footways, road markings, houses that hide the horizon in every direction, and trees behind the roofs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from scope_studio.scenes.high_street.plan import (
 )
 
 END_X = 84.0
-"""Position of the house that closes off each cross street."""
+"""Distance in metres from x = 0 of the houses at both ends of each cross street."""
 
 
 def build(stage: Stage) -> None:
@@ -43,7 +43,7 @@ def build(stage: Stage) -> None:
     _cross_streets(stage)
     _town_hall(stage)
     _gables(stage)
-    _behind(stage)
+    _background(stage)
 
 
 def _paint() -> dict[str, list[Stencil]]:
@@ -148,7 +148,7 @@ DOORS = ("green", "blue", "black", "dark green", "navy", "white")
 
 
 def _cross_streets(stage: Stage) -> None:
-    """Place terraced houses along Church Road and Mill Lane, as linked copies of six."""
+    """Place terraced houses along Church Road and Mill Lane, as linked copies of six prototypes."""
     row = _Row(stage)
     for sign in (1, -1):
         far_bearing, near_bearing = (180.0, 0.0) if sign > 0 else (0.0, 180.0)
@@ -163,11 +163,11 @@ def _cross_streets(stage: Stage) -> None:
 
 
 class _Row:
-    """Places houses, as linked copies after the first use of each prototype."""
+    """Places houses. After the first use of a prototype, they are linked copies of it."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
-        self._moulds: dict[int, Built] = {}
+        self._prototypes: dict[int, Built] = {}
         self._doors: dict[str, Built] = {}
         self._count = 0
 
@@ -183,10 +183,10 @@ class _Row:
             x += side * width
 
     def house(self, plot: Plot, pick: int | None = None) -> None:
-        """Place the house number ``pick`` on a plot."""
+        """Place a house on a plot. ``pick`` is its index in ``HOUSES``; by default, houses take turns."""
         pick = self._count % len(HOUSES) if pick is None else pick
         spec = HOUSES[pick]
-        built = self._moulds[pick].copy() if pick in self._moulds else self._moulds.setdefault(pick, terrace(spec))
+        built = self._prototypes[pick].copy() if pick in self._prototypes else self._prototypes.setdefault(pick, terrace(spec))
         material = {"render": "painted render"}.get(spec.wall[0], spec.wall[0])
         ident = self._stage.place(
             built, "building", f"{spec.wall[1]} {spec.wall[0]} house", plot.at(0, 0), plot.bearing_deg,
@@ -261,14 +261,14 @@ def _gables(stage: Stage) -> None:
         stage.place(built, "tree", "birch tree", here, 70.0 * k, scale=0.62 + 0.05 * (k % 2), colour="green", species="birch")
 
 
-def _behind(stage: Stage) -> None:
+def _background(stage: Stage) -> None:
     """Place trees over the back gardens, hedges at the ends of the streets, and the land beyond."""
     rng = random.Random("behind")
     species = (vegetation.OAK, vegetation.LIME, vegetation.COPPER, vegetation.BIRCH, vegetation.POPLAR)
     prototypes = [vegetation.tree(sp, 60 + k, detail=0.16) for k, sp in enumerate(species)]
     fresh = set(range(len(prototypes)))
 
-    def strew(x: float, y: float, scale: float) -> None:
+    def scatter(x: float, y: float, scale: float) -> None:
         k = rng.choices(range(len(prototypes)), weights=(5, 5, 1, 3, 2))[0]
         built = prototypes[k] if k in fresh else prototypes[k].copy()
         fresh.discard(k)
@@ -276,10 +276,10 @@ def _behind(stage: Stage) -> None:
 
     for _ in range(46):
         side = rng.choice((-1, 1))
-        strew(side * rng.uniform(26, 70) + 1.0, rng.uniform(-36, 36), rng.uniform(0.8, 1.2))
+        scatter(side * rng.uniform(26, 70) + 1.0, rng.uniform(-36, 36), rng.uniform(0.8, 1.2))
     for sign in (-1, 1):
         for _ in range(26):
-            strew(rng.uniform(-90, 90), sign * rng.uniform(80, 105), rng.uniform(0.9, 1.4))
+            scatter(rng.uniform(-90, 90), sign * rng.uniform(80, 105), rng.uniform(0.9, 1.4))
         for side in (-1, 1):
             for _ in range(16):
-                strew(side * rng.uniform(97, 125), rng.uniform(-80, 80), rng.uniform(0.9, 1.4))
+                scatter(side * rng.uniform(97, 125), rng.uniform(-80, 80), rng.uniform(0.9, 1.4))

@@ -1,4 +1,4 @@
-"""High street: people, dogs and pigeons that stay where they are."""
+"""High street: people, dogs and pigeons that do not move."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ UMBRELLAS: tuple[tuple[str, str | None, float, float, float, int, bool], ...] = 
     ("purple", None, 7.6, 30.8, 176, 27, True), ("pink", None, -5.4, 40.6, 130, 28, False), ("navy", "white", 12.0, 61.2, 268,
     29, True),
 )  # fmt: skip
-"""Colour, second colour, place, bearing, seed, walking."""
+"""Colour, second colour, x, y, bearing, seed, whether the person walks."""
 STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
     (-5.0, -6.1, 95, "stand", 41, None, "waiting"), (-4.6, -7.2, 60, "phone", 42, None, "on the phone"), (-5.4, -39.0, 178,
     "walk", 43, "bag", "walking"),
@@ -28,7 +28,7 @@ STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
     (2.0, 61.0, 180, "stand", 51, None, "standing"), (2.4, -60.9, 80, "walk", 52, "bag", "walking"), (-11.0, -61.4, 268, "walk",
     53, None, "walking"),
 )  # fmt: skip
-"""Place, bearing, pose, seed, what they hold, what they do."""
+"""x, y, bearing, pose, seed, what the person holds, what the person does."""
 
 
 def build(stage: Stage) -> None:
@@ -134,23 +134,23 @@ def _sitters(stage: Stage) -> None:
 
 def _indoors(stage: Stage) -> None:
     """Place shopkeepers and customers behind glass."""
-    for number, x, y, bearing, seed, who in (
+    for number, x, y, bearing, seed, role in (
         (3, 1.4, -1.6, 0, 81, "butcher"), (9, -1.6, -1.7, 10, 82, "baker"), (6, -1.0, -1.5, 30, 83, "hairdresser"), (5, 1.8,
         -1.4, -20, 84, "customer"),
         (22, -1.4, -1.7, 15, 85, "greengrocer"), (14, -1.4, -1.6, -15, 86, "estate agent"),
     ):  # fmt: skip
         plot = plots()[number]
-        top = "white" if who in ("butcher", "baker") else None
+        top = "white" if role in ("butcher", "baker") else None
         built = characters.pedestrian(pose="stand", top=top, seed=seed)
         stage.place(
             built,
             "pedestrian",
-            f"{who} in the shop",
+            f"{role} in the shop",
             plot.at(x, y, 0.03),
             plot.bearing_deg + bearing,
             state="standing",
             behind="glass",
-            role=who,
+            role=role,
         )
 
 
@@ -160,7 +160,7 @@ def _pigeons(stage: Stage) -> None:
         (-5.4, -25.2, 10),
         (-5.9, -27.5, 95), (7.4, 8.4, 60), (7.8, 8.8, 200), (7.2, 9.1, 310),
     )  # fmt: skip
-    looks = (
+    kinds = (
         ("grey", "stand"),
         ("grey", "peck"),
         ("dark grey", "peck"),
@@ -169,8 +169,8 @@ def _pigeons(stage: Stage) -> None:
         ("white", "stand"),
         ("dark grey", "stand"),
     )
-    made: dict[tuple[str, str], Built] = {}
-    spots = [(x, y, KERB_M, b, looks[k % len(looks)]) for k, (x, y, b) in enumerate(flock)]
+    prototypes: dict[tuple[str, str], Built] = {}
+    spots = [(x, y, KERB_M, b, kinds[k % len(kinds)]) for k, (x, y, b) in enumerate(flock)]
     for number, xs in ((7, (-1.2, -0.8, 1.4)), (12, (2.0, 1.3))):
         plot = plots()[number]
         spots += [
@@ -178,7 +178,7 @@ def _pigeons(stage: Stage) -> None:
             for k, x in enumerate(xs)
         ]
     spots += [(-5.6, -9.0 - 0.5 * k, KERB_M + 2.47, 80 + 60 * k, ("grey", "stand") if k else ("grey", "rest")) for k in range(2)]
-    for x, y, z, bearing, look in spots:
-        built = made[look].copy() if look in made else made.setdefault(look, birds.pigeon(look[0], pose=look[1]))
-        state = {"stand": "standing", "peck": "pecking", "rest": "resting"}[look[1]]
-        stage.place(built, "pigeon", f"{look[0]} pigeon", (x, y, z), bearing, colour=look[0], state=state)
+    for x, y, z, bearing, kind in spots:
+        built = prototypes[kind].copy() if kind in prototypes else prototypes.setdefault(kind, birds.pigeon(kind[0], pose=kind[1]))
+        state = {"stand": "standing", "peck": "pecking", "rest": "resting"}[kind[1]]
+        stage.place(built, "pigeon", f"{kind[0]} pigeon", (x, y, z), bearing, colour=kind[0], state=state)

@@ -1,4 +1,4 @@
-"""High street: the plan that its parts share. The street runs along y, and traffic drives on the left."""
+"""High street: the layout that the modules of the scene share. The street runs along y, and traffic drives on the left."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from scope_studio.kit.ground.wet_street import KERB_M
 
 WEST_KERB, EAST_KERB = -3.2, 5.4
-"""Edges of the carriageway. Its eastern 2.2 m are parking bays."""
+"""x coordinates of the edges of the carriageway. Its eastern 2.2 m are parking bays."""
 WEST_FRONT, EAST_FRONT = -7.4, 9.6
 ROW_END = 48.0
-"""The rows of shops reach from -ROW_END to ROW_END."""
+"""The rows of shops extend from y = -ROW_END to ROW_END."""
 JUNCTION = (52.0, 59.0)
-"""Near and far kerb of the cross streets (Church Road in the north, Mill Lane in the south)."""
+"""Distance from y = 0 of the near and far kerb of the cross streets (Church Road in the north, Mill Lane in the south)."""
 FAR_FRONT = 63.0
 BAY_X = 4.28
 NORTHBOUND_X, SOUTHBOUND_X = -1.6, 1.55
@@ -22,7 +22,7 @@ ZEBRA = (11.6, 15.2)
 
 @dataclass(frozen=True)
 class Plot:
-    """Place of a building: the middle of its front at pavement height, and the bearing that it faces."""
+    """Position of a building: the middle of its front at pavement height, and the bearing that it faces."""
 
     x: float
     y: float

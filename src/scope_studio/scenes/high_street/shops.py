@@ -13,9 +13,9 @@ from scope_studio.scenes.high_street.plan import EAST_FRONT, ROW_END, WEST_FRONT
 
 @dataclass(frozen=True)
 class Shop:
-    """One house of the rows.
+    """One building of the rows.
 
-    ``noun`` is what a person calls the shop; an empty string makes it a dwelling with a front door.
+    ``noun`` is the common name for the kind of shop. If it is empty, the building is a house with a front door.
     """
 
     number: int
@@ -106,14 +106,14 @@ EAST: tuple[Shop, ...] = (
 
 
 def plots() -> dict[int, Plot]:
-    """Return the plot of each house number."""
-    made: dict[int, Plot] = {}
+    """Return the plot of each building, by house number."""
+    plot_of: dict[int, Plot] = {}
     for row, x, bearing in ((WEST, WEST_FRONT, 90.0), (EAST, EAST_FRONT, 270.0)):
         y = -ROW_END
         for shop in row:
-            made[shop.number] = Plot(x, y + shop.width_m / 2, bearing)
+            plot_of[shop.number] = Plot(x, y + shop.width_m / 2, bearing)
             y += shop.width_m
-    return made
+    return plot_of
 
 
 def door_x(shop: Shop) -> float:
@@ -125,10 +125,10 @@ def build(stage: Stage) -> dict[int, str]:
     """Place both rows.
 
     Returns:
-        The instance id of each number's shop or house.
+        The instance id of each shop or house, by house number.
     """
-    where = plots()
-    return {shop.number: _house(stage, shop, where[shop.number]) for shop in (*WEST, *EAST)}
+    plot_of = plots()
+    return {shop.number: _house(stage, shop, plot_of[shop.number]) for shop in (*WEST, *EAST)}
 
 
 def _house(stage: Stage, shop: Shop, plot: Plot) -> str:
@@ -182,9 +182,9 @@ def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
     _notices(stage, shop, plot, ident)
     if shop.awning:
         first, second, out = shop.awning
-        made = shop_displays.awning(shop.width_m - 0.5, first, second, open=out)
+        awning = shop_displays.awning(shop.width_m - 0.5, first, second, open=out)
         stage.place(
-            made, "awning", f"{first} and {second} awning", plot.at(0, 0.24, 2.80), bearing, parent=ident,
+            awning, "awning", f"{first} and {second} awning", plot.at(0, 0.24, 2.80), bearing, parent=ident,
             colour=first, pattern="striped", state="open" if out else "rolled up",
         )  # fmt: skip
     if shop.hanging:
@@ -195,20 +195,20 @@ def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
 
 
 def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
-    """Place the open or closed sign on the door, and the card with opening hours beside it."""
+    """Place the open or closed sign on the door, and the card with opening hours next to it."""
     bearing = plot.bearing_deg
     if shop.open is not None:
         word, tint = ("OPEN", "green") if shop.open else ("CLOSED", "red")
-        made: Built = shopfronts.plate((word,), 0.075, "white", tint)
+        notice: Built = shopfronts.plate((word,), 0.075, "white", tint)
         stage.place(
-            made, "door sign", f"{word.lower()} sign", plot.at(door_x(shop), 0.035, 1.68), bearing, parent=ident,
+            notice, "door sign", f"{word.lower()} sign", plot.at(door_x(shop), 0.035, 1.68), bearing, parent=ident,
             colour="white", lettering=tint, says=word.lower(),
         )  # fmt: skip
     if shop.card:
-        made = shopfronts.plate(shop.card, 0.055, "white", "black")
+        notice = shopfronts.plate(shop.card, 0.055, "white", "black")
         step = 1.05 if door_x(shop) <= 0 else -1.05
         stage.place(
-            made,
+            notice,
             "window notice",
             "notice in the window",
             plot.at(door_x(shop) + step, 0.015, 1.62),

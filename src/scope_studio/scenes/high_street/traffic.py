@@ -16,9 +16,9 @@ from scope_studio.kit.vehicles import cars, cycles, double_decker
 from scope_studio.scenes.high_street.plan import BAY_X, NORTHBOUND_X, SOUTHBOUND_X, ZEBRA, Plot
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer, far above the numbers of the instances."""
+"""Number of the first actor in the instance-number layer, well above the numbers of the instances."""
 PERIOD_S = 40.0
-"""All paths repeat with this period, so that walkers and traffic always meet in the same way."""
+"""Period of all paths. It is the same, so that pedestrians and traffic always meet at the same places."""
 PARKED = (
     (cars.hatchback, "red", "LK19 FWD", "hatchback", -38.4), (cars.saloon, "silver", "GY68 TNB", "saloon", -26.0),
     (cars.suv, "blue", "RO21 HXC", "SUV", -13.8), (cars.hatchback, "yellow", "EA17 JVP", "hatchback", -1.6),
@@ -119,35 +119,35 @@ def _vehicles(stage: Stage) -> None:
 
 
 def _actors(stage: Stage) -> None:
-    walk = _closed([(-4.7, 13.3), (6.5, 13.3), (6.9, 28.0), (7.9, 28.0), (7.6, 14.3), (-4.7, 14.3)], PERIOD_S)
-    dog_walk = [(-4.75, 22.8), (-4.75, 36.5), (-5.7, 36.5), (-5.7, 22.8)]
-    beside = [(-4.3, 22.4), (-4.3, 36.9), (-6.15, 36.9), (-6.15, 22.4)]
+    crossing_path = _closed_path([(-4.7, 13.3), (6.5, 13.3), (6.9, 28.0), (7.9, 28.0), (7.6, 14.3), (-4.7, 14.3)], PERIOD_S)
+    walker_path = [(-4.75, 22.8), (-4.75, 36.5), (-5.7, 36.5), (-5.7, 22.8)]
+    dog_path = [(-4.3, 22.4), (-4.3, 36.9), (-6.15, 36.9), (-6.15, 22.4)]
     speed = 5.0
     gx, gy, gz = stances.LEAD_GRIP
     stage.actors = [
         ActorPath(
             "moving-car-01", FIRST_ACTOR, "car", "orange hatchback", lambda _phase: cars.hatchback("orange", plate="NB23 RTG"),
-            _timed([(30.0, 53.9), (6.5, 53.9), (2.6, 52.4), (1.5, 48.5), (1.5, -36.0)], 9.0, 12.0), PERIOD_S,
+            _open_path([(30.0, 53.9), (6.5, 53.9), (2.6, 52.4), (1.5, 48.5), (1.5, -36.0)], 9.0, 12.0), PERIOD_S,
             {"colour": "orange", "kind": "hatchback", "plate": "NB23 RTG", "state": "moving", "facing": "south"},
         ),
         ActorPath(
             "moving-cyclist-01", FIRST_ACTOR + 1, "cyclist", "cyclist on a blue bicycle", _cyclist,
-            _timed([(2.3, 50.0), (2.45, -38.0)], speed, 4.0), PERIOD_S, {"bicycle": "blue", "state": "riding", "facing": "south"},
-            stride_m=4.4,
+            _open_path([(2.3, 50.0), (2.45, -38.0)], speed, 4.0), PERIOD_S,
+            {"bicycle": "blue", "state": "riding", "facing": "south"}, stride_m=4.4,
         ),
         ActorPath(
-            "moving-walker-01", FIRST_ACTOR + 2, "pedestrian", "walker with a white umbrella", _walker, walk, PERIOD_S,
+            "moving-walker-01", FIRST_ACTOR + 2, "pedestrian", "walker with a white umbrella", _walker, crossing_path, PERIOD_S,
             {"umbrella": "white", "state": "walking", "holding": "umbrella"}, stride_m=poses.STRIDE_M,
         ),
         ActorPath(
             "moving-walker-02", FIRST_ACTOR + 3, "pedestrian", "dog walker in a yellow jumper",
-            lambda phase: characters.pedestrian(stance=stances.leading(phase), top="yellow", seed=92), _closed(dog_walk, PERIOD_S),
-            PERIOD_S,
+            lambda phase: characters.pedestrian(stance=stances.leading(phase), top="yellow", seed=92),
+            _closed_path(walker_path, PERIOD_S), PERIOD_S,
             {"top": "yellow", "state": "walking", "holding": "lead"}, stride_m=1.15,
         ),
         ActorPath(
             "moving-dog-01", FIRST_ACTOR + 4, "dog", "black dog",
-            lambda phase: dogs.dog("black", phase=phase, lead_to=(gx - 0.45, gy - 0.1, gz)), _beside(dog_walk, beside),
+            lambda phase: dogs.dog("black", phase=phase, lead_to=(gx - 0.45, gy - 0.1, gz)), _in_step(walker_path, dog_path),
             PERIOD_S,
             {"colour": "black", "state": "walking", "collar": "red"}, stride_m=0.75,
         ),
@@ -157,33 +157,33 @@ def _actors(stage: Stage) -> None:
 def _cyclist(phase: float) -> Built:
     bicycle = cycles.bicycle("blue", kind="town", crank_deg=360 * phase)
     rider = characters.pedestrian(stance=stances.riding(360 * phase), top="dark red", trousers="black", seed=14)
-    return Built.of("cyclist", [_loose(bicycle), _loose(rider)])
+    return Built.of("cyclist", [_detached(bicycle), _detached(rider)])
 
 
 def _walker(phase: float) -> Built:
     person = characters.pedestrian(stance=stances.with_umbrella(phase, seed=91), top="navy", seed=91)
     canopy = umbrellas.umbrella("white")
-    obj = _loose(canopy)
+    obj = _detached(canopy)
     for vertex in obj.data.vertices:
         vertex.co = vertex.co + type(vertex.co)(stances.UMBRELLA_GRIP)
-    return Built.of("walker", [_loose(person), obj])
+    return Built.of("walker", [_detached(person), obj])
 
 
-def _loose(built: Built) -> bpy.types.Object:
-    """Return the single object of a thing, detached from its root."""
+def _detached(built: Built) -> bpy.types.Object:
+    """Return the only Blender object of ``built``, detached from its root."""
     obj = built.objects[0]
     obj.parent = None
     return obj
 
 
 def _height(x: float, y: float) -> float:
-    """Return the height of footway or road. Kerbs are dropped at the zebra crossing."""
+    """Return the height of the ground at a point of the footways or of the zebra crossing."""
     on_road = -3.2 < x < 5.4
     return 0.0 if on_road and ZEBRA[0] - 1 < y < ZEBRA[1] + 1 else KERB_M
 
 
-def _closed(corners: list[tuple[float, float]], period_s: float) -> list[tuple[float, float, float, float]]:
-    """Return a closed path at constant speed that takes ``period_s`` and steps down where it crosses the road."""
+def _closed_path(corners: list[tuple[float, float]], period_s: float) -> list[tuple[float, float, float, float]]:
+    """Return the waypoints of a closed path at constant speed that takes ``period_s`` and steps down to cross the road."""
     ring = []
     for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
         ring.append((x0, y0))
@@ -191,22 +191,22 @@ def _closed(corners: list[tuple[float, float]], period_s: float) -> list[tuple[f
         ring += [(k, y0 + (y1 - y0) * (k - x0) / (x1 - x0)) for k in cuts]
     ring.append(corners[0])
     total = sum(math.dist(a, b) for a, b in itertools.pairwise(ring))
-    way, walked = [(0.0, *ring[0], _height(*ring[0]))], 0.0
+    waypoints, walked = [(0.0, *ring[0], _height(*ring[0]))], 0.0
     for a, b in itertools.pairwise(ring):
         walked += math.dist(a, b)
-        way.append((period_s * walked / total, *b, _height(*b)))
-    return way
+        waypoints.append((period_s * walked / total, *b, _height(*b)))
+    return waypoints
 
 
-def _timed(points: list[tuple[float, float]], speed_mps: float, start_s: float) -> list[tuple[float, float, float, float]]:
-    way, t = [(start_s, *points[0], 0.0)], start_s
+def _open_path(points: list[tuple[float, float]], speed_mps: float, start_s: float) -> list[tuple[float, float, float, float]]:
+    waypoints, t = [(start_s, *points[0], 0.0)], start_s
     for a, b in itertools.pairwise(points):
         t += math.dist(a, b) / speed_mps
-        way.append((t, *b, 0.0))
-    return way
+        waypoints.append((t, *b, 0.0))
+    return waypoints
 
 
-def _beside(lead: list[tuple[float, float]], own: list[tuple[float, float]]) -> list[tuple[float, float, float, float]]:
-    """Return a path along the ``own`` corners that keeps pace with a walker along the ``lead`` corners."""
-    times = [w[0] for w in _closed(lead, PERIOD_S)]
+def _in_step(lead: list[tuple[float, float]], own: list[tuple[float, float]]) -> list[tuple[float, float, float, float]]:
+    """Return the waypoints of a path along the ``own`` corners, in step with a person who walks along the ``lead`` corners."""
+    times = [w[0] for w in _closed_path(lead, PERIOD_S)]
     return [(t, *p, KERB_M) for t, p in zip(times, [*own, own[0]], strict=True)]

@@ -14,7 +14,7 @@ ABSENT = (
     "ambulance", "bench", "bicycle", "bulldozer", "cow", "crane", "dog", "fire engine", "horse", "motorcycle", "police car",
     "swimming pool", "tractor", "traffic light", "train", "wind turbine",
 )  # fmt: skip
-"""Things that a person might ask for but that are not in the scene."""
+"""Objects that a question might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
@@ -25,7 +25,7 @@ def build(stage: Stage) -> None:
     site.build(stage)
     road.build(stage)
     land.build(stage)
-    plants.build(stage)  # last, because lettering is slower the more objects the file holds
+    plants.build(stage)  # last, because lettering gets slower with the number of objects in the file
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = sky.finish_materials

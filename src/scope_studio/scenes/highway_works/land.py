@@ -34,7 +34,7 @@ ROAD = highway.Carriageway(
     ),
 )
 COMPOUND = (-44.4, -22.6, -24.4, 4.0)
-"""West, east, south and north fence lines of the site compound, metres."""
+"""Coordinates in metres of the west, east, south and north fences of the site compound."""
 BRIDGE_Y = 85.0
 DECK_M = 6.9
 

@@ -87,7 +87,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
 
 
 def _boundaries(stage: Stage, height: Height) -> None:
-    """Place timber fences along the highway boundary and hedges behind them. They have no visible ends and are not annotated."""
+    """Place timber fences along the highway boundary and hedges behind them. They are not annotated: no camera sees their ends."""
     fence = structures.post_and_rail(9.0)
     first = True
     for x, spans in ((27.5, ((-190, 64), (106, 190))), (-21.2, ((106, 190), (-190, -50)))):
@@ -125,7 +125,7 @@ def _boundaries(stage: Stage, height: Height) -> None:
 
 
 def _countryside(stage: Stage, height: Height) -> None:
-    """Place woods at the road's vanishing points and on the hills, and hedgerow trees in the fields."""
+    """Place woods where the road disappears and on the hills, and hedgerow trees in the fields."""
     rng = random.Random("countryside")
     species = (vegetation.OAK, vegetation.LIME, vegetation.POPLAR, vegetation.PINE, vegetation.COPPER)
     far = [vegetation.tree(sp, 7 + k, detail=0.14) for k, sp in enumerate(species)] + [
@@ -135,7 +135,7 @@ def _countryside(stage: Stage, height: Height) -> None:
     hedgerow = vegetation.hedge(16.0, seed=9, detail=0.16)
     fresh = {id(m) for m in [*far, scrub, hedgerow]}
 
-    def strew(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
+    def scatter(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
         built = prototype if id(prototype) in fresh else prototype.copy()
         fresh.discard(id(prototype))
         stage.put(built, (x, y, height(x, y) - 0.1), bearing, scale=scale)
@@ -148,19 +148,19 @@ def _countryside(stage: Stage, height: Height) -> None:
             for _ in range(85):
                 y = end * rng.triangular(125, 640, 300)
                 x = ROAD.centre_x(y) + side * (27 + 46 * rng.random() ** 1.6)
-                strew(any_tree(), x, y, rng.uniform(0, 360), rng.uniform(0.75, 1.25))
+                scatter(any_tree(), x, y, rng.uniform(0, 360), rng.uniform(0.75, 1.25))
             for _ in range(26):
                 y = end * rng.uniform(112, 420)
-                strew(scrub, ROAD.centre_x(y) + side * rng.uniform(19.5, 24), y, rng.uniform(0, 360), rng.uniform(0.7, 1.5))
+                scatter(scrub, ROAD.centre_x(y) + side * rng.uniform(19.5, 24), y, rng.uniform(0, 360), rng.uniform(0.7, 1.5))
     for _ in range(46):
-        strew(any_tree(), rng.uniform(124, 150), rng.uniform(-120, 150), rng.uniform(0, 360), rng.uniform(0.8, 1.3))
+        scatter(any_tree(), rng.uniform(124, 150), rng.uniform(-120, 150), rng.uniform(0, 360), rng.uniform(0.8, 1.3))
     for _ in range(30):
         x, y = rng.gauss(-100, 22), rng.gauss(66, 26)
         if (
             min(math.hypot(x - hx, y - hy) for hx, hy in ((-74, 30), (-86, 44), (-70, 62), (-98, 20), (-112, 52), (-90, 78))) > 10
             and x < -58
         ):
-            strew(any_tree(), x, y, rng.uniform(0, 360), rng.uniform(0.55, 0.95))
+            scatter(any_tree(), x, y, rng.uniform(0, 360), rng.uniform(0.55, 0.95))
     for _ in range(60):
         x, y, heading, count = rng.uniform(-620, 620), rng.uniform(-620, 620), rng.uniform(0, 180), rng.randrange(4, 11)
         dx, dy = math.sin(math.radians(heading)), math.cos(math.radians(heading))
@@ -168,26 +168,26 @@ def _countryside(stage: Stage, height: Height) -> None:
             px, py = x + dx * 16 * k, y + dy * 16 * k
             if abs(px - ROAD.centre_x(py)) < 70 or math.hypot(px, py) < 110:
                 continue
-            strew(hedgerow, px, py, heading - 90, 1.0)
+            scatter(hedgerow, px, py, heading - 90, 1.0)
             if rng.random() < 0.35:
-                strew(any_tree(), px, py, rng.uniform(0, 360), rng.uniform(0.6, 1.1))
+                scatter(any_tree(), px, py, rng.uniform(0, 360), rng.uniform(0.6, 1.1))
     for _ in range(34):
         bearing, radius = rng.uniform(0, 2 * math.pi), rng.uniform(380, 1500)
         cx, cy = radius * math.sin(bearing), radius * math.cos(bearing)
         for _ in range(rng.randrange(8, 26)):
             x, y = cx + rng.gauss(0, 30), cy + rng.gauss(0, 18)
             if abs(x - ROAD.centre_x(max(-950.0, min(950.0, y)))) > 40:
-                strew(any_tree(), x, y, rng.uniform(0, 360), rng.uniform(0.8, 1.4))
+                scatter(any_tree(), x, y, rng.uniform(0, 360), rng.uniform(0.8, 1.4))
 
 
 def _grass(stage: Stage) -> None:
-    """Place grass blades where a camera can look closely: on the verges near the viewpoints."""
+    """Place grass on the verges near the viewpoints, where a camera can see it in close-up."""
     rng = random.Random("grass")
     long = [vegetation.grass_patch(2.0, blades=1500, height_m=0.17, seed=k, flowers=4 * (k == 0)) for k in range(3)]
     mown = [vegetation.grass_patch(2.0, blades=1700, height_m=0.075, seed=10 + k) for k in range(2)]
     used: set[int] = set()
 
-    def strew(prototypes: list[Built], x: float, y: float) -> None:
+    def scatter(prototypes: list[Built], x: float, y: float) -> None:
         prototype = rng.choice(prototypes)
         built = prototype.copy() if id(prototype) in used else prototype
         used.add(id(prototype))
@@ -196,7 +196,7 @@ def _grass(stage: Stage) -> None:
     def row(prototypes: list[Built], x: float, y: float, share: float = 1.0) -> None:
         if rng.random() < share:
             wide = 0.25 if share == 1.0 else 0.9
-            strew(prototypes, x + rng.uniform(-wide, wide), y + rng.uniform(-0.4, 0.4))
+            scatter(prototypes, x + rng.uniform(-wide, wide), y + rng.uniform(-0.4, 0.4))
 
     for y in range(-60, 76, 2):
         if not 8 < y < 58:

@@ -1,4 +1,4 @@
-"""Highway works: things along the road: gantries, signs, lamp posts, guardrails, marker posts, telephones."""
+"""Highway works: objects along the road (gantries, signs, lamp posts, guardrails, marker posts, telephones)."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from scope_studio.kit.signs.faces import Panel
 from scope_studio.kit.signs.gantry import Signal
 
 SOUTH, NORTH = 180.0, 0.0
-"""Bearing that a sign's front faces. Northbound drivers read the fronts that face south."""
+"""Bearings that the front of a sign can face. Northbound drivers read signs that face south."""
 
 
 def build(stage: Stage) -> None:
-    """Place everything along the road."""
+    """Place the objects along the road."""
     _gantries(stage)
     _direction_signs(stage)
     _works_signs(stage)

@@ -15,15 +15,15 @@ from scope_studio.scenes.highway_works.land import COMPOUND
 
 GATE_X = -33.0
 LINE_X = -9.3
-"""Line of cones and barriers between the works and the traffic."""
+"""x coordinate of the line of cones and barriers between the works and the traffic."""
 
 TAPER = [(-15.1 + 5.8 * k / 9, -79.0 + 4.2 * k) for k in range(10)]
 CONES = [(LINE_X, y) for y in (-35.0, -28.5, -22.0, -15.5, -9.0, -2.5, 7.2, 10.8, 27.0, 31.0)]
 RESERVE_CONES = [(-1.72, y) for y in (9.2, 11.3, 13.5)]
-"""Cones on the central reserve, beside the works and a damaged guardrail.
+"""Cones on the central reserve, next to the works and a damaged guardrail.
 
-Seen from the mast, pan steps of 15 degrees to the right from the preset "highway" show two, four and seven of them. None of
-them is near the edge of a frame or half hidden.
+From the preset "highway", pan steps of 15 degrees to the right show two, four and seven of them. In these views, no cone is near
+the edge of the frame or half hidden.
 """
 
 

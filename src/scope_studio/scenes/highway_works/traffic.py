@@ -1,4 +1,4 @@
-"""Highway works: vehicles in the open lanes, at the works and in the freight yard, and all moving actors."""
+"""Highway works: vehicles in the open lanes, at the works and in the freight yard, and the moving actors."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from scope_studio.kit.people import characters
 from scope_studio.kit.vehicles import cars, coach, lorries
 
 LANE_1, LANE_2, LANE_3 = 10.75, 7.25, 3.75
-"""Distances of the lane centres from the middle of the road. In both directions, moving vehicles have one lane of their own."""
+"""Distances in metres of the lane centres from the middle of the road. In each direction, one lane is for moving vehicles only."""
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer, far above the numbers of the instances."""
+"""Number of the first actor in the instance-number layer, well above the numbers of the instances."""
 
 Car = Callable[..., Built]
 
@@ -49,7 +49,7 @@ def build(stage: Stage) -> None:
 
 
 def _course(x: float) -> tuple[float, dict[str, str | int]]:
-    """Return bearing and attributes of a vehicle driving at ``x``."""
+    """Return the bearing and the attributes of a vehicle in the lane at ``x``."""
     lane = 1 + round((LANE_1 - abs(x)) / 3.5)
     heading = "north" if x < 0 else "south"
     return (0.0 if x < 0 else 180.0), {"state": "moving", "facing": heading, "lane": lane, "carriageway": f"{heading}bound"}

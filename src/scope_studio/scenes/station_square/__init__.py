@@ -6,7 +6,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import sky
-from scope_studio.scenes.station_square import beyond, fixtures, ground, life, market, people, town, traffic
+from scope_studio.scenes.station_square import fixtures, ground, market, people, set_dressing, surroundings, town, traffic
 
 NAME = "station-square"
 TITLE = "Station square"
@@ -34,7 +34,7 @@ ABSENT = (
     "train",
     "tent",
 )
-"""Things that a person might ask for but that are not in the scene."""
+"""Objects that a question might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
@@ -44,14 +44,14 @@ def build(stage: Stage) -> None:
         bpy.context.scene, sun_bearing_deg=128.0, sun_elevation_deg=31.0, sun_strength=5.6, sky_strength=0.72, cloud_cover=0.25
     )
     town.build(stage)
-    beyond.church(stage)
+    surroundings.church(stage)
     traffic.build(stage)
     fixtures.build(stage)
-    life.build(stage)
+    set_dressing.build(stage)
     market.build(stage)
     people.build(stage)
     ground.build(stage)
-    beyond.build(stage)  # last, because building is slower the more objects the file holds
+    surroundings.build(stage)  # last, because building gets slower with the number of objects in the file
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = sky.finish_materials

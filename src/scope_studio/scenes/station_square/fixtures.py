@@ -41,7 +41,7 @@ TREES = [
 
 
 def build(stage: Stage) -> None:
-    """Place everything that is fixed in the square."""
+    """Place the fixed objects of the square."""
     prototypes = Prototypes()
     _fountain(stage)
     _seats_and_bins(stage, prototypes)

@@ -1,4 +1,4 @@
-"""Station square: paving, carriageways, tram tracks, covers, and the country around the town."""
+"""Station square: paving, carriageways, tram tracks, manhole covers, and the countryside around the town."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from scope_studio.kit.furniture import roadside
 from scope_studio.kit.ground import paving
 
 ROAD_M = -0.10
-"""Height of the carriageways. The square and the pavements are at 0."""
+"""Height in metres of the carriageways. The square and the pavements are at 0."""
 SQUARE = (-36.0, 23.5, -11.8, 40.0)
 APPROACH = (23.5, 32.5)
 STREET = (-25.5, -11.8)
 TRACKS = (-14.0, -17.4)
-"""y of the eastbound and the westbound track."""
+"""y coordinates of the eastbound and the westbound track."""
 
 
 def build(stage: Stage) -> None:
-    """Place paving, tracks, covers and the land beyond."""
+    """Place paving, tracks, manhole covers and the land around the town."""
     _surfaces(stage)
     _tracks(stage)
     _covers(stage)
@@ -88,7 +88,7 @@ def _covers(stage: Stage) -> None:
 
 
 def _hills() -> None:
-    """Create farmland that rises to wooded hills: a ring mesh that closes the view in every direction."""
+    """Create farmland that rises to wooded hills: a ring-shaped mesh that hides the horizon in every direction."""
     s = Shader("far country")
     p = s.position()
     fields = s.voronoi(s.scaled(p, (0.006, 0.0085, 0.0)), 1.0, output="Color")

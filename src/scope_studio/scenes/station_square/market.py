@@ -10,7 +10,7 @@ from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import cafe, produce, stalls
 
 FACING = 150.0
-"""Bearing that the fronts of the stalls face."""
+"""Bearing in degrees that the fronts of the stalls face."""
 
 Goods = tuple[str, str | None]
 """Contents of a crate, and the text of its price card (lines split at the newline)."""
@@ -99,7 +99,7 @@ STALLS: list[Stall] = [
         [("rolls", None), ("lemons", "LEMON\n2.50")],
     ),
 ]
-"""Name board, canvas colours, place, goods."""
+"""Name board, canvas colours, position and goods of each stall."""
 
 EMPTY_STALL = (-5.8, 15.8)
 BLOOMS = ("red", "yellow", "pink", "white", "purple", "orange")
@@ -107,10 +107,10 @@ TERRACE_ROWS = (-7.4, -4.4, -1.4, 1.6)
 TERRACE_COLUMNS = (-32.2, -28.9)
 
 
-def spot(place: tuple[float, float], right: float, out: float, bearing: float = FACING) -> tuple[float, float]:
-    """Return the world position of a point at a front.
+def at_front(place: tuple[float, float], right: float, out: float, bearing: float = FACING) -> tuple[float, float]:
+    """Convert a point in the frame of a front to a world position.
 
-    ``right`` is measured to the reader's right along the front, ``out`` in front of it (m).
+    ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
     """
     b = math.radians(bearing)
     return place[0] - right * math.cos(b) + out * math.sin(b), place[1] + right * math.sin(b) + out * math.cos(b)
@@ -132,12 +132,12 @@ def build(stage: Stage) -> None:
         state="closed",
         canopy="rolled up",
     )
-    cx, cy = spot(EMPTY_STALL, 0.4, 0.5)
+    cx, cy = at_front(EMPTY_STALL, 0.4, 0.5)
     stage.place(
         produce.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
     )
     for k, (right, out) in enumerate(((-2.2, -0.6), (-2.2, 0.1), (2.3, -0.9))):
-        x, y = spot(EMPTY_STALL, right, out)
+        x, y = at_front(EMPTY_STALL, right, out)
         for level in range(3 if k == 0 else 1):
             stage.place(
                 prototypes.get("empty crate", produce.crate),
@@ -167,12 +167,12 @@ def _stall(
         colour=colour,
         pattern="striped" if striped else "plain",
         state="open",
-        sells=_sells(sign),
+        sells=_goods_of(sign),
     )
     for k, (kind, card) in enumerate(goods):
         row, column = divmod(k, 5)
         right, out = -1.17 + 0.585 * column, 0.70 - 0.42 * row
-        x, y = spot(place, right, out)
+        x, y = at_front(place, right, out)
         z = stalls.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
         colour = "timber" if kind not in ("fish", "salmon", "prawns") else "white"
         built = prototypes.get(
@@ -182,14 +182,14 @@ def _stall(
             built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=own, contents=kind, state="full"
         )
         if card:
-            cx, cy = spot(place, right, out - 0.19)
+            cx, cy = at_front(place, right, out - 0.19)
             stage.place(
                 produce.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
                 f"price card for {card.split(chr(10))[0].lower()}", (cx, cy, z + 0.06), FACING, parent=crate,
             )  # fmt: skip
     for k, right in enumerate((-1.0, 0.2, 1.1)):  # stock under and behind the counter
         if (k + len(sign)) % 2:
-            x, y = spot(place, right, -1.35)
+            x, y = at_front(place, right, -1.35)
             stage.place(
                 prototypes.get("empty crate", produce.crate),
                 "crate",
@@ -202,7 +202,7 @@ def _stall(
             )
 
 
-def _sells(sign: str) -> str:
+def _goods_of(sign: str) -> str:
     words = {
         "FISH": "fish",
         "FRUIT": "fruit",
@@ -222,12 +222,12 @@ def _flowers(stage: Stage, prototypes: Prototypes) -> None:
         bloom = BLOOMS[(k * 5 + k // 6) % 6]
         row, column = divmod(k, 5)
         right, out = -1.15 + 0.56 * column + 0.1 * row, 1.55 - 0.45 * row if row < 2 else 0.55
-        x, y = spot(place, right, out if row < 2 else 0.45)
+        x, y = at_front(place, right, out if row < 2 else 0.45)
         z = 0.0 if row < 2 else 0.90
         built = prototypes.get(f"bucket {bloom}", lambda bloom=bloom: stalls.flower_bucket(bloom))
         stage.place(built, "flower bucket", f"bucket of {bloom} flowers", (x, y, z), 40.0 * k, colour=bloom)
     for text, right in (("ROSES\n5.00", -0.6), ("TULIPS\n3.50", 0.5)):
-        x, y = spot(place, right, 0.75)
+        x, y = at_front(place, right, 0.75)
         stage.place(
             produce.price_card(text, cap=0.068),
             "price card",
@@ -256,14 +256,14 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
     taken = {(0, 0, 0), (0, 0, 1), (1, 0, 2), (0, 1, 1), (1, 2, 0), (1, 2, 1), (0, 3, 0), (1, 3, 2), (1, 3, 0)}
     for row, y in enumerate(TERRACE_ROWS):
         for column, x in enumerate(TERRACE_COLUMNS):
-            mine = sorted(seat for c, r, seat in taken if (c, r) == (column, row))
+            occupied = sorted(seat for c, r, seat in taken if (c, r) == (column, row))
             table = stage.place(
                 prototypes.get("table", cafe.table),
                 "table",
                 "round café table",
                 (x, y, 0.0),
                 0,
-                state="occupied" if mine else "free",
+                state="occupied" if occupied else "free",
                 area="terrace",
             )
             for seat in range(3):
@@ -276,10 +276,10 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
                     (*at, 0.0),
                     bearing,
                     colour=tint.removeprefix("dark "),
-                    state="occupied" if seat in mine else "empty",
+                    state="occupied" if seat in occupied else "empty",
                     area="terrace",
                 )
-            for k in range(len(mine) or rng.randrange(2)):
+            for k in range(len(occupied) or rng.randrange(2)):
                 a = rng.uniform(0, 6.28)
                 stage.place(
                     prototypes.get("cup", cafe.cup),
@@ -311,7 +311,7 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
 
 
 def seat_place(column: int, row: int, seat: int) -> tuple[tuple[float, float], float]:
-    """Return the position of a chair of the terrace, and the bearing that its sitter faces."""
+    """Return the position of a chair of the terrace, and the bearing that a person on it faces."""
     x, y = TERRACE_COLUMNS[column], TERRACE_ROWS[row]
     towards = (20.0, 140.0, 260.0)[seat] + 25.0 * ((row + column) % 2)
     b = math.radians(towards)

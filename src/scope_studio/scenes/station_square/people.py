@@ -11,10 +11,10 @@ from scope_studio.kit.people import characters, luggage, poses, prams, seated, s
 from scope_studio.kit.people.poses import Pose, walking
 from scope_studio.scenes.station_square import traffic
 from scope_studio.scenes.station_square.fixtures import BENCHES, PLATFORM_TOP_M
-from scope_studio.scenes.station_square.market import FACING, STALLS, seat_place, spot
+from scope_studio.scenes.station_square.market import FACING, STALLS, at_front, seat_place
 
-TRAIL: tuple[float, float, float] = (0.24, -0.16, 0.86)
-"""Position of a walker's right hand on the handle of a case that rolls behind."""
+CASE_GRIP: tuple[float, float, float] = (0.24, -0.16, 0.86)
+"""Position of the right hand of a walking person who pulls a suitcase."""
 
 VENDORS = ["white", "green", "dark green", "purple", "navy", "cream", "brown", "red"]
 CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
@@ -23,7 +23,7 @@ CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
     (5, -0.3, 1.7, "green", "stand", "bag"), (6, 0.8, 1.7, "light blue", "point", None), (7, 0.0, 1.9, "black", "stand", None),
     (7, 0.9, 2.3, "orange", "stand", None),
 ]  # fmt: skip
-"""Stall, place in front of it (right, out), coat, pose, what is held."""
+"""Index of the stall, position in front of it (right, out), coat, pose, what the person holds."""
 
 STROLLERS: list[tuple[float, float, float, str, str, str | None, str]] = [
     (3.3, 22.6, 160, "navy", "stand", None, "waiting by the station"),
@@ -56,7 +56,7 @@ SITTERS: list[tuple[int, int, int, str, str]] = [
     (1, 3, 2, "light blue", "table"),
     (1, 3, 0, "black", "cup"),
 ]
-"""Column, row and seat of the terrace, coat, what the hands do."""
+"""Column, row and seat of the terrace, coat, and what the person does with the hands."""
 
 
 def build(stage: Stage) -> None:
@@ -85,13 +85,13 @@ def _person(stage: Stage, at: tuple[float, float, float], bearing: float, name: 
 
 def _market(stage: Stage) -> None:
     for k, top in enumerate(VENDORS):
-        x, y = spot(STALLS[k][2], (-0.5, 0.6, 0.0)[k % 3], -0.85)
+        x, y = at_front(STALLS[k][2], (-0.5, 0.6, 0.0)[k % 3], -0.85)
         trade = STALLS[k][0].split()[-1].lower()
         _person(
             stage, (x, y, 0), FACING + (12, -15, 0)[k % 3], f"stallholder in {top}", top, 300 + k, role="stallholder", stall=trade
         )
     for k, (stall, right, out, top, pose, held) in enumerate(CUSTOMERS):
-        x, y = spot(STALLS[stall][2], right, out)
+        x, y = at_front(STALLS[stall][2], right, out)
         turn = FACING + 180 + (-14, 10, 22, -8)[k % 4]
         _person(stage, (x, y, 0), turn, f"customer in {top}", top, 340 + k, pose=pose, holding=held, role="customer")
 
@@ -143,35 +143,37 @@ def _companions(stage: Stage) -> None:
         stage, (5.6, 3.2, 0), 140, "dog walker in grey", "grey", 460, stance=stances.leading(None, seed=3), activity="walking a dog"
     )
     dog = dogs.dog("golden", lead_to=(stances.LEAD_GRIP[0] - 0.55, stances.LEAD_GRIP[1] - 0.55, stances.LEAD_GRIP[2]))
-    x, y = spot((5.6, 3.2), -0.55, 0.55, 140)
+    x, y = at_front((5.6, 3.2), -0.55, 0.55, 140)
     stage.place(dog, "dog", "golden dog on a lead", (x, y, 0), 140, colour="golden", state="standing")
     _person(
         stage, (14.2, 14.0, 0), 262, "woman with a pram", "light blue", 461, stance=stances.pushing(0.2), activity="pushing a pram"
     )
-    x, y = spot((14.2, 14.0), 0.0, 0.86, 262)
+    x, y = at_front((14.2, 14.0), 0.0, 0.86, 262)
     stage.place(prams.pram("navy"), "pram", "navy pram", (x, y, 0), 262, colour="navy")
     for k, (at, bearing, top, case) in enumerate((((-3.6, 15.6), 20, "black", "green"), ((16.4, -0.6), 10, "dark red", "purple"))):
-        stance = stances.reaching(_free_walk(0.3 + 0.3 * k), right=TRAIL)
+        stance = stances.reaching(_free_walk(0.3 + 0.3 * k), right=CASE_GRIP)
         _person(stage, (*at, 0), bearing, f"traveller in {top}", top, 470 + k, stance=stance, activity="pulling a suitcase")
         stage.place(
-            luggage.trailing_case(case, TRAIL), "suitcase", f"{case} suitcase", (*at, 0), bearing, colour=case, state="pulled"
+            luggage.trailing_case(case, CASE_GRIP), "suitcase", f"{case} suitcase", (*at, 0), bearing, colour=case, state="pulled"
         )
 
 
 def _free_walk(phase: float) -> Pose:
-    """Return a walk whose right hand is free to hold something."""
+    """Return a walking pose in which the right hand can hold something."""
     return replace(walking(phase), twist=0.0)
 
 
 def _with_case(phase: float) -> Built:
-    walker = characters.pedestrian(top="orange", trousers="navy", seed=501, stance=stances.reaching(_free_walk(phase), right=TRAIL))
-    case = luggage.trailing_case("blue", TRAIL)
+    walker = characters.pedestrian(
+        top="orange", trousers="navy", seed=501, stance=stances.reaching(_free_walk(phase), right=CASE_GRIP)
+    )
+    case = luggage.trailing_case("blue", CASE_GRIP)
     case.root.parent = walker.root
     return Built(walker.root, [*walker.objects, *case.objects], [])
 
 
 def _walkers() -> list[ActorPath]:
-    """Return the actors: a traveller from the station, a passer-by on the way to the trains, and a dog that trots alone."""
+    """Return the walking actors: a traveller from the station, a person on the way to the trains, and a dog on its own."""
     traveller = [(0.4, 31.5), (0.3, 24.0), (-3.6, 19.6), (-14.0, 16.4), (-24.0, 17.4), (-31.0, 18.8), (-37.0, 18.9), (-42.0, 19.0)]
     commuter = [
         (47.5, 6.0),

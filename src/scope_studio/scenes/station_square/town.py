@@ -96,10 +96,10 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
     )
 
 
-def _local(place: tuple[float, float, float], right: float, out: float) -> tuple[float, float]:
-    """Return the world position of a point at a front.
+def _at_front(place: tuple[float, float, float], right: float, out: float) -> tuple[float, float]:
+    """Convert a point in the frame of a front to a world position.
 
-    ``right`` is measured to the reader's right along the front, ``out`` in front of it (m).
+    ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
     """
     x, y, bearing = place
     b = math.radians(bearing)
@@ -125,19 +125,19 @@ def shop(
     awning_open: bool = True,
     seed: int = 0,
 ) -> None:
-    """Place a shop front with its sign, door and awning, each an instance, in front of the house at ``place``."""
+    """Place a shop front in front of the house at ``place``. Its sign, door and awning are separate instances."""
     bearing = place[2]
-    x, y = _local(place, 0.0, 0.0)
+    x, y = _at_front(place, 0.0, 0.0)
     front = stage.place(
         square_shops.front(width, colour, seed=seed), "shop", name, (x, y, 0.0), bearing, parent=parent, kind=kind, colour=colour,
         state="closed" if notice == "CLOSED" else "open",
     )  # fmt: skip
-    sx, sy = _local(place, 0.0, 0.25)
+    sx, sy = _at_front(place, 0.0, 0.25)
     stage.place(
         square_shops.sign_board(text, width - 0.6, colour=colour, ink=ink), "shop sign", f"{name} sign", (sx, sy, 3.05), bearing,
         parent=front, colour=colour,
     )  # fmt: skip
-    dx, dy = _local(place, 0.0, 0.17)
+    dx, dy = _at_front(place, 0.0, 0.17)
     stage.place(
         square_shops.shop_door(door_colour or colour, open=door == "open", notice=notice),
         "door",
@@ -149,13 +149,13 @@ def shop(
         colour=door_colour or colour,
     )
     if awning:
-        ax, ay = _local(place, 0.0, 0.30)
-        made = square_shops.awning(width - 0.3, *awning, text=awning_text, open=awning_open)
-        both = awning[0] if awning[0] == awning[1] else f"{awning[0]} and {awning[1]}"
+        ax, ay = _at_front(place, 0.0, 0.30)
+        canvas = square_shops.awning(width - 0.3, *awning, text=awning_text, open=awning_open)
+        pattern_colour = awning[0] if awning[0] == awning[1] else f"{awning[0]} and {awning[1]}"
         pattern = "plain" if awning[0] == awning[1] else "striped"
         stage.place(
-            made, "awning", f"{both} awning", (ax, ay, 2.72 if not awning_text else 2.74), bearing, parent=front, colour=both,
-            pattern=pattern, state="open" if awning_open else "closed",
+            canvas, "awning", f"{pattern_colour} awning", (ax, ay, 2.72 if not awning_text else 2.74), bearing, parent=front,
+            colour=pattern_colour, pattern=pattern, state="open" if awning_open else "closed",
         )  # fmt: skip
 
 
@@ -245,7 +245,7 @@ def _rows(stage: Stage) -> None:
         door_colour="green",
         seed=4,
     )
-    x, y = _local(pharmacy, 4.0, 0.0)
+    x, y = _at_front(pharmacy, 4.0, 0.0)
     stage.place(
         square_shops.pharmacy_cross(), "cross", "green pharmacy cross", (x, y, 4.9), 270, parent=front, colour="green", state="lit"
     )
@@ -324,7 +324,7 @@ def _bank(stage: Stage, stone: bpy.types.Material) -> None:
         12.4, stone, 3, 5, ground_m=4.6, storey_m=3.4, window=(1.1, 2.0), door="black", quoins=True, trim="light grey", seed=7
     )
     front = _house(stage, h, place, "grey stone", "stone bank building", "bank", 3)
-    x, y = _local(place, 0.0, 0.20)
+    x, y = _at_front(place, 0.0, 0.20)
     stage.place(
         square_shops.sign_board("COUNTY & BOROUGH BANK", 8.6, colour="dark grey", ink="yellow", cap=0.36, height=0.66),
         "sign",

@@ -1,4 +1,4 @@
-"""Station square: the standing tram, taxis, parked vehicles, and the moving vehicles."""
+"""Station square: the tram at its stop, taxis, parked vehicles, and moving vehicles."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FIRST_ACTOR = 9001
 TAXI_ROOF_M = 1.445
 
 TAXIS = [("black", "RM19 TXA", -4.6, "lit"), ("silver", "LK70 CBD", 1.2, "unlit"), ("black", "VE22 HGS", 6.9, "lit")]
-"""Colour, plate, y on the rank, state of the roof sign."""
+"""Colour, number plate, y coordinate on the rank, and state of the roof sign of each taxi."""
 
 PARKED: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = [
     (cars.hatchback, "hatchback", "red", "GX68 LOM", 31.4, -6.4, 180.0),
@@ -39,7 +39,7 @@ DOWN_THE_STREET: list[tuple[Callable[..., Built], str, str, str, float]] = [
 
 
 def build(stage: Stage) -> None:
-    """Place the standing vehicles. ``actors`` returns the moving ones."""
+    """Place the vehicles that do not move. ``actors`` returns the moving ones."""
     _tram(stage)
     _taxis(stage)
     _parked(stage)
@@ -147,12 +147,12 @@ def _bend(centre: tuple[float, float], radius: float, start: float, stop: float,
 
 
 def _ground(x: float, y: float) -> float:
-    """Return the height of the paving. Carriageways lie lower."""
+    """Return the height of the ground. Carriageways are lower than the paving."""
     return ROAD_M if y < -11.9 or 23.6 < x < 32.4 else 0.0
 
 
 def timed(corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0) -> list[tuple[float, float, float, float]]:
-    """Return way points (t_s, x, y, z) at constant speed, on the ground."""
+    """Return the waypoints (t_s, x, y, z) of a path on the ground through ``corners``, at constant speed."""
     way, t = [(start_s, *corners[0], _ground(*corners[0]))], start_s
     for (x0, y0), (x1, y1) in pairwise(corners):
         t += math.hypot(x1 - x0, y1 - y0) / speed_mps

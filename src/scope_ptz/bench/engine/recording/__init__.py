@@ -1,1 +1,1 @@
-"""Recording: planner, perception and tools as models and tools of Inspect, so that its log shows every request."""
+"""Wrappers that run planners, perception and tools as Inspect models and tools, so that the log contains every request."""

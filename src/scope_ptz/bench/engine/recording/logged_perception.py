@@ -1,4 +1,4 @@
-"""Perception seen by the engine: each perception call is a model event, with the picture that was analysed."""
+"""Perception through an Inspect model: the log contains each call as a model event, with the picture that was analysed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _Observation = TypeVar("_Observation", Caption, Answer, Detections, Points)
 
 
 class LoggedPerception(Perception):
-    """A perception whose calls go through a model of the engine, which counts, limits and logs them."""
+    """Perception whose calls go through an Inspect model, which counts, limits and logs them."""
 
     def __init__(self, model: Model, api: ScopeModel, perception: Perception, *, pictures: bool) -> None:
         self._model, self._api, self._perception, self._pictures = model, api, perception, pictures
@@ -26,9 +26,9 @@ class LoggedPerception(Perception):
 
     @classmethod
     async def of(cls, model: Model, context: EvalContext, *, pictures: bool) -> LoggedPerception:
-        """Return the perception behind a model. Raises ``ConfigError`` when it is not one of this project's."""
+        """Return the perception of an Inspect model. Raises ``ConfigError`` if the model is not a ``ScopeModel``."""
         if not isinstance(model.api, ScopeModel):
-            raise ConfigError(f"The role 'eyes' wants a model of this project (scope_ptz/...), not {model}.")
+            raise ConfigError(f"The role 'eyes' needs a model of SCOPE (scope_ptz/...), not {model}.")
         return cls(model, model.api, await model.api.perception(context), pictures=pictures)
 
     async def caption(self, frame: Frame) -> Caption:

@@ -1,11 +1,10 @@
-"""A planner wrapper that logs each decision as a model event of the engine."""
+"""A planner whose decisions come from an Inspect model, so that the log contains each of them as a model event."""
 
 from __future__ import annotations
 
 import json
 
 from inspect_ai.model import Model, ModelOutput
-from inspect_ai.tool import ToolParams
 from pydantic import TypeAdapter
 
 from scope_ptz.bench.engine.context import EvalContext
@@ -18,15 +17,16 @@ from scope_ptz.planner.chat.interpret import decide
 from scope_ptz.planner.chat.prompts import DEFAULT_PROMPT, Prompt, load_prompt
 
 _DECISION: TypeAdapter[Decision] = TypeAdapter(Decision)
-_ANYTHING = ToolParams(additionalProperties=True)
-"""Any arguments are accepted here. The tool registry validates them, so error messages do not depend on the engine."""
 
 
 class LoggedPlanner(Planner):
-    """A planner that runs as a model of the engine: one of this project's planners, or any chat model that the engine supports."""
+    """A planner that gets its decisions from an Inspect model.
+
+    The model is either a ``ScopeModel``, which runs one of SCOPE's planners, or any chat model that Inspect supports.
+    """
 
     def __init__(self, model: Model, planner: Planner | None) -> None:
-        """``planner`` is the planner that a model of this project wraps; None for other models."""
+        """Use ``of`` to create a planner for a model. ``planner`` is None unless ``model`` is a ``ScopeModel``."""
         self._model, self._planner = model, planner
         self.name = planner.name if planner is not None else str(model)
         self.sees = planner.sees if planner is not None else False
@@ -42,7 +42,7 @@ class LoggedPlanner(Planner):
 
     @classmethod
     async def of(cls, model: Model, context: EvalContext) -> LoggedPlanner:
-        """Return the planner behind a model of the engine."""
+        """Create the planner for an Inspect model."""
         return cls(model, await model.api.planner(context) if isinstance(model.api, ScopeModel) else None)
 
     async def step(self, state: State) -> Decision:
@@ -51,15 +51,15 @@ class LoggedPlanner(Planner):
             output = await self._model.generate(messages, self._tools)
         except ScopeError:
             raise
-        except Exception as error:  # Other providers raise errors of their own: the planner's server failed.
+        except Exception as error:  # Each provider raises its own error types.
             raise PlannerError(f"The model {self._model} failed: {error}", kind="server-error") from error
-        if output.metadata and "decision" in output.metadata:
+        if output.metadata and "decision" in output.metadata:  # A ``ScopeModel`` returns the decision itself.
             return _DECISION.validate_python(output.metadata["decision"])
         return decide(_reply(output), state)
 
 
 def _reply(output: ModelOutput) -> ChatReply:
-    """Return the reply of a model of another provider."""
+    """Convert the output of a chat model to the reply that the chat planner interprets."""
     calls = output.message.tool_calls or []
     usage = output.usage
     return ChatReply(

@@ -1,4 +1,4 @@
-"""Tool calls seen by the engine: each call is a tool event in a span of its own."""
+"""Tool calls through Inspect: the log contains each call as a tool event in a span of its own."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from scope_ptz.tools.registry import run_tool
 from scope_ptz.tools.results import Result
 
 _ANY_ARGUMENTS = ToolParams(additionalProperties=True)
-"""Arguments are validated where the call is made, so that a planner reads the same errors in every program."""
+"""Inspect accepts any arguments. The tool registry validates them, so that error messages do not depend on the engine."""
 
 
 class ToolLog:
-    """Makes tool calls inside tool events. The log shows the pictures that a call took with its result."""
+    """Runs tools and logs each call as a tool event. The event shows the result with the pictures that the call took."""
 
     def __init__(self, pictures: PictureStore | None) -> None:
         self._pictures = pictures
@@ -30,32 +30,34 @@ class ToolLog:
         """Run a tool. Arguments, result and errors are those of ``tools.registry.run_tool``."""
         self._calls += 1
         call = ToolCall(id=f"call-{self._calls:03d}", function=name, arguments=arguments)
-        came: list[Result | ScopeError] = []
-        tool = ToolDef(self._body(context, name, came), name=name, description=name, parameters=_ANY_ARGUMENTS)
+        outcome: list[Result | ScopeError] = []
+        tool = ToolDef(self._body(context, name, outcome), name=name, description=name, parameters=_ANY_ARGUMENTS)
         await execute_tools([ChatMessageAssistant(content="", tool_calls=[call])], [tool])
-        result = came[0] if came else await run_tool(context, name, arguments)
+        result = outcome[0] if outcome else await run_tool(context, name, arguments)
         if isinstance(result, ScopeError):
             raise result
         return result
 
-    def _body(self, context: ToolContext, name: str, came: list[Result | ScopeError]) -> Callable[..., Awaitable[list[Content]]]:
+    def _body(self, context: ToolContext, name: str, outcome: list[Result | ScopeError]) -> Callable[..., Awaitable[list[Content]]]:
         known = set(self._pictures.kept) if self._pictures else set()
 
         async def call(**kwargs: Any) -> list[Content]:
             try:
                 result = await run_tool(context, name, kwargs)
             except (ToolCallError, UnknownNameError, PerceptionError, CameraError) as error:
-                came.append(error)
+                outcome.append(error)
                 raise ToolError(str(error)) from error
             except ScopeError as error:
-                came.append(error)
+                outcome.append(error)
                 raise
-            came.append(result)
-            shown: list[Content] = [ContentText(text=json.dumps(result.model_dump(mode="json"), ensure_ascii=False))]
+            outcome.append(result)
+            content: list[Content] = [ContentText(text=json.dumps(result.model_dump(mode="json"), ensure_ascii=False))]
             if self._pictures is not None:
                 await self._pictures.settle()
                 files = [*getattr(result, "frames", ()), getattr(result, "file", None)]
-                shown += [ContentImage(image=self._pictures.kept[f]) for f in files if f in self._pictures.kept and f not in known]
-            return shown
+                content += [
+                    ContentImage(image=self._pictures.kept[f]) for f in files if f in self._pictures.kept and f not in known
+                ]
+            return content
 
         return call

@@ -1,4 +1,4 @@
-"""Recording of the exchanges with a planner's server, for the log."""
+"""Record the exchanges with a planner's server for the log."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.planner.chat import ChatPlanner
 
 
 class Exchanges:
-    """Requests and replies of one step of a planner, as JSON data."""
+    """The requests and replies of one planner step, as JSON data."""
 
     def __init__(self) -> None:
         self.requests: list[dict[str, Any]] = []
@@ -25,7 +25,7 @@ class Exchanges:
 
 
 def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
-    """Return a planner whose exchanges with its server are recorded; connections and what it learned are shared with it."""
+    """Return a copy of a planner that records its exchanges with its server. Both share connections and state."""
     if not isinstance(planner, ChatPlanner):
         return planner
     recording = copy(planner)
@@ -34,12 +34,12 @@ def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
 
 
 class RecordedChat(ChatClient):
-    """A view of a chat client that records each exchange. Keys are sent in headers, which are not recorded."""
+    """A wrapper of a chat client that records each exchange. Headers, which contain keys, are not recorded."""
 
     def __init__(self, client: ChatClient, exchanges: Exchanges) -> None:
         # ``super().__init__`` is not called: this object shares the connections of ``client`` and opens none.
         self.endpoint, self.caller = client.endpoint, client.caller
-        self._client_behind, self._exchanges = client, exchanges
+        self._wrapped, self._exchanges = client, exchanges
 
     async def complete(
         self,
@@ -53,7 +53,7 @@ class RecordedChat(ChatClient):
         model = self.endpoint.model
         request = {"model": model, "messages": messages, "tools": tools, "stream": stream, **options, **(extra or {})}
         try:
-            reply = await self._client_behind.complete(messages, tools=tools, stream=stream, extra=extra, **options)
+            reply = await self._wrapped.complete(messages, tools=tools, stream=stream, extra=extra, **options)
         except ServerFailure as failure:
             self._exchanges.add(request, {"error": str(failure), "kind": failure.kind.value})
             raise
@@ -61,4 +61,4 @@ class RecordedChat(ChatClient):
         return reply
 
     async def close(self) -> None:
-        """Close nothing: the connections belong to the client behind."""
+        """Do nothing, because the connections belong to the wrapped client."""

@@ -1,4 +1,4 @@
-"""The planners, perception backends and judges of this project as models of the engine: ``scope_ptz/grammar``, ..."""
+"""The planners, perception backends and judges of SCOPE as Inspect models, such as ``scope_ptz/grammar``."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _Reply = TypeVar("_Reply", bound=BaseModel)
 
 
 class ScopeModel(ModelAPI):
-    """A model of the registry, or a built-in one. Solvers and scorers use it as planner, perception or judge."""
+    """An Inspect model that runs a planner, perception or judge of SCOPE, given by its name in the registry or as a built-in."""
 
     def __init__(
         self,
@@ -62,32 +62,32 @@ class ScopeModel(ModelAPI):
         self._pending: dict[str, _PendingCall] = {}
 
     async def planner(self, context: EvalContext) -> Planner:
-        """Return the planner of this name, made at the first call."""
+        """Return the planner of this name, created on the first call."""
         async with self._lock:
             if self._planner is None:
                 self._planner = await context.make_planner(self.request)
             return self._planner
 
     async def perception(self, context: EvalContext) -> Perception:
-        """Return the perception of this name, made at the first call."""
+        """Return the perception of this name, created on the first call."""
         async with self._lock:
             if self._perception is None:
                 self._perception = await context.make_perception(self.request)
             return self._perception
 
     async def judge(self, context: EvalContext, repeat: int) -> Complete:
-        """Return the connection to a judge by name for its ``repeat``-th judgement, opened on first use."""
+        """Return the connection to the judge of this name for judgement number ``repeat``, opened on the first call."""
         async with self._lock:
             if repeat not in self._judges:
                 self._judges[repeat] = await context.make_judge(self.request, repeat)
             return self._judges[repeat]
 
     async def logged_call(self, model: Model, messages: list[ChatMessage], call: Callable[[], Awaitable[_Reply]]) -> _Reply:
-        """Make a call inside a model event of the engine, which counts, limits and logs it.
+        """Make a call inside an Inspect model event, so that Inspect counts, limits and logs it.
 
         Args:
-            model: The engine's model around this object.
-            messages: What the log shows as the input.
+            model: The Inspect model that contains this object.
+            messages: The input that the log shows.
             call: Makes the call.
 
         Returns:
@@ -115,7 +115,7 @@ class ScopeModel(ModelAPI):
             pending.reply = await pending.call()
             return self._output_of_reply(pending.reply), ModelCall.create({"model": self.model_name}, None)
         if self._planner is None:
-            raise ConfigError("Run this by `scope bench run` or by `inspect eval scope_ptz/bench`.")
+            raise ConfigError("Models of SCOPE run only in its benchmark: use `scope bench run` or `inspect eval scope_ptz/bench`.")
         exchanges = Exchanges()
         decision = await recorded(self._planner, exchanges).step(state_of(input))
         step = 1 + sum(isinstance(m, ChatMessageAssistant) and bool(m.tool_calls) for m in input)
@@ -127,7 +127,7 @@ class ScopeModel(ModelAPI):
         return ModelOutput.from_content(self.model_name, text)
 
     def tool_result_images(self) -> bool:
-        """Frames stay in the results that they belong to."""
+        """Return True, so that Inspect leaves frames in the tool results that contain them."""
         return True
 
     def connection_key(self) -> str:
@@ -135,7 +135,7 @@ class ScopeModel(ModelAPI):
 
 
 class _PendingCall:
-    """A call that waits for the engine to make it, and its reply."""
+    """A call that ``generate`` makes, and its reply."""
 
     def __init__(self, call: Callable[[], Awaitable[Any]]) -> None:
         self.call = call
@@ -144,25 +144,25 @@ class _PendingCall:
 
 @modelapi(name=PROVIDER)
 def scope_ptz() -> type[ModelAPI]:
-    """The provider under which the engine knows the models of ``scope models`` and the built-in ones."""
+    """Return the Inspect provider of the models that ``scope models`` lists and of the built-in ones."""
     return ScopeModel
 
 
 def engine_model(name: str, max_connections: int, *, url: str | None = None, **model_args: Any) -> Model:
-    """Return the engine's model for a planner, perception or judge of this project.
+    """Return the Inspect model for a planner, perception or judge of SCOPE.
 
     Args:
-        name: Name in the registry, of a built-in, or as its server serves it.
-        max_connections: Concurrent calls that the engine admits.
-        url: Address of its server.
-        model_args: Options that the log keeps with the model.
+        name: Name in the registry or of a built-in, or the name under which a server serves the model.
+        max_connections: Maximum number of concurrent calls.
+        url: Address of the server.
+        model_args: Options of the model, which the log records.
     """
     config = GenerateConfig(max_connections=max_connections)
     return get_model(f"{PROVIDER}/{name}", base_url=url, config=config, memoize=False, **model_args)
 
 
 def output_of(decision: Decision, model: str, step: int) -> ModelOutput:
-    """Return a decision as the engine logs it. The decision itself is in the metadata."""
+    """Convert a decision to an Inspect model output, with the decision itself in the metadata."""
     text = decision.thought if isinstance(decision, CallTools) else decision.text
     content = [ContentReasoning(reasoning=decision.reasoning)] if decision.reasoning else []
     calls: list[ToolCall] | None = None

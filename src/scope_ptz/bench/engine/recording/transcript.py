@@ -1,4 +1,4 @@
-"""A planner's state as chat messages and back: what the log shows, and what any chat model can plan from.
+"""Convert a planner's state to chat messages and back. The log shows the messages, and any chat model can plan from them.
 
 The texts are those of the chat planner. Exact values (poses, results) are in the metadata, for planners that do not read text.
 """
@@ -41,7 +41,10 @@ _BRIEFING: TypeAdapter[Briefing] = TypeAdapter(Briefing)
 
 
 def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[ChatMessage]:
-    """Return the messages of a state. Each step appends to those of the step before; only the newest view is replaced."""
+    """Return the messages of a state.
+
+    Each step appends to the messages of the previous step; the newest view replaces the previous one.
+    """
     briefing = state.briefing
     system = ChatMessageSystem(
         id="briefing",
@@ -71,15 +74,15 @@ def call_id(step: int, index: int) -> str:
 
 
 def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool:
-    """Return the result of a call as the planner reads it, with the whole outcome in the metadata."""
-    told: list[Content] = [ContentText(text=observation(outcome))]
+    """Return the result of a call as a message to the planner, with the whole outcome in the metadata."""
+    content: list[Content] = [ContentText(text=observation(outcome))]
     if outcome.picture is not None:
-        told += _pictured(outcome.picture)
+        content += _pictured(outcome.picture)
     return ChatMessageTool(
         id=f"result-{step}-{index}",
         tool_call_id=call_id(step, index),
         function=callable_name(outcome.call.name),
-        content=told if outcome.picture is not None else observation(outcome),
+        content=content if outcome.picture is not None else observation(outcome),
         error=ToolCallError("unknown", outcome.error) if outcome.error is not None else None,
         metadata={"outcome": outcome.model_dump(mode="json")},
     )
@@ -90,29 +93,31 @@ def _pictured(picture: Picture) -> list[Content]:
 
 
 def conversation_of(records: Sequence[Record], pictures: Mapping[str, str]) -> list[ChatMessage]:
-    """Return a run as a conversation for human readers. ``pictures`` are data URLs by name, shown where they were taken."""
+    """Return a run as a conversation for the log viewer. ``pictures`` are data URLs by name, shown where they were taken."""
     messages: list[ChatMessage] = []
     for record in records:
         match record:
             case Started():
                 messages.append(ChatMessageUser(content=[ContentText(text=record.instruction), *_shown([record.frame], pictures)]))
-            case Decided(decision=CallTools() as wanted):
+            case Decided(decision=CallTools() as decision):
                 calls = [
                     EngineCall(id=call_id(record.step, index), function=callable_name(c.name), arguments=c.arguments)
-                    for index, c in enumerate(wanted.calls)
+                    for index, c in enumerate(decision.calls)
                 ]
-                thought = [ContentReasoning(reasoning=wanted.reasoning)] if wanted.reasoning else []
+                thought = [ContentReasoning(reasoning=decision.reasoning)] if decision.reasoning else []
                 messages.append(
-                    ChatMessageAssistant(content=[*thought, ContentText(text=wanted.thought)], tool_calls=calls, source="generate")
+                    ChatMessageAssistant(
+                        content=[*thought, ContentText(text=decision.thought)], tool_calls=calls, source="generate"
+                    )
                 )
             case Called():
-                told = tool_message(record.outcome, record.step, record.index)
+                message = tool_message(record.outcome, record.step, record.index)
                 result = record.outcome.result or {}
                 names = [*result.get("frames", ()), result.get("file"), record.frame]
                 images = _shown(names, pictures)
                 if images:
-                    told = told.model_copy(update={"content": [ContentText(text=told.text), *images]})
-                messages.append(told)
+                    message = message.model_copy(update={"content": [ContentText(text=message.text), *images]})
+                messages.append(message)
             case Ended():
                 messages.append(ChatMessageAssistant(content=record.text, source="generate"))
     return messages
@@ -124,7 +129,7 @@ def _shown(names: Iterable[str | None], pictures: Mapping[str, str]) -> list[Con
 
 @cache
 def _schemas() -> tuple[dict[str, Any], ...]:
-    """Return the schemas of the tools, made once: they are the same for every camera."""
+    """Return the schemas of the tools, which are the same for every camera."""
     return tuple(schemas())
 
 
@@ -138,24 +143,24 @@ def _tool_infos() -> tuple[ToolInfo, ...]:
 
 
 def tool_infos() -> list[ToolInfo]:
-    """Return the tools as the engine passes them to a model."""
+    """Return the tools in the form in which Inspect passes them to a model."""
     return list(_tool_infos())
 
 
 def state_of(messages: Sequence[ChatMessage]) -> State:
     """Return the state that messages describe. Without a briefing, the camera looks straight ahead and has no presets.
 
-    Raises ``PlannerError`` when the messages hold no instruction.
+    Raises ``PlannerError`` if the messages contain no instruction.
     """
     system = next((m for m in messages if isinstance(m, ChatMessageSystem) and m.metadata and "briefing" in m.metadata), None)
-    told = system.metadata["briefing"] if system is not None and system.metadata else None
-    briefing = _BRIEFING.validate_python(told) if told else Briefing(presets=(), pose=Pose(), limits=Limits())
-    asked = next((m for m in messages if isinstance(m, ChatMessageUser)), None)
-    if asked is None or not asked.text.strip():
-        raise PlannerError("There is no instruction among the messages.")
+    stored = system.metadata["briefing"] if system is not None and system.metadata else None
+    briefing = _BRIEFING.validate_python(stored) if stored else Briefing(presets=(), pose=Pose(), limits=Limits())
+    instruction = next((m for m in messages if isinstance(m, ChatMessageUser)), None)
+    if instruction is None or not instruction.text.strip():
+        raise PlannerError("The messages contain no instruction.")
     newest = messages[-1]
-    view = _view(newest) if isinstance(newest, ChatMessageUser) and newest is not asked else None
-    return State(instruction=asked.text, briefing=briefing, history=tuple(_history(messages)), tools=_schemas(), view=view)
+    view = _view(newest) if isinstance(newest, ChatMessageUser) and newest is not instruction else None
+    return State(instruction=instruction.text, briefing=briefing, history=tuple(_history(messages)), tools=_schemas(), view=view)
 
 
 def _history(messages: Sequence[ChatMessage]) -> list[Exchange]:
@@ -168,15 +173,15 @@ def _history(messages: Sequence[ChatMessage]) -> list[Exchange]:
     return history
 
 
-def _outcome(call: EngineCall, told: ChatMessageTool | None) -> ToolOutcome:
-    if told is not None and told.metadata and "outcome" in told.metadata:
-        return ToolOutcome.model_validate(told.metadata["outcome"])
+def _outcome(call: EngineCall, message: ChatMessageTool | None) -> ToolOutcome:
+    if message is not None and message.metadata and "outcome" in message.metadata:
+        return ToolOutcome.model_validate(message.metadata["outcome"])
     made = ToolCall(id=call.id, name=call.function, arguments=call.arguments)
-    if told is None:
+    if message is None:
         return ToolOutcome(call=made, error="Nothing came back.")
-    if told.error is not None:
-        return ToolOutcome(call=made, error=told.error.message)
-    return ToolOutcome(call=made, result=_object(told.text))
+    if message.error is not None:
+        return ToolOutcome(call=made, error=message.error.message)
+    return ToolOutcome(call=made, result=_object(message.text))
 
 
 def _object(text: str) -> dict[str, Any]:

@@ -14,12 +14,12 @@ from scope_ptz.perception.ground_truth.thing_facts import colour_of
 from scope_ptz.perception.ground_truth.thing_search import find, find_phrase
 from scope_ptz.perception.ground_truth.view import Thing, View
 
-_ALIKE = 0.02
-"""Values that differ by no more than this share are called equal."""
+_EQUALITY_TOLERANCE = 0.02
+"""Values whose relative difference is at most this are reported as equal."""
 
 
 def which(view: View, question: s.Which) -> AnswerText:
-    """Answer which of several things comes first in a comparison."""
+    """Answer which of several things ranks first in a comparison."""
     options = question.options.phrases
     if len(options) == 1:
         found = sorted(find(view, question.options), key=rank_key(question.key))
@@ -48,11 +48,11 @@ def _the(view: View, phrase: s.Phrase) -> str:
 
 def _equal(key: s.OrderKey, a: Thing, b: Thing) -> bool:
     x, y = (abs(rank_key(key)(t)) for t in (a, b))
-    return abs(x - y) <= _ALIKE * max(x, y, 1e-9)
+    return abs(x - y) <= _EQUALITY_TOLERANCE * max(x, y, 1e-9)
 
 
 def compare(view: View, question: s.Compare) -> AnswerText:
-    """Answer whether the first thing comes before the second."""
+    """Answer whether the first thing ranks before the second in a comparison."""
     for description in (question.first, question.second):
         if not find(view, description):
             return unknown(f"I cannot tell: {none_of(view, description)}")
@@ -67,7 +67,7 @@ def compare(view: View, question: s.Compare) -> AnswerText:
 
 
 def how_far(view: View, question: s.HowFar) -> AnswerText:
-    """Answer with the distance in metres from the camera, or between two things."""
+    """Answer how far a thing is from the camera, or from another thing, in metres."""
     for description in (question.what, question.other):
         if description is not None and not find(view, description):
             return unknown(f"I cannot tell: {none_of(view, description)}")
@@ -86,7 +86,7 @@ def how_far(view: View, question: s.HowFar) -> AnswerText:
 
 
 def compare_count(view: View, question: s.CompareCount) -> AnswerText:
-    """Answer which of two kinds there are more or fewer of, or whether there are. One picture cannot compare two places."""
+    """Answer which of two kinds is more or less frequent, or whether a stated comparison of their numbers is true."""
     if not question.second.phrases:
         return unknown("I cannot tell: I see one picture, and nothing else to compare it with")
     if question.which and len(question.second.phrases) > 1:
@@ -117,7 +117,7 @@ def _most_of(view: View, question: s.CompareCount) -> AnswerText:
 
 
 def count_kinds(view: View, question: s.CountKinds) -> AnswerText:
-    """Answer how many different values an attribute takes, or how many kinds of thing there are."""
+    """Answer how many different colours or kinds the things have."""
     colour = question.attribute == ("colour",)
     values = Counter(v for t in find(view, question.what) if (v := _kind(t, colour)) is not None)
     many = "" if len(values) == 1 else "s"
@@ -132,7 +132,7 @@ def _kind(thing: Thing, colour: bool) -> str | None:
 
 
 def most_common(view: View, question: s.MostCommon) -> AnswerText:
-    """Answer with the most or least frequent value of an attribute, or kind of thing."""
+    """Answer with the most or least frequent colour or kind."""
     found = find(view, question.what)
     if not found:
         return unknown(f"I cannot tell: {none_of(view, question.what)}")

@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.restating import holds_words, none_of, not_stated, noun
+from scope_ptz.perception.ground_truth.answers.restating import none_of, not_stated, noun, predicate_words
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, name, reply, several, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.thing_facts import wears
+from scope_ptz.perception.ground_truth.thing_facts import has_item
 from scope_ptz.perception.ground_truth.thing_search import find, things_named
 from scope_ptz.perception.ground_truth.view import Thing, View
 
-TOLD_APART = 3
-"""Up to this many things are listed one by one."""
+MAX_LISTED = 3
+"""Up to this many things are listed one by one; of more, only the number is given."""
 
 
 def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Description:
-    """Return the description with more tests. A superlative among them becomes its order."""
+    """Return a description with additional tests. A superlative among the tests becomes the order of the description."""
     orders = [t for t in tests if isinstance(t, s.Order)]
     rest = tuple(t for t in tests if not isinstance(t, s.Order))
     return s.Description(
@@ -26,7 +26,7 @@ def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Descrip
 
 
 def exists(view: View, question: s.Exists) -> AnswerText:
-    """Answer whether there is something."""
+    """Answer whether anything in view fits the description."""
     if not_stated(view, question.what):
         return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
     found = find(view, question.what)
@@ -41,24 +41,24 @@ def exists(view: View, question: s.Exists) -> AnswerText:
 
 
 def _owner(view: View, what: s.Description) -> Thing | None:
-    """Return the thing that has the described part as an attribute ("a beacon on the van"), None for none."""
+    """Return the thing that has the described part as an attribute ("a beacon on the van": the van), or None."""
     phrase = what.phrases[0]
     if len(what.phrases) != 1 or len(phrase.tests) != 1 or not isinstance(test := phrase.tests[0], s.Relation) or test.kind != "on":
         return None
-    return next((t for t in find(view, test.other) if wears(view, t, phrase.words)), None)
+    return next((t for t in find(view, test.other) if has_item(view, t, phrase.words)), None)
 
 
 def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
-    """Return a list of found things: "there are 2 cars: a red car on the left and a white car in the middle"."""
+    """Describe the things that were found: "there are 2 cars: a red car on the left and a white car in the middle"."""
     worn = not things_named(view, what)
     if len(found) == 1:
         return f"there is {english.article(noun(view, what))} on {several(found)}" if worn else f"there is {several(found)}"
     statement = f"there are {len(found)} {noun(view, what, many=True)}"
-    return f"{statement}{', on' if worn else ':'} {several(found)}" if len(found) <= TOLD_APART else statement
+    return f"{statement}{', on' if worn else ':'} {several(found)}" if len(found) <= MAX_LISTED else statement
 
 
 def count(view: View, question: s.Count) -> AnswerText:
-    """Answer how many there are."""
+    """Answer how many things fit the description and the tests."""
     if not_stated(view, question.what):
         return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
     total = len(find(view, narrowed(question.what, question.tests)))
@@ -66,12 +66,12 @@ def count(view: View, question: s.Count) -> AnswerText:
         return reply(f"there {are(total)} {total} in view: {_each(view, question)}")
     statement = f"{total} {noun(view, question.what, many=total != 1)}"
     if question.tests:
-        return reply(f"{statement} {holds_words(view, question.tests, total)}")
+        return reply(f"{statement} {predicate_words(view, question.tests, total)}")
     return reply(f"there {are(total)} {statement} in view")
 
 
 def _each(view: View, question: s.Count) -> str:
-    """Return the counts of all parts of a description: "4 cars and 1 van"."""
+    """Return the count for each noun phrase of a description: "4 cars and 1 van"."""
     parts = [s.Description((p,)) for p in question.what.phrases]
     counts = [(len(find(view, narrowed(p, question.tests))), p) for p in parts]
     return english.listing([f"{n} {noun(view, p, many=n != 1)}" for n, p in counts])

@@ -1,4 +1,4 @@
-"""Answers about texts. Only legible text is read; for other text the answer says that it is there and why it cannot be read."""
+"""Answers about text. Only legible text is reported; for other text the answer states why it cannot be read."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, 
 
 
 def read(view: View, question: s.Read) -> AnswerText:
-    """Answer what a thing says, what its number plate says, or everything that can be read."""
+    """Answer with the text on a thing, its number plate, or all text in view."""
     if question.what is None:
         return _read(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
     things = find(view.for_reading(), question.what)
-    if not things and _PLATES.issuperset(phrase.words for phrase in question.what.phrases):
-        return read(view, s.Read(None, plate=True))  # a plate without its vehicle; plates are texts of vehicles
+    if not things and _PLATE_WORDS.issuperset(phrase.words for phrase in question.what.phrases):
+        return read(view, s.Read(None, plate=True))  # "the number plate" without a vehicle; plates are texts on vehicles
     if not things:
         return unknown(f"I cannot tell: {none_of(view, question.what)}")
     texts = _texts(view, things, question.plate)
@@ -33,24 +33,26 @@ def _texts(view: View, things: Sequence[Thing], plate: bool) -> list[TextSightin
 
 
 def is_plate(view: View, text: TextSighting) -> bool:
-    """Return whether a text is a vehicle's number plate: by what it is on, or by its form on a vehicle."""
-    bearer = view.instances[text.text.parent]
-    concepts = concepts_of(bearer)
-    return "number plate" in concepts or ("vehicle" in concepts and _PLATE.fullmatch(text.text.text.replace(" ", "")) is not None)
+    """Return whether a text is a number plate: it is on a plate, or on a vehicle and has the form of a registration number."""
+    owner = view.instances[text.text.parent]
+    concepts = concepts_of(owner)
+    return "number plate" in concepts or (
+        "vehicle" in concepts and _REGISTRATION_NUMBER.fullmatch(text.text.text.replace(" ", "")) is not None
+    )
 
 
-_PLATE = re.compile(r"(?=.*[0-9])[A-Z]{1,3}[0-9]{1,4}[A-Z]{0,3}")
+_REGISTRATION_NUMBER = re.compile(r"(?=.*[0-9])[A-Z]{1,3}[0-9]{1,4}[A-Z]{0,3}")
 
-_PLATES = {words for noun in ("plate", "plates") for words in (("number", noun), ("license", noun), ("licence", noun))}
+_PLATE_WORDS = {words for noun in ("plate", "plates") for words in (("number", noun), ("license", noun), ("licence", noun))}
 
 
 def _is_limit(view: View, text: TextSighting) -> bool:
-    """Return whether a number is a speed limit: the scene says so, or it is a multiple of ten on a sign."""
-    bearer = view.instances[text.text.parent]
+    """Return whether a text is a speed limit: the scene states it, or it is a multiple of ten on a sign."""
+    owner = view.instances[text.text.parent]
     content = text.text.text.strip()
-    if "signal" in bearer.attributes:
-        return content == str(bearer.attributes["signal"])
-    return content.isdigit() and int(content) % 10 == 0 and "sign" in concepts_of(bearer)
+    if "signal" in owner.attributes:
+        return content == str(owner.attributes["signal"])
+    return content.isdigit() and int(content) % 10 == 0 and "sign" in concepts_of(owner)
 
 
 def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting], plate: bool) -> AnswerText:
@@ -67,14 +69,14 @@ def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting],
         )
     if texts:
         thing = "a number plate" if plate else "text"
-        return unknown(f"there is {thing} {'on ' + subject if what else 'in view'}, but it is {why_not(texts)} to read")
+        return unknown(f"there is {thing} {'on ' + subject if what else 'in view'}, but it is {illegibility(texts)} to read")
     if plate:
         return unknown(f"I cannot tell: I can see no number plate {'on ' + subject if what else 'in view'}")
     return reply(f"there is no text on {subject}" if what else "there is no text in view")
 
 
-def why_not(texts: Sequence[TextSighting]) -> str:
-    """Return why the largest of some illegible texts cannot be read."""
+def illegibility(texts: Sequence[TextSighting]) -> str:
+    """Return why the largest of several illegible texts cannot be read."""
     best = max(texts, key=lambda t: t.cap_height_px)
     if best.cap_height_px < MIN_CAP_HEIGHT_PX:
         return "too small"
@@ -82,7 +84,7 @@ def why_not(texts: Sequence[TextSighting]) -> str:
 
 
 def text_exists(view: View, question: s.TextExists) -> AnswerText:
-    """Answer whether there is text, and what it says."""
+    """Answer whether there is text on a thing or in view, and quote it."""
     if question.what is None:
         texts: Sequence[TextSighting] = view.texts
         where = "in view"
@@ -96,12 +98,12 @@ def text_exists(view: View, question: s.TextExists) -> AnswerText:
     if legible:
         return reply(f"yes, I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])} {where}")
     if texts:
-        return unknown(f"there is text {where}, but it is {why_not(texts)} to read")
+        return unknown(f"there is text {where}, but it is {illegibility(texts)} to read")
     return reply(f"no, there is no text {where}")
 
 
-def spoken_texts(view: View, signs: Sequence[Thing], fact: str) -> AnswerText | None:
-    """Answer with a fact ("speed limit") that is written on some signs; None if they have no text."""
+def fact_on_signs(view: View, signs: Sequence[Thing], fact: str) -> AnswerText | None:
+    """Answer with a fact that is written on signs, such as the speed limit; None if the signs have no text."""
     texts = _texts(view, signs, plate=False)
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible and ("limit" not in fact or _is_limit(view, t))))
     if legible:

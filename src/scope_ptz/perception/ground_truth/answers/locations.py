@@ -6,9 +6,9 @@ from collections import Counter
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.counted_things import narrowed
-from scope_ptz.perception.ground_truth.answers.restating import after_noun, holds_words, none_of, noun
+from scope_ptz.perception.ground_truth.answers.restating import after_noun, none_of, noun, predicate_words
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, metres, name, names, place, reply, several, unknown
-from scope_ptz.perception.ground_truth.answers.values import UNSEEN, anywhere
+from scope_ptz.perception.ground_truth.answers.values import UNSEEN, fact_in_view
 from scope_ptz.perception.ground_truth.answers.verdicts import missing_reference
 from scope_ptz.perception.ground_truth.language import question_tree as s
 from scope_ptz.perception.ground_truth.relations import NEAR_M, relation_holds
@@ -16,11 +16,12 @@ from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_PLACED = 3
+"""Up to this many things are located one by one; more are counted by region of the frame."""
 _BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
 
 
 def where(view: View, question: s.Where) -> AnswerText:
-    """Answer where things are."""
+    """Answer where the things that fit a description are."""
     found = find(view, question.what)
     if not found:
         return reply(none_of(view, question.what))
@@ -37,7 +38,7 @@ def where(view: View, question: s.Where) -> AnswerText:
 
 
 def neighbour(view: View, thing: Thing) -> str:
-    """Return a thing's relation to the most telling thing around it (", next to the barrier"), or nothing."""
+    """Return a thing's relation to the largest thing near it or in line with it (", next to the barrier"), or nothing."""
     others = [
         t
         for t in view.top_level()
@@ -56,16 +57,16 @@ def neighbour(view: View, thing: Thing) -> str:
 
 
 def _depth_side(view: View, thing: Thing, other: Thing) -> str:
-    """Return "behind", "in front of" or nothing."""
+    """Return "behind", "in front of", or an empty string."""
     if relation_holds(view, thing, "behind", other):
         return "behind"
     return "in front of" if relation_holds(view, thing, "front", other) else ""
 
 
 def what(view: View, question: s.What) -> AnswerText:
-    """Answer with the names of everything that fits."""
+    """Answer with the names of all things that fit."""
     if _is_a_list(question.what):
-        return _of_a_list(view, question)
+        return _listed_in_question(view, question)
     missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
     if missing is not None:
         return reply(none_of(view, missing))
@@ -82,7 +83,7 @@ def _is_a_list(description: s.Description) -> bool:
     return bool(words) and words <= {"following", "these", "those", "them"}
 
 
-def _of_a_list(view: View, question: s.What) -> AnswerText:
+def _listed_in_question(view: View, question: s.What) -> AnswerText:
     tests = [test for asked in question.tests for test in (asked.tests if isinstance(asked, s.Any) else (asked,))]
     listed = tuple(s.Phrase(test.words) for test in tests if isinstance(test, s.Is))
     if not listed:
@@ -92,17 +93,17 @@ def _of_a_list(view: View, question: s.What) -> AnswerText:
 
 
 def _nothing(view: View, question: s.What, description: s.Description) -> AnswerText:
-    """Answer with a fact ("which lane is closed"), or say that nothing fits or that the scene does not say."""
+    """Answer when no thing fits: with a stated fact ("which lane is closed"), or that nothing fits."""
     loose = [x for t in question.tests if isinstance(t, s.Is) for x in t.words]
     if loose and not find(view, question.what):
-        return anywhere(view, (*question.what.phrases[0].words, *loose))
+        return fact_in_view(view, (*question.what.phrases[0].words, *loose))
     if description.phrases[0].words == ("thing",):
         return reply(f"I can see nothing {english.listing([after_noun(view, t) for t in question.tests])}")
     return reply(none_of(view, description))
 
 
 def _by_nearness(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> list[Thing]:
-    """Sort things next to something by their distance to it."""
+    """Sort things by their distance to the things that the relations refer to, if there are any."""
     anchors = [a for t in tests if isinstance(t, s.Relation) for a in find(view, t.other)]
     return sorted(found, key=lambda t: min(t.gap_m(a) for a in anchors)) if anchors else found
 
@@ -115,13 +116,13 @@ def things_in_words(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -
     if not rest:
         return reply(several(found) if len(found) <= 3 else f"I can see {names(found)}")
     where_ = f", {place(found[0])}" if len(found) == 1 and not any(isinstance(t, s.Region) for t in rest) else ""
-    return reply(f"{names(found)} {holds_words(view, rest, len(found))}{where_}")
+    return reply(f"{names(found)} {predicate_words(view, rest, len(found))}{where_}")
 
 
 def identify(view: View, question: s.Identify) -> AnswerText:
-    """Answer what a thing is. When the words name a fact ("the speed limit"), answer with that fact."""
+    """Answer what a thing is. If the words name a fact ("the speed limit"), answer with that fact."""
     phrase = question.what.phrases[0]
-    fact = anywhere(view, phrase.words)
+    fact = fact_in_view(view, phrase.words)
     carried = all(isinstance(t, s.Relation) and t.kind == "on" for t in phrase.tests)
     if fact.known and carried and phrase.order is None:
         return fact

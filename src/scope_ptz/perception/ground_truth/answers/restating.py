@@ -1,4 +1,4 @@
-"""Restate descriptions and tests in words, so that an answer shows how the question was understood."""
+"""Descriptions and tests in words, so that an answer shows how the question was understood."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ _RELATIONS = {
     "left": "to the left of", "right": "to the right of", "above": "above", "below": "below", "front": "in front of",
     "behind": "behind", "near": "next to", "on": "on", "facing": "facing",
 }  # fmt: skip
-_FROM = {"left": "from the left", "right": "from the right", "top": "from the top", "bottom": "from the bottom"}
+_FROM_SIDE = {"left": "from the left", "right": "from the right", "top": "from the top", "bottom": "from the bottom"}
 
 
 def plural(description: s.Description) -> bool:
-    """Return whether the question is about several things."""
+    """Return whether a description is in the plural."""
     return len(description.phrases) > 1 or any(english.is_plural(x) for p in description.phrases for x in p.words[-1:])
 
 
@@ -75,8 +75,8 @@ def _ranked(view: View, phrase: s.Phrase, core: str) -> list[str]:
         return [nth, core]
     if phrase.order.reference is not None:
         return [x for x in (nth, core, SUPERLATIVES[phrase.order.key], "to", as_asked(view, phrase.order.reference)) if x]
-    if nth and phrase.order.key in _FROM:
-        return [nth, core, _FROM[phrase.order.key]]
+    if nth and phrase.order.key in _FROM_SIDE:
+        return [nth, core, _FROM_SIDE[phrase.order.key]]
     return [x for x in (nth, SUPERLATIVES[phrase.order.key], core) if x]
 
 
@@ -128,7 +128,7 @@ def _items(what: s.Description) -> str:
     )
 
 
-def holds_words(view: View, tests: Sequence[s.Test], count: int, negated: bool = False) -> str:
+def predicate_words(view: View, tests: Sequence[s.Test], count: int, negated: bool = False) -> str:
     """Return tests as a predicate: "are parked", "does not have a ladder", "is next to the van"."""
     return english.listing([_predicate(view, t, count, negated) for t in tests], "or" if negated else "and")
 
@@ -143,13 +143,13 @@ def _predicate(view: View, test: s.Test, count: int, negated: bool) -> str:
             return f"{_do('bear', 'bears', count, negated)} text that I can read"
         case s.Says(words=words):
             return f'{_do("say", "says", count, negated)} "{" ".join(words).upper()}"'
-        case s.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _NOUNLIKE:
+        case s.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _PREDICATE_NOUNS:
             return f"{_be(count, negated)} {english.article(' '.join(words))}"
         case _:
             return f"{_be(count, negated)} {after_noun(view, test)}"
 
 
-_NOUNLIKE = frozenset(["car", "van", "lorry", "truck", "bus", "worker", "person", "cone", "vehicle", "digger", "excavator"])
+_PREDICATE_NOUNS = frozenset(["car", "van", "lorry", "truck", "bus", "worker", "person", "cone", "vehicle", "digger", "excavator"])
 
 
 def _be(count: int, negated: bool) -> str:
@@ -163,7 +163,7 @@ def _do(many: str, one: str, count: int, negated: bool) -> str:
 
 
 def region_words(sides: Sequence[str], half: bool) -> str:
-    """Return the words for a part of the frame."""
+    """Return a part of the frame in words: "on the left", "in the top half"."""
     if tuple(sides) in {("near",), ("far",)}:
         return "in the foreground" if sides[0] == "near" else "in the distance"
     if half:
@@ -174,7 +174,7 @@ def region_words(sides: Sequence[str], half: bool) -> str:
 
 
 def none_of(view: View, description: s.Description) -> str:
-    """Return that nothing fits: "there is no red car in view"."""
+    """Return the statement that nothing fits: "there is no red car in view"."""
     many = plural(description)
     only_one = len(description.phrases) > 1 and not any(plural(s.Description((p,))) for p in description.phrases)
     words = english.listing([noun(view, s.Description((p,)), many and not only_one) for p in description.phrases], "or")
@@ -182,8 +182,9 @@ def none_of(view: View, description: s.Description) -> str:
 
 
 def not_stated(view: View, description: s.Description) -> bool:
-    """Return whether the noun names a background ("lanes", "sky") that the scene does not have, so that not seeing it means
-    nothing.
+    """Return whether the noun names a background ("lanes", "sky") that the scene does not model.
+
+    That such a thing is not in view is then no evidence that it does not exist.
     """
     for phrase in description.phrases:
         spans = nouns_in(phrase.words, view.nouns)

@@ -18,12 +18,15 @@ from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_GROUPS = 10
+"""Maximum number of groups of things in a description of the view."""
 MAX_TEXTS = 3
+"""Maximum number of texts in a description of the view, and of things that are described one by one."""
 STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing", "full", "empty", "stationary", "fallen"})
+"""States that are not activities."""
 
 
 def describe(view: View, question: s.Describe) -> AnswerText:
-    """Describe what can be seen, largest first, with the texts that can be read."""
+    """Describe the view, largest things first, with the legible texts."""
     if question.what is not None:
         return _describe_things(view, question.what, question.tests)
     if question.tests:
@@ -38,18 +41,18 @@ def describe(view: View, question: s.Describe) -> AnswerText:
 
 
 def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
-    """Answer with the load of something that carries one according to the scene; None if the question is about something else."""
+    """Answer "what is on the trailer?" with the load that the scene states; None if there is no such statement."""
     match tests:
         case (s.Relation(kind="on", other=other),):
-            bearer = next(iter(find(view, other)), None)
-            load = bearer.attributes.get("load") if bearer is not None else None
-            if bearer is not None and isinstance(load, str) and load not in NOTHING:
-                return reply(f"the {name(bearer)} {place(bearer)} carries {load}")
+            carrier = next(iter(find(view, other)), None)
+            load = carrier.attributes.get("load") if carrier is not None else None
+            if carrier is not None and isinstance(load, str) and load not in NOTHING:
+                return reply(f"the {name(carrier)} {place(carrier)} carries {load}")
     return None
 
 
 def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...]) -> AnswerText:
-    """Describe things with everything that the scene states about them."""
+    """Describe things with all facts that the scene states about them."""
     found = find(view, narrowed(what, tests))
     if not found:
         return reply(none_of(view, what))
@@ -88,7 +91,7 @@ def _groups(things: Iterable[Thing]) -> list[str]:
 
 
 def happening(view: View) -> AnswerText:
-    """Answer who and what moves or works; if nothing does, what can be seen."""
+    """Answer which things move or work; if none does, describe the view."""
     busy = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
     if not busy:
         return AnswerText(f"Nothing is moving. {describe(view, s.Describe()).text}")

@@ -1,4 +1,4 @@
-"""Phrases that name things and places."""
+"""Names of things and their places in the frame, in words."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from scope_ptz.perception.ground_truth.thing_facts import colour_of
 from scope_ptz.perception.ground_truth.view import Thing
 
 MAX_NAMED = 8
-"""Lists of things are truncated after this many."""
+"""Maximum number of names in a list of things."""
 
 
 class AnswerText(NamedTuple):
-    """An answer in words. ``known`` is False for "I cannot tell"."""
+    """An answer in words. ``known`` is False if the question cannot be answered."""
 
     text: str
     known: bool = True
@@ -33,7 +33,7 @@ def unknown(text: str) -> AnswerText:
 
 
 def name(thing: Thing) -> str:
-    """Return what to call a thing: its name, with its colour if the name has none."""
+    """Return the name of a thing, with_earlier_attempts by its colour if the name contains no colour."""
     colour = colour_of(thing)
     words = english.letters(thing.name).split()
     shown = thing.name if thing.name[:2].isupper() else thing.name[:1].lower() + thing.name[1:]
@@ -66,7 +66,7 @@ def place(thing: Thing) -> str:
 
 
 def metres(distance_m: float) -> str:
-    """Return a distance, rounded as a person would round it."""
+    """Return a distance in words. Longer distances are rounded more."""
     if distance_m < 3:
         return f"{distance_m:.1f} m"
     step = 1 if distance_m < 20 else 5 if distance_m < 100 else 10

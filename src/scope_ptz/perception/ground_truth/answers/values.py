@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.legible_text import spoken_texts
+from scope_ptz.perception.ground_truth.answers.legible_text import fact_on_signs
 from scope_ptz.perception.ground_truth.answers.restating import as_asked, none_of, noun, plural, the
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, place, reply, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as s
@@ -30,8 +30,8 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 UNSEEN = frozenset(
     "it time day weather date temperature mood today season month year hour brand owner price name age".split()  # noqa: SIM905
 )
-"""Subjects about which no picture holds the truth."""
-_DOING = frozenset(["doing", "activity", "action", "up"])
+"""Subjects that a picture cannot answer questions about."""
+_ACTIVITY_WORDS = frozenset(["doing", "activity", "action", "up"])
 _KEY_SYNONYMS = {
     "state": {"state", "status", "condition", "position"},
     "kind": {"kind", "type", "make", "model", "sort"},
@@ -45,7 +45,7 @@ _KEY_SYNONYMS = {
 def ask(view: View, question: s.Ask) -> AnswerText:
     """Answer with the value of an attribute, of one thing or of several."""
     if question.what is None:
-        return anywhere(view, question.attribute)
+        return fact_in_view(view, question.attribute)
     found = find(view, question.what)
     if not found:
         return _of_a_part(view, question) or absent(view, question.what)
@@ -70,7 +70,7 @@ def ask(view: View, question: s.Ask) -> AnswerText:
 
 
 def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
-    """Return an attribute of a thing in words; None if the scene has none."""
+    """Return the value of an attribute in words; None if the scene does not state it."""
     if attribute[-1] in COLOUR_KEYS:
         colour = colour_of(thing)
         return colour if colour or "person" not in thing.concepts else _clothes(thing)
@@ -82,9 +82,9 @@ def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
         keys = {canonical(english.singular(x)) for x in key_words(key)}
         if wanted <= keys or keys & synonyms or keys <= wanted:
             return _value(key, value)
-    if set(attribute) & _DOING and (pose := pose_of(thing)) is not None:
+    if set(attribute) & _ACTIVITY_WORDS and (pose := pose_of(thing)) is not None:
         return pose
-    if set(attribute) & _DOING:
+    if set(attribute) & _ACTIVITY_WORDS:
         states = fact_words(thing) & {"moving", "stationary", "walking", "working", "upright", "sitting"}
         return min(states, default=None)
     if set(attribute) & _KEY_SYNONYMS["state"]:
@@ -129,7 +129,7 @@ def _is_clothes(attribute: Sequence[str]) -> bool:
 
 
 def _clothes(thing: Thing) -> str | None:
-    """Return what a person wears: "an orange vest and a white helmet"."""
+    """Return what a person has_item: "an orange vest and a white helmet"."""
     worn: list[str] = []
     for key, value in facts(thing):
         if key in {"wearing", "clothing", "clothes", "outfit", "ppe"}:
@@ -142,7 +142,7 @@ def _clothes(thing: Thing) -> str | None:
 
 
 def _of_a_part(view: View, question: s.Ask) -> AnswerText | None:
-    """Answer about a part that is a fact of its owner: "the colour of the worker's helmet"."""
+    """Answer about a part that the scene states as a fact of its owner: "the colour of the worker's helmet"."""
     if question.what is None:
         return None
     found = part_values(view, question.what)
@@ -155,7 +155,7 @@ def _of_a_part(view: View, question: s.Ask) -> AnswerText | None:
 
 
 def part_values(view: View, what: s.Description) -> list[tuple[Thing, str]]:
-    """Return owners and values of a part that is a fact of its owner: "helmet of the worker", "cabin door"."""
+    """Return owners and values of a part that the scene states as a fact of its owner: "helmet of the worker", "cabin door"."""
     phrase = what.phrases[0]
     owners = [t.other for t in phrase.tests if isinstance(t, s.Relation) and t.kind == "on"]
     part = phrase.words
@@ -175,24 +175,24 @@ def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
     return None
 
 
-def anywhere(view: View, attribute: Sequence[str]) -> AnswerText:
-    """Answer about a fact of any thing ("which lane is closed?"), or else about a text on a sign ("what is the speed limit?")."""
+def fact_in_view(view: View, attribute: Sequence[str]) -> AnswerText:
+    """Answer with a fact of any thing ("which lane is closed?"), or else with the text on a sign ("what is the speed limit?")."""
     if tuple(attribute) == ("thing",) or set(attribute) & UNSEEN:
         return unknown("I cannot tell that from the picture")
-    stated = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _says(t, attribute)]
+    stated = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _states(t, attribute)]
     if stated:
         values = list(dict.fromkeys(v for _, v in stated))
         return reply(f"the {' '.join(attribute)} is {english.listing(values)}")
     signs = find(view, s.Description((s.Phrase(tuple(attribute)),)))
     if "limit" in attribute:
         signs = [t for t in (signs or view.for_reading().things) if any(x.strip().isdigit() for x in t.texts)] or signs
-    return spoken_texts(view, signs, " ".join(attribute)) or unknown(
+    return fact_on_signs(view, signs, " ".join(attribute)) or unknown(
         f"I cannot tell: nothing in view says the {' '.join(attribute)}"
     )
 
 
-def _says(thing: Thing, attribute: Sequence[str]) -> bool:
-    """Return whether a fact of the thing covers every word asked for."""
+def _states(thing: Thing, attribute: Sequence[str]) -> bool:
+    """Return whether one fact of the thing contains every word of the attribute."""
     wanted = {canonical(english.singular(x)) for x in attribute}
     return any(wanted <= {canonical(english.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
 

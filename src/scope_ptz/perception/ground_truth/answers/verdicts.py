@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.counted_things import exists
-from scope_ptz.perception.ground_truth.answers.restating import after_noun, as_asked, holds_words, none_of, noun, plural, the
+from scope_ptz.perception.ground_truth.answers.restating import after_noun, as_asked, none_of, noun, plural, predicate_words, the
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, name, place, reply, unknown
 from scope_ptz.perception.ground_truth.answers.values import absent, part_values
 from scope_ptz.perception.ground_truth.language import question_tree as s
@@ -23,7 +23,7 @@ _EVERYBODY = frozenset(["everyone", "everybody", "everything", "they"])
 
 
 def yes_no(view: View, question: s.YesNo) -> AnswerText:
-    """Answer whether something holds for the subject."""
+    """Answer whether the tests hold for the subject."""
     subject, tests = _parts(view, question)
     if not tests:
         return exists(view, s.Exists(subject))
@@ -46,7 +46,7 @@ def yes_no(view: View, question: s.YesNo) -> AnswerText:
 
 
 def _as_text(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> AnswerText | None:
-    """Answer "is Brampton on the sign?" as a question about text, when Brampton is no thing."""
+    """Answer "is Brampton on the sign?" as a question about text, if "Brampton" names no thing."""
     phrase = subject.phrases[0]
     if len(tests) != 1 or not isinstance(tests[0], s.Relation) or tests[0].kind != "on" or nouns_in(phrase.words, view.nouns):
         return None
@@ -60,7 +60,7 @@ def _as_text(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> A
 
 
 def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> AnswerText | None:
-    """Answer "is the cabin door open?" when the door is a fact of the cabin."""
+    """Answer "is the cabin door open?" if the scene states the door as a fact of the cabin."""
     values = part_values(view, subject)
     if not values or len(tests) != 1 or not isinstance(tests[0], s.Is):
         return None
@@ -72,7 +72,7 @@ def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) ->
 
 
 def missing_reference(view: View, test: s.Test) -> s.Description | None:
-    """Return what a relation refers to when nothing like it is in view."""
+    """Return the description that a relation refers to, if nothing in view fits it; None otherwise."""
     match test:
         case s.Not(test=inner):
             return missing_reference(view, inner)
@@ -88,7 +88,7 @@ def missing_reference(view: View, test: s.Test) -> s.Description | None:
 
 
 def _parts(view: View, question: s.YesNo) -> tuple[s.Description, tuple[s.Test, ...]]:
-    """Split a question into its subject and its tests.
+    """Split a question into the subject and the tests.
 
     The predicate may follow the noun within the subject ("gate open"), or be the subject's last restriction.
     """
@@ -116,20 +116,21 @@ def _parts(view: View, question: s.YesNo) -> tuple[s.Description, tuple[s.Test, 
 
 
 def _every(answers: Sequence[bool | None]) -> bool | None:
+    """Return whether all answers are yes; None stands for unknown."""
     return False if False in answers else None if None in answers else True
 
 
 def _choice(view: View, tests: Sequence[s.Test], found: list[Thing]) -> AnswerText | None:
-    """Answer "red or white?" by naming the one that holds."""
+    """Answer "red or white?" by naming the alternative that holds; None if none is known to hold."""
     if len(tests) != 1 or not isinstance(tests[0], s.Any):
         return None
     options = tests[0].tests
     held = [o for o in options if any(holds(view, t, o) for t in found)]
     if held and len(found) == 1:
-        return reply(f"the {name(found[0])} {holds_words(view, held, 1)}")
+        return reply(f"the {name(found[0])} {predicate_words(view, held, 1)}")
     if held:
         counts = [(sum(holds(view, t, o) is True for t in found), o) for o in held]
-        return reply(english.listing([f"{n} of {len(found)} {holds_words(view, [o], n)}" for n, o in counts]))
+        return reply(english.listing([f"{n} of {len(found)} {predicate_words(view, [o], n)}" for n, o in counts]))
     fact = _instead(view, options[0], found)
     return reply(f"neither: {fact}") if fact else None
 
@@ -142,15 +143,15 @@ def _verdict(
     if any(p.words[-1] in _EVERYBODY for p in subject.phrases if p.words):
         scope = "all"
     some = scope == "any" or any(p.words[-1] in _ANYBODY for p in subject.phrases if p.words)
-    share = f"{len(yes)} of the {total} {many} {holds_words(view, tests, len(yes))}"
+    share = f"{len(yes)} of the {total} {many} {predicate_words(view, tests, len(yes))}"
     if scope == "none":
-        return reply(f"no, {share}" if yes else f"yes, none of the {many} {holds_words(view, tests, 1)}")
+        return reply(f"no, {share}" if yes else f"yes, none of the {many} {predicate_words(view, tests, 1)}")
     if not yes:
         return _none_of_them(view, subject, tests, found, some=some)
     if len(yes) == total:
         several = total > 1 and len(subject.phrases) == 1
         every = f"{'both' if total == 2 else f'all {total}'} {many}" if several else _subject_words(view, subject, total)
-        return reply(f"yes, {every} {holds_words(view, tests, total)}")
+        return reply(f"yes, {every} {predicate_words(view, tests, total)}")
     if scope == "all" or (plural(subject) and not some):
         return reply(f"no, only {share}")
     where = f": the one {place(yes[0])}" if len(yes) == 1 else ""
@@ -158,14 +159,14 @@ def _verdict(
 
 
 def _none_of_them(view: View, subject: s.Description, tests: tuple[s.Test, ...], found: list[Thing], *, some: bool) -> AnswerText:
-    """Answer no, with what is the case instead where that is known. ``some``: the question was about any of the things."""
+    """Answer no, and state what is true instead where that is known. ``some``: the question was about any of the things."""
     total, union = len(found), len(subject.phrases) > 1
     fact = _instead(view, tests[-1], found) if len(tests) == 1 and not union else None
     if fact:
         return reply(f"no, {fact}")
     if some or (total > 1 and not union):
-        return reply(f"no, none of the {total} {noun(view, subject, many=True)} in view {holds_words(view, tests, 1)}")
-    return reply(f"no, {_subject_words(view, subject, total)} {holds_words(view, tests, total, negated=True)}")
+        return reply(f"no, none of the {total} {noun(view, subject, many=True)} in view {predicate_words(view, tests, 1)}")
+    return reply(f"no, {_subject_words(view, subject, total)} {predicate_words(view, tests, total, negated=True)}")
 
 
 def _subject_words(view: View, subject: s.Description, total: int) -> str:
@@ -174,7 +175,7 @@ def _subject_words(view: View, subject: s.Description, total: int) -> str:
 
 
 def _instead(view: View, test: s.Test, found: list[Thing]) -> str | None:
-    """Return what is the case instead of a loose word: "the van is white", "the gate is closed"."""
+    """Return what is true instead of the state or colour asked about: "the van is white", "the gate is closed"."""
     if not isinstance(test, s.Is) or len({name(t) for t in found}) > 1:
         return None
     thing, wanted = found[0], canonical(test.words[-1])

@@ -1,4 +1,4 @@
-"""The choice between several readings: a cost for each, by preferences that hold for all scenes."""
+"""The choice between several readings of a text. Each has a cost, which does not depend on the scene."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ _SPECIFIC: tuple[type[Any], ...] = (
     s.CompareCount, s.Compare, s.Which, s.HowFar, s.MostCommon, s.TextExists, s.Read, s.IsA, s.Where, s.Count, s.CountKinds,
     s.Happening,
 )  # fmt: skip
+"""Types of question that are preferred over the general ones."""
 
-_TEXTS = frozenset(
+_TEXT_AND_PROPERTY_NOUNS = frozenset(
     [
         "text",
         "texts",
@@ -64,7 +65,7 @@ def _cost_of_node(node: Any, known: dict[int, float]) -> float:
         case s.Phrase(words=words):
             spans = nouns_in(words)
             total += 1.0 if spans else 2.0
-            total += 4.0 if words[-1] in _TEXTS else 0.0
+            total += 4.0 if words[-1] in _TEXT_AND_PROPERTY_NOUNS else 0.0
             total += 0.3 if spans and spans[0][1] < len(words) else 0.0
             total += 0.2 * max(0, len(node.tests) - 1)
         case s.Is(words=words):
@@ -81,8 +82,9 @@ def _cost_of_node(node: Any, known: dict[int, float]) -> float:
 
 
 def _misplaced(node: Any) -> float:
-    """Return the cost of clothes on something that is no person: "the worker next to the van wearing a helmet" is about the
-    worker.
+    """Return the cost of clothes on something other than a person.
+
+    In "the worker next to the van wearing a helmet", the helmet belongs to the worker.
     """
     if not isinstance(node, s.Phrase) or not any(isinstance(t, s.Has) and t.worn for t in node.tests):
         return 0.0

@@ -1,4 +1,4 @@
-"""The meaning of nouns: concepts, their other names, and the kinds that they belong to."""
+"""The meaning of nouns: concepts, their synonyms, and the hierarchy of kinds."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CACHED = 8192
 
 @dataclass(frozen=True, eq=False)
 class Lexicon:
-    """All concepts with their names and parents. There is one lexicon, so its methods may cache their results."""
+    """All concepts, with their names and the kinds that they belong to. There is only one, so its methods cache their results."""
 
     parents: dict[str, tuple[str, ...]]
     names: dict[str, str]
@@ -40,7 +40,7 @@ class Lexicon:
 
     @lru_cache(maxsize=CACHED)  # noqa: B019
     def all_names(self, concept: str) -> frozenset[str]:
-        """Return every noun, in the singular, for the concept or a kind of it."""
+        """Return every noun, in the singular, for the concept or for a more specific one."""
         return frozenset(name for name, meant in self.names.items() if concept in self.kinds(meant))
 
 
@@ -53,7 +53,7 @@ def singular_phrase(phrase: str) -> str:
 
 @cache
 def lexicon() -> Lexicon:
-    """Return the lexicon of ``lexicon.txt``."""
+    """Load the lexicon from ``lexicon.txt``."""
     parents: dict[str, tuple[str, ...]] = {}
     names: dict[str, str] = {}
     others: list[tuple[str, str]] = []
@@ -72,7 +72,7 @@ def lexicon() -> Lexicon:
 
 
 def nouns_in(words: Sequence[str], known: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
-    """Return spans ``[start, end)`` of words that could be the noun, best first: at the end of the phrase, longest first.
+    """Return spans ``[start, end)`` of words that could be the noun of a phrase: those with the last end, longest first.
 
     Args:
         words: The words of the phrase.

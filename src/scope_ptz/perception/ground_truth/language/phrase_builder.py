@@ -1,4 +1,4 @@
-"""From parse trees of noun phrases to the data of ``question_tree``."""
+"""Builds noun phrases, as ``question_tree`` defines them, from parse trees."""
 
 from __future__ import annotations
 
@@ -12,22 +12,27 @@ from scope_ptz.perception.ground_truth.language import question_tree as s
 from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 
 Children = list[Any]
+"""The children of a node of the parse tree, already transformed."""
 
 
 def tokens_of(children: Children, *kinds: str) -> list[Token]:
+    """Return the tokens of some types."""
     return [c for c in children if isinstance(c, Token) and c.type in kinds]
 
 
 def of_kind(children: Children, kind: type[Any]) -> list[Any]:
+    """Return the children of a class."""
     return [c for c in children if isinstance(c, kind)]
 
 
 def value_of(children: Children, kind: str) -> str | None:
+    """Return the text of the first token of a type; None if there is none."""
     found = tokens_of(children, kind)
     return str(found[0]) if found else None
 
 
 def descriptions(children: Children) -> list[s.Description]:
+    """Return the descriptions among the children. A single noun phrase counts as one."""
     return [s.Description((c,)) if isinstance(c, s.Phrase) else c for c in children if isinstance(c, s.Phrase | s.Description)]
 
 
@@ -51,17 +56,17 @@ class Core(tuple[str, ...]):
 
 
 class Rank(tuple[s.OrderKey | None, int | None, int | None]):
-    """Superlative, ordinal and amount."""
+    """The superlative, the ordinal and the amount of a noun phrase; each may be None."""
 
 
 def _digits(token: Token) -> str:
-    """Return a number word in digits: "lane two" is lane 2."""
+    """Return a number in digits ("two": "2"); other words stay the same."""
     number = english.cardinal(str(token))
     return str(token) if number is None else str(number)
 
 
 class NounPhrases:
-    """Builds noun phrases and what may follow them. Each method builds the rule, or the alias of a rule, of its name."""
+    """Builds noun phrases and their modifiers. Each method builds the grammar rule, or the alias of a rule, of its name."""
 
     def build(self, rule: str, children: Children) -> Any:
         """Return the meaning of a rule. A rule without a method of its own is a plain node."""
@@ -72,7 +77,7 @@ class NounPhrases:
         return cast(s.Description, c[0])
 
     def anywhere(self, c: Children) -> s.Description:
-        """Build "behind the barrier": everything there."""
+        """Build "behind the barrier": everything that is there."""
         return s.Description((s.Phrase(("thing",), tests_of(c)),))
 
     def np_to(self, c: Children) -> s.Phrase:
@@ -83,9 +88,7 @@ class NounPhrases:
         return replace(phrase, order=s.Order(key, s.Description((other,))))
 
     def nps(self, c: Children) -> s.Description:
-        """Build a list. What follows the last noun applies to all ("cars and vans on the left"), and so does the noun ("red or
-        blue cars").
-        """
+        """Build a list. The last noun ("red or blue cars") and its modifiers ("cars and vans on the left") apply to all parts."""
         phrases: list[s.Phrase] = of_kind(c, s.Phrase)
         last = phrases[-1]
         spans = nouns_in(last.words)
@@ -219,7 +222,7 @@ class NounPhrases:
         return _Predicate(tests_of(c))
 
     def predicate(self, c: Children) -> _Predicate:
-        """Build a predicate. "Red or blue" holds when either does; other tests must all hold."""
+        """Build a predicate. If its tests are joined by "or", one of them must hold; otherwise all must hold."""
         tests = tests_of(c)
         return _Predicate((s.Any(tests),) if tokens_of(c, "OR") and len(tests) > 1 else tests)
 

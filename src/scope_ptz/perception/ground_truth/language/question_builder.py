@@ -1,4 +1,4 @@
-"""From parse trees of questions to the data of ``question_tree``."""
+"""Builds questions, as ``question_tree`` defines them, from parse trees."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ _THE_VIEW = frozenset(
 )
 
 
-def _bearer(what: s.Description) -> s.Description | None:
-    """Return what bears a text ("the words on the van" are the van's), None for "the text"."""
+def _text_owner(what: s.Description) -> s.Description | None:
+    """Return the thing that a text is on ("the words on the van": the van); None if only "the text" is asked for."""
     phrase = what.phrases[0]
-    if phrase.words[-1] not in _TEXTS:
+    if phrase.words[-1] not in _TEXT_NOUNS:
         return what
     holders = [t.other for t in phrase.tests if isinstance(t, s.Relation)]
     return holders[0] if holders else None
 
 
-_TEXTS = frozenset(
+_TEXT_NOUNS = frozenset(
     [
         "text",
         "texts",
@@ -61,7 +61,7 @@ class Subject(tuple[s.Description, str]):
 
 
 class QuestionBuilder(NounPhrases):
-    """Builds questions."""
+    """Builds questions. Each method builds the grammar rule of its name."""
 
     def question(self, c: Children) -> s.Question:
         return cast(s.Question, next(x for x in c if not isinstance(x, Token)))
@@ -131,7 +131,7 @@ class QuestionBuilder(NounPhrases):
         return s.Ask(("colour",), self._owned(descriptions(c)))
 
     def _owned(self, found: list[s.Description]) -> s.Description:
-        """Return the helmet on the worker for "what colour helmet is the worker wearing"."""
+        """Return "helmet on the worker" for "what colour helmet is the worker wearing"."""
         if len(found) == 1:
             return found[0]
         part, owner = found
@@ -153,7 +153,7 @@ class QuestionBuilder(NounPhrases):
         return s.Ask((str(value_of(c, "W")),), descriptions(c)[0])
 
     def ask_attribute(self, c: Children) -> s.Ask | s.Read:
-        if of_kind(c, Core)[0][-1] in _TEXTS:
+        if of_kind(c, Core)[0][-1] in _TEXT_NOUNS:
             return s.Read(descriptions(c)[0])
         return s.Ask(tuple(of_kind(c, Core)[0]), descriptions(c)[0])
 
@@ -166,7 +166,7 @@ class QuestionBuilder(NounPhrases):
 
     def read(self, c: Children) -> s.Read:
         found = descriptions(c)
-        return s.Read(_bearer(found[-1]) if found else None)
+        return s.Read(_text_owner(found[-1]) if found else None)
 
     def plate(self, c: Children) -> s.Read:
         found = descriptions(c)
@@ -198,8 +198,8 @@ class QuestionBuilder(NounPhrases):
 
     def identify(self, c: Children) -> s.Identify | s.Read:
         what = descriptions(c)[0]
-        bearer = _bearer(what)
-        return s.Identify(what) if bearer is None or bearer == what else s.Read(bearer)
+        owner = _text_owner(what)
+        return s.Identify(what) if owner is None or owner == what else s.Read(owner)
 
     def who(self, _: Children) -> s.What:
         return s.What(s.Description((s.Phrase(("person",)),)))

@@ -1,4 +1,4 @@
-"""Parsing descriptions and questions. Lark finds every reading that the grammar allows, and the cheapest one wins."""
+"""The parser of descriptions and questions. Lark finds every reading that the grammar allows; the cheapest is used."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from scope_ptz.perception.ground_truth.language.question_tree import Description
 from scope_ptz.perception.ground_truth.language.tokeniser import tokenise
 
 MAX_TOKENS = 40
-"""Longer input is unlikely to describe a picture and is slow to parse."""
+"""Longer input is not parsed: it is slow to parse and unlikely to describe a picture."""
 
-MAX_LINKS = 6
-"""The number of readings multiplies with every "next to", "with" and "that"; with more of them the meaning is unclear anyway."""
+MAX_CONNECTIVES = 6
+"""Input with more connectives ("next to", "with", "that") is not parsed, because each multiplies the number of readings."""
 
-_LINKS = frozenset({"REL", "WITH", "WITHOUT", "WEAR", "HAVE", "OF", "BETWEEN", "THAT", "FROM", "TO", "EXCEPT"})
+_CONNECTIVES = frozenset({"REL", "WITH", "WITHOUT", "WEAR", "HAVE", "OF", "BETWEEN", "THAT", "FROM", "TO", "EXCEPT"})
 
 
 @cache
@@ -31,7 +31,7 @@ def _grammar() -> EarleyGrammar:
 
 @lru_cache(maxsize=512)
 def parse_description(text: str) -> Description:
-    """Return the best reading of a noun phrase. A text that fits no rule becomes a list of words that must all apply."""
+    """Return the best reading of a noun phrase. Text that fits no rule becomes a list of words that must all apply."""
     found = _best(text, "description")
     if isinstance(found, Description):
         return found
@@ -50,7 +50,7 @@ def parse_question(text: str) -> Question | None:
 
 def _best(text: str, start: str) -> Description | Question | None:
     tokens = tokenise(text)
-    if not 0 < len(tokens) <= MAX_TOKENS or sum(t.type in _LINKS for t in tokens) > MAX_LINKS:
+    if not 0 < len(tokens) <= MAX_TOKENS or sum(t.type in _CONNECTIVES for t in tokens) > MAX_CONNECTIVES:
         return None
     try:
         forest = _grammar().parse(tokens, start)

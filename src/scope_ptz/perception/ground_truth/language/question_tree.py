@@ -20,7 +20,7 @@ class Phrase:
     order: Order | None = None
     ordinal: int | None = None
     amount: int | None = None
-    """The number of things requested ("the two nearest cones"); used only together with ``order``."""
+    """The number of things ("the two nearest cones")."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Description:
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A superlative: nearest to or furthest from ``reference`` ("closest to the van"), or else from the camera."""
+    """A superlative ("the tallest"). The nearest and furthest are relative to ``reference``, or to the camera if it is None."""
 
     key: OrderKey
     reference: Description | None = None
@@ -40,7 +40,7 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """A relation to other things. ``preposition`` keeps the original wording, because one kind covers several."""
+    """A relation to other things. ``preposition`` is the original wording, because one kind covers several."""
 
     kind: RelationKind
     other: Description
@@ -57,7 +57,7 @@ class Between:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """A part of the frame: one or two sides. ``half`` means a half ("left half") instead of a band ("on the left")."""
+    """A part of the frame: one or two sides. With ``half``, a side is a half ("left half") instead of a band ("on the left")."""
 
     sides: tuple[Side, ...]
     half: bool = False
@@ -65,7 +65,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Has:
-    """A test for possessions ("with a yellow helmet", "wearing orange vests"). ``worn``: the subject must be a person."""
+    """A test for parts and clothes ("with a yellow helmet", "wearing orange vests"). ``worn``: it is about clothes."""
 
     what: Description
     worn: bool = False
@@ -131,7 +131,7 @@ Test = Relation | Between | Region | Has | Says | Is | Faces | Measured | Within
 
 @dataclass(frozen=True, slots=True)
 class Exists:
-    """Ask whether there is something.
+    """Ask whether something is in view.
 
     Attributes:
         negated: Whether the question is "is there no ...".
@@ -180,7 +180,7 @@ class IsA:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """Ask for the value of an attribute ("what colour is the van?", "which lane is closed?"). ``what`` is None for any thing."""
+    """Ask for the value of an attribute ("what colour is the van?"). ``what`` is None for any thing ("which lane is closed?")."""
 
     attribute: Words
     what: Description | None
@@ -225,7 +225,7 @@ class Identify:
 
 @dataclass(frozen=True, slots=True)
 class Which:
-    """Ask which of several things comes first ("which is closer, the van or the lorry?")."""
+    """Ask which of several things ranks first ("which is closer, the van or the lorry?")."""
 
     key: OrderKey
     options: Description
@@ -241,7 +241,7 @@ class HowFar:
 
 @dataclass(frozen=True, slots=True)
 class Compare:
-    """Ask whether one thing exceeds another ("is the van bigger than the lorry?")."""
+    """Ask whether one thing ranks before another ("is the van bigger than the lorry?")."""
 
     key: OrderKey
     first: Description
@@ -250,7 +250,7 @@ class Compare:
 
 @dataclass(frozen=True, slots=True)
 class CompareCount:
-    """Ask whether there are more, fewer or as many of one kind as of another. ``which``: ask which there are more of."""
+    """Ask whether there are more, fewer or equally many things of two kinds. ``which``: ask of which kind there are more."""
 
     sense: Literal["more", "fewer", "same"]
     first: Description

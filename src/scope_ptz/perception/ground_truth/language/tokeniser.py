@@ -1,6 +1,4 @@
-"""From text to typed tokens: the closed-class phrases of the vocabulary, numbers, ordinals, quoted text, and ``W`` for other
-words.
-"""
+"""Tokeniser that splits text into closed-class phrases of the vocabulary, numbers, ordinals, quoted text and other words."""
 
 from __future__ import annotations
 
@@ -81,14 +79,14 @@ def tokenise(text: str) -> list[Token]:
     tokens: list[Token] = []
     i = 0
     while i < len(words):
-        if size := _noun(words, i, table):
+        if size := _noun_length(words, i, table):
             tokens += [Token("W", word) for word in words[i : i + size]]
             i += size
         elif size := _closed_class_length(words, i, starts=not tokens):
             i = _add_closed_class(tokens, words, i, size)
         else:
             counts = words[i] == "one" and i + 1 < len(words) and (words[i + 1],) not in table
-            tokens.append(Token("NUM", "1") if counts else _open(words[i]))
+            tokens.append(Token("NUM", "1") if counts else _open_class(words[i]))
             i += 1
     while tokens and tokens[0].type == "COMMA":
         tokens.pop(0)
@@ -96,7 +94,7 @@ def tokenise(text: str) -> list[Token]:
 
 
 def _closed_class_length(words: list[str], start: int, *, starts: bool) -> int:
-    """Return how many words from here on are a closed-class phrase, 0 for none. ``starts``: no token came before."""
+    """Return the number of words in the closed-class phrase at ``start``, or 0. ``starts``: no token precedes it."""
     table, longest = _phrases()
     for size in range(min(longest, len(words) - start), 0, -1):
         found = table.get(tuple(words[start : start + size]))
@@ -124,8 +122,8 @@ def _add_closed_class(tokens: list[Token], words: list[str], i: int, size: int) 
     return i
 
 
-def _noun(words: list[str], start: int, table: dict[tuple[str, ...], tuple[str, str]]) -> int:
-    """Return how many words from here on are a known noun that contains a closed-class word ("charging points"), 0 for none."""
+def _noun_length(words: list[str], start: int, table: dict[tuple[str, ...], tuple[str, str]]) -> int:
+    """Return the number of words in a known noun at ``start`` that contains a closed-class word ("charging points"), or 0."""
     for size in range(min(_LONGEST_NOUN, len(words) - start), 1, -1):
         phrase = words[start : start + size]
         if any((word,) in table for word in phrase[1:]) and (phrase[0],) not in table and lexicon().concept(" ".join(phrase)):
@@ -136,7 +134,8 @@ def _noun(words: list[str], start: int, table: dict[tuple[str, ...], tuple[str, 
 _LONGEST_NOUN = 4
 
 
-def _open(word: str) -> Token:
+def _open_class(word: str) -> Token:
+    """Return the token of a word that belongs to no closed-class phrase."""
     if word[0] in "\"'" and len(word) > 2:
         return Token("TEXT", word[1:-1])
     if english.ordinal(word) is not None:
@@ -147,7 +146,7 @@ def _open(word: str) -> Token:
 
 
 def _literal(words: list[str], start: int) -> tuple[str, int]:
-    """Return the text after "says": the quoted string, or everything up to the end."""
+    """Return the text after "says" (the quoted string, or everything up to the end) and the index of the next word."""
     if start < len(words) and words[start][0] in "\"'":
         return words[start].strip("\"'"), start + 1
     end = start
@@ -159,7 +158,7 @@ def _literal(words: list[str], start: int) -> tuple[str, int]:
 
 
 def _without_frame(words: list[str]) -> list[str]:
-    """Drop "in the picture", "of the whole scene" and the like, because every question is about the picture."""
+    """Drop phrases such as "in the picture" and "of the whole scene", because every question is about the picture."""
     kept: list[str] = []
     i = 0
     while i < len(words):
@@ -178,10 +177,10 @@ def _without_frame(words: list[str]) -> list[str]:
 
 
 def _ends_in_place(words: list[str], at: int) -> bool:
-    """Return whether the words end in "site" or the like here ("on site", but not "on the site office")."""
+    """Return whether the text ends here with a word such as "site" ("on site", but not "on the site office")."""
     return at < len(words) and words[at] in _PLACE_WORDS and words[at + 1 :] in ([], ["?"])
 
 
 def _closes(words: list[str], at: int) -> bool:
-    """Return whether the frame word ends its phrase ("the camera" but not "the camera van")."""
+    """Return whether the frame word is the last of its phrase."""
     return at + 1 >= len(words) or words[at + 1] not in _FRAME_WORDS

@@ -1,4 +1,4 @@
-"""System prompts as versioned files.
+"""Load the system prompts, which are versioned files.
 
 A released file is never changed. An improved prompt gets the next number, so that runs stay comparable.
 """
@@ -26,7 +26,7 @@ _SEEING = (
 
 @dataclass(frozen=True, slots=True)
 class Prompt:
-    """A system prompt with placeholders for what is known about the camera (``$presets``, ``$pan``, ...)."""
+    """A system prompt with placeholders for facts about the camera (``$presets``, ``$pan``, ...)."""
 
     name: str
     text: str
@@ -38,16 +38,16 @@ class Prompt:
         return sha256(self.text.encode()).hexdigest()[:12]
 
     def fill(self, presets: tuple[str, ...], limits: Limits, start: Pose, *, sees: bool = False) -> str:
-        """Return the prompt for a camera.
+        """Return the text of the prompt for a camera.
 
         Args:
             presets: The camera's presets.
             limits: The camera's limits.
-            start: The pose at the start.
+            start: The camera's pose when the conversation starts.
             sees: Whether the planner takes images.
 
         Raises:
-            ConfigError: The prompt has an unknown placeholder.
+            ConfigError: The prompt has an unknown or malformed placeholder.
         """
         pose = start.as_dict()
         numbers = {
@@ -68,7 +68,7 @@ class Prompt:
         try:
             return Template(self.text).substitute(known)
         except (KeyError, ValueError) as error:
-            raise ConfigError(f"The prompt {self.name} has a place that cannot be filled: {error}.") from error
+            raise ConfigError(f"The prompt {self.name} has an unknown or malformed placeholder: {error}.") from error
 
 
 def prompt_names() -> tuple[str, ...]:
@@ -77,7 +77,7 @@ def prompt_names() -> tuple[str, ...]:
 
 
 def load_prompt(name: str = DEFAULT_PROMPT) -> Prompt:
-    """Return a prompt by name.
+    """Return a packaged prompt by name.
 
     Raises:
         UnknownNameError: There is no such prompt.

@@ -1,1 +1,1 @@
-"""From steps as written to steps that can run: names resolved to presets and things, questions made direct."""
+"""Resolve the names and embedded questions in the steps of an instruction, so that the steps can run."""

@@ -1,6 +1,6 @@
-"""Embedded questions made direct.
+"""Rewrite embedded questions as direct questions.
 
-"Tell me if it's open" asks "Is it open?", and "tell me its colour" asks "What is its colour?".
+"Tell me if it's open" becomes "Is it open?", and "tell me its colour" becomes "What is its colour?".
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _BASE_FORMS = {
     "means": "mean", "looks": "look", "look": "look", "wears": "wear", "carries": "carry", "holds": "hold", "does": "do",
     "contains": "contain", "weighs": "weigh", "costs": "cost", "lists": "list", "displays": "display",
 }  # fmt: skip
-_HEAVY = re.compile(rf"(.+?) ({_AUXILIARY}) (.+)", re.IGNORECASE)
+_WITH_AUXILIARY = re.compile(rf"(.+?) ({_AUXILIARY}) (.+)", re.IGNORECASE)
 _YES_NO = re.compile(
     r"(?:if|whether|that (?=(?:the|an?|all|every|no|any|there|it|they)\b))(?: or not)? ?(.+?)(?:,? or not)?", re.IGNORECASE
 )
@@ -27,48 +27,49 @@ _WH = re.compile(
     re.IGNORECASE,
 )
 _PLURAL = re.compile(r"(?:[^s]s|\b(?:people|men|women|children|feet))$", re.IGNORECASE)
-"""Whatever looks like a plural. Recorded plans depend on this test, so it stays coarse: "this" counts as a plural."""
+"""Matches words that look like plurals. It must remain coarse ("this" counts as a plural), because recorded plans depend on it."""
 
-_ASKED = re.compile(
+_QUESTION_WORD = re.compile(
     r"(what|which|who|whom|whose|where|when|why|how|is|are|was|were|do|does|did|can|could|has|have|any)\b", re.IGNORECASE
 )
 
 
-def embedded(text: str) -> str:
-    """Return the direct question in the words after "tell me". A text that is a direct question is returned unchanged."""
+def direct_question(text: str) -> str:
+    """Return the direct question for the words after "tell me". A text that is already a direct question is returned unchanged."""
     phrase = text.strip().rstrip("?!. ").replace("’", "'")
-    made = _yes_no(phrase) or _about_you(phrase) or _wh(phrase) or _named(phrase)
-    return f"{made[0].upper()}{made[1:]}?" if made else text.strip()
+    question = _yes_no_question(phrase) or _you_see_question(phrase) or _wh_question(phrase) or _noun_question(phrase)
+    return f"{question[0].upper()}{question[1:]}?" if question else text.strip()
 
 
-def _yes_no(phrase: str) -> str | None:
+def _yes_no_question(phrase: str) -> str | None:
+    """Return the question for "if the gate is open" or "whether you can see a van"; None for other phrases."""
     found = _YES_NO.fullmatch(phrase)
     if not found:
         return None
-    clause = re.sub(r"\b(there|it|they|that|anyone|anybody|someone|everyone)'(s|re)\b", _is_spelled, found[1])
+    clause = re.sub(r"\b(there|it|they|that|anyone|anybody|someone|everyone)'(s|re)\b", _expanded, found[1])
     if see := re.fullmatch(r"you (?:can )?(see|spot|make out|read) (.+)", clause, re.IGNORECASE):
         return f"can you {see[1]} {see[2]}"
-    if inverted := _HEAVY.fullmatch(clause):
+    if inverted := _WITH_AUXILIARY.fullmatch(clause):
         return f"{inverted[2]} {inverted[1]} {inverted[3]}"
     if short := re.fullmatch(r"(.+?)'s (.+)", clause):
         return f"is {short[1]} {short[2]}"
     return f"is it true that {clause}"
 
 
-def _is_spelled(short: re.Match[str]) -> str:
+def _expanded(short: re.Match[str]) -> str:
     return f"{short[1]} {'are' if short[2] == 're' else 'is'}"
 
 
-def _about_you(phrase: str) -> str | None:
-    """Return the question in "what you see" or "what you can see there"."""
+def _you_see_question(phrase: str) -> str | None:
+    """Return the question for "what you see" or "what you can see there"; None for other phrases."""
     found = re.fullmatch(
         r"(what(?: else)?|which \w+|how many \w+|who(?:m)?) you (can )?(see|find|notice|spot|observe)( .+)?", phrase, re.IGNORECASE
     )
     return f"{found[1]} {'can' if found[2] else 'do'} you {found[3]}{found[4] or ''}" if found else None
 
 
-def _wh(phrase: str) -> str | None:
-    """Return the question in "what colour the door is", "where the truck is parked" or "what the sign says"."""
+def _wh_question(phrase: str) -> str | None:
+    """Return the question for "what colour the door is" or "what the sign says"; None for other phrases."""
     if found := re.fullmatch(rf"{_WH.pattern} ({_AUXILIARY})( .+)?", phrase, re.IGNORECASE):
         return f"{found[1]} {found[3]} {found[2]}{found[4] or ''}"
     if found := re.fullmatch(rf"{_WH.pattern} ({'|'.join(_BASE_FORMS)})( .+)?", phrase, re.IGNORECASE):
@@ -79,11 +80,11 @@ def _wh(phrase: str) -> str | None:
     return None
 
 
-def _named(phrase: str) -> str | None:
-    """Return the question about a named thing: "its number plate", "the colour of the door"."""
+def _noun_question(phrase: str) -> str | None:
+    """Return the question for a noun phrase such as "its number plate"; None for other phrases."""
     if about := re.fullmatch(r"(?:something |more )?about (.+)", phrase, re.IGNORECASE):
         return f"what can you say about {about[1]}"
-    if _ASKED.match(phrase):
+    if _QUESTION_WORD.match(phrase):
         return None
     head = re.split(r" (?:of|on|in|at|for|to|with|near|behind|from|by|that|which|who) ", phrase)[0]
     many = _PLURAL.search(head_and_rest(head)[0]) and not re.search(r"\bbus$|ss$|'s$", head)

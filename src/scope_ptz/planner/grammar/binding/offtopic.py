@@ -1,4 +1,4 @@
-"""Recognise questions that a camera can answer, and instructions that it must refuse."""
+"""Detect questions that a camera cannot answer, and instructions that it must refuse."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import re
 
 from scope_ptz.planner.grammar.lexing.vocabulary import word_list
 
-_SUM = re.compile(r"\d\s*[-+*/×]\s*\d|\bwhat(?:'s| is) \d+\b")
-_HARM = re.compile(
+_ARITHMETIC = re.compile(r"\d\s*[-+*/×]\s*\d|\bwhat(?:'s| is) \d+\b")
+_HARMFUL = re.compile(
     r"\b(spy(?:ing)? on|stalk|peep|undress|naked|kill|shoot at|attack|murder|assassinate|rob the|break into|burgle"
     r"|aim (?:the|a) (?:gun|weapon|rifle)|harass|blackmail|bomb the)\b|\b(bedroom|bathroom|changing room) window",
     re.IGNORECASE,
@@ -16,11 +16,11 @@ REFUSAL = "I will not help with that: this camera is not for harming or spying o
 
 
 def is_about_the_scene(question: str) -> bool:
-    """Return False for questions that no picture can answer."""
+    """Return whether a picture could answer a question: False for arithmetic, general knowledge and similar topics."""
     text = " ".join(question.lower().replace("’", "'").split())
-    return not (any(re.search(rf"\b{re.escape(phrase)}\b", text) for phrase in word_list("elsewhere")) or _SUM.search(text))
+    return not (any(re.search(rf"\b{re.escape(phrase)}\b", text) for phrase in word_list("elsewhere")) or _ARITHMETIC.search(text))
 
 
 def is_harmful(instruction: str) -> bool:
     """Return whether an instruction asks to harm or spy on people."""
-    return bool(_HARM.search(instruction))
+    return bool(_HARMFUL.search(instruction))

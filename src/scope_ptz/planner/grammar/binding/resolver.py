@@ -1,4 +1,4 @@
-"""Resolve preset names to the camera's presets, pronouns to the last named thing, and the scope that a sweep sets."""
+"""Resolve preset names to the camera's presets, pronouns to the last object, and the scope of questions after a sweep."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from difflib import SequenceMatcher
 
 from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.embedded_questions import embedded
+from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
-from scope_ptz.planner.grammar.lexing.lexer import distance_one, preset_key
+from scope_ptz.planner.grammar.lexing.lexer import preset_key, within_one_edit
 from scope_ptz.planner.grammar.lexing.vocabulary import phrase_table
 from scope_ptz.tools.arguments import View
 
-_CLOSE_ENOUGH = 0.8
-_LONGEST_NAME = 4
-_NOWHERE = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
-_NO_PLACE = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
-_SHORTEST_ABBREVIATION = 3
-_NO_THING = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
+_MIN_SIMILARITY = 0.8  # of two preset names, from 0 to 1
+_MAX_NAME_WORDS = 4
+_NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
+_NOT_PRESETS = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
+_MIN_ABBREVIATION_CHARS = 3
+_BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
 _WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
 _EXISTENCE = re.compile(
     r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)"
@@ -41,9 +41,7 @@ _IMPERSONAL = re.compile(
     r"|\bwhat('s| is) it\b|\bit is\b",
     re.IGNORECASE,
 )
-
-
-_BESIDE = re.compile(
+_RELATIVE_POSITION = re.compile(
     r"(?:(?:just|only|slightly|a (?:bit|little|touch|tad)|right|directly) )*"
     r"((?:to the )?(?:left|right) of|above|below|under|underneath|beneath|over|beyond|past|behind|beside|next to|in front of) \w",
     re.IGNORECASE,
@@ -55,29 +53,29 @@ class UnresolvedError(Exception):
 
 
 def match_exactly(name: str, presets: Sequence[str]) -> str | None:
-    """Return the preset of that name, ignoring case, spaces and hyphens."""
-    wanted = "".join(preset_key(name))
-    return next((preset for preset in presets if "".join(preset_key(preset)) == wanted), None)
+    """Return the preset with a name, ignoring case, accents, spaces and hyphens."""
+    key = "".join(preset_key(name))
+    return next((preset for preset in presets if "".join(preset_key(preset)) == key), None)
 
 
 def match_preset(name: str, presets: Sequence[str]) -> str | None:
-    """Return the preset that matches a name exactly, or else the only close match; None if there is neither."""
-    wanted = "".join(preset_key(name))
+    """Return the preset that matches a name exactly, otherwise the only close match; None if there is neither."""
+    name_key = "".join(preset_key(name))
     keys = {preset: "".join(preset_key(preset)) for preset in presets}
     exact = match_exactly(name, presets)
-    if exact or not wanted:
+    if exact or not name_key:
         return exact
-    inside = [p for p in presets if len(wanted) >= 3 and set(preset_key(name)) < set(preset_key(p))]
+    inside = [p for p in presets if len(name_key) >= 3 and set(preset_key(name)) < set(preset_key(p))]
     if len(inside) == 1:
         return inside[0]
-    near = [preset for preset, key in keys.items() if len(key) >= 4 and distance_one(wanted, key)]
+    near = [preset for preset, key in keys.items() if len(key) >= 4 and within_one_edit(name_key, key)]
     if len(near) == 1:
         return near[0]
-    short = [preset for preset, key in keys.items() if abbreviates(wanted, key)]
+    short = [preset for preset, key in keys.items() if abbreviates(name_key, key)]
     if len(short) == 1:
         return short[0]
-    scored = sorted(((SequenceMatcher(None, wanted, key).ratio(), preset) for preset, key in keys.items()), reverse=True)
-    clear = scored and scored[0][0] >= _CLOSE_ENOUGH and (len(scored) < 2 or scored[1][0] < scored[0][0] - 0.05)
+    scored = sorted(((SequenceMatcher(None, name_key, key).ratio(), preset) for preset, key in keys.items()), reverse=True)
+    clear = scored and scored[0][0] >= _MIN_SIMILARITY and (len(scored) < 2 or scored[1][0] < scored[0][0] - 0.05)
     return scored[0][1] if clear else None
 
 
@@ -85,7 +83,7 @@ def abbreviates(short: str, long: str) -> bool:
     """Return whether a word abbreviates another by omitting vowels: "hwy" for "highway"."""
     letters = iter(long)
     return (
-        len(short) >= _SHORTEST_ABBREVIATION
+        len(short) >= _MIN_ABBREVIATION_CHARS
         and short[0] == long[:1]
         and not set(short[1:]) & set("aeiou")
         and all(c in letters for c in short)
@@ -93,15 +91,15 @@ def abbreviates(short: str, long: str) -> bool:
 
 
 def plausible_name(text: str) -> bool:
-    """Return whether words could name a preset when the presets are unknown: few words, none about camera motion."""
+    """Return whether words could name a preset: few words, none about camera motion. Used when the presets are unknown."""
     words = [(word,) for word in preset_key(text)]
-    telling = {
+    command_terminals = {
         "DEG", "PRON", "NUM", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN",
         "TILT", "TELL", "MOVE", "LIMIT", "CAMERA", "PREVIOUS", "HOWMANY", "BE",
     }  # fmt: skip
-    if not 0 < len(words) <= _LONGEST_NAME or any(word in _NO_PLACE for (word,) in words):
+    if not 0 < len(words) <= _MAX_NAME_WORDS or any(word in _NOT_PRESETS for (word,) in words):
         return False
-    return not any(phrase_table().get(word, frozenset()) & telling for word in words)
+    return not any(phrase_table().get(word, frozenset()) & command_terminals for word in words)
 
 
 @dataclass(slots=True)
@@ -110,11 +108,12 @@ class Resolver:
 
     Attributes:
         presets: The camera's presets; None if they are unknown, so that names are accepted as written.
-        antecedent: The thing that a pronoun refers to.
+        conversation: The earlier turns, which pronouns may refer to.
+        antecedent: The description that a pronoun refers to.
         preset: The preset that "there" refers to.
-        compared: Whether presets were compared.
-        counted: Whether something was counted.
-        sweeping: Whether questions are about the whole scene.
+        compared: Whether an earlier step compares presets.
+        counted: Whether an earlier step counts something.
+        whole_scene: Whether questions are about the whole scene instead of the current view.
     """
 
     presets: tuple[str, ...] | None
@@ -123,7 +122,7 @@ class Resolver:
     preset: str = ""
     compared: bool = False
     counted: bool = False
-    sweeping: bool = False
+    whole_scene: bool = False
 
     def __post_init__(self) -> None:
         for turn in self.conversation:
@@ -148,9 +147,9 @@ class Resolver:
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
-        """Complete a step without a verb with that of the previous step, as in "read the left sign and then the right one"."""
+        """Give a step without a verb the verb of the previous step, as in "read the left sign and then the right one"."""
         last = before[-1] if before else None
-        bare = isinstance(step, ast.GoPreset) and step.how == "bare" and step.ref.determined
+        bare = isinstance(step, ast.GoPreset) and step.how == "bare" and step.ref.has_article
         if not bare or not isinstance(step, ast.GoPreset) or (self.presets and self.find_place(step.ref)):
             return step
         thing = ast.Thing(re.sub(r"^(the|an?) ", "", step.ref.name), definite=True)
@@ -162,9 +161,10 @@ class Resolver:
 
     # Names -------------------------------------------------------------------------------------------------------------
     def thing(self, thing: ast.Thing) -> ast.Thing:
-        if thing.text.lower() in _NOWHERE:
+        """Return a reference to an object with its pronoun resolved, and remember it for later pronouns."""
+        if thing.text.lower() in _NOT_OBJECTS:
             raise UnresolvedError(f"What shall I look for {thing.text}?")
-        if thing.odd and not (_ONES.search(thing.text) and self.antecedent):
+        if thing.not_an_object and not (_ONES.search(thing.text) and self.antecedent):
             raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
         if thing.text.endswith((" one", " ones")) and not self.antecedent:
             raise UnresolvedError(f"Which things do you mean by '{thing.text}'?")
@@ -182,6 +182,7 @@ class Resolver:
         return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
 
     def place(self, ref: ast.PresetRef) -> ast.PresetRef:
+        """Return a reference with the exact name of one of the presets."""
         found = self.find_place(ref)
         if found is None:
             if self.presets is None:
@@ -189,11 +190,12 @@ class Resolver:
             listing = ", ".join(self.presets) or "none"
             raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {listing}. Which one do you mean?")
         self.preset = found
-        return ast.PresetRef(found, sure=True)
+        return ast.PresetRef(found, explicit=True)
 
     def find_place(self, ref: ast.PresetRef) -> str | None:
+        """Return the name of the preset that is referred to; None if there is no such preset."""
         if self.presets is None:
-            if not ref.sure and not plausible_name(ref.name):
+            if not ref.explicit and not plausible_name(ref.name):
                 return None
             return ref.name if ref.number is None else ref.name.replace(" ", "-")
         named = match_preset(ref.name, self.presets)
@@ -206,34 +208,34 @@ class Resolver:
         if not refs:
             if not self.presets:
                 raise UnresolvedError("Which presets do you mean? I know of none.")
-            return tuple(ast.PresetRef(name, sure=True) for name in self.presets)
+            return tuple(ast.PresetRef(name, explicit=True) for name in self.presets)
         return tuple(self.place(ref) for ref in refs)
 
     def _view(self, view: View | None) -> View:
-        return view or ("full" if self.sweeping else "current")
+        return view or ("full" if self.whole_scene else "current")
 
     # Steps -------------------------------------------------------------------------------------------------------------
     def _bind(self, step: ast.Step) -> Sequence[ast.Step]:
         if isinstance(step, ast.Unclear):
             raise UnresolvedError(step.question)
         if isinstance(step, ast.Sweep):
-            self.sweeping = True
+            self.whole_scene = True
             return [step]
         if isinstance(step, ast.Move | ast.Home | ast.GoPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset):
-            self.sweeping = False
+            self.whole_scene = False
         method = getattr(self, f"_{type(step).__name__.lower()}", None)
         return method(step) if method else [step]
 
     def _gopreset(self, step: ast.GoPreset) -> Sequence[ast.Step]:
         ref = step.ref
-        found = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.sure else None
-        if step.how == "look" and not ref.sure:
+        found = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.explicit else None
+        if step.how == "look" and not ref.explicit:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
-        if step.how == "show" and not ref.sure and found is None:
+        if step.how == "show" and not ref.explicit and found is None:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
-        if step.how == "bare" and found is None and ref.determined and self.conversation:
+        if step.how == "bare" and found is None and ref.has_article and self.conversation:
             return self._whatabout(ast.WhatAbout(ast.Thing(re.sub(r"^(the|an?) ", "", ref.name))))
-        if step.how == "bare" and found is None and not ref.sure:
+        if step.how == "bare" and found is None and not ref.explicit:
             raise UnresolvedError(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
         return [ast.GoPreset(self.place(ref))]
 
@@ -242,7 +244,7 @@ class Resolver:
             return [step]
         if not self.preset:
             raise UnresolvedError("Where is 'there'? Please name a preset.")
-        return [ast.GoPreset(ast.PresetRef(self.preset, sure=True))]
+        return [ast.GoPreset(ast.PresetRef(self.preset, explicit=True))]
 
     def _snap(self, step: ast.Snap) -> Sequence[ast.Step]:
         if step.of is None:
@@ -264,8 +266,8 @@ class Resolver:
             raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
         if _WAITING.match(step.question):
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
-        question, place = self._asked_at(embedded(step.question) if step.embedded else step.question)
-        if _NO_THING.fullmatch(question.strip()):
+        question, place = self._asked_at(direct_question(step.question) if step.embedded else step.question)
+        if _BARE_WHO_OR_WHAT.fullmatch(question.strip()):
             question = f"{question.strip(' ?')} there?"
         if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
             question = _POSSESSIVE.sub(
@@ -276,13 +278,13 @@ class Resolver:
         return [*place, ast.Ask(question, self._view(step.view))]
 
     def _asked_at(self, question: str) -> tuple[str, list[ast.Step]]:
-        """Take the preset out of a question that ends in one ("... at gate?")."""
+        """Split a question that ends with a preset ("... at gate?") into the question and a step to the preset."""
         match = re.fullmatch(r"(.+?) (?:at|from) (the )?([\w -]+?)( preset| view| position)?\?*", question.strip(), re.IGNORECASE)
         name = match_exactly(match[3], self.presets or ()) if match and (match[4] or not match[2]) else None
         if not match or not name:
             return question, []
-        self.preset, self.sweeping = name, False
-        return f"{match[1]}?", [ast.GoPreset(ast.PresetRef(name, sure=True))]
+        self.preset, self.whole_scene = name, False
+        return f"{match[1]}?", [ast.GoPreset(ast.PresetRef(name, explicit=True))]
 
     def _mention(self, step: ast.Mention) -> Sequence[ast.Step]:
         self.thing(step.thing)
@@ -294,8 +296,8 @@ class Resolver:
     def _zoomto(self, step: ast.ZoomTo) -> Sequence[ast.Step]:
         if re.search(r"\b\d[\d.]* ?(?:x|times|%|percent)$", step.thing.text):
             raise UnresolvedError("A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?")
-        if beside := _BESIDE.match(step.thing.text):
-            raise UnresolvedError(f"I can centre on a thing, not on what is {beside[1]} it. By how many degrees shall I move?")
+        if relative := _RELATIVE_POSITION.match(step.thing.text):
+            raise UnresolvedError(f"I can centre on a thing, not on what is {relative[1]} it. By how many degrees shall I move?")
         return [ast.ZoomTo(self.thing(step.thing))]
 
     def _track(self, step: ast.Track) -> Sequence[ast.Step]:
@@ -304,12 +306,13 @@ class Resolver:
     def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
         thing = self.thing(step.thing)
         if self.presets and (name := match_preset(thing.text, self.presets)):
-            return [ast.GoPreset(ast.PresetRef(name, sure=True)), *self._last_look()]
+            return [ast.GoPreset(ast.PresetRef(name, explicit=True)), *self._last_question()]
         if not self.conversation:
             return self._count(ast.Count((thing,)))
         return [ast.Count((thing,), self._view(None))]
 
-    def _last_look(self) -> list[ast.Step]:
+    def _last_question(self) -> list[ast.Step]:
+        """Return the last count or question of the conversation as a step."""
         for turn in reversed(self.conversation):
             for exchange in reversed(turn.exchanges):
                 for outcome in reversed(exchange.outcomes):
@@ -386,15 +389,15 @@ class Resolver:
             return replace(condition, thing=self.thing(condition.thing), view=self._view(condition.view))
         if isinstance(condition, ast.Readable):
             return ast.Readable(self.thing(condition.thing))
-        if isinstance(condition, ast.Holds) and not condition.subject.text and _IMPERSONAL.search(f"it {condition.predicate}"):
+        if isinstance(condition, ast.Statement) and not condition.subject.text and _IMPERSONAL.search(f"it {condition.predicate}"):
             return replace(condition, subject=ast.Thing("it"))
-        if isinstance(condition, ast.Holds):
+        if isinstance(condition, ast.Statement):
             return replace(condition, subject=self.thing(condition.subject))
         if isinstance(condition, ast.Outnumbers):
             return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))
         if isinstance(condition, ast.Answered):
             return condition
-        if isinstance(condition, ast.PresetWins):
+        if isinstance(condition, ast.PresetOutnumbers):
             places = self.place(condition.first), self.place(condition.second)
             return replace(condition, thing=self.thing(condition.thing), first=places[0], second=places[1])
         if isinstance(condition, ast.Negated):

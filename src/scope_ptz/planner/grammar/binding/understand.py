@@ -1,4 +1,4 @@
-"""The meaning of an instruction, or the question to ask."""
+"""Understand an instruction: parse it into steps, and resolve the names in them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on 
 
 @dataclass(frozen=True, slots=True)
 class Understanding:
-    """Bound steps, a question or a refusal."""
+    """The result of understanding an instruction: resolved steps, a clarifying question or a refusal."""
 
     steps: tuple[ast.Step, ...] = ()
     clarification: str | None = None
@@ -24,7 +24,7 @@ class Understanding:
 
 
 def understand(instruction: str, presets: Sequence[str] | None, conversation: Sequence[PastTurn] = ()) -> Understanding:
-    """Return the meaning of an instruction. Never raises, whatever the text.
+    """Return the steps of an instruction, or a clarifying question or refusal. Never raises, for any text.
 
     Args:
         instruction: What the user typed.
@@ -52,7 +52,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
 
 
 def _as_question(resolver: Resolver, instruction: str) -> tuple[ast.Step, ...]:
-    """Return a question to perception for a question that no rule covers."""
+    """Return the step that passes a question without a grammar rule to perception."""
     text = instruction.strip()
     if text.endswith("?") and len(text.split()) > 1 and text.count("?") == 1 and is_about_the_scene(text):
         return resolver.bind([ast.Ask(text)])

@@ -1,1 +1,1 @@
-"""Running the steps: tool calls, tests of conditions, and the answer in words."""
+"""Run the steps of an instruction: make tool calls, test conditions and phrase the answer."""

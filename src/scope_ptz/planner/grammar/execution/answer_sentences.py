@@ -1,4 +1,4 @@
-"""Sentences of the grammar planner's answers. They state only facts from the tool results."""
+"""Words and sentences of the grammar planner's answers, which state only facts from tool results."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.nouns import plural_noun
 from scope_ptz.planner.grammar.instruction_tree import (
     Condition,
-    Holds,
     Joined,
     Negated,
     Outnumbers,
-    PresetWins,
+    PresetOutnumbers,
     Quantity,
     Readable,
     Seen,
+    Statement,
 )
 
-_SPELLED_UP_TO = 12
-_AFTER_HEAD = re.compile(
+_MAX_SPELLED = 12  # larger counts are written in digits
+_MODIFIER_START = re.compile(
     r"\s(?:in|on|at|of|with|by|near|behind|beside|under|above|between|from|inside|outside|to|that|which|who|next|wearing|holding|carrying|parked|standing|"
     r"facing|driving|walking|visible|along|across|over|below|against|without|not)\b"
 )
@@ -35,13 +35,13 @@ def number(value: float) -> str:
 
 
 def spelled(count: int) -> str:
-    """Return a count from 1 to 12 as a word. It counts repetitions; counts of visible things stay in digits."""
-    return english.number_word(count) if 0 < count <= _SPELLED_UP_TO else str(count)
+    """Return a count from 1 to 12 as a word, any other in digits. Used for repetitions; counts of objects are always in digits."""
+    return english.number_word(count) if 0 < count <= _MAX_SPELLED else str(count)
 
 
 def head_and_rest(description: str) -> tuple[str, str]:
     """Split a description after its head noun: "red cars" and " behind the gate"."""
-    cut = _AFTER_HEAD.search(description)
+    cut = _MODIFIER_START.search(description)
     return (description[: cut.start()], description[cut.start() :]) if cut else (description, "")
 
 
@@ -53,11 +53,12 @@ def noun(description: str, count: float) -> str:
 
 
 def _inflected(word: str, inflect: Callable[[str], str]) -> str:
-    """Return a form of a word, with the capitals of the word as it was given."""
+    """Return an inflected form of a word. Letters that do not change keep their case."""
     plain = word.lower()
-    made = inflect(plain)
-    kept = next((i for i, (a, b) in enumerate(zip(plain, made, strict=False)) if a != b), min(len(plain), len(made)))
-    return word[:kept] + made[kept:]
+    inflected = inflect(plain)
+    differs = (i for i, (a, b) in enumerate(zip(plain, inflected, strict=False)) if a != b)
+    unchanged = next(differs, min(len(plain), len(inflected)))
+    return word[:unchanged] + inflected[unchanged:]
 
 
 def counted(description: str, count: int, *, complete: bool = True) -> str:
@@ -67,7 +68,7 @@ def counted(description: str, count: int, *, complete: bool = True) -> str:
 
 
 def where(view: str) -> str:
-    """Return the words for the scope of a question."""
+    """Return the scope of a count or question in words."""
     return "in the whole scene" if view == "full" else "in this view"
 
 
@@ -109,7 +110,7 @@ def moves_text(arguments: Mapping[str, Any], times: int) -> str:
 
 
 def clamped_text(clamped: Sequence[str]) -> str:
-    """Return the sentence that names the limits that cut a move short, empty for none."""
+    """Return the sentence that names the limits at which a move was clamped; empty for none."""
     if not clamped:
         return ""
     return f" The {english.listing(list(clamped))} {'limit' if len(clamped) == 1 else 'limits'} cut the move short."
@@ -133,14 +134,14 @@ def quantity_text(quantity: Quantity, description: str) -> str:
 
 
 def condition_text(condition: Condition) -> str:
-    """Return a condition so that it can follow "I never": "saw at least 6 cones"."""
+    """Return a condition in words that can follow "I never", such as "saw at least 6 cones"."""
     if isinstance(condition, Seen):
         return f"saw {quantity_text(condition.quantity, condition.thing.text)}"
     if isinstance(condition, Readable):
         return f"could read the {condition.thing.text}"
-    if isinstance(condition, Holds):
-        return f"saw that the {condition.subject.text} is {'' if condition.wanted else 'not '}{condition.predicate}"
-    if isinstance(condition, PresetWins):
+    if isinstance(condition, Statement):
+        return f"saw that the {condition.subject.text} is {'' if condition.expected else 'not '}{condition.predicate}"
+    if isinstance(condition, PresetOutnumbers):
         return f"saw {condition.sense} {condition.thing.text} at {condition.first.name} than at {condition.second.name}"
     if isinstance(condition, Outnumbers):
         return f"saw {condition.sense} {condition.first.text} than {condition.second.text}"
@@ -152,7 +153,7 @@ def condition_text(condition: Condition) -> str:
 
 
 def source_text(sources: Sequence[str]) -> str:
-    """Return the note about who answered, empty for no sources."""
+    """Return the note that names the sources of perception results; empty for none."""
     if not sources:
         return ""
     named = ["the simulator's ground truth" if source == GROUND_TRUTH else source for source in sources]

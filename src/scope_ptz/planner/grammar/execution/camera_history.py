@@ -1,4 +1,4 @@
-"""The camera's earlier positions, according to the conversation."""
+"""Derive the camera's earlier positions from the conversation."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import PastTurn, ToolOutcome
 from scope_ptz.tools.registry import TOOLS
 
-_MOVES = TOOLS.moving
+_MOVING_TOOLS = TOOLS.moving
 
 
 @dataclass(frozen=True, slots=True)
-class VisitedPlace:
-    """A place where the camera stood: at a preset, at home, or only at a pose."""
+class VisitedPosition:
+    """An earlier position of the camera: a preset, home, or any other pose."""
 
     pose: Pose
     preset: str | None = None
@@ -23,35 +23,35 @@ class VisitedPlace:
 
 
 @dataclass(frozen=True, slots=True)
-class Whereabouts:
-    """Where the camera has been.
+class PositionHistory:
+    """The positions of the camera in earlier turns of the conversation.
 
     Attributes:
-        preset: The preset where the camera still stands.
-        before: Where it stood before the last turn that moved it.
+        preset: The preset at which the camera is now; None if it is not at a preset.
+        before: The position before the last turn that moved the camera.
     """
 
     preset: str | None = None
-    before: VisitedPlace | None = None
+    before: VisitedPosition | None = None
 
 
-def whereabouts(conversation: Sequence[PastTurn]) -> Whereabouts:
-    """Return where the camera has been, from the results of earlier turns."""
-    here: VisitedPlace | None = None
-    before: VisitedPlace | None = None
+def position_history(conversation: Sequence[PastTurn]) -> PositionHistory:
+    """Return the camera's positions according to the tool results of earlier turns."""
+    here: VisitedPosition | None = None
+    before: VisitedPosition | None = None
     for turn in conversation:
         at_start = here
         for outcome in (o for exchange in turn.exchanges for o in exchange.outcomes):
             pose = _pose(outcome.result)
-            if outcome.error is not None or pose is None or outcome.call.name not in _MOVES:
+            if outcome.error is not None or pose is None or outcome.call.name not in _MOVING_TOOLS:
                 continue
-            at_start = at_start or _before(outcome, pose)
+            at_start = at_start or _start_of_move(outcome, pose)
             before = at_start or before
             name = outcome.call.arguments.get("name")
-            here = VisitedPlace(
+            here = VisitedPosition(
                 pose, str(name) if outcome.call.name == "go_to_preset" else None, home=outcome.call.name == "go_home"
             )
-    return Whereabouts(here.preset if here else None, before)
+    return PositionHistory(here.preset if here else None, before)
 
 
 def _pose(result: dict[str, Any] | None) -> Pose | None:
@@ -59,10 +59,13 @@ def _pose(result: dict[str, Any] | None) -> Pose | None:
     return Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"]) if isinstance(pose, dict) else None
 
 
-def _before(outcome: ToolOutcome, after: Pose) -> VisitedPlace | None:
-    """Return where a first relative move started, if its arguments determine it; None for a clamped move."""
+def _start_of_move(outcome: ToolOutcome, after: Pose) -> VisitedPosition | None:
+    """Return the position before a relative move, computed from its arguments.
+
+    Return None if they do not determine it: for other tools, clamped moves, and zooming all the way.
+    """
     arguments = outcome.call.arguments
     if outcome.call.name != "adjust_ptz" or (outcome.result or {}).get("clamped") or arguments.get("zoom_limit"):
         return None
     factor = arguments.get("zoom_factor", 1 + arguments.get("zoom_percent", 0) / 100)
-    return VisitedPlace(after.turned(-arguments.get("pan_deg", 0), -arguments.get("tilt_deg", 0)).zoomed(1 / factor))
+    return VisitedPosition(after.turned(-arguments.get("pan_deg", 0), -arguments.get("tilt_deg", 0)).zoomed(1 / factor))

@@ -1,4 +1,4 @@
-"""From requested motion to the arguments of ``adjust_ptz``, given the camera's pose."""
+"""Compute the arguments of ``adjust_ptz`` for a requested move, given the camera's pose."""
 
 from __future__ import annotations
 
@@ -12,11 +12,14 @@ _LOT_DEG = {"pan": 45.0, "tilt": 20.0}
 _LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}
 _LOOP_PAN_DEG = 15.0  # a loop makes 24 steps by default, which is one full turn
 _LOOP_ZOOM_FACTOR = 1.5
-_SAME = 1e-6
+_TOLERANCE = 1e-6
 
 
 def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) -> dict[str, Any]:
-    """Return the arguments of the call that makes a move, empty when the camera is already there. Whole numbers are integers."""
+    """Return the arguments of the call that makes a move; empty if the camera is already there.
+
+    Whole numbers are returned as integers. In a loop, moves of unspecified size have their own default sizes.
+    """
     arguments: dict[str, Any] = {}
     for part in move.parts:
         if isinstance(part, Turn):
@@ -26,10 +29,10 @@ def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) 
             arguments.update(_zoom(part, in_loop))
         else:
             arguments.update(_aim(part, pose, limits))
-    return {key: tidy(value) for key, value in arguments.items() if isinstance(value, str) or not _idle(key, value)}
+    return {key: tidy(value) for key, value in arguments.items() if isinstance(value, str) or not _is_no_motion(key, value)}
 
 
-def returning(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
+def return_arguments(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
     """Return the arguments of the relative move from ``pose`` back to ``to``."""
     pan = to.pan_deg - pose.pan_deg
     arguments = {
@@ -37,12 +40,12 @@ def returning(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
         "tilt_deg": to.tilt_deg - pose.tilt_deg,
         "zoom_factor": to.zoom / pose.zoom,
     }
-    return {key: tidy(value) for key, value in arguments.items() if not _idle(key, value)}
+    return {key: tidy(value) for key, value in arguments.items() if not _is_no_motion(key, value)}
 
 
-def _idle(key: str, value: float) -> bool:
-    """Return whether a value means no motion."""
-    return abs(value - (1.0 if key == "zoom_factor" else 0.0)) < _SAME
+def _is_no_motion(key: str, value: float) -> bool:
+    """Return whether an argument's value has no effect: a zoom factor of 1, or 0 for other arguments."""
+    return abs(value - (1.0 if key == "zoom_factor" else 0.0)) < _TOLERANCE
 
 
 def tidy(value: Any) -> Any:
@@ -57,7 +60,7 @@ def _degrees(turn: Turn, in_loop: bool) -> float:
     amount = turn.amount or Amount()
     if amount.kind == "degrees":
         return amount.degrees
-    if amount.kind == "unsaid":
+    if amount.kind == "unspecified":
         return _LOOP_PAN_DEG if in_loop and turn.axis == "pan" else _DEFAULT_DEG
     if amount.kind == "little":
         return _LITTLE_DEG

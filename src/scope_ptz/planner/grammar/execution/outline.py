@@ -1,6 +1,6 @@
-"""The outline of a program: its calls with what repeats, until when and at most how often, and what depends on a condition.
+"""Outline a program: its calls, grouped into repetitions, loops and conditional branches.
 
-A program is run against imagined results, each loop's body and each branch once.
+The program runs against assumed results. Each loop body and each branch runs once.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from scope_ptz import english
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.execution import answer_sentences as say
+from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.move_arguments import arguments_of
 from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.execution.run_state import Run
 
-MAX_LINES = 200  # a longer outline is cut off
-Imagined = Callable[[str, Mapping[str, Any]], dict[str, Any]]
-"""Returns the imagined result of a call."""
+MAX_LINES = 200  # further lines are left out
+AssumedResult = Callable[[str, Mapping[str, Any]], dict[str, Any]]
+"""A function that returns the assumed result of a call, given its tool and arguments."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,33 +34,33 @@ class OutlineCall:
 
 @dataclass(slots=True)
 class OutlineBlock:
-    """Lines that belong together under a heading, such as the body of a loop. The outermost block has no heading."""
+    """The lines under a heading, such as the body of a loop. The outermost block has no heading."""
 
     heading: str = ""
     lines: list[OutlineCall | OutlineBlock] = field(default_factory=list)
 
 
-def outline(steps: Sequence[ast.Step], limits: Limits, pose: Pose, imagined: Imagined) -> OutlineBlock:
+def outline(steps: Sequence[ast.Step], limits: Limits, pose: Pose, assumed_result: AssumedResult) -> OutlineBlock:
     """Return the outline of bound steps.
 
     Args:
         steps: The steps, with names bound to presets.
         limits: The camera's limits, which decide how often a loop can move.
-        pose: Where the camera starts.
-        imagined: Returns what a call might return.
+        pose: The camera's pose at the start.
+        assumed_result: Returns the assumed result of a call.
     """
-    program = _Outlining(limits, pose, imagined)
+    program = _OutlineProgram(limits, pose, assumed_result)
     for _ in program.run(steps):
         raise AssertionError("an outlined program makes no calls")
     return program.outermost
 
 
-class _Outlining(Program):
-    """A program that writes down its calls instead of making them."""
+class _OutlineProgram(Program):
+    """A program that records its calls instead of making them."""
 
-    def __init__(self, limits: Limits, pose: Pose, imagined: Imagined) -> None:
+    def __init__(self, limits: Limits, pose: Pose, assumed_result: AssumedResult) -> None:
         super().__init__(limits, pose, assume_met=True)
-        self._imagined = imagined
+        self._assumed_result = assumed_result
         self.outermost = self._block = OutlineBlock()
         self._lines = 0
 
@@ -68,7 +68,7 @@ class _Outlining(Program):
         yield from ()
         self._add(OutlineCall(tool, arguments))
         call = ToolCall(id=f"call-{self._lines}", name=tool, arguments=arguments)
-        result = self._imagined(tool, arguments)
+        result = self._assumed_result(tool, arguments)
         self.pose = Pose(**result["pose"])
         return ToolOutcome(call=call, result=result)
 
@@ -78,7 +78,8 @@ class _Outlining(Program):
             self._block.lines.append(line)
 
     @contextmanager
-    def _under(self, heading: str) -> Iterator[None]:
+    def _block_under(self, heading: str) -> Iterator[None]:
+        """Record the calls of the context in a block under a heading."""
         outer, self._block = self._block, OutlineBlock(heading)
         try:
             yield
@@ -88,33 +89,33 @@ class _Outlining(Program):
 
     def _repeat(self, step: ast.Repeat) -> Run:
         if step.times == 1:
-            yield from self._all(step.body)
+            yield from self._run_steps(step.body)
             return
-        with self._under(f"{step.times} times:"):
-            yield from self._all(step.body)
+        with self._block_under(f"{step.times} times:"):
+            yield from self._run_steps(step.body)
 
     def _if(self, step: ast.If) -> Run:
         yield from self._test(step.condition)
         pose = self.pose
-        with self._under(f"if {condition_text(step.condition)}:"):
-            yield from self._all(step.then)
+        with self._block_under(f"if {condition_text(step.condition)}:"):
+            yield from self._run_steps(step.then)
         if step.otherwise:
             after, self.pose = self.pose, pose
-            with self._under("otherwise:"):
-                yield from self._all(step.otherwise)
+            with self._block_under("otherwise:"):
+                yield from self._run_steps(step.otherwise)
             self.pose = after
 
     def _loop(self, step: ast.Loop) -> Run:
-        most = self._allowance(step)
-        with self._under(f"repeat until {condition_text(step.until)}, at most {most} {'time' if most == 1 else 'times'}:"):
+        limit = self._move_limit(step)
+        with self._block_under(f"repeat until {condition_text(step.until)}, at most {limit} {'time' if limit == 1 else 'times'}:"):
             yield from self._test(step.until)
             for inner in step.body:
                 if isinstance(inner, ast.Move):
-                    yield from self._moved("adjust_ptz", **arguments_of(inner, self.pose, self.limits, in_loop=True))
+                    yield from self._camera_call("adjust_ptz", **arguments_of(inner, self.pose, self.limits, in_loop=True))
                 else:
-                    yield from self._all([inner])
-        with self._under("if that never happens:" if step.otherwise else "if that never happens: stop and report it"):
-            yield from self._all(step.otherwise)
+                    yield from self._run_steps([inner])
+        with self._block_under("if that never happens:" if step.otherwise else "if that never happens: stop and report it"):
+            yield from self._run_steps(step.otherwise)
 
     def _joined(self, condition: ast.Joined) -> Run:
         for part in condition.parts:
@@ -127,21 +128,21 @@ def condition_text(condition: ast.Condition) -> str:
     match condition:
         case ast.Seen(thing=thing, quantity=quantity, view=view):
             verb = "is" if quantity.number == 1 and quantity != ast.Quantity() else "are"
-            return f"{say.quantity_text(quantity, thing.text)} {verb} visible{' in the whole scene' if view == 'full' else ''}"
+            return f"{phrases.quantity_text(quantity, thing.text)} {verb} visible{' in the whole scene' if view == 'full' else ''}"
         case ast.Readable(thing=thing):
             return f"the {thing.text} can be read"
-        case ast.Holds(subject=subject, predicate=predicate, wanted=expected, question=question):
+        case ast.Statement(subject=subject, predicate=predicate, expected=expected, question=question):
             if question:
                 return f"the answer to “{question}” is {'yes' if expected else 'no'}"
             return f"{'the ' if subject.definite else ''}{subject.text} is {'' if expected else 'not '}{predicate}"
         case ast.Outnumbers(first=first, second=second, sense=sense):
             return f"{sense} {first.text} than {second.text} are visible"
-        case ast.PresetWins(thing=thing, first=first, second=second, sense=sense):
+        case ast.PresetOutnumbers(thing=thing, first=first, second=second, sense=sense):
             return f"{sense} {thing.text} are visible at {first.name} than at {second.name}"
         case ast.Negated(part=ast.Answered()):
             return "the answer was no, or nothing was found"
         case ast.Negated(part=ast.Seen(thing=thing, quantity=quantity)) if quantity == ast.Quantity():
-            return f"no {say.noun(thing.text, 2)} are visible"
+            return f"no {phrases.noun(thing.text, 2)} are visible"
         case ast.Negated(part=part):
             return f"it is not the case that {condition_text(part)}"
         case ast.Joined(parts=parts, mode=mode):

@@ -1,6 +1,6 @@
-"""Running bound steps: a generator that yields tool calls, takes their outcomes and reports the results in words.
+"""Run bound steps, as a generator that yields tool calls, receives their outcomes and describes the results in words.
 
-The planner replays it against the recorded history at every step, so it depends on nothing but its inputs.
+The planner replays the generator against the recorded history at every step, so it depends only on its inputs.
 """
 
 # ruff: noqa: ARG002 - all step methods share one signature
@@ -14,33 +14,33 @@ from typing import Any
 from scope_ptz import english
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.execution import answer_sentences as say
-from scope_ptz.planner.grammar.execution.camera_history import VisitedPlace
-from scope_ptz.planner.grammar.execution.condition_tests import Judging, reading
-from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, returning
+from scope_ptz.planner.grammar.execution import answer_sentences as phrases
+from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition
+from scope_ptz.planner.grammar.execution.condition_tests import ConditionTests, reading_question
+from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, return_arguments
 from scope_ptz.planner.grammar.execution.run_state import HaltedError, Run
 
 _ABILITIES = (
     "I can pan, tilt and zoom, go to presets and home, take pictures, count things, answer questions about the scene, read text, "
     "and zoom in on or follow things"
 )
-_MOST_MOVES = 24
-_MOST_MOVES_SAID = 100
+_DEFAULT_MAX_MOVES = 24  # limit of a loop whose instruction gives none
+_MAX_REQUESTED_MOVES = 100  # highest limit that an instruction can give
 
 
-class Program(Judging):
-    """One run of the steps of an instruction, with one method for each kind of step."""
+class Program(ConditionTests):
+    """One run of the steps of an instruction, with one method for each step type."""
 
     def run(self, steps: Sequence[ast.Step]) -> Run:
-        """Run all steps. Afterwards ``answer()`` returns the result."""
-        start = VisitedPlace(self.pose, self.been.preset, home=self.been.before is None and self.pose == Pose())
-        self._trail = [self.been.before, start] if self.been.before else [start]
+        """Run all steps. Afterwards, ``answer()`` returns the answer."""
+        start = VisitedPosition(self.pose, self.positions.preset, home=self.positions.before is None and self.pose == Pose())
+        self._trail = [self.positions.before, start] if self.positions.before else [start]
         try:
-            yield from self._all(steps)
+            yield from self._run_steps(steps)
         except HaltedError as halt:
             self._note(str(halt))
 
-    def _all(self, steps: Sequence[ast.Step]) -> Run:
+    def _run_steps(self, steps: Sequence[ast.Step]) -> Run:
         for step in steps:
             yield from getattr(self, f"_{type(step).__name__.lower()}")(step)
 
@@ -48,41 +48,41 @@ class Program(Judging):
     def _move(self, step: ast.Move) -> Run:
         arguments = arguments_of(step, self.pose, self.limits)
         if not arguments:
-            self._note(f"The camera is already there: {say.pose_text(self.pose.as_dict())}")
+            self._note(f"The camera is already there: {phrases.pose_text(self.pose.as_dict())}")
             return
-        result = yield from self._moved("adjust_ptz", **arguments)
-        text = f"{say.move_text(arguments)}; the camera is at {say.pose_text(result['pose'])}"
-        self._note(say.sentence(text) + say.clamped_text(result.get("clamped", ())))
+        result = yield from self._camera_call("adjust_ptz", **arguments)
+        text = f"{phrases.move_text(arguments)}; the camera is at {phrases.pose_text(result['pose'])}"
+        self._note(phrases.sentence(text) + phrases.clamped_text(result.get("clamped", ())))
 
     def _back(self, step: ast.Back) -> Run:
         place = self._trail[-1]
         if step.zoom_only:
             yield from self._zoom_back(place)
-        elif self._wandered and (place.preset or (place.home and self._sent_home)):
-            yield from self._go(place)
-        elif self._wandered and self.assume_met:
+        elif self._moved_to_object and (place.preset or (place.home and self._went_home)):
+            yield from self._go_to(place)
+        elif self._moved_to_object and self.assume_met:
             self._note("The camera goes back to where it was")
-        elif returning(place.pose, self.pose, self.limits):
+        elif return_arguments(place.pose, self.pose, self.limits):
             yield from self._return(place.pose)
         elif len(self._trail) > 1:
             self._trail.pop()
-            yield from self._go(self._trail[-1])
+            yield from self._go_to(self._trail[-1])
         else:
             self._note("The camera is still where it was")
 
-    def _zoom_back(self, place: VisitedPlace) -> Run:
+    def _zoom_back(self, place: VisitedPosition) -> Run:
         zoomed = Pose(self.pose.pan_deg, self.pose.tilt_deg, place.pose.zoom)
-        if self._wandered or not returning(zoomed, self.pose, self.limits):
+        if self._moved_to_object or not return_arguments(zoomed, self.pose, self.limits):
             yield from self._move(ast.Move((ast.Zoom("out"),)))
         else:
             yield from self._return(zoomed)
 
     def _return(self, pose: Pose) -> Run:
-        arguments = returning(pose, self.pose, self.limits)
-        result = yield from self._moved("adjust_ptz", **arguments)
-        self._note(f"{say.move_text(arguments)} to go back; the camera is at {say.pose_text(result['pose'])}")
+        arguments = return_arguments(pose, self.pose, self.limits)
+        result = yield from self._camera_call("adjust_ptz", **arguments)
+        self._note(f"{phrases.move_text(arguments)} to go back; the camera is at {phrases.pose_text(result['pose'])}")
 
-    def _go(self, place: VisitedPlace) -> Run:
+    def _go_to(self, place: VisitedPosition) -> Run:
         if place.preset:
             yield from self._gopreset(ast.GoPreset(ast.PresetRef(place.preset)))
         elif place.home:
@@ -91,17 +91,17 @@ class Program(Judging):
             yield from self._return(place.pose)
 
     def _arrived(self, preset: str | None, home: bool = False) -> None:
-        self._trail.append(VisitedPlace(self.pose, preset, home))
-        self._wandered = False
+        self._trail.append(VisitedPosition(self.pose, preset, home))
+        self._moved_to_object = False
 
     def _home(self, step: ast.Home) -> Run:
-        yield from self._moved("go_home")
-        self._sent_home = True
+        yield from self._camera_call("go_home")
+        self._went_home = True
         self._arrived(None, home=True)
         self._note("I went to the home view")
 
     def _gopreset(self, step: ast.GoPreset) -> Run:
-        yield from self._moved("go_to_preset", name=step.ref.name)
+        yield from self._camera_call("go_to_preset", name=step.ref.name)
         self._arrived(step.ref.name)
         self._note(f"I went to preset {step.ref.name}")
 
@@ -113,7 +113,7 @@ class Program(Judging):
 
     # Things ------------------------------------------------------------------------------------------------------------
     def _listpresets(self, step: ast.ListPresets) -> Run:
-        result = yield from self._moved("get_presets")
+        result = yield from self._camera_call("get_presets")
         names = list(result.get("presets", ()))
         self._note(f"The presets are {english.listing(names)}" if names else "This camera has no presets")
 
@@ -123,20 +123,20 @@ class Program(Judging):
             if step.of.text in self._missing:
                 return
         for _ in range(step.times):
-            result = yield from self._moved("take_image")
+            result = yield from self._camera_call("take_image")
             self._note(f"I saved a picture as {result['file']}" if result.get("file") else "I saved a picture")
 
     def _zoomto(self, step: ast.ZoomTo) -> Run:
         text = step.thing.text
         if text in self._missing:
             return
-        result = yield from self._looked("zoom_to_object", description=text)
+        result = yield from self._perception_call("zoom_to_object", description=text)
         if result is None or not result.get("found"):
             self._missing.add(text)
             if result is not None:
                 self._note(f"I could not find {_the(step.thing)} in this view, so the camera stayed where it was")
             return
-        self._wandered = True
+        self._moved_to_object = True
         many = f" ({result['matches']} matched; {result['chosen'] or 'one was chosen'})" if result.get("matches", 1) > 1 else ""
         limits = f", as far as the {english.listing(list(result['limited_by']))} limit allows" if result.get("limited_by") else ""
         self._note(f"I zoomed in on {_the(step.thing)}{many}{limits}")
@@ -145,29 +145,29 @@ class Program(Judging):
         text = step.thing.text
         if text in self._missing:
             return
-        result = yield from self._looked("track_object", description=text, duration_s=_plain(step.seconds))
+        result = yield from self._perception_call("track_object", description=text, duration_s=_whole_as_int(step.seconds))
         if result is None:
             return
         if not result.get("found"):
             self._missing.add(text)
             self._note(f"I could not find {_the(step.thing)} to follow")
             return
-        self._wandered = True
+        self._moved_to_object = True
         share = round(100 * result.get("held_share", 0.0))
-        seconds = say.number(result.get("duration_s", step.seconds))
+        seconds = phrases.number(result.get("duration_s", step.seconds))
         self._note(f"I followed {_the(step.thing)} for {seconds} seconds and had it in view {share}% of the time")
 
     def _count(self, step: ast.Count) -> Run:
         view = step.view or "current"
         for thing in step.things:
-            result = yield from self._looked("count_objects", description=thing.text, view=view)
+            result = yield from self._perception_call("count_objects", description=thing.text, view=view)
             if result is not None:
                 self._last_yes = result["count"] > 0
-                seen = say.counted(thing.text, result["count"], complete=result.get("complete", True))
-                self._note(f"I can see {seen} {say.where(view)}")
+                seen = phrases.counted(thing.text, result["count"], complete=result.get("complete", True))
+                self._note(f"I can see {seen} {phrases.where(view)}")
 
     def _ask(self, step: ast.Ask) -> Run:
-        result = yield from self._looked("query_answer", question=step.question, view=step.view or "current")
+        result = yield from self._perception_call("query_answer", question=step.question, view=step.view or "current")
         if result is not None:
             self._last_yes = bool(result.get("known", True)) and result["answer"].strip().lower().startswith("yes")
             honest = result.get("known", True) or result["answer"].lower().startswith("i cannot tell")
@@ -177,11 +177,11 @@ class Program(Judging):
         if step.thing.text in self._missing:
             self._note("There was nothing to read")
             return
-        yield from self._ask(ast.Ask(reading(step.thing.text), step.view))
+        yield from self._ask(ast.Ask(reading_question(step.thing.text), step.view))
 
     def _camerastate(self, step: ast.CameraState) -> Run:
         yield from ()
-        self._note(f"The camera is at {say.pose_text(self.pose.as_dict())}")
+        self._note(f"The camera is at {phrases.pose_text(self.pose.as_dict())}")
 
     def _help(self, step: ast.Help) -> Run:
         yield from ()
@@ -195,26 +195,26 @@ class Program(Judging):
     # Control -----------------------------------------------------------------------------------------------------------
     def _repeat(self, step: ast.Repeat) -> Run:
         for _ in range(step.times):
-            yield from self._all(step.body)
+            yield from self._run_steps(step.body)
 
     def _if(self, step: ast.If) -> Run:
-        met, why = yield from self._test(step.condition)
-        self._note(why)
+        met, reason = yield from self._test(step.condition)
+        self._note(reason)
         if met:
-            yield from self._all(step.then)
+            yield from self._run_steps(step.then)
         elif step.otherwise:
-            yield from self._all(step.otherwise)
+            yield from self._run_steps(step.otherwise)
         else:
             self._note("So I did nothing further for that")
 
     def _loop(self, step: ast.Loop) -> Run:
-        allowed, done, best = self._allowance(step), 0, -1
+        allowed, done, best = self._move_limit(step), 0, -1
         last: dict[str, Any] = {}
         while True:
-            met, why = yield from self._test(step.until)
+            met, reason = yield from self._test(step.until)
             best = max(best, self._last_count)
             if met:
-                self._note(f"{why}, after {say.moves_text(last, done)}" if done else f"{why}, without having to move")
+                self._note(f"{reason}, after {phrases.moves_text(last, done)}" if done else f"{reason}, without having to move")
                 return
             if done >= allowed:
                 break
@@ -223,72 +223,75 @@ class Program(Judging):
                 if isinstance(inner, ast.Move):
                     last = arguments_of(inner, self.pose, self.limits, in_loop=True)
                     if last:
-                        yield from self._moved("adjust_ptz", **last)
+                        yield from self._camera_call("adjust_ptz", **last)
                 else:
-                    yield from self._all([inner])
+                    yield from self._run_steps([inner])
             done += 1
             if self.pose == pose and any(isinstance(s, ast.Move) for s in step.body):
-                yield from self._unmet(step, best, f": the camera reached its limit after {say.moves_text(last, done)}")
+                yield from self._unmet(step, best, f": the camera reached its limit after {phrases.moves_text(last, done)}")
                 return
-        yield from self._unmet(step, best, f", and stopped after {say.moves_text(last, done)}")
+        yield from self._unmet(step, best, f", and stopped after {phrases.moves_text(last, done)}")
 
     def _unmet(self, step: ast.Loop, best: int, how: str) -> Run:
-        """End a loop whose condition was never met: do what the instruction asks for in that case, or stop and say so."""
-        reason = f"I never {say.condition_text(step.until)}{_most(best)}{how}"
+        """End a loop whose condition was never met: run the alternative steps, or stop the run if there are none."""
+        reason = f"I never {phrases.condition_text(step.until)}{_highest_count_text(best)}{how}"
         if not step.otherwise:
             raise HaltedError(reason)
         self._note(reason)
-        yield from self._all(step.otherwise)
+        yield from self._run_steps(step.otherwise)
 
-    def _allowance(self, step: ast.Loop) -> int:
-        """Return how many times a loop may move: as often as the instruction says, or once over the whole range."""
+    def _move_limit(self, step: ast.Loop) -> int:
+        """Return the limit on a loop's moves: the one in the instruction, otherwise enough moves to cover the axis once."""
         bound = step.bound or ast.Bound()
         if bound.moves is not None:
-            return min(bound.moves, _MOST_MOVES_SAID)
+            return min(bound.moves, _MAX_REQUESTED_MOVES)
         sizes = [arguments_of(s, self.pose, self.limits, in_loop=True) for s in step.body if isinstance(s, ast.Move)]
         pan = next((abs(a["pan_deg"]) for a in sizes if a.get("pan_deg")), 0.0)
         tilt = next((abs(a["tilt_deg"]) for a in sizes if a.get("tilt_deg")), 0.0)
         if bound.degrees is not None and (pan or tilt):
             return max(1, int(bound.degrees / (pan or tilt) + 1e-6))
-        whole = math.ceil(358 / pan) if pan else math.ceil(90 / tilt) if tilt else _MOST_MOVES
-        return max(1, min(whole, _MOST_MOVES))
+        whole = math.ceil(358 / pan) if pan else math.ceil(90 / tilt) if tilt else _DEFAULT_MAX_MOVES
+        return max(1, min(whole, _DEFAULT_MAX_MOVES))
 
     # Comparison --------------------------------------------------------------------------------------------------------
     def _compare(self, step: ast.Compare) -> Run:
         view = step.view or "current"
-        first = yield from self._counted(step.first.text, view)
-        second = yield from self._counted(step.second.text, view)
-        self._note(f"I can see {say.counted(step.first.text, first)} and {say.counted(step.second.text, second)} {say.where(view)}")
+        first = yield from self._visible_count(step.first.text, view)
+        second = yield from self._visible_count(step.second.text, view)
+        seen = f"{phrases.counted(step.first.text, first)} and {phrases.counted(step.second.text, second)}"
+        self._note(f"I can see {seen} {phrases.where(view)}")
         more, less = (step.first.text, step.second.text) if first > second else (step.second.text, step.first.text)
         self._note(
-            "That is the same number of both" if first == second else f"There are more {say.noun(more, 2)} than {say.noun(less, 2)}"
+            "That is the same number of both"
+            if first == second
+            else f"There are more {phrases.noun(more, 2)} than {phrases.noun(less, 2)}"
         )
 
     def _beforeafter(self, step: ast.BeforeAfter) -> Run:
         text = step.thing.text
-        before = yield from self._counted(text, "current")
-        yield from self._all(step.moves)
-        after = yield from self._counted(text, "current")
-        self._note(f"I can see {say.counted(text, before)} before the move and {say.counted(text, after)} after it")
+        before = yield from self._visible_count(text, "current")
+        yield from self._run_steps(step.moves)
+        after = yield from self._visible_count(text, "current")
+        self._note(f"I can see {phrases.counted(text, before)} before the move and {phrases.counted(text, after)} after it")
         if before == after:
             self._note("The number is the same before and after")
         else:
             when = "before" if (before > after) == (step.sense == "more") else "after"
-            self._note(f"There are {step.sense} {say.noun(text, 2)} {when} the move")
+            self._note(f"There are {step.sense} {phrases.noun(text, 2)} {when} the move")
 
     def _whichpreset(self, step: ast.WhichPreset) -> Run:
         text, counts = step.thing.text, dict[str, int]()
         for place in step.places:
-            yield from self._moved("go_to_preset", name=place.name)
+            yield from self._camera_call("go_to_preset", name=place.name)
             self._arrived(place.name)
-            counts[place.name] = yield from self._counted(text, "current")
-        self._note(f"I can see {english.listing([f'{say.counted(text, count)} at {name}' for name, count in counts.items()])}")
+            counts[place.name] = yield from self._visible_count(text, "current")
+        self._note(f"I can see {english.listing([f'{phrases.counted(text, count)} at {name}' for name, count in counts.items()])}")
         if step.any_of:
             seen = [name for name, count in counts.items() if count]
             self._note(
-                f"{noun_any(text)} can be seen at {english.listing(seen)}"
+                f"{_capitalised_plural(text)} can be seen at {english.listing(seen)}"
                 if seen
-                else f"{noun_any(text)} can be seen at none of them"
+                else f"{_capitalised_plural(text)} can be seen at none of them"
             )
             self._winner = seen[0] if seen else None
             return
@@ -300,23 +303,24 @@ class Program(Judging):
             if len(counts) == 2
             else ("the most" if step.sense == "more" else "the fewest")
         )
-        verb = f"shows {superlative} {say.noun(text, 2)}"
+        verb = f"shows {superlative} {phrases.noun(text, 2)}"
         self._note(f"It is a tie between {english.listing(winners)}" if len(winners) > 1 else f"Preset {winners[0]} {verb}")
         if step.go:
             yield from self._gothere(ast.GoThere())
 
 
-def noun_any(text: str) -> str:
-    return say.sentence(say.noun(text, 2))[:-1]
+def _capitalised_plural(text: str) -> str:
+    """Return a description in the plural, with a capital first letter."""
+    return phrases.sentence(phrases.noun(text, 2))[:-1]
 
 
 def _the(thing: ast.Thing) -> str:
     return f"the {thing.text}"
 
 
-def _most(best: int) -> str:
+def _highest_count_text(best: int) -> str:
     return f" (the most was {best})" if best >= 0 else ""
 
 
-def _plain(value: float) -> float:
+def _whole_as_int(value: float) -> float:
     return int(value) if float(value).is_integer() else value

@@ -8,15 +8,17 @@ from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolOutcome
-from scope_ptz.planner.grammar.execution import answer_sentences as say
-from scope_ptz.planner.grammar.execution.camera_history import VisitedPlace, Whereabouts
+from scope_ptz.planner.grammar.execution import answer_sentences as phrases
+from scope_ptz.planner.grammar.execution.camera_history import PositionHistory, VisitedPosition
 
-Wanted = tuple[str, dict[str, Any]]
-Run = Generator[Wanted, ToolOutcome, Any]
+CallRequest = tuple[str, dict[str, Any]]
+"""The name and arguments of a tool call."""
+
+Run = Generator[CallRequest, ToolOutcome, Any]
 
 
 class HaltedError(Exception):
-    """The run cannot continue; the message says why."""
+    """The run cannot continue. The message gives the reason, and becomes part of the answer."""
 
 
 @dataclass
@@ -24,35 +26,37 @@ class RunState:
     """The state of one run.
 
     Attributes:
-        assume_met: Whether every condition counts as met, to show a plan without a camera.
-        been: Where the camera was, according to the conversation.
+        pose: The camera's pose, updated after every call.
+        positions: The camera's positions in earlier turns of the conversation.
+        assume_met: Whether every condition counts as met, to make a plan without a camera.
         notes: The sentences of the answer.
-        sources: Who answered the perception calls.
+        sources: The sources of the perception results.
     """
 
     limits: Limits
     pose: Pose
-    been: Whereabouts = field(default_factory=Whereabouts)
+    positions: PositionHistory = field(default_factory=PositionHistory)
     assume_met: bool = False
     notes: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
-    _missing: set[str] = field(default_factory=set)
-    _trail: list[VisitedPlace] = field(default_factory=list)
-    _winner: str | None = None
-    _wandered: bool = False
-    _sent_home: bool = False
+    _missing: set[str] = field(default_factory=set)  # descriptions of objects that were not found
+    _trail: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
+    _winner: str | None = None  # the preset that a comparison found
+    _moved_to_object: bool = False  # whether a perception tool has moved the camera since the last preset or home
+    _went_home: bool = False
     _last_count: int = -1
-    _last_yes: bool = False
+    _last_yes: bool = False  # whether the last answer was yes, or the last count above zero
 
     def answer(self) -> str:
         """Return the answer: all notes, and the note about the sources."""
-        text = " ".join(say.sentence(note) for note in self.notes if note) or "There was nothing to do."
-        return text + say.source_text(self.sources)
+        text = " ".join(phrases.sentence(note) for note in self.notes if note) or "There was nothing to do."
+        return text + phrases.source_text(self.sources)
 
     def _note(self, text: str) -> None:
         self.notes.append(text)
 
     def _call(self, tool: str, **arguments: Any) -> Run:
+        """Make a tool call, and update the pose and the sources from its result."""
         outcome = yield tool, arguments
         result = outcome.result
         if outcome.error is None and result and isinstance(pose := result.get("pose"), dict):
@@ -61,15 +65,15 @@ class RunState:
             self.sources.append(source)
         return outcome
 
-    def _moved(self, tool: str, **arguments: Any) -> Run:
-        """Make a call that moves the camera. A failure ends the run, because the following steps would be meaningless."""
+    def _camera_call(self, tool: str, **arguments: Any) -> Run:
+        """Make a camera call and return its result. A failure ends the run, because later steps depend on the pose."""
         outcome: ToolOutcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
             raise HaltedError(f"I stopped because the camera did not do {tool}: {outcome.error or 'no result'}")
         return outcome.result
 
-    def _looked(self, tool: str, **arguments: Any) -> Run:
-        """Make a perception call and repeat it once after a failure. Return None, with a note, when both fail."""
+    def _perception_call(self, tool: str, **arguments: Any) -> Run:
+        """Make a perception call and return its result. If it fails twice, add a note to the answer and return None."""
         outcome: ToolOutcome = yield from self._call(tool, **arguments)
         if outcome.error is not None:
             outcome = yield from self._call(tool, **arguments)
@@ -78,9 +82,9 @@ class RunState:
             return None
         return outcome.result
 
-    def _needed(self, tool: str, **arguments: Any) -> Run:
-        """Make a perception call that later steps depend on. A failure ends the run."""
-        result = yield from self._looked(tool, **arguments)
+    def _required_perception_call(self, tool: str, **arguments: Any) -> Run:
+        """Make a perception call that later steps depend on, and return its result. A failure ends the run."""
+        result = yield from self._perception_call(tool, **arguments)
         if result is None:
             raise HaltedError("I stopped there, because what comes next depends on it")
         return result

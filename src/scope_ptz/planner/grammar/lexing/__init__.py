@@ -1,1 +1,1 @@
-"""From text to lexemes: known phrases, numbers and free words."""
+"""Split text into lexemes: known phrases, numbers and free words."""

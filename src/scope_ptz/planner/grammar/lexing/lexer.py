@@ -1,4 +1,4 @@
-"""From text to lexemes: words are grouped into known phrases, numbers are read, and the rest stays free text.
+"""Split a text into lexemes: known phrases, numbers and free text.
 
 A lexeme may be several terminals at once ("left" is a direction or a verb); the grammar decides. Lexemes keep their position in the
 original text, so descriptions and questions are passed on as the user typed them.
@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import takewhile
 
-from scope_ptz.planner.grammar.lexing.number_phrases import SpokenNumber, read_number
+from scope_ptz.planner.grammar.lexing.number_phrases import NumberPhrase, read_number
 from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, phrase_table, spelling, word_list
 
 _TOKEN = re.compile(
@@ -26,18 +26,20 @@ _TOKEN = re.compile(
 )
 _MARKS = {**dict.fromkeys(",:()", "COMMA"), **dict.fromkeys(";.!?\n", "STOP"), "&": "AND"}
 SEPARATORS = ("COMMA", "AND", "THEN", "STOP")
-_BINDS_BACK = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})
-_LONGEST_PHRASE = 9
-_LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
-_TURNED = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})
-_NEVER_DONE = frozenset({*SEPARATORS, "DET", "ONEOF", "PREP", "SAYS", "BY", "SHOWS", "VISIBLE", "FILLS"})
-_HEDGES = frozenset({"FILLER", "BY"})
+_ATTACHED_TO_PREVIOUS = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})  # a separator before them is dropped
+_MAX_PHRASE_WORDS = 9
+_DIRECTION_LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
+_MOTION = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})  # after them, "up to" and "down to" are directions
+_NEVER_GERUND = frozenset({*SEPARATORS, "DET", "ONEOF", "PREP", "SAYS", "BY", "SHOWS", "VISIBLE", "FILLS"})
+"""Terminals whose words that end in "ing" are not gerunds of a command."""
+
+_HEDGES = frozenset({"FILLER", "BY"})  # words such as "about" that are dropped at the start of a clause
 _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 
 @dataclass(frozen=True, slots=True)
 class Lexeme:
-    """A unit of the text.
+    """A phrase, a number, a separator or free words.
 
     Attributes:
         kinds: The terminals that it may be.
@@ -82,7 +84,7 @@ def _words(text: str) -> list[_Word]:
 
 
 def _without_step_numbers(words: list[_Word]) -> list[_Word]:
-    """Replace "step 1:" by a sentence end."""
+    """Replace "step 1:" with a sentence end."""
     out, i = list[_Word](), 0
     while i < len(words):
         if words[i].text == "step" and [w.kind for w in words[i + 1 : i + 3]] == ["num", "mark"]:
@@ -95,21 +97,21 @@ def _without_step_numbers(words: list[_Word]) -> list[_Word]:
 
 
 def _without_list_numbers(words: list[_Word]) -> list[_Word]:
-    """Replace the "1." or "2)" of a numbered list by sentence ends. The numbers must count up from one."""
-    wanted, out = 1, list[_Word]()
+    """Replace the "1." or "2)" of a numbered list with sentence ends. The numbers must count up from one."""
+    expected, out = 1, list[_Word]()
     for i, word in enumerate(words):
         after = words[i + 1].text if i + 1 < len(words) else ""
-        starts = i == 0 or words[i - 1].text in {"\n", ".", ";", ",", ":", "(", ")"} or wanted > 1
-        if word.text in (str(wanted), chr(96 + wanted)) and starts and after in {".", ")"} and i + 2 < len(words):
-            wanted += 1
+        starts = i == 0 or words[i - 1].text in {"\n", ".", ";", ",", ":", "(", ")"} or expected > 1
+        if word.text in (str(expected), chr(96 + expected)) and starts and after in {".", ")"} and i + 2 < len(words):
+            expected += 1
             out.append(_Word(";", word.start, word.end, "mark"))
         else:
             out.append(word)
-    return out if wanted > 2 else words
+    return out if expected > 2 else words
 
 
-def distance_one(a: str, b: str) -> bool:
-    """Return whether one insertion, deletion, substitution or swap of neighbouring letters turns ``a`` into ``b``."""
+def within_one_edit(a: str, b: str) -> bool:
+    """Return whether two words are equal or one insertion, deletion, substitution or swap of neighbouring letters apart."""
     if abs(len(a) - len(b)) > 1 or a == b:
         return a == b
     head = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
@@ -118,22 +120,23 @@ def distance_one(a: str, b: str) -> bool:
     return swapped or rest_a[1:] == rest_b[1:] or rest_a[1:] == rest_b or rest_a == rest_b[1:]
 
 
-def _respelled(word: str, candidates: Iterable[str]) -> str | None:
-    """Return the command word that a misspelt word stands for, None unless there is exactly one."""
+def _corrected(word: str, candidates: Iterable[str]) -> str | None:
+    """Return the only candidate within one edit of an unknown word; None if there is none or more than one."""
     if len(word) < 3 or word in word_list("real words") or (word,) in phrase_table():
         return None
-    close = [c for c in candidates if len(c) >= 3 and distance_one(word, c)]
+    close = [c for c in candidates if len(c) >= 3 and within_one_edit(word, c)]
     return close[0] if len(close) == 1 else None
 
 
 class Lexer:
-    """Produces the lexemes of a text. The names of the presets count as words of the language."""
+    """Splits texts into lexemes. The names of the presets are lexemes of their own."""
 
     def __init__(self, presets: tuple[str, ...] = ()) -> None:
         self._table = phrase_table()
         self._presets = {key: name for name in presets if (key := preset_key(name)) and key not in self._table}
 
     def lexemes(self, text: str) -> list[Lexeme]:
+        """Return the lexemes of a text, in order."""
         words, out, i = _words(text), list[Lexeme](), 0
         while i < len(words):
             lexeme, i = self._next(words, i, out)
@@ -144,14 +147,14 @@ class Lexer:
         return _merge_text(out, text)
 
     def _next(self, words: list[_Word], i: int, before: list[Lexeme]) -> tuple[Lexeme | None, int]:
-        """Return the lexeme that begins at word ``i``, None for words without meaning, and the index after it."""
+        """Return the lexeme that begins at word ``i`` (None for words without meaning) and the index of the next word."""
         word = words[i]
         if word.kind in {"mark", "arrow", "dash"}:
             kind = _MARKS.get(word.text) or ("THEN" if word.kind == "arrow" else "COMMA")
             return Lexeme(frozenset({kind}), word.start, word.end), i + 1
         if word.kind == "quote":
             return Lexeme(frozenset({"TEXT"}), word.start, word.end), i + 1
-        run = [w.text for w in takewhile(lambda w: w.kind in {"word", "num"}, words[i : i + _LONGEST_PHRASE])]
+        run = [w.text for w in takewhile(lambda w: w.kind in {"word", "num"}, words[i : i + _MAX_PHRASE_WORDS])]
         preset = self._preset_length(run)
         phrase = self._phrase_length(run, before)
         number = read_number(run, [(w.start, w.end) for w in words[i : i + len(run)]])
@@ -164,29 +167,32 @@ class Lexer:
         return self._unknown(words, i, before), i + 1
 
     def _preset_length(self, run: list[str]) -> int:
-        """Return how many words of a run are the name of a preset."""
+        """Return the number of words at the start of a run that are the name of a preset."""
         return self._longest([(preset_key(w) or (w,))[0] for w in run], self._presets) if self._presets else 0
 
     def _phrase_length(self, run: list[str], before: list[Lexeme]) -> int:
-        """Return how many words of a run are one known phrase; some phrases are no phrase in their context."""
+        """Return the number of words at the start of a run that form a known phrase.
+
+        In some contexts only the first word counts, because the words of the phrase have separate meanings.
+        """
         phrase = self._longest(run, self._table)
         if phrase < 2:
             return phrase
         kinds = self._table[tuple(run[:phrase])]
-        after = before[-1].kinds if before else frozenset[str]()
-        splits = False
-        if run[0] == "the":  # "the overview" where a preset is called so
-            splits = bool(self._presets) and self._preset_length(run[1:]) >= phrase - 1
+        previous = before[-1].kinds if before else frozenset[str]()
+        read_separately = False
+        if run[0] == "the":  # "the overview" if a preset has that name
+            read_separately = bool(self._presets) and self._preset_length(run[1:]) >= phrase - 1
         elif run[0] in {"up", "down"}:  # "tilt up to 10" is a direction, not a limit
-            splits = bool(after & _TURNED) and not kinds & {"UP", "DOWN", *_DIAGONALS}
-        elif run[:2] == ["if", "you"]:  # "if you can see" is a condition, "if you can" at the end is politeness
-            splits = "FILLER" in kinds and phrase < len(run)
+            read_separately = bool(previous & _MOTION) and not kinds & {"UP", "DOWN", *_DIAGONALS}
+        elif run[:2] == ["if", "you"]:  # "if you can see" begins a condition; "if you can" at the end is a filler
+            read_separately = "FILLER" in kinds and phrase < len(run)
         elif run[0] == "or":
-            splits = bool(kinds & {"ORMORE", "ORFEWER"}) and "NUM" not in after
-        return 1 if splits else phrase
+            read_separately = bool(kinds & {"ORMORE", "ORFEWER"}) and "NUM" not in previous
+        return 1 if read_separately else phrase
 
-    def _number(self, words: list[_Word], i: int, number: SpokenNumber, phrase: list[str], before: list[Lexeme]) -> Lexeme | None:
-        """Return the lexeme of a number; None if it only orders sentences ("first, ...")."""
+    def _number(self, words: list[_Word], i: int, number: NumberPhrase, phrase: list[str], before: list[Lexeme]) -> Lexeme | None:
+        """Return the lexeme of a number; None if it only numbers a sentence ("first, ...")."""
         used = words[i : i + number.used]
         if _starts_clause(before) and "FILLER" in self._table.get(tuple(w.text for w in used), ()):
             return None
@@ -208,7 +214,7 @@ class Lexer:
                 return Lexeme(frozenset({"TEXT"}), start, end)
             if kinds == {"FILLER"} or addressed or (kinds <= _HEDGES and _starts_clause(before) and i + length < len(words)):
                 return None
-        doing = words[i].text.endswith("ing") and not kinds & _NEVER_DONE
+        doing = words[i].text.endswith("ing") and not kinds & _NEVER_GERUND
         return Lexeme(kinds | {"GERUND"} if doing else kinds, start, end)
 
     def _unknown(self, words: list[_Word], i: int, before: list[Lexeme]) -> Lexeme:
@@ -216,12 +222,12 @@ class Lexer:
         at_start = _starts_clause(before)
         after_turn = bool(before) and bool(before[-1].kinds & {"PAN", "TILT", "MOVE", "NUM", "DEG", "ZOOM"})
         before_number = i + 1 < len(words) and words[i + 1].kind == "num"
-        if (after_turn or (at_start and before_number)) and word.text in _LETTERS:
-            return Lexeme(self._table[(_LETTERS[word.text],)], word.start, word.end)
+        if (after_turn or (at_start and before_number)) and word.text in _DIRECTION_LETTERS:
+            return Lexeme(self._table[(_DIRECTION_LETTERS[word.text],)], word.start, word.end)
         guess = (
-            _respelled(word.text, word_list("commands"))
+            _corrected(word.text, word_list("commands"))
             if at_start
-            else _respelled(word.text, word_list("directions"))
+            else _corrected(word.text, word_list("directions"))
             if after_turn
             else None
         )
@@ -237,7 +243,7 @@ def _starts_clause(before: list[Lexeme]) -> bool:
 
 
 def _append(out: list[Lexeme], lexeme: Lexeme) -> None:
-    """Append a lexeme. Neighbouring separators are merged, and dropped before words that attach to the words before them."""
+    """Append a lexeme. Neighbouring separators are merged; they are dropped before words that attach to the previous words."""
     if lexeme.kinds <= {*SEPARATORS}:
         if not out:
             return
@@ -246,7 +252,7 @@ def _append(out: list[Lexeme], lexeme: Lexeme) -> None:
             out[-1] = Lexeme(frozenset({strongest}), out[-1].start, lexeme.end)
             return
     elif (
-        lexeme.kinds & _BINDS_BACK
+        lexeme.kinds & _ATTACHED_TO_PREVIOUS
         and out
         and out[-1].kinds <= {*SEPARATORS}
         and not ("ATMOST" in lexeme.kinds and "STOP" in out[-1].kinds)
@@ -276,7 +282,7 @@ def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
 
 
 def preset_key(name: str) -> tuple[str, ...]:
-    """Return a preset name as the lexer sees it: lower-case words without accents, numbers in digits."""
+    """Return a preset name in the form used for comparison: lower-case words without accents, with numbers in digits."""
     plain = unicodedata.normalize("NFKD", name.lower())
     words = re.findall(r"[^\W\d_]+|\d+", "".join(c for c in plain if not unicodedata.combining(c)))
     return tuple(str(int(NUMBER_WORDS[w])) if w in NUMBER_WORDS and NUMBER_WORDS[w] < 100 else w for w in words)

@@ -1,4 +1,4 @@
-"""Numbers in digits and words: "20", "-15", "twenty-five", "two and a half", "a hundred and twenty", "a quarter"."""
+"""Parse numbers in digits and words: "20", "-15", "twenty-five", "two and a half", "a hundred and twenty", "a quarter"."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _DIGITS = re.compile(r"[-+−]?\d*\.?\d+")
 
 
 @dataclass(frozen=True, slots=True)
-class SpokenNumber:
+class NumberPhrase:
     """A number at the start of a list of words.
 
     Attributes:
-        used: How many words it takes; 0 when there is no number.
+        used: The number of words that form the number; 0 if the words do not begin with one.
         kind: NUM, FRACTION ("half", "quarter") or ORDINAL ("second").
     """
 
@@ -27,67 +27,67 @@ class SpokenNumber:
 
     @property
     def kinds(self) -> frozenset[str]:
-        """The terminals that the number may be: "third" is the third one or a third of something."""
+        """The terminals that the number may be: "third" is an ordinal or a fraction."""
         return frozenset({self.kind, "FRACTION"} if self.kind == "ORDINAL" and self.value > 2 else {self.kind})
 
 
-def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) -> SpokenNumber:
-    """Return the number that the words begin with.
+def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) -> NumberPhrase:
+    """Return the number at the start of the words.
 
     Args:
         words: Words in lower case.
-        spans: Their positions in the text, which tell "1st" from "1 st".
+        spans: The start and end of each word in the text, which distinguish "1st" from "1 st".
     """
     if not words:
-        return SpokenNumber()
+        return NumberPhrase()
     if "/" in words[0]:
         above, below = words[0].split("/")
-        return SpokenNumber(int(above) / int(below), 1, "FRACTION") if int(below) else SpokenNumber()
+        return NumberPhrase(int(above) / int(below), 1, "FRACTION") if int(below) else NumberPhrase()
     if _DIGITS.fullmatch(words[0]):
         return _digits(words, spans)
     sign, start = (-1, 1) if words[0] in {"minus", "negative"} else (1, 0)
     if start and (len(words) == 1 or not (_DIGITS.fullmatch(words[1]) or words[1] in NUMBER_WORDS)):
-        return SpokenNumber()
+        return NumberPhrase()
     if start and _DIGITS.fullmatch(words[1]):
         inner = _digits(words[1:], spans[1:] if spans else None)
-        return SpokenNumber(-inner.value, inner.used + 1)
+        return NumberPhrase(-inner.value, inner.used + 1)
     value, used = _cardinal(words[start:])
     if used:
         extra, more = _fraction_after(words[start + used :])
-        return SpokenNumber(sign * (value + extra), start + used + more)
+        return NumberPhrase(sign * (value + extra), start + used + more)
     if words[0] in FRACTIONS and words[0] not in ORDINAL_WORDS:
         if words[:3] == ["half", "a", "dozen"]:
-            return SpokenNumber(6, 3)
-        return SpokenNumber(FRACTIONS[words[0]], 1, "FRACTION")
+            return NumberPhrase(6, 3)
+        return NumberPhrase(FRACTIONS[words[0]], 1, "FRACTION")
     if words[0] in ORDINAL_WORDS:
-        return SpokenNumber(ORDINAL_WORDS[words[0]], 1, "ORDINAL")
-    return SpokenNumber()
+        return NumberPhrase(ORDINAL_WORDS[words[0]], 1, "ORDINAL")
+    return NumberPhrase()
 
 
-def _digits(words: list[str], spans: list[tuple[int, int]] | None) -> SpokenNumber:
+def _digits(words: list[str], spans: list[tuple[int, int]] | None) -> NumberPhrase:
     value = float(words[0].replace("−", "-"))
-    glued = len(words) > 1 and spans is not None and spans[0][1] == spans[1][0]
-    if glued and words[1] in {"st", "nd", "rd", "th"}:
-        return SpokenNumber(value, 2, "ORDINAL")
+    adjacent = len(words) > 1 and spans is not None and spans[0][1] == spans[1][0]
+    if adjacent and words[1] in {"st", "nd", "rd", "th"}:
+        return NumberPhrase(value, 2, "ORDINAL")
     extra, more = _fraction_after(words[1:])
-    return SpokenNumber(value + (extra if value >= 0 else -extra), 1 + more)
+    return NumberPhrase(value + (extra if value >= 0 else -extra), 1 + more)
 
 
 def _cardinal(words: list[str]) -> tuple[float, int]:
-    """Return value and length of a whole number in words: "a hundred", "a dozen", "one hundred and twenty", "point five"."""
+    """Return the value and length of a cardinal in words: "a hundred", "a dozen", "one hundred and twenty", "one point five"."""
     total, current, used = 0.0, 0.0, 0
     if words[0] in {"a", "an"}:
-        if not _counts_one(words):
+        if not _article_is_one(words):
             return 0.0, 0
         current, used = 1.0, 1
     spoken = next((i for i, w in enumerate(words) if NUMBER_WORDS.get(w, 10) > 9), len(words))
-    if spoken > 1 and not used:  # "three zero" on the radio
+    if spoken > 1 and not used:  # "three zero", digit by digit
         return float(_spoken_digits(words[:spoken])), spoken
-    if not used and _hundreds(words):  # "one eighty", "two seventy"
+    if not used and _starts_with_hundreds(words):  # "one eighty", "two seventy"
         current, used = 100 * NUMBER_WORDS[words[0]], 1
     while used < len(words):
         word = words[used]
-        if used and _joins(words, used):
+        if used and _is_number_and(words, used):
             used += 1
             continue
         if word not in NUMBER_WORDS:
@@ -108,21 +108,21 @@ def _cardinal(words: list[str]) -> tuple[float, int]:
     return total + current + decimals, used + more
 
 
-def _counts_one(words: list[str]) -> bool:
-    """Return whether the article at the start is part of a number, as in "a hundred"; "a couple of times" is none."""
+def _article_is_one(words: list[str]) -> bool:
+    """Return whether the article at the start means one, as in "a hundred", but not in "a couple of times"."""
     if len(words) < 2 or words[1] not in {"hundred", "thousand", "dozen", "couple"}:
         return False
     return not (words[1] == "couple" and words[2:3] == ["of"] and words[3:4] in (["times"], ["degrees"]))
 
 
-def _joins(words: list[str], at: int) -> bool:
-    """Return whether the word is the "and" of "one hundred and twenty"."""
+def _is_number_and(words: list[str], at: int) -> bool:
+    """Return whether the word at a position is the "and" in "one hundred and twenty"."""
     after = NUMBER_WORDS.get(" ".join(words[at + 1 : at + 2]), 100)
     return words[at] == "and" and words[at - 1] in {"hundred", "thousand"} and after < 100
 
 
 def _decimals(words: list[str]) -> tuple[float, int]:
-    """Return value and length of a decimal part at the start of the words: "point two five"."""
+    """Return the value and length of a decimal part at the start of the words: "point two five"."""
     if words[:1] != ["point"]:
         return 0.0, 0
     digits = list(takewhile(lambda word: NUMBER_WORDS.get(word, 10) < 10, words[1:]))
@@ -130,23 +130,23 @@ def _decimals(words: list[str]) -> tuple[float, int]:
 
 
 def _spoken_digits(words: list[str]) -> str:
-    """Return number words below ten as digits."""
+    """Return number words below ten as a string of digits."""
     return "".join(str(int(NUMBER_WORDS[word])) for word in words)
 
 
-def _hundreds(words: list[str]) -> bool:
-    """Return whether a digit before a multiple of ten counts hundreds, as in "one eighty"."""
+def _starts_with_hundreds(words: list[str]) -> bool:
+    """Return whether the words begin with a digit that counts hundreds, as in "one eighty"."""
     return len(words) > 1 and words[0] in {"one", "two", "three"} and 20 <= NUMBER_WORDS.get(words[1], 0) <= 90
 
 
 def _continues(current: float, value: float) -> bool:
-    """Return whether a number word may follow what was read: "twenty five", "hundred twenty", never "twenty thirty"."""
+    """Return whether a number word may continue a number: "twenty five" and "hundred twenty", but not "twenty thirty"."""
     last_two = current % 100
     return (last_two == 0 and current >= 100 and value < 100) or (last_two >= 20 and last_two % 10 == 0 and 0 < value < 10)
 
 
 def _fraction_after(words: list[str]) -> tuple[float, int]:
-    """Return value and length of an "and a half" at the start of the words."""
+    """Return the value and length of "and a half" or a similar fraction at the start of the words."""
     if words[:2] in (["and", "a"], ["and", "one"]) and words[2:3] and words[2] in {"half", "quarter", "third"}:
         return FRACTIONS[words[2]], 3
     return 0.0, 0

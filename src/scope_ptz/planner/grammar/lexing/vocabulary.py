@@ -1,4 +1,4 @@
-"""The words of camera operation: which phrases form which terminal of ``language.lark``, number words and misspellings."""
+"""The vocabulary of camera operation: the phrases of each terminal of ``language.lark``, number words and misspellings."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def expand(pattern: str) -> list[tuple[str, ...]]:
 
 
 def _variants(pattern: str) -> list[str]:
-    """Return the pattern once for each combination of its choices."""
+    """Return the texts that a pattern stands for, one for each combination of its choices."""
     open_groups: list[tuple[str, list[str], list[str]]] = []  # bracket, texts before the group, choices so far
     texts = [""]
     for part in _BRACKETS.split(pattern):
@@ -62,7 +62,7 @@ def _variants(pattern: str) -> list[str]:
 
 
 def _sections(file: str) -> dict[str, list[str]]:
-    """Return the comma-separated lists of a data file by heading, and the "@name pattern" lines under "@"."""
+    """Return the comma-separated lists of a data file by heading. The key "@" contains the lines of the form "@name pattern"."""
     sections: dict[str, list[str]] = {"@": []}
     current: list[str] = []
     for line in files(__package__).joinpath(file).read_text(encoding="utf-8").splitlines():
@@ -77,7 +77,7 @@ def _sections(file: str) -> dict[str, list[str]]:
 
 @cache
 def word_list(name: str) -> frozenset[str]:
-    """Return a list of ``words.txt`` by its heading."""
+    """Return the word list of ``words.txt`` under a heading."""
     return frozenset(_sections("words.txt")[name])
 
 
@@ -99,7 +99,7 @@ def vocabulary() -> dict[str, tuple[str, ...]]:
 
 @cache
 def phrase_table() -> dict[tuple[str, ...], frozenset[str]]:
-    """Return the possible terminals of each word sequence; ``FILLER`` marks words without meaning."""
+    """Return the possible terminals of each word sequence. The terminal ``FILLER`` is for words without meaning."""
     table: dict[tuple[str, ...], set[str]] = {}
     for terminal, patterns in vocabulary().items():
         for pattern in patterns:

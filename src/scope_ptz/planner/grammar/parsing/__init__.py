@@ -1,1 +1,1 @@
-"""From lexemes to the steps of an instruction: grammar, chart parser and builders."""
+"""Parse lexemes into the steps of an instruction: grammar, chart parser and builders."""

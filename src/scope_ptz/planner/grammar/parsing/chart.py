@@ -1,12 +1,12 @@
 """A weighted chart parser for a grammar that Lark has compiled.
 
-Lark's own parsers do not fit. Operator English is ambiguous ("left" is a direction, a side or a verb, and any word may be part of a
-description), so a deterministic LALR parser cannot read it. Lark's Earley parser takes 100 to 900 ms for an instruction, because it
-predicts every alternative of every optional word at every position.
+Lark's own parsers are not suitable. Camera instructions are ambiguous ("left" is a direction, a side or a verb, and any word may be
+part of a description), which rules out a deterministic LALR parser. Lark's Earley parser takes 100 to 900 ms for an instruction,
+because it predicts every alternative of every optional word at every position.
 
-So Lark only reads, checks and expands the grammar. Here all right-hand sides share one prefix tree, and only constituents that the
-given lexemes can begin are tried, bottom-up, which takes a few milliseconds. The reading with the highest sum of rule priorities
-wins; among equals, the one with the fewest rules.
+Lark is therefore used only to read, check and expand the grammar. In this parser, all right-hand sides share one prefix tree, and
+only constituents that can begin with the given lexemes are tried, bottom-up, which takes a few milliseconds. The parser returns the
+reading with the highest sum of rule priorities; among equals, the one with the fewest rules.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from dataclasses import dataclass, field
 
 from scope_ptz.planner.grammar.parsing.rules import Rule
 
-_RULE_COST = 1e-3
-_ORDER_COST = 1e-8
+_RULE_COST = 1e-3  # prefers readings with fewer rules
+_ORDER_COST = 1e-8  # prefers rules that come earlier in the grammar
 
 
 @dataclass(slots=True)
 class _Node:
-    """A prefix of right-hand sides: where each next symbol leads, and which rules are complete here."""
+    """A node of the prefix tree: its child for each next symbol, and the rules whose right-hand side ends here."""
 
     children: dict[int, _Node] = field(default_factory=dict)
     complete: list[tuple[int, float, Rule]] = field(default_factory=list)
@@ -30,7 +30,7 @@ class _Node:
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """A terminal of a parse tree; ``index`` is the position of its lexeme."""
+    """A terminal in a parse tree. ``index`` is the position of its lexeme."""
 
     kind: str
     index: int
@@ -38,14 +38,14 @@ class Leaf:
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """An applied rule; ``name`` is its alias, or its own name when it has none."""
+    """An applied rule in a parse tree. ``name`` is the alias of the rule, or its name if it has none."""
 
     name: str
     children: tuple[Leaf | Branch, ...]
 
 
-_Link = tuple["_Link | None", int, int, int]  # link before, symbol, start, end
-_Best = tuple[float, _Link | None, Rule | None]
+_Link = tuple["_Link | None", int, int, int]  # previous link, symbol, start, end
+_Best = tuple[float, _Link | None, Rule | None]  # score, last link, rule
 
 
 class ChartParser:
@@ -66,7 +66,7 @@ class ChartParser:
         return self._ids.setdefault(name, len(self._ids))
 
     def parse(self, lexemes: Sequence[Collection[str]], start: str) -> Branch | None:
-        """Return the best reading of all lexemes as ``start``; None if there is none."""
+        """Return the best parse tree of the lexemes, whose root is the rule ``start``; None if there is none."""
         n = len(lexemes)
         chart: list[dict[int, dict[int, _Best]]] = [{} for _ in range(n + 1)]
         for i in range(n - 1, -1, -1):
@@ -77,7 +77,7 @@ class ChartParser:
         return tree[0] if isinstance(tree[0], Branch) else None
 
     def _fill(self, chart: list[dict[int, dict[int, _Best]]], i: int, terminals: list[int]) -> None:
-        """Find all constituents that start at ``i``. Those that start later are complete already."""
+        """Find all constituents that start at ``i``, given all that start later."""
         here = chart[i]
         reached: dict[tuple[int, int], float] = {}
         agenda: list[tuple[int, int]] = []
@@ -108,9 +108,7 @@ class ChartParser:
                         edges.append((child, next_end, score + best[0], (link, following, end, next_end)))
 
     def _tree(self, chart: list[dict[int, dict[int, _Best]]], symbol: int, start: int, end: int) -> list[Leaf | Branch]:
-        """Return the nodes that a constituent contributes to its parent. Rules whose names begin with ``_``, and some with
-        ``?``, are dissolved.
-        """
+        """Return the nodes that a constituent contributes to its parent: one node, or its children (see ``Rule.inline``)."""
         _, link, rule = chart[start][symbol][end]
         if rule is None:
             return [Leaf(self._names[symbol], start)]

@@ -1,4 +1,4 @@
-"""Combine neighbouring steps of a sentence: moves joined by "and", "each time", "do that again"."""
+"""Combine neighbouring steps of a sentence: moves joined by "and", "each time" or "do that again"."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _CONTRADICTION = "Those two directions contradict each other. Which way shall I 
 
 
 def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
-    """Return the steps so far together with the steps of one sentence."""
+    """Return the steps of a sentence combined with the steps before it."""
     out = list(before)
     for item in linked:
         _add(out, item.link, item.step)
@@ -48,7 +48,7 @@ def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
 
 
 def _add(out: list[Step], link: str, step: Step) -> None:
-    """Append a step to the steps so far, or let it change them."""
+    """Append a step to the previous steps, or combine it with them."""
     if isinstance(step, Move):
         step = _with_same_amounts(step, out)
     if _add_modifier(out, step):
@@ -65,7 +65,7 @@ def _add(out: list[Step], link: str, step: Step) -> None:
 
 
 def _add_modifier(out: list[Step], step: Step) -> bool:
-    """Apply a step that only has a meaning together with the steps before it. Return whether it is such a step."""
+    """Apply a step that modifies or repeats the previous steps. Return False for any other step, without applying it."""
     last = out[-1] if out else None
     match step:
         case EachTime():
@@ -97,7 +97,7 @@ def _add_further(out: list[Step], step: Further) -> None:
 
 
 def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
-    """Return what replaces the last step when the new step belongs to it; None if the new step stands alone."""
+    """Return what replaces the last step if the new step belongs to it; None if the new step is separate."""
     if isinstance(step, Repeat) and link in {"and", ","} and _covers_before(step, last):
         return [Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)]
     if isinstance(last, Move):
@@ -106,17 +106,17 @@ def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
 
 
 def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
-    """Join a step to a move with "and" between them: another move, or a loop that includes the move."""
+    """Join a move with the step after its "and": another move, or a loop that then includes the move."""
     if isinstance(step, Loop) and isinstance(step.body[0], Count | Snap | Ask):
         return [_stepped_loop(replace(step, body=(last, *step.body)))]
-    if isinstance(step, Loop | Repeat) and (leaning := _leaning(step.body[0])):
-        joined = _joined(last, leaning)
+    if isinstance(step, Loop | Repeat) and (verbless := _verbless(step.body[0])):
+        joined = _joined(last, verbless)
         return [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
     return _joined(last, step) if isinstance(step, Move) else None
 
 
 def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | None:
-    """Add a step to what is done at each of several places."""
+    """Add a step to those that run at each of several presets."""
     if not last.body and (link == "and" or not last.places):
         return [replace(last, body=(step,))]
     if last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):
@@ -125,25 +125,25 @@ def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | Non
 
 
 def _covers_before(step: Repeat, last: Step) -> bool:
-    """Return whether "three times" also covers the step before: when it is set off by a comma, or is a picture after a move."""
+    """Return whether "three times" also covers the previous step: after a comma, or for a picture after a move."""
     pictured = isinstance(step.body[-1], Snap) and isinstance(last, Move)
     return (step.group or pictured) and not isinstance(last, GoPreset | Home | Repeat | Loop)
 
 
-def _leaning(step: Step) -> Move | None:
-    """Return the step if it is a move without a verb of its own, which depends on the move before it; else None."""
+def _verbless(step: Step) -> Move | None:
+    """Return the step if it is a move without a verb, which depends on the previous move; otherwise None."""
     return step if isinstance(step, Move) and not step.verb else None
 
 
 def _joined(first: Move, second: Move) -> list[Step]:
-    """Join two moves with "and" between them: one move when their axes differ."""
+    """Join two moves with "and" between them, into one move if their axes differ."""
     axes = [_axis(p) for p in (*first.parts, *second.parts)]
     if len(set(axes)) == len(axes):
         parts = first.parts if second.verb else tuple(_shared(p, second.parts) for p in first.parts)
         return [_stepped(Move((*parts, *second.parts), first.verb))]
     one, other = first.parts[-1], second.parts[0]
-    unsaid = isinstance(one, Turn) and one.amount is None and not second.verb
-    if unsaid and isinstance(one, Turn) and isinstance(other, Turn) and one.axis == other.axis and one.sign != other.sign:
+    unspecified = isinstance(one, Turn) and one.amount is None and not second.verb
+    if unspecified and isinstance(one, Turn) and isinstance(other, Turn) and one.axis == other.axis and one.sign != other.sign:
         return [Unclear(_CONTRADICTION)]
     return [_stepped(first), _stepped(second)]
 
@@ -153,7 +153,7 @@ def _axis(part: Part) -> str:
 
 
 def _shared(part: Part, others: tuple[Part, ...]) -> Part:
-    """Return a part with the amount that was given last: in "up and left 20" it holds for both."""
+    """Return a part with the amount of the last part if it has none: in "up and left 20", 20 applies to both."""
     last = others[-1]
     if isinstance(part, Turn) and part.amount is None and part.step is None and isinstance(last, Turn):
         return replace(part, amount=last.amount, step=last.step, steps=last.steps)
@@ -161,7 +161,7 @@ def _shared(part: Part, others: tuple[Part, ...]) -> Part:
 
 
 def _step_size(step: Step) -> Turn | None:
-    """Return the turn of a move that is made in steps; None if there is none."""
+    """Return the turn of a move that is made in steps; None if the move has none."""
     if isinstance(step, Move):
         return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
     return None
@@ -199,7 +199,7 @@ def _stepped_loop(step: Loop | Repeat) -> Step:
 
 
 def _add_each_time(out: list[Step], step: EachTime) -> None:
-    """Add something to do after every move of the steps before."""
+    """Add steps to run after every move of the previous steps."""
     for i in range(len(out) - 1, -1, -1):
         target = out[i]
         if isinstance(target, Repeat | Loop | AtPlaces):
@@ -215,14 +215,14 @@ def _add_each_time(out: list[Step], step: EachTime) -> None:
 
 
 def _done_at_place(out: list[Step]) -> tuple[Step, ...]:
-    """Return the steps that were done at the last place."""
+    """Return the steps that follow the last move to a preset or home."""
     if out and isinstance(out[-1], AtPlaces):
         return out[-1].body
     return tuple(out[max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0) :])
 
 
 def _add_again(out: list[Step], step: DoAgain) -> None:
-    """Repeat the steps since the last one that goes to a place."""
+    """Repeat the steps that follow the last move to a preset or home."""
     if isinstance(out[-1], GoPreset) and len(out) > 1:
         out.extend(_done_at_place(out[:-1]))
         return
@@ -236,7 +236,7 @@ def _add_again(out: list[Step], step: DoAgain) -> None:
 
 
 def _interleaved(step: Step | None, between: tuple[Step, ...]) -> list[Step]:
-    """Return repeated steps with other steps between the repetitions."""
+    """Return a repeated step with other steps between its repetitions."""
     times = step.times if isinstance(step, Snap | Repeat) else 1
     if step is None or times < 2:
         return [*([step] if step else []), Unclear("How many times shall I do that?")]
@@ -245,7 +245,7 @@ def _interleaved(step: Step | None, between: tuple[Step, ...]) -> list[Step]:
 
 
 def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
-    """Add something to do at regular intervals of a turn."""
+    """Add steps to run at regular intervals of a turn."""
     move = step.move
     if move is None and out and isinstance(last := out[-1], Move) and any(isinstance(p, Turn) for p in last.parts):
         move = last
@@ -266,7 +266,7 @@ def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
 
 
 def _add_than_before(out: list[Step], step: ThanBefore) -> None:
-    """Compare with the last count by counting again, or else compare before and after the moves just made."""
+    """Count again to compare with the last count; without one, compare the counts before and after the last moves."""
     counts = [s for s in out if isinstance(s, Count)]
     first = next((i + 1 for i in range(len(out) - 1, -1, -1) if not isinstance(out[i], Move | Repeat)), 0)
     moves = tuple(out[first:])

@@ -1,4 +1,4 @@
-"""Builders for the rules about conditions and comparisons."""
+"""Build conditions and comparisons from the parse tree."""
 
 # ruff: noqa: ARG002 - all rule methods share one signature
 
@@ -10,27 +10,28 @@ from scope_ptz.planner.grammar.instruction_tree import (
     BeforeAfter,
     Compare,
     Condition,
-    Holds,
     Joined,
     Negated,
     Outnumbers,
-    PresetWins,
+    PresetOutnumbers,
     Quantity,
     Readable,
     Seen,
+    Statement,
     Step,
     ThanBefore,
     Thing,
     Unclear,
     WhichPreset,
 )
-from scope_ptz.planner.grammar.parsing.scene_builder import SCOPES, SceneRules, described
+from scope_ptz.planner.grammar.parsing.scene_builder import SCOPES, SceneBuilder, described
 from scope_ptz.planner.grammar.parsing.tree_nodes import Node
 
 
-class JudgingRules(SceneRules):
+class ConditionBuilder(SceneBuilder):
+    """Builds conditions, and steps that compare counts."""
+
     # Conditions --------------------------------------------------------------------------------------------------------
-    """Rules about conditions and comparisons."""
 
     def seen(self, node: Node) -> Condition:
         quantity = next(
@@ -54,7 +55,7 @@ class JudgingRules(SceneRules):
         return Seen(self._people(node), Quantity("==", 0), self._view(node))
 
     def _people(self, node: Node) -> Thing:
-        """Return "people in the lane" for "anyone in the lane"."""
+        """Build "people in the lane" for "anyone in the lane"."""
         return Thing(described(" ".join(["people", *(self.text(b.all_leaves()) for b in node.branches("words"))])))
 
     def unseen_both(self, node: Node) -> Condition:
@@ -67,25 +68,25 @@ class JudgingRules(SceneRules):
         return Readable(self._thing(node))
 
     def holds(self, node: Node) -> Condition:
-        return self._holds(node, True)
+        return self._statement(node, True)
 
     def holds_not(self, node: Node) -> Condition:
-        return self._holds(node, False)
+        return self._statement(node, False)
 
-    def _holds(self, node: Node, wanted: bool) -> Condition:
-        """Build a question for "the gate is open", and a count for "any worker is not wearing a helmet"."""
+    def _statement(self, node: Node, expected: bool) -> Condition:
+        """Build a question for "the gate is open", but a count for "any worker is not wearing a helmet"."""
         thing, predicate = self._thing(node), self.text(node.branches("words")[0].all_leaves())
         if any(np.has("ANY") for b in node.branches("subject") for np in b.branches("np")):
-            return Seen(Thing(f"{thing.text} {'' if wanted else 'not '}{predicate}"))
-        return Holds(thing, predicate, wanted)
+            return Seen(Thing(f"{thing.text} {'' if expected else 'not '}{predicate}"))
+        return Statement(thing, predicate, expected)
 
     def says(self, node: Node) -> Condition:
         text = self.text(node.branches("words")[0].all_leaves())
-        return Holds(self._thing(node), text, question=f"does the {self._thing(node).text} say {text}?")
+        return Statement(self._thing(node), text, question=f"does the {self._thing(node).text} say {text}?")
 
     def preset_wins(self, node: Node) -> Condition:
         first, second = (self.visit(b) for b in node.branches("named", "numbered", "marked"))
-        return PresetWins(self._thing(node), first, second, self._sense(node))
+        return PresetOutnumbers(self._thing(node), first, second, self._sense(node))
 
     def outnumbers(self, node: Node) -> Condition:
         first, second = self._things(node)[:2]

@@ -1,4 +1,4 @@
-"""From the text of an instruction to its steps, with the grammar of ``language.lark``."""
+"""Parse the text of an instruction into steps, with the grammar of ``language.lark``."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from scope_ptz.planner.grammar.lexing.lexer import SEPARATORS, Lexeme, Lexer
 from scope_ptz.planner.grammar.parsing.chart import ChartParser
 from scope_ptz.planner.grammar.parsing.rules import load_rules
 
-_BINDING = frozenset({*SEPARATORS, "OR", "THAN", "IF", "UNLESS", "OTHERWISE", "UNTIL"})
-_FREE = frozenset({"TEXT", "PRESETNAME"})
+_STRUCTURAL = frozenset({*SEPARATORS, "OR", "THAN", "IF", "UNLESS", "OTHERWISE", "UNTIL"})
+"""Terminals that cannot be part of a description."""
+
+_FREE_WORDS = frozenset({"TEXT", "PRESETNAME"})  # cost nothing in a description
 _SOFT = frozenset(
     {
         "AFTER", "AHEAD", "ANY", "AROUND", "BE", "BEFORE", "BY", "CAMERA", "CIRCLE", "CLOSE", "COMPASS", "DEG", "DET", "DOWN",
@@ -22,14 +24,16 @@ _SOFT = frozenset(
         "SEVERAL", "SURROUND", "THATREL", "THERE", "TO", "UP", "VISIBLE", "WHO", "X", "YOUSEE",
     }
 )  # fmt: skip
-_GUESSES = frozenset({"far_ref"})
-LONGEST_TEXT = 2000
-MOST_LEXEMES = 120
+"""Terminals that often occur in descriptions, and therefore have a lower cost there than the others."""
+
+_RULES_FOR_KNOWN_PRESETS = frozenset({"far_ref"})  # left out of the grammar if the presets are unknown
+MAX_CHARS = 2000  # the rest of a longer text is ignored
+MAX_LEXEMES = 120  # longer texts are not parsed
 
 
 @dataclass(frozen=True, slots=True)
 class Parsed:
-    """The result of parsing. ``steps`` is None when the text is not in the language."""
+    """The result of parsing. ``steps`` is None if the grammar does not cover the text."""
 
     text: str
     steps: tuple[Step, ...] | None
@@ -37,32 +41,34 @@ class Parsed:
 
 @lru_cache(maxsize=2)
 def parser(presets_known: bool) -> ChartParser:
-    """Return the parser, loaded on first use.
+    """Return the parser, which is loaded on first use.
 
     Args:
-        presets_known: Whether the camera's presets are known. Without them, free words after "at" or "in" are not taken for a
-            preset.
+        presets_known: Whether the camera's presets are known. If not, free words after "at" or "in" are not read as a preset.
     """
-    return ChartParser([rule for rule in load_rules() if presets_known or rule.name not in _GUESSES])
+    return ChartParser([rule for rule in load_rules() if presets_known or rule.name not in _RULES_FOR_KNOWN_PRESETS])
 
 
 @lru_cache(maxsize=512)
 def roles(kinds: frozenset[str]) -> frozenset[str]:
-    """Return the terminals that a lexeme may be, with its role inside a description: WORD (free), SOFT or HARD (at a cost)."""
-    if kinds & _FREE:
+    """Return the terminals that a lexeme may be, including its role in a description.
+
+    The role is WORD (costs nothing), SOFT or HARD (with a cost). Lexemes that structure a sentence have no role.
+    """
+    if kinds & _FREE_WORDS:
         return kinds | {"WORD"}
-    if kinds & _BINDING or "GERUND" in kinds:
+    if kinds & _STRUCTURAL or "GERUND" in kinds:
         return kinds
     return kinds | {"SOFT"} if kinds & _SOFT else kinds | {"HARD"}
 
 
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
-    """Return the steps of an instruction. Never raises, whatever the text."""
+    """Return the steps of an instruction. Never raises, for any text."""
     from scope_ptz.planner.grammar.parsing.step_builder import StepBuilder
 
-    lexemes = Lexer(presets).lexemes(text[:LONGEST_TEXT])
-    if not lexemes or len(lexemes) > MOST_LEXEMES:
+    lexemes = Lexer(presets).lexemes(text[:MAX_CHARS])
+    if not lexemes or len(lexemes) > MAX_LEXEMES:
         return Parsed(text, None)
     steps: list[Step] = []
     for first, last in _sentences(lexemes):
@@ -74,6 +80,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
 
 
 def _sentences(lexemes: list[Lexeme]) -> list[tuple[int, int]]:
+    """Return the start and end index of each sentence."""
     stops = [i for i, lexeme in enumerate(lexemes) if "STOP" in lexeme.kinds]
     edges = [-1, *stops, len(lexemes)]
     return [(a + 1, b) for a, b in pairwise(edges) if b > a + 1]

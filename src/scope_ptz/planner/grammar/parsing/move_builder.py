@@ -1,4 +1,4 @@
-"""Builders for the rules about motion."""
+"""Build camera moves from the parse tree."""
 
 # ruff: noqa: ARG002 - all rule methods share one signature
 
@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Back, Move, Part, Turn, Unclear, Zoom
-from scope_ptz.planner.grammar.parsing.tree_nodes import Node, Rules
+from scope_ptz.planner.grammar.parsing.tree_nodes import Node, RuleBuilder
 
 _DIRECTIONS: dict[str, tuple[tuple[str, int], ...]] = {
     "left": (("pan", -1),),
@@ -19,8 +19,20 @@ _DIRECTIONS: dict[str, tuple[tuple[str, int], ...]] = {
     "down_left": (("tilt", -1), ("pan", -1)),
     "down_right": (("tilt", -1), ("pan", 1)),
 }
-_LITTLE_ZOOM, _LOT_ZOOM, _PLAIN_ZOOM = 1.25, 4.0, 2.0
-_AIMING = ("point", "aim", "look", "turn", "direct", "train", "swing", "orient", "rotat")
+_LITTLE_ZOOM, _LOT_ZOOM, _PLAIN_ZOOM = 1.25, 4.0, 2.0  # factors for "a little", "a lot" and no amount
+_AIMING = (
+    "point",
+    "aim",
+    "look",
+    "turn",
+    "direct",
+    "train",
+    "swing",
+    "orient",
+    "rotat",
+)
+"""Beginnings of the verbs of LOOKAT that aim the camera; the others zoom in."""
+
 _SMALL_STEP_DEG = 5.0
 _VERBS = (
     "PAN",
@@ -43,18 +55,19 @@ class StepSize:
     """The size of the steps of a move: "in 15 degree steps".
 
     Attributes:
-        count: How many steps, where the instruction gives a number.
-        whole: Whether the count divides the whole move, as in "20 degrees in 2 steps".
+        size: The size of one step.
+        count: The number of steps, if the instruction gives it.
+        divides_move: Whether the count divides the whole move, as in "20 degrees in 2 steps".
     """
 
-    def __init__(self, size: Amount, count: int | None = None, whole: bool = False) -> None:
-        self.size, self.count, self.whole = size, count, whole
+    def __init__(self, size: Amount, count: int | None = None, divides_move: bool = False) -> None:
+        self.size, self.count, self.divides_move = size, count, divides_move
 
 
-class MoveRules(Rules):
+class MoveBuilder(RuleBuilder):
+    """Builds moves and their amounts."""
+
     # Amounts -----------------------------------------------------------------------------------------------------------
-    """Rules about motion."""
-
     def degrees(self, node: Node) -> Amount:
         return Amount("degrees", self.visit(node.branches()[0]))
 
@@ -68,7 +81,7 @@ class MoveRules(Rules):
         return Amount("limit")
 
     def unsaid(self, node: Node) -> Amount:
-        return Amount("unsaid")
+        return Amount("unspecified")
 
     def same(self, node: Node) -> Amount:
         return Amount("same")
@@ -97,7 +110,7 @@ class MoveRules(Rules):
 
     def in_steps(self, node: Node) -> StepSize:
         number = abs(self.number(node))
-        return StepSize(Amount("degrees", number), max(1, round(number)), whole=True)
+        return StepSize(Amount("degrees", number), max(1, round(number)), divides_move=True)
 
     def step_small(self, node: Node) -> StepSize:
         return StepSize(Amount("degrees", _SMALL_STEP_DEG))
@@ -139,9 +152,9 @@ class MoveRules(Rules):
                 step = made
             else:
                 amount = made
-        if step and step.whole and step.count and amount and amount.kind == "degrees":
+        if step and step.divides_move and step.count and amount and amount.kind == "degrees":
             step = StepSize(Amount("degrees", abs(amount.degrees) / step.count), step.count)
-        elif step and step.whole:
+        elif step and step.divides_move:
             step = StepSize(step.size)
         return tuple(
             Turn(axis, sign, amount, step.size if step else None, step.count if step else None)  # type: ignore[arg-type]
@@ -155,7 +168,7 @@ class MoveRules(Rules):
     turn_late = turn
 
     def turn_at(self, node: Node) -> tuple[Part, ...] | Unclear:
-        """Build "point the camera to the left". "Zoom in on the left" names no thing and asks back."""
+        """Build "point the camera to the left". "Zoom in on the left" names no object, so it becomes a question to the user."""
         if not self.words_of(node.leaves("LOOKAT")[0]).startswith(_AIMING):
             return Unclear("On what shall I zoom in?")
         return self.turn(node)

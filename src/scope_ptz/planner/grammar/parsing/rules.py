@@ -1,8 +1,8 @@
-"""The rules of ``language.lark`` in the plain form that the chart parser takes, compiled by Lark ahead of time.
+"""The rules of ``language.lark`` in the plain form that the chart parser needs, compiled by Lark ahead of time.
 
-Lark needs about half a second to read and expand the grammar, which would delay every ``scope ask``. So the expanded rules are
-stored beside the grammar in ``language.rules``, with the hash of their grammar in the first line. When the hash does not match, the
-rules are compiled again, so an edited grammar takes effect at once. ``renew()`` rewrites the file.
+Lark needs about half a second to read and expand the grammar, which would delay every ``scope ask``. The expanded rules are
+therefore stored in ``language.rules``, with the hash of the grammar in the first line. If the hash does not match, the rules are
+compiled again, so that an edited grammar takes effect at once. ``renew()`` rewrites the file.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ class Rule:
     Attributes:
         name: The symbol on the left-hand side.
         symbols: The symbols on the right-hand side.
-        label: The name of the rule's node in the tree.
-        inline: When the node's children go to its parent instead: always ("_"), or when there is only one ("?").
+        label: The name of the rule's nodes in the parse tree.
+        inline: Whether children replace the node in the tree: always ("_"), if there is only one ("?"), or never ("").
     """
 
     name: str
@@ -36,21 +36,21 @@ class Rule:
         return f"{self.inline or '.'} {self.name} {self.priority} {self.label} {' '.join(self.symbols)}"
 
     @staticmethod
-    def read(line: str) -> Rule:
+    def from_line(line: str) -> Rule:
         """Parse a line of ``language.rules``."""
         inline, name, priority, label, *symbols = line.split(" ")
         return Rule(name, tuple(symbols), int(priority), label, inline.strip("."))
 
 
 def load_rules() -> list[Rule]:
-    """Return the rules of the current grammar."""
+    """Return the rules of the grammar, compiled if the stored ones are out of date."""
     source = _text(_SOURCE)
     head, *lines = _text(_COMPILED).splitlines()
-    return [Rule.read(line) for line in lines] if head == _heading(source) else compile_rules(source)
+    return [Rule.from_line(line) for line in lines] if head == _heading(source) else compile_rules(source)
 
 
 def compile_rules(source: str) -> list[Rule]:
-    """Return a grammar's rules, with options, repetitions and groups expanded by Lark."""
+    """Compile a grammar with Lark, which expands options, repetitions and groups."""
     from lark import Lark
 
     compiled = Lark(source, parser="earley", lexer="basic", maybe_placeholders=False).rules
@@ -67,17 +67,17 @@ def compile_rules(source: str) -> list[Rule]:
 
 
 def compiled_text(source: str) -> str:
-    """Return the expected content of ``language.rules``."""
+    """Return the content of ``language.rules`` for a grammar."""
     return "\n".join([_heading(source), *map(str, compile_rules(source)), ""])
 
 
 def renew() -> None:
-    """Rewrite ``language.rules`` after the grammar was edited."""
+    """Rewrite ``language.rules``. Needed after every edit of the grammar."""
     Path(__file__).with_name(_COMPILED).write_text(compiled_text(_text(_SOURCE)), encoding="utf-8")
 
 
 def is_current() -> bool:
-    """Return whether the compiled rules belong to the current grammar."""
+    """Return whether ``language.rules`` is up to date with the grammar."""
     return _text(_COMPILED) == compiled_text(_text(_SOURCE))
 
 

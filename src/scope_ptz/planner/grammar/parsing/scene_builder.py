@@ -1,4 +1,4 @@
-"""Builders for the rules about places, things and questions."""
+"""Build steps about presets, objects and questions from the parse tree."""
 
 # ruff: noqa: ARG002 - all rule methods share one signature
 
@@ -30,7 +30,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     WhichPreset,
     ZoomTo,
 )
-from scope_ptz.planner.grammar.parsing.tree_nodes import Node, Rules
+from scope_ptz.planner.grammar.parsing.tree_nodes import Node, RuleBuilder
 from scope_ptz.tools.arguments import View
 
 SCOPES = {"now", "full", "scene"}
@@ -52,22 +52,22 @@ _RELATIVE = (
     (re.compile(r" (?:what|that)$", re.IGNORECASE), ""),
 )
 _ASKING = re.compile(r"(?:what|where|which|who|why|how|is|are|does|do)(?:['’]s)?\b", re.IGNORECASE)
-_FUSED = re.compile(r"^(?:the|this|that) (?=\w+ ?\w)", re.IGNORECASE)
+_ARTICLE_IN_PHRASE = re.compile(r"^(?:the|this|that) (?=\w+ ?\w)", re.IGNORECASE)
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
 
 
-class SceneRules(Rules):
-    # Descriptions ------------------------------------------------------------------------------------------------------
-    """Rules about places, things and questions."""
+class SceneBuilder(RuleBuilder):
+    """Builds references to presets and objects, and the steps that use them."""
 
+    # Descriptions ------------------------------------------------------------------------------------------------------
     def np(self, node: Node) -> Thing:
         parts = node.branches("words", "relative")
         determiner = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
         leaves = parts[0].all_leaves()
-        odd = not any(leaf.kind == "WORD" or self.lexemes[leaf.index].kinds & _NOUNS for leaf in leaves)
+        not_an_object = not any(leaf.kind == "WORD" or self.lexemes[leaf.index].kinds & _NOUNS for leaf in leaves)
         text = described(self.text([leaf for part in parts for leaf in part.all_leaves()]))
-        bare = _FUSED.sub("", text)  # "the site office": "the site" is one lexeme
-        return Thing(bare, definite=determiner or bare != text, odd=odd)
+        bare = _ARTICLE_IN_PHRASE.sub("", text)  # in "the site office", "the site" is one lexeme
+        return Thing(bare, definite=determiner or bare != text, not_an_object=not_an_object)
 
     def thing(self, node: Node) -> Thing:
         made: Thing = self.visit(node.branches()[0])
@@ -100,7 +100,7 @@ class SceneRules(Rules):
     def also(self, node: Node) -> Step:
         """Build "zoom in on the bench, then on the bin": the second part takes the verb of the first."""
         leaves = node.branches("free_name")[0].all_leaves()
-        return GoPreset(PresetRef(self._free_name(node), determined=leaves[0].kind == "DET"), "bare")
+        return GoPreset(PresetRef(self._free_name(node), has_article=leaves[0].kind == "DET"), "bare")
 
     def track(self, node: Node) -> Step:
         durations = [self.visit(b) for b in node.branches() if b.name in _DURATIONS]
@@ -158,16 +158,16 @@ class SceneRules(Rules):
 
     def named(self, node: Node) -> PresetRef:
         certain = bool(node.leaves("PRESETWORD")) or not node.leaves("DET")
-        return PresetRef(self.text(node.leaves("PRESETNAME")), sure=certain)
+        return PresetRef(self.text(node.leaves("PRESETNAME")), explicit=certain)
 
     def numbered(self, node: Node) -> PresetRef:
-        return PresetRef(self.text(node.all_leaves()), number=round(self.number(node)), sure=True)
+        return PresetRef(self.text(node.all_leaves()), number=round(self.number(node)), explicit=True)
 
     def marked(self, node: Node) -> PresetRef:
-        return PresetRef(self._free_name(node), sure=True)
+        return PresetRef(self._free_name(node), explicit=True)
 
     def unmarked(self, node: Node) -> PresetRef:
-        return PresetRef(self._free_name(node), determined=self.text(node.all_leaves()).lower().startswith(("the ", "a ", "an ")))
+        return PresetRef(self._free_name(node), has_article=self.text(node.all_leaves()).lower().startswith(("the ", "a ", "an ")))
 
     def _free_name(self, node: Node) -> str:
         inner = node.branches("marked_name") or [node]
@@ -205,7 +205,7 @@ class SceneRules(Rules):
 
     # Counting and asking -----------------------------------------------------------------------------------------------
     def count(self, node: Node) -> Step | tuple[Step, ...]:
-        """Build a count of several things, unless the last of them is a question of its own."""
+        """Build a count. If the last of several descriptions is a question, it becomes a step of its own."""
         *things, last = self._things(node)
         if things and _ASKING.match(last.text):
             return (Count(tuple(things), self._view(node)), Ask(last.text + "?", self._view(node)))

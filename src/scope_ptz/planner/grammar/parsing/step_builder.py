@@ -1,6 +1,6 @@
-"""From the parser's tree to the steps of ``instruction_tree``: one method for each rule of ``language.lark``.
+"""Build the steps of ``instruction_tree`` from the parse tree, with one method for each rule of ``language.lark``.
 
-The rules about motion are in ``move_builder``, those about places, things and questions in ``scene_builder``, and those about
+The rules about motion are in ``move_builder``, those about presets, objects and questions in ``scene_builder``, and those about
 conditions and comparisons in ``condition_builder``.
 """
 
@@ -42,28 +42,29 @@ from scope_ptz.planner.grammar.instruction_tree import (
 )
 from scope_ptz.planner.grammar.parsing.chart import Branch, Leaf
 from scope_ptz.planner.grammar.parsing.compose import compose
-from scope_ptz.planner.grammar.parsing.condition_builder import JudgingRules
-from scope_ptz.planner.grammar.parsing.move_builder import MoveRules, StepSize
+from scope_ptz.planner.grammar.parsing.condition_builder import ConditionBuilder
+from scope_ptz.planner.grammar.parsing.move_builder import MoveBuilder, StepSize
 from scope_ptz.planner.grammar.parsing.tree_nodes import Node
 
-_LINKS = {"AND": "and", "COMMA": ",", "THEN": "then"}
+_LINK_OF_TERMINAL = {"AND": "and", "COMMA": ",", "THEN": "then"}
 
 
-class StepBuilder(MoveRules, JudgingRules):
+class StepBuilder(MoveBuilder, ConditionBuilder):
     """Builds the steps of one instruction."""
 
     def extend(self, tree: Branch, before: list[Step]) -> list[Step]:
-        """Return the steps so far together with those of one more sentence."""
+        """Return the steps of a sentence combined with the steps before it."""
         return compose(self._linked(Node(tree)), before)
 
     def _linked(self, node: Node) -> list[Linked]:
+        """Return the steps of a sentence with the links between them."""
         out: list[Linked] = []
         link = "." if node.name == "sentence" else ""
         for part in node.branch.children:
             child = Node(part) if isinstance(part, Branch) else None
             if child is None or child.name == "sep":
                 kind = part.kind if isinstance(part, Leaf) else Node(part).leaf_kinds()[0]
-                link = _LINKS.get(kind, "")
+                link = _LINK_OF_TERMINAL.get(kind, "")
                 continue
             for step in self._as_steps(self.visit(child)):
                 out.append(Linked(link, step))

@@ -1,4 +1,4 @@
-"""Parse tree nodes together with the text that they came from."""
+"""Nodes of the parse tree, and the base class of the builders."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.planner.grammar.parsing.chart import Branch, Leaf
 
 
 class Node:
-    """A branch of the parse tree, with the queries that builders need."""
+    """A branch of the parse tree, with the methods that builders need."""
 
     __slots__ = ("branch",)
 
@@ -22,11 +22,11 @@ class Node:
         return self.branch.name
 
     def branches(self, *names: str) -> list[Node]:
-        """Return the children that are rules, only those of the given names if there are any."""
+        """Return the children that are rules; only those with one of the names, if any are given."""
         return [Node(c) for c in self.branch.children if isinstance(c, Branch) and (not names or c.name in names)]
 
     def leaves(self, kind: str | None = None) -> list[Leaf]:
-        """Return the children that are terminals, only those of a kind if one is given."""
+        """Return the children that are terminals; only those of the kind, if one is given."""
         return [c for c in self.branch.children if isinstance(c, Leaf) and kind in (None, c.kind)]
 
     def leaf_kinds(self) -> list[str]:
@@ -45,23 +45,29 @@ class Node:
         return out
 
     def position(self, name: str) -> int:
-        """Return the index of the first child of that name among all children, -1 for none."""
+        """Return the index of the first child with a name among all children; -1 if there is none."""
         for i, child in enumerate(self.branch.children):
             if (child.name if isinstance(child, Branch) else child.kind) == name:
                 return i
         return -1
 
 
-class Rules:
-    """Calls the method named after each rule."""
+class RuleBuilder:
+    """Base class of the builders, with one method for each rule.
+
+    Attributes:
+        source: The text of the instruction.
+        lexemes: The lexemes of the sentence.
+        upper_case: Whether the text is in upper case, so that descriptions are converted to lower case.
+    """
 
     def __init__(self, text: str, lexemes: Sequence[Lexeme]) -> None:
         self.source = text
         self.lexemes = lexemes
-        self.shouting = text.isupper()
+        self.upper_case = text.isupper()
 
     def visit(self, node: Node) -> Any:
-        """Return what the method of the node's rule builds."""
+        """Return what the method for the node's rule builds."""
         name = {"visit": "visit_places", "raise": "raise_it", "if": "if_"}.get(node.name, node.name)
         return getattr(self, name)(node)
 
@@ -71,7 +77,7 @@ class Rules:
         return self.lexemes[leaf.index].value
 
     def fraction(self, node: Node) -> float:
-        """Return the node's fraction; an ordinal such as "third" is one over three."""
+        """Return the value of the node's fraction. An ordinal such as "third" means one third."""
         lexeme = self.lexemes[node.leaves("FRACTION")[0].index]
         return 1 / lexeme.value if "ORDINAL" in lexeme.kinds else lexeme.value
 
@@ -92,4 +98,4 @@ class Rules:
         start = self.lexemes[leaves[0].index].start
         end = self.lexemes[leaves[-1].index].end
         words = " ".join(self.source[start:end].split())
-        return words.lower() if self.shouting else words
+        return words.lower() if self.upper_case else words

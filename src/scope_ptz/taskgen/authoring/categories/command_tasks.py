@@ -1,4 +1,4 @@
-"""Multi-step command tasks: go, turn, zoom, take pictures and return, in the order that the instruction states."""
+"""Multi-step command tasks: go to presets, turn, zoom, take pictures and go home, in the order of the instruction."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: rando
         call = _step(step, places, visited, rng)
         if call is None:
             return None
-        there = after(places, at, call)
+        there = position_after(places, at, call)
         if there is None or (call.tool != "take_image" and there == at):
             return None
         at = there
         program.append(call)
-    origin = places.stay(start)
+    origin = places.at_preset(start)
     end = TaskPlace(scene, start, tuple(program), at)
     shots = shape.count("shot")
     if not shots and end.key == origin.key:
@@ -96,25 +96,28 @@ def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: rando
 
 
 def _step_phrases(program: list[ProgramCall], rng: random.Random) -> list[str]:
-    """Return each step of a program in words."""
+    """Return a phrase for each step of a program."""
     return [rng.choice(_SHOTS) if c.tool == "take_image" else " and ".join(call_phrases(c, rng)) for c in program]
 
 
 def joined_in_order(parts: list[str], rng: random.Random) -> str:
-    """Join steps in sequence. A bare "and" would leave their order open."""
+    """Join steps with words for their order, because "and" alone would not specify it."""
     last = rng.choice((", then ", " and then ", " and after that "))
     return f"{', '.join(parts[:-1])}{last}{parts[-1]}"
 
 
 def required(call: ProgramCall) -> RequiredCall:
-    """Return the call that a run must contain for a step. The final pose shows how far the camera turned."""
+    """Return the tool call that a run must contain for a step.
+
+    The arguments of moves are not checked here, because the check of the final pose covers them.
+    """
     if call.tool == "go_to_preset":
         return RequiredCall(tool="go_to_preset", arguments={"name": Argument(equals=str(call.arguments["name"]))})
     return RequiredCall(tool=call.tool)
 
 
 def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
-    """Return what a program does to the view: change the preset, move, zoom."""
+    """Return how a program changes the view: by a preset, a move or a zoom."""
     found: list[Need] = []
     for call in program:
         if call.tool in ("go_to_preset", "go_home"):
@@ -126,8 +129,8 @@ def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def after(places: ScenePlaces, at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
-    """Return where the camera is after a call, or None when a limit would clamp the move."""
+def position_after(places: ScenePlaces, at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
+    """Return the camera position after a call; None if a limit would clamp the move."""
     if call.tool == "go_to_preset":
         return preset_at(places.presets[str(call.arguments["name"])])
     if call.tool == "go_home":

@@ -16,12 +16,12 @@ from scope_ptz.taskgen.authoring.view_contents import countable, disjoint, plain
 from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
 
 SAME = ("the same", "equal", "as many", "equally many")
-_NEARER, _LARGER = 1.5, 2.5
-"""Ratios of distances, and of areas in the picture, from which a difference is beyond doubt."""
+_MIN_DISTANCE_RATIO, _MIN_AREA_RATIO = 1.5, 2.5
+"""Minimum ratios of distances, and of areas in the picture, for an unambiguous comparison."""
 
 
 def drafts(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
-    """Return comparisons within one view."""
+    """Return the drafts of comparisons within one view."""
     return [*_of_two(place, rng), *_of_several(place, rng), *_distances(place, rng), *_sizes(place, rng)]
 
 
@@ -104,7 +104,7 @@ def _excess(first: str, second: str, n: int, m: int) -> _TypedQuestion:
         (f"how many more {first} than {second} are there?", f"how many more {first} than {second} there are"),
         (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
     )
-    # Without a unit, a reply that states the numbers of the two kinds is not read as their difference.
+    # The answer has no unit, so that a reply with the two counts is not parsed as their difference.
     return "excess", Number(value=n - m), Question(forms)
 
 
@@ -132,13 +132,13 @@ def _whether_more(first: str, second: str, n: int, m: int) -> _TypedQuestion:
 
 
 def count_evidence(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
-    """Return a view as evidence for the number of a kind."""
+    """Return a view as evidence for the number of objects of a kind."""
     items = [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()]
     return evidence_view(place, Number(value=number, unit=unit_of(kind)), about(kind), items, whole=True)
 
 
 def _of_several(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions about the most numerous of four kinds, and for the order of three kinds by number."""
+    """Yield questions about the most numerous of four kinds, and about the order of three kinds by number."""
     plain = [(kind, n) for kind, n in plain_counts(place.truth) if kind.category not in GROUPS]
     for size, most in ((3, 4), (4, 4)):
         groups = [
@@ -168,7 +168,7 @@ def _of_several(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
 
 
 def _distinct(numbers: Sequence[int], *, whole: bool) -> bool:
-    """Whether all numbers differ, or, without ``whole``, whether the greatest occurs once."""
+    """Return whether all numbers differ (with ``whole``), or whether the greatest number occurs only once."""
     return len(set(numbers)) == len(numbers) if whole else numbers.count(max(numbers)) == 1
 
 
@@ -190,7 +190,7 @@ def _most(names: list[str], winner: str) -> tuple[Question, Choice]:
 
 
 def _distances(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions about the nearest or farthest of two to four objects, and for the order of three by distance."""
+    """Yield questions about the nearest or farthest of two to four objects, and about the order of three by distance."""
     if place.swept:
         return
     named = nameable_things(place.truth)
@@ -198,7 +198,7 @@ def _distances(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
         for group in _groups(named, size, rng):
             ranked = sorted(group, key=lambda n: n.thing.distance_m)
             gaps = [b.thing.distance_m / max(a.thing.distance_m, 0.1) for a, b in pairwise(ranked)]
-            if min(gaps if size < 4 else (gaps[0], gaps[-1])) >= _NEARER:
+            if min(gaps if size < 4 else (gaps[0], gaps[-1])) >= _MIN_DISTANCE_RATIO:
                 names = [one.the for one in rng.sample(group, size)]
                 yield from _by_distance(place, ranked, names, rng)
 
@@ -228,14 +228,14 @@ def _by_distance(place: TaskPlace, ranked: list[NamedThing], names: list[str], r
 
 
 def _sizes(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions about the largest of three or four objects in the picture, whatever their real size."""
+    """Yield questions about which of three or four objects looks largest in the picture."""
     if place.swept:
         return
     named = nameable_things(place.truth)
     for group in (*_groups(named, 3, rng), *_groups(named, 4, rng)):
         areas = {one.name: place.truth.areas(one.thing) for one in group}
         ranked = sorted(group, key=lambda one: areas[one.name][0], reverse=True)
-        if min(areas[ranked[0].name]) < _LARGER * max(max(areas[one.name]) for one in ranked[1:]):
+        if min(areas[ranked[0].name]) < _MIN_AREA_RATIO * max(max(areas[one.name]) for one in ranked[1:]):
             continue
         either = listing([one.the for one in rng.sample(group, len(group))], "or")
         expected = Choice(value=ranked[0].name, options={one.name: () for one in ranked}, picks=("largest", "biggest", "most"))
@@ -250,7 +250,7 @@ def _sizes(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
 
 
 def _groups(named: list[NamedThing], size: int, rng: random.Random) -> list[tuple[NamedThing, ...]]:
-    """Return a few groups of objects of different categories."""
+    """Return up to twelve groups of objects of different categories."""
     groups = [g for g in combinations(named[:12], size) if len({one.kind.category for one in g}) == size]
     rng.shuffle(groups)
     return groups[:12]
@@ -259,7 +259,7 @@ def _groups(named: list[NamedThing], size: int, rng: random.Random) -> list[tupl
 def _comparison(
     place: TaskPlace, kind: str, expected: Choice | Ordering, asked: Question, things: list[NamedThing], tag: str
 ) -> TaskDraft:
-    """Return a comparison of single objects in one view."""
+    """Return the draft of a comparison of single objects in one view."""
     ids = "/".join(sorted(one.thing.instance.id for one in things))
     measures = [one.thing.distance_m if tag == "distance" else float(one.thing.pixels) for one in things]
     items = [place.truth.item(one.thing, measure) for one, measure in zip(things, measures, strict=True)]

@@ -1,4 +1,4 @@
-"""Counting tasks: the number of objects of a kind in a view or all around, including kinds that are absent."""
+"""Counting tasks: the number of objects of a kind in a view or in a sweep, including kinds that are absent."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.taskgen.facts.kinds import Kind
 
 
 def question(kind: Kind) -> Question:
-    """Return the wordings that ask for the number of a kind."""
+    """Return wordings of the question "how many are there?" for a kind of object."""
     many = many_of(kind)
     return Question(
         (
@@ -27,7 +27,7 @@ def question(kind: Kind) -> Question:
 
 
 def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
-    """Return a draft for every countable kind at a place, and for absent kinds, each with a twin of the same wording."""
+    """Return a draft for every countable kind at a place, and drafts for absent kinds, each paired with a present one."""
     truth = place.truth
     present = [_number(place, kind, n) for kind, n in countable(truth)]
     twins = list(present)

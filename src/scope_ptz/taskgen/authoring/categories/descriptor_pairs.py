@@ -1,4 +1,4 @@
-"""Descriptor tasks in pairs of an absence and a presence, and questions about whether an object has a colour."""
+"""Descriptor tasks in pairs, about an absent and a present object, and questions about whether an object has a given colour."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from scope_ptz.taskgen.authoring.noun_phrases import (
 from scope_ptz.taskgen.authoring.object_names import unique_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
 from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, scene_kinds_first
-from scope_ptz.taskgen.facts.kinds import Kind, colour_shows, near_colours, own_colour
+from scope_ptz.taskgen.facts.kinds import Kind, colour_shows, own_colour, similar_colours
 
 
 def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield presence questions, colour confirmations, and colours of objects that may be absent."""
+    """Yield questions about presence, about a given colour, and about the colour of objects that may be absent."""
     yield from _presence(place, nouns, rng)
     yield from _coloured_or_not(place, rng)
     yield from _colour_if_there(place, nouns, rng)
@@ -39,8 +39,9 @@ def _presence(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> It
     present = [kind for kind, _ in countable(place.truth)]
     rng.shuffle(present)
     missing = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
-    for here, gone in zip(present, missing, strict=False):
-        yield _presence_draft(place, gone, there=False, twin=_presence_draft(place, here, there=True))
+    for present_kind, absent_kind in zip(present, missing, strict=False):
+        twin = _presence_draft(place, present_kind, there=True)
+        yield _presence_draft(place, absent_kind, there=False, twin=twin)
 
 
 def _presence_draft(place: TaskPlace, kind: Kind, *, there: bool, twin: TaskDraft | None = None) -> TaskDraft:
@@ -70,13 +71,15 @@ def _presence_draft(place: TaskPlace, kind: Kind, *, there: bool, twin: TaskDraf
 
 
 def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions about whether one object has a colour: its own, or one that cannot be mistaken for it."""
+    """Yield questions about whether an object has a given colour: its own, or one that is clearly different."""
     for one in unique_things(place.truth, coloured=False, min_pixels=400):
         colour = plain_colour(own_colour(one.thing.instance))
         if colour is None or colour in one.name or not colour_shows(one.thing.instance):
             continue
-        strangers = [c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not near_colours(c, colour)]
-        for asked in (colour, rng.choice(strangers)):
+        other_colours = [
+            c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not similar_colours(c, colour)
+        ]
+        for asked in (colour, rng.choice(other_colours)):
             expected = YesNo(value=asked == colour, affirms=(asked,), denies=(colour,) if asked != colour else ())
             yield TaskDraft(
                 category="descriptor",
@@ -102,16 +105,16 @@ def _colour_if_there(place: TaskPlace, nouns: frozenset[str], rng: random.Random
     missing = scene_kinds_first(place, [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None], rng)
     shown = [one for one in unique_things(place.truth, coloured=False, min_pixels=300) if own_colour(one.thing.instance)]
     rng.shuffle(shown)
-    for one, gone in zip(shown, missing, strict=False):
+    for one, absent in zip(shown, missing, strict=False):
         colour = plain_colour(own_colour(one.thing.instance))
         if colour is None or colour in one.name or not colour_shows(one.thing.instance):
             continue
         value = Choice(value=colour, options=colour_options(), subject=unit_of(one.kind)[:2])
-        none = NoneThere(subject=unit_of(gone)[:2], claims=wordings(colour_options()))
+        none = NoneThere(subject=unit_of(absent)[:2], claims=wordings(colour_options()))
         item = place.truth.item(one.thing, colour)
         twin = _colour_if_there_draft(place, one.name, value, evidence_view(place, value, one.words, [item], whole=False), colour)
         yield replace(
-            _colour_if_there_draft(place, noun_of(gone), none, evidence_view(place, none, about(gone), whole=True), "none"),
+            _colour_if_there_draft(place, noun_of(absent), none, evidence_view(place, none, about(absent), whole=True), "none"),
             question_type="no-colour",
             twin=twin,
         )

@@ -1,4 +1,4 @@
-"""Descriptor tasks: colour, clothing, state, material and kind of one object, presence, and which of a list is there."""
+"""Descriptor tasks: colour, clothing, state, material and kind of an object, presence, and which of several kinds are there."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ _SYNONYMS = {
     "broom": ("brush",),
 }
 Values = Mapping[tuple[str, str], Sequence[str]]
-"""The values of an attribute in the scenes, by category and attribute."""
+"""The values of attributes in the scenes, by category and attribute."""
 
 
 def values_of(things: Sequence[SceneThing]) -> Values:
-    """Return the values that attributes have among some objects, by category and attribute."""
+    """Return the values that the attributes of the given objects have, by category and attribute."""
     found: dict[tuple[str, str], set[str]] = {}
     for thing in things:
         for key, value in thing.attributes.items():
@@ -53,14 +53,14 @@ def values_of(things: Sequence[SceneThing]) -> Values:
 
 
 def options(values: Sequence[str]) -> Options:
-    """Return the values as answer options, with synonyms that do not name another value."""
+    """Return the values as answer options, with those synonyms that do not equal another value."""
     return {value: tuple(word for word in _SYNONYMS.get(value, ()) if word not in values) for value in values}
 
 
 def one_of(value: str, values: Sequence[str], category: str) -> Options:
-    """Return answer options, among which ``value`` is right.
+    """Return the answer options for a question whose correct answer is ``value``.
 
-    Values that say the same in more words share an option: a "road bicycle" is a "road" one, and "cast iron" is iron.
+    Values with the same meaning share an option, such as "road" and "road bicycle", or "iron" and "cast iron".
     """
     same: dict[str, set[str]] = {value: set()}
     for other in values:
@@ -70,13 +70,13 @@ def one_of(value: str, values: Sequence[str], category: str) -> Options:
 
 
 def _is_same(one: str, other: str, category: str) -> bool:
-    """Whether two values mean the same, one of them in more words."""
+    """Return whether two values mean the same, because one of them only adds words to the other."""
     short, long = sorted((one.removesuffix(f" {category}"), other.removesuffix(f" {category}")), key=len)
     return short == long or long.endswith(f" {short}")
 
 
 def drafts(place: TaskPlace, nouns: frozenset[str], values: Values, rng: random.Random) -> list[TaskDraft]:
-    """Return all descriptor drafts for a place."""
+    """Return the descriptor drafts for a place."""
     return [
         *_attributes(place, values), *_lists(place, nouns, rng), *descriptor_pairs.drafts(place, nouns, rng),
     ]  # fmt: skip
@@ -124,9 +124,9 @@ def _state(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
     for pair in STATES:
         named = {word for value in pair for word in (value, *_SYNONYMS.get(value, ()))} & set(one.name.split())
         if {"lit", "unlit"} & set(pair) and "light" in facts and set(one.name.split()) & COLOUR_WORDS:
-            continue  # "the green charging point" is one that is lit
-        least = _INSIDE_PX if {"full", "empty"} & set(pair) else _STATE_PX
-        shows = not one.thing.cut and one.thing.pixels >= least and one.thing.instance.category not in _STATE_HARDLY_SHOWS
+            continue  # its colour is that of its light, so its name reveals that it is lit
+        min_pixels = _CONTENT_PX if {"full", "empty"} & set(pair) else _STATE_PX
+        shows = not one.thing.cut and one.thing.pixels >= min_pixels and one.thing.instance.category not in _STATE_HARD_TO_SEE
         if state in pair and not named and shows:
             # The order of the two states must be the same in every build, and vary between objects.
             first, second = pair[:: 1 if sum(map(ord, one.thing.instance.id)) % 2 else -1]
@@ -138,10 +138,10 @@ def _state(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
 
 
 def _other_attributes(place: TaskPlace, one: NamedThing, values: Values) -> Iterator[TaskDraft]:
-    """Yield questions about kind, material, load and what a person carries."""
+    """Yield questions about the kind, material and load of an object, and about what a person carries."""
     category = one.thing.instance.category
     for key, usual_forms in _ATTRIBUTE_FORMS.items():
-        if (key == "kind" and category not in _OF_KINDS) or (key == "material" and category in _MATERIAL_HARDLY_SHOWS):
+        if (key == "kind" and category not in _RECOGNISABLE_KINDS) or (key == "material" and category in _MATERIAL_HIDDEN_BY_PAINT):
             continue
         known = values.get((category, key), ())
         value = one.thing.instance.attributes.get(key)
@@ -149,11 +149,11 @@ def _other_attributes(place: TaskPlace, one: NamedThing, values: Values) -> Iter
             isinstance(value, str)
             and value in known
             and len(choice := one_of(value, known, category)) >= 2
-            and one.thing.pixels >= (_INSIDE_PX if key == "load" else _STATE_PX)
+            and one.thing.pixels >= (_CONTENT_PX if key == "load" else _STATE_PX)
             and value not in one.name.lower()
-            and value not in _HELD_AT_THE_FACE
+            and value not in _HIDDEN_BY_HAND
         ):
-            forms = _ONLY_ONE if key == "kind" and one.name == one.kind.category else usual_forms
+            forms = _ONLY_ONE_OF_CATEGORY_FORMS if key == "kind" and one.name == one.kind.category else usual_forms
             yield _choice(place, one, key, Choice(value=value, options=choice), forms)
 
 
@@ -169,26 +169,26 @@ _GARMENTS = (
     ("jacket", "jacket", "wearing"),
     ("umbrella", "umbrella", "holding"),
 )
-"""Attribute, noun and verb."""
+"""The attribute, the noun and the verb of each garment."""
 
-_GARMENT_PX = 500  # fewest pixels of a person whose clothes are asked about
+_GARMENT_PX = 500  # minimum number of pixels of a person for questions about clothes
 
-_STATE_PX, _INSIDE_PX = 1200, 2500
-"""Fewest pixels on which the state or the material of an object can be seen, and what it contains."""
+_STATE_PX, _CONTENT_PX = 1200, 2500
+"""Minimum number of pixels of an object for questions about its state or material, and about its contents."""
 
-_STATE_HARDLY_SHOWS = frozenset({"gate", "shop", "kiosk", "charging point", "dock light", "taxi sign", "chimney", "gatehouse"})
-"""Categories whose state shows only on a notice, a small lamp or a part that is hard to see."""
+_STATE_HARD_TO_SEE = frozenset({"gate", "shop", "kiosk", "charging point", "dock light", "taxi sign", "chimney", "gatehouse"})
+"""Categories whose state is shown only by a notice, a small lamp or a part that is hard to see."""
 
-_HELD_AT_THE_FACE = frozenset({"phone"})
-"""Things that are hidden by the hand that holds them."""
+_HIDDEN_BY_HAND = frozenset({"phone"})
+"""Carried objects that the hand hides."""
 
-_MATERIAL_HARDLY_SHOWS = frozenset({"door", "barrier"})
-"""Categories whose material is hidden by paint."""
+_MATERIAL_HIDDEN_BY_PAINT = frozenset({"door", "barrier"})
+"""Categories whose material cannot be seen because of paint."""
 
-_OF_KINDS = frozenset({"lorry", "bus", "bicycle", "van", "shop", "container"})
-"""Categories whose kinds people can tell apart from any side, unlike an estate car and an off-roader."""
+_RECOGNISABLE_KINDS = frozenset({"lorry", "bus", "bicycle", "van", "shop", "container"})
+"""Categories whose kinds people can tell apart from any side. Estate cars and off-road cars, for example, are too similar."""
 
-_ONLY_ONE = (
+_ONLY_ONE_OF_CATEGORY_FORMS = (
     ("what kind of {c} can you see?", "what kind of {c} you can see"),
     ("which type of {c} is there?", "which type of {c} is there"),
 )
@@ -228,15 +228,15 @@ def _choice(place: TaskPlace, one: NamedThing, key: str, expected: Choice, forms
 
 
 def _lists(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions that ask which of four kinds are there."""
-    here = [kind for kind, _ in plain_counts(place.truth)]
-    gone = [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None]
-    rng.shuffle(here)
-    gone = scene_kinds_first(place, gone, rng)
+    """Yield questions about which of four kinds are there."""
+    present = [kind for kind, _ in plain_counts(place.truth)]
+    absent = [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None]
+    rng.shuffle(present)
+    absent = scene_kinds_first(place, absent, rng)
     for number in (2, 3, 1):
-        if len(here) < number or len(gone) < 4 - number:
+        if len(present) < number or len(absent) < 4 - number:
             continue
-        chosen, rest = here[:number], gone[: 4 - number]
+        chosen, rest = present[:number], absent[: 4 - number]
         four = [*chosen, *rest]
         rng.shuffle(four)
         names = [article(noun_of(kind)) for kind in four]

@@ -1,4 +1,4 @@
-"""Location tasks in pairs of an absence and a presence: in a half of the frame, and in which quarter of it."""
+"""Location tasks in pairs, about an absent and a present object: in a half of the frame, or in one of its quarters."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_ptz.taskgen.facts.kinds import Kind
 
 
 def drafts(place: TaskPlace, named: list[NamedThing], nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield the absence of every pair, with the presence as its twin."""
+    """Yield the draft about the absent object of every pair, with that about the present object as its twin."""
     yield from _in_half_pairs(place, nouns, rng)
     yield from _where_if_there(place, named, nouns, rng)
 
@@ -32,13 +32,13 @@ def corner_options() -> Options:
 
 
 def _in_half_pairs(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    here = [
+    present = [
         (k, s)
         for k, _ in countable(place.truth)
         if len(s := {place.truth.side(t, 0) for t in place.truth.all_of(k) or ()}) == 1 and None not in s
     ]
-    gone = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
-    for (kind, sides), missing in zip(here, gone, strict=False):
+    absent = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
+    for (kind, sides), missing in zip(present, absent, strict=False):
         side = ("left", "right")[next(iter(sides)) or 0]
         yield _half_pair(place, missing, side, there=False, twin=_half_pair(place, kind, side, there=True))
 
@@ -77,17 +77,17 @@ def _where_if_there(place: TaskPlace, named: list[NamedThing], nouns: frozenset[
     """Yield questions about the quarter that an absent object is in, each with a twin about a present one."""
     missing = scene_kinds_first(place, [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None], rng)
     placed = [(n, place.truth.side(n.thing, 0), place.truth.side(n.thing, 1)) for n in named if n.name[-1].isalpha()]
-    for (one, side, level), gone in zip([p for p in placed if None not in p[1:]], missing, strict=False):
+    for (one, side, level), absent in zip([p for p in placed if None not in p[1:]], missing, strict=False):
         value = Choice(
             value=f"{('top', 'bottom')[level or 0]} {('left', 'right')[side or 0]}",
             options=corner_options(),
             subject=unit_of(one.kind)[:2],
         )
-        none = NoneThere(subject=unit_of(gone)[:2], claims=wordings(corner_options()))
+        none = NoneThere(subject=unit_of(absent)[:2], claims=wordings(corner_options()))
         seen = evidence_view(place, value, one.words, [place.truth.item(one.thing, value.value)], whole=False)
         twin = _where_if(place, one.name, value, seen, value.value)
         yield replace(
-            _where_if(place, noun_of(gone), none, evidence_view(place, none, about(gone), whole=True), "none"),
+            _where_if(place, noun_of(absent), none, evidence_view(place, none, about(absent), whole=True), "none"),
             question_type="nowhere",
             twin=twin,
         )
@@ -103,7 +103,7 @@ def _where_if(place: TaskPlace, name: str, expected: Choice | NoneThere, seen: E
         (f"can you find {one}, and in which quarter of the frame is it?",
          f"whether you can find {one}, and in which quarter of the frame it is"),
     )  # fmt: skip
-    look = f"are there any {plural(name)}?" if answer_key == "none" else f"where in the frame is {the(name)}?"
+    asked = f"are there any {plural(name)}?" if answer_key == "none" else f"where in the frame is {the(name)}?"
     return TaskDraft(
         category="location",
         question_type="where-if",
@@ -112,7 +112,7 @@ def _where_if(place: TaskPlace, name: str, expected: Choice | NoneThere, seen: E
         expected=expected,
         question=Question(forms),
         evidence=(seen,),
-        perception_calls=(ask_call(look, place),),
+        perception_calls=(ask_call(asked, place),),
         tags=("none-there",) if answer_key == "none" else ("frame",),
         answer_key=answer_key,
     )

@@ -1,4 +1,4 @@
-"""Location tasks: halves and quarters of the frame, left and right of each other, order across the view."""
+"""Location tasks: halves and quarters of the frame, objects to the left or right of others, and order from left to right."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SIDE_OPTIONS: tuple[Options, Options] = (
 
 
 def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
-    """Return all location drafts for a view. A sweep has none."""
+    """Return the location drafts for a view; none for a sweep."""
     if place.swept:
         return []
     named = nameable_things(place.truth)

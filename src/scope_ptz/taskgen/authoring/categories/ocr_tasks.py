@@ -1,4 +1,4 @@
-"""OCR tasks: signs, boards and lettering, in views that are close enough or after zooming in on them."""
+"""OCR tasks: signs, boards and lettering that are legible in a view, or after zooming in on them."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from scope_ptz.simulator.truth import BoxTuple, TextSighting
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, evidence_view
 from scope_ptz.taskgen.authoring.object_names import NamedThing, coloured_boards, extreme_things, nameable_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
-from scope_ptz.taskgen.authoring.zoom_targets import SMALLEST_PX, framed
+from scope_ptz.taskgen.authoring.zoom_targets import MIN_TARGET_PX, framed
 from scope_ptz.taskgen.facts.robust import with_parts
 
-LONGEST = 80
-"""Maximum length of a requested text, in characters. A person would not dictate a longer one."""
+MAX_TEXT_CHARS = 80
+"""Maximum length of an expected text, in characters."""
 
-_GUESSED_PX = 5.0
-"""Minimum height of capitals, in pixels, for a person to see what to zoom in on."""
+_NOTICEABLE_TEXT_PX = 5.0
+"""Minimum height of capitals, in pixels, for a person to notice that there is text to zoom in on."""
 
 
 def drafts(place: TaskPlace) -> list[TaskDraft]:
-    """Return the texts to read in a view, and those to read after zooming in. A sweep has none."""
+    """Return drafts about texts that are legible in a view, or after zooming in; none for a sweep."""
     if place.swept:
         return []
     named = [
-        *nameable_things(place.truth, SMALLEST_PX, _GUESSED_PX),
-        *coloured_boards(place.truth, SMALLEST_PX),
+        *nameable_things(place.truth, MIN_TARGET_PX, _NOTICEABLE_TEXT_PX),
+        *coloured_boards(place.truth, MIN_TARGET_PX),
         *extreme_things(place.truth),
     ]
     return [*_in_view(place, named), *_zoomed(place, named)]
@@ -43,12 +43,12 @@ def _in_view(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
 
 
 def _zoomed(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
-    """Yield texts that cannot be read from here, but can be read after zooming in."""
+    """Yield drafts about texts that are not legible in a view, but are legible after zooming in."""
     if any("zoom_factor" in call.arguments for call in place.calls):
-        return  # operators do not zoom in twice
+        return  # tasks do not zoom in twice
     for one in named:
-        family = with_parts(place.scene, one.thing.instance.id)
-        lettered = any(text.parent in family for text in place.scene.file.texts)
+        part_ids = with_parts(place.scene, one.thing.instance.id)
+        lettered = any(text.parent in part_ids for text in place.scene.file.texts)
         if one.positional or not lettered or place.truth.texts_on(one.thing.instance):
             continue
         close = framed(place, one.thing, one.thing.instance)
@@ -62,7 +62,7 @@ def _zoomed(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
 
 
 def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
-    """Return texts from top to bottom if they are lines of one piece of writing; otherwise None."""
+    """Return texts sorted from top to bottom if they are lines of one text; otherwise None."""
     if not texts:
         return None
     found = {t.text.text.strip(): t for t in texts}
@@ -70,46 +70,48 @@ def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | 
     for upper, lower in pairwise(order):
         height = min(upper.box[3] - upper.box[1], lower.box[3] - lower.box[1])
         shared = min(upper.box[2], lower.box[2]) - max(upper.box[0], lower.box[0])
-        beside = upper.box[3] - lower.box[1] > height / 2
+        side_by_side = upper.box[3] - lower.box[1] > height / 2
         narrow = shared < 0.5 * min(upper.box[2] - upper.box[0], lower.box[2] - lower.box[0])
-        if beside or narrow or lower.box[1] - upper.box[3] > _LINE_GAP * height:
+        if side_by_side or narrow or lower.box[1] - upper.box[3] > _MAX_LINE_GAP * height:
             return None
     return tuple(order)
 
 
-_LINE_GAP = 3.0
-"""Largest gap between lines of one piece of writing, as a multiple of their height."""
+_MAX_LINE_GAP = 3.0
+"""Maximum gap between lines of one text, as a multiple of their height."""
 
 
-def priced(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
-    """Return the prices among the texts of a price card. The rest is in its name."""
+def prices(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
+    """Return the prices among the texts of a price card. Its other texts are part of its name."""
     return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
 
 
 def expected_text(one: NamedThing, texts: tuple[TextSighting, ...] | None) -> Text | None:
-    """Return the whole text on an object, or None when there is none, too much, or it is mostly in the name."""
+    """Return the whole text on an object as the expected answer.
+
+    Return None if there is no text, if it is too long, or if the object's name contains most of its words.
+    """
     if not texts:
         return None
     pieces = list(dict.fromkeys(t.text.text.strip() for t in texts))
     whole = " ".join(pieces)
     name, words = (re.findall(r"\w+", text.lower()) for text in (one.name, whole))
-    if len(whole) > LONGEST or len(pieces) > 4 or 2 * sum(word in name for word in words) >= len(words) or not words:
+    if len(whole) > MAX_TEXT_CHARS or len(pieces) > 4 or 2 * sum(word in name for word in words) >= len(words) or not words:
         return None
     return Text(accepted=(whole,), ocr=True)
 
 
 def texts_to_read(one: NamedThing, place: TaskPlace) -> tuple[TextSighting, ...] | None:
-    """Return the lines to read on an object (only the price of a price card), or None when they are not one piece of writing."""
+    """Return the lines of text on an object (for a price card, only the price); None if they are not one text."""
     found = lines(place.truth.texts_on(one.thing.instance))
-    here = place.truth.first.sightings
-    box = next((s.box for s in here if s.instance.number == one.thing.instance.number), None)
+    box = next((s.box for s in place.truth.first.sightings if s.instance.number == one.thing.instance.number), None)
     if found and not all(on_it(box, text) for text in found):
         return None
-    return priced(found) if found and one.kind.category == "price card" else found
+    return prices(found) if found and one.kind.category == "price card" else found
 
 
 def on_it(box: BoxTuple | None, text: TextSighting) -> bool:
-    """Whether a text lies within the box of an object. A number plate beside it does not show that it belongs to it."""
+    """Return whether the middle of a text is inside the box of an object, so that the text visibly belongs to the object."""
     x, y = (text.box[0] + text.box[2]) / 2, (text.box[1] + text.box[3]) / 2
     return box is not None and box[0] <= x <= box[2] and box[1] <= y <= box[3]
 
@@ -168,7 +170,7 @@ def _draft(
     forms = (_PLATES if plated else _PRICES if price else _WRITING)[bool(zoom)]
     forms = tuple((direct.format(n=one.the), inside.format(n=one.the)) for direct, inside in forms)
     question = f"what is the number plate of {one.the}?" if plated else f"what does {one.the} say?"
-    # Items are measured in the view in which they are read, at its resolution.
+    # The evidence items are measured in the view in which the text is legible.
     items = [close.truth.text_item(t) for t in texts]
     return TaskDraft(
         category="ocr",

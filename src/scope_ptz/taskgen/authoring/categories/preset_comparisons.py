@@ -9,7 +9,7 @@ from scope_ptz.bench.tasks.expected import Choice, Options, Wordings
 from scope_ptz.taskgen.authoring.categories.comparative_tasks import SAME, count_evidence
 from scope_ptz.taskgen.authoring.drafts import TaskDraft, count_call
 from scope_ptz.taskgen.authoring.noun_phrases import many_of
-from scope_ptz.taskgen.authoring.task_places import TaskPlace, elsewhere, go
+from scope_ptz.taskgen.authoring.task_places import TaskPlace, comparison_start, go
 from scope_ptz.taskgen.authoring.view_contents import countable
 
 _OF_TWO = (
@@ -28,8 +28,8 @@ _OF_THREE = (
     "Check the {p} preset, then {q}, then {r}. Which one has the largest number of {many}?",
 )
 
-_FEWEST = 4
-"""Fewest objects over all presets that are worth a comparison."""
+_MIN_TOTAL = 4
+"""Minimum number of objects over all compared presets."""
 
 
 def drafts(places: Sequence[TaskPlace], rng: random.Random) -> list[TaskDraft]:
@@ -41,14 +41,14 @@ def drafts(places: Sequence[TaskPlace], rng: random.Random) -> list[TaskDraft]:
 
 def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
     names = [str(place.preset) for place in places]
-    start = elsewhere(places[0], places[1])
+    start = comparison_start(places[0], places[1])
     if len(set(names)) < len(places) or (len(places) == 3 and start.start in names[1:]):
         return
     known = [dict(countable(place.truth)) for place in places]
     for kind in known[0]:
         numbers = [counts.get(kind) for counts in known]
         found = [number for number in numbers if number is not None]
-        if len(found) < len(places) or sum(found) < _FEWEST or (len(places) == 3 and found.count(max(found)) > 1):
+        if len(found) < len(places) or sum(found) < _MIN_TOTAL or (len(places) == 3 and found.count(max(found)) > 1):
             continue
         many = many_of(kind)
         best = "same" if len(set(found)) == 1 else names[found.index(max(found))]
@@ -73,4 +73,5 @@ def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
 
 
 def _spoken(name: str) -> Wordings:
+    """Return the name of a preset without hyphens, if it has any, as a further wording."""
     return (name.replace("-", " "),) if "-" in name else ()

@@ -11,7 +11,7 @@ from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.task import Behaviour, EvidenceView
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view
 from scope_ptz.taskgen.authoring.noun_phrases import about, article, many_of, noun_of, unit_of
-from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, elsewhere, go, preset_at
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, comparison_start, go, preset_at
 from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, disjoint, plain_counts, scene_kinds_first
 from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
 
@@ -52,7 +52,7 @@ _WHERE = (
 
 
 def drafts(one: TaskPlace, two: TaskPlace, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
-    """Return drafts that take two presets."""
+    """Return drafts whose instructions involve two presets, the first of which is ``one.preset``."""
     p, q = one.preset, two.preset
     if p is None or q is None or p == q:
         return []
@@ -70,7 +70,7 @@ def _count_view(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
 def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraft]:
     """Yield sums and differences of a kind between two presets."""
     there = dict(countable(two.truth))
-    start = elsewhere(one, two)
+    start = comparison_start(one, two)
     for kind, n in countable(one.truth):
         m = there.get(kind)
         if m is None:
@@ -78,7 +78,7 @@ def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraf
         many = many_of(kind)
         program = (go(p), count_call(many, one), go(q), count_call(many, two))
         seen = (_count_view(one, kind, n), _count_view(two, kind, m))
-        # A sum would count objects twice that show in both views.
+        # An object that is visible in both views would be counted twice in a sum.
         same = {t.number for t in one.truth.traces if kind.fits(t)} & {t.number for t in two.truth.traces}
         question_types = [*([("sum", n + m, _SUMS)] if not same else []), *([("difference", n - m, _GAPS)] if n > m else [])]
         for question_type, value, texts in question_types:
@@ -98,8 +98,8 @@ def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraf
             )
 
 
-def within(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
-    """Return sums and differences within one view."""
+def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
+    """Return drafts about sums and differences within one view."""
     found = list[TaskDraft]()
     plain = list(plain_counts(place.truth))
     rng.shuffle(plain)
@@ -123,7 +123,7 @@ def within(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
         )
         question_types = ([("together", n + m, together)] if n + m > 3 else []) + ([("excess", n - m, difference)] if n > m else [])
         for question_type, value, asked in question_types:
-            # Without a unit, a reply that states the numbers of the two kinds is not read as their sum or difference.
+            # The answer has no unit, so that a reply with the two counts is not parsed as their sum or difference.
             found.append(
                 TaskDraft(
                     category="multi_step_reasoning",
@@ -143,7 +143,7 @@ def within(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
 
 
 def _unlike(one: Kind, two: Kind) -> bool:
-    """Whether one kind is alive and the other is not. Adding these up would be unnatural."""
+    """Return whether only one of two kinds is alive. A question about their sum would sound unnatural."""
     return (one.category in _ALIVE) != (two.category in _ALIVE)
 
 
@@ -182,21 +182,21 @@ def _branches(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -
 
 
 def _checks(one: TaskPlace, p: str, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions about whether something shows at a preset, with a further preset to go to in either case."""
+    """Yield questions about whether a kind is visible at a preset, with a preset to go to if it is and another if it is not."""
     others = [name for name in places.presets if name != p and name != one.start]
     shown = [kind for kind, _ in plain_counts(one.truth)]
-    gone = [kind for kind in absent_kinds(one.truth, nouns) if kind.colour is None]
+    absent = [kind for kind in absent_kinds(one.truth, nouns) if kind.colour is None]
     if len(others) < 2:
         return
     rng.shuffle(shown)
-    gone = scene_kinds_first(one, gone, rng)
-    for here, missing in zip(shown, gone, strict=False):
+    absent = scene_kinds_first(one, absent, rng)
+    for present, missing in zip(shown, absent, strict=False):
         yes, no = rng.sample(others, 2)
-        things = one.truth.all_of(here) or ()
-        there = YesNo(value=True, affirms=unit_of(here)[:2])
+        things = one.truth.all_of(present) or ()
+        there = YesNo(value=True, affirms=unit_of(present)[:2])
         none = NoneThere(subject=unit_of(missing)[:2])
-        seen = evidence_view(one, there, about(here), [one.truth.item(things[0], True)], whole=False)
-        twin = _check(one, p, here, there, seen, (yes, no), places)
+        seen = evidence_view(one, there, about(present), [one.truth.item(things[0], True)], whole=False)
+        twin = _check(one, p, present, there, seen, (yes, no), places)
         yield replace(
             _check(one, p, missing, none, evidence_view(one, none, about(missing), whole=True), (yes, no), places),
             question_type="check-none",
@@ -234,21 +234,21 @@ def _check(
 
 
 def _either(one: TaskPlace, two: TaskPlace, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions about whether either preset shows an absent kind, each with a twin about a present one."""
+    """Yield questions about whether an absent kind is visible at one of two presets, each with a twin about a present kind."""
     missing_there = set(absent_kinds(two.truth, nouns))
-    gone = [kind for kind in absent_kinds(one.truth, nouns) if kind in missing_there]
+    absent = [kind for kind in absent_kinds(one.truth, nouns) if kind in missing_there]
     shown = [
         (kind, place)
         for place, other in ((one, two), (two, one))
         for kind, _ in countable(place.truth)
         if other.truth.all_of(kind) is not None
     ]
-    gone = scene_kinds_first(one, gone, rng)
+    absent = scene_kinds_first(one, absent, rng)
     rng.shuffle(shown)
-    start = elsewhere(one, two)
+    start = comparison_start(one, two)
     if start.start == q:
         return  # the start view would answer the question without a move
-    for kind, (present, place) in zip(gone, shown, strict=False):
+    for kind, (present, place) in zip(absent, shown, strict=False):
         texts = (many_of(kind), many_of(present))
         yes = YesNo(value=True, affirms=unit_of(present)[:2])
         first = place.truth.all_of(present) or ()

@@ -1,4 +1,4 @@
-"""Single-call tasks: moves, presets, home, pictures, close-ups, tracking, and counts that take one tool call."""
+"""Single-call tasks, which take one tool call: moves, presets, home, pictures, close-ups, tracking and counts."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def command(
     needs: tuple[Need, ...],
     tags: tuple[str, ...] = (),
 ) -> TaskDraft:
-    """Return a command. It has no answer, and is scored by what the camera does."""
+    """Return the draft of a command. A command has no expected answer; its score depends on the actions of the camera."""
     return TaskDraft(
         category=category,
         question_type=question_type,
@@ -53,7 +53,7 @@ def command(
 
 
 def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield drafts of all types in turn."""
+    """Yield drafts, taking turns between the types."""
     streams = [
         _moves(places, rng),
         _presets(places, rng),
@@ -75,7 +75,7 @@ def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> It
 
 
 def _adjusted(places: ScenePlaces, name: str, call: ProgramCall, kind: str, rng: random.Random) -> TaskDraft | None:
-    start = places.stay(name)
+    start = places.at_preset(name)
     there = move(start.at, call)
     if there is None:
         return None
@@ -121,7 +121,7 @@ def _presets(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
         starts = [other for other in places.presets if other != name]
         if not starts:
             continue
-        start = places.stay(rng.choice(starts))
+        start = places.at_preset(rng.choice(starts))
         end = TaskPlace(start.scene, start.start, (go(name),), preset_at(preset))
         instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(call_phrases(go(name), rng)[0])))
         yield command(
@@ -135,7 +135,7 @@ def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     others = [name for name in places.presets if name != home]
     rng.shuffle(others)
     for n, name in enumerate(others[:3]):
-        start = places.stay(name)
+        start = places.at_preset(name)
         final = TaskPlace(scene, name, (), preset_at(places.presets[home])).final
         ways = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
         instructions = tuple(text for way in ways for text in polite(way))
@@ -178,7 +178,7 @@ def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
 
 def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
     for place in pool:
-        if not place.stays and place.preset is None:
+        if not place.is_start_view and place.preset is None:
             continue
         here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
         for one in nameable_things(place.truth, 400):
@@ -210,17 +210,17 @@ def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
 
 
 def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
-    """Yield commands to follow a moving object that is the only one of its kind and stays in view for the first seconds."""
+    """Yield commands to follow a moving object that is the only one of its kind and is still in view 1.5 s later."""
     for n, place in enumerate(pool):
         here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
-        began = here.truth.samples[0]
+        at_start = here.truth.samples[0]
         later = here.truth.read_truth(here.scene, str(here.at.viewpoint), here.truth.projection, here.truth.time_s + 1.5)
-        for sighting in began.visible:
+        for sighting in at_start.visible:
             actor = sighting.instance
             kind = Kind(actor.category)
             if not isinstance(actor, SceneActor) or sighting.pixels < 600 or sighting.share < 0.9:
                 continue
-            others = [s for s in began.sightings if s.instance is not actor]
+            others = [s for s in at_start.sightings if s.instance is not actor]
             rivals = [s for s in others if kind.fits(s.instance) or kind.ambiguous_with(s.instance)]
             if any(s.pixels > TRACE_PX for s in rivals) or actor.number not in {s.instance.number for s in later.visible}:
                 continue
@@ -246,7 +246,7 @@ def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
 
 
 def _sweeps(places: ScenePlaces) -> Iterator[TaskDraft]:
-    for place in places.around():
+    for place in places.sweeps():
         if place.calls:
             continue
         for kind, number in countable(place.truth)[:40]:

@@ -12,7 +12,8 @@ from scope_studio.scenes.high_street.shops import plots
 
 SHELF_M = SILL_M - 0.012
 
-Ware = tuple[Callable[[], Built], str, str, dict[str, str]]
+Item = tuple[Callable[[], Built], str, str, dict[str, str]]
+"""Goods in a shop window: builder, category, name, attributes."""
 
 
 def build(stage: Stage, shops: dict[int, str]) -> None:
@@ -27,13 +28,13 @@ def build(stage: Stage, shops: dict[int, str]) -> None:
 
 
 def _row(
-    stage: Stage, number: int, parent: str, xs: Sequence[float], wares: Sequence[Ware], *, y: float = -0.30, z: float = SHELF_M
+    stage: Stage, number: int, parent: str, xs: Sequence[float], items: Sequence[Item], *, y: float = -0.30, z: float = SHELF_M
 ) -> None:
     """Place goods in a row on the display shelf of a shop's window. Identical goods are linked copies."""
     plot = plots()[number]
     prototypes: dict[str, Built] = {}
     for k, x in enumerate(xs):
-        make, category, name, facts = wares[k % len(wares)]
+        make, category, name, facts = items[k % len(items)]
         built = prototypes[name].copy() if name in prototypes else prototypes.setdefault(name, make())
         shift = 0.06 * ((k * 7) % 3 - 1)
         stage.place(
@@ -50,7 +51,7 @@ def _row(
 
 def _windows(stage: Stage, shops: dict[int, str]) -> None:
     goods = shop_goods
-    loaves: list[Ware] = [(lambda: goods.loaf(1), "loaf", "loaf of bread", {}), (lambda: goods.loaf(2), "loaf", "crusty loaf", {})]
+    loaves: list[Item] = [(lambda: goods.loaf(1), "loaf", "loaf of bread", {}), (lambda: goods.loaf(2), "loaf", "crusty loaf", {})]
     _row(stage, 9, shops[9], (-2.7, -2.3, -1.9, -1.5, -1.1), loaves)
     _row(stage, 9, shops[9], (2.7, 2.15, 1.6, 1.05), [
         (lambda: goods.cake("pink"), "cake", "pink cake", {"colour": "pink"}), (lambda: goods.cake("white"), "cake",
@@ -101,7 +102,7 @@ BOARDS: tuple[tuple[int, float, float, tuple[str, ...], str], ...] = (
     (16, -2.4, 2.5, ("LAMPS", "HALF PRICE"), "navy"),
     (6, 2.3, 2.4, ("CUT AND DRY", "28.00", "NO BOOKING"), "black"),
 )
-"""Pavement boards: number, position in front of the shop (m), lines, colour."""
+"""Pavement boards: house number of the shop, position in front of it (x and y in metres), lines, colour."""
 
 
 def _boards(stage: Stage, shops: dict[int, str]) -> None:
@@ -132,16 +133,20 @@ def _greengrocer(stage: Stage, shop: str) -> None:
         "cabbages": "1.10",
         "green apples": "1.75",
     }
-    made: dict[str, Built] = {}
+    prototypes: dict[str, Built] = {}
     for k, load in enumerate(("apples", "oranges", "cabbages", "potatoes", "tomatoes", "lemons", "green apples", "oranges")):
-        built = made[load].copy() if load in made else made.setdefault(load, shop_displays.crate(load))
+        built = prototypes[load].copy() if load in prototypes else prototypes.setdefault(load, shop_displays.crate(load))
         x, y = 0.55 - 0.62 * (k % 6) if k < 6 else -0.2 - 0.9 * (k - 6), 0.62 if k < 6 else 1.15
         stage.place(
             built, "crate", f"crate of {load}", plot.at(x, y, 0.0 if k >= 6 else 0.22), plot.bearing_deg, parent=shop,
             load=load, state="full", material="timber",
         )  # fmt: skip
         if k < 6:
-            empty = made["none"].copy() if "none" in made else made.setdefault("none", shop_displays.crate(None, colour="green"))
+            empty = (
+                prototypes["none"].copy()
+                if "none" in prototypes
+                else prototypes.setdefault("none", shop_displays.crate(None, colour="green"))
+            )
             stage.put(empty, plot.at(x, y, 0.0), plot.bearing_deg)
             card = shop_displays.price_card(load.upper(), prices[load])
             stage.place(
@@ -232,7 +237,7 @@ def _hardware(stage: Stage, shop: str) -> None:
 
 def _deliveries(stage: Stage) -> None:
     plot = plots()[25]
-    made: dict[str, Built] = {}
+    prototypes: dict[str, Built] = {}
     for k, (colour, x, y, z) in enumerate(
         (
             ("blue", 3.6, 0.5, 0.0),
@@ -242,7 +247,11 @@ def _deliveries(stage: Stage) -> None:
             ("yellow", 3.25, 1.0, 0.0),
         )
     ):
-        built = made[colour].copy() if colour in made else made.setdefault(colour, shop_displays.crate(None, colour=colour))
+        built = (
+            prototypes[colour].copy()
+            if colour in prototypes
+            else prototypes.setdefault(colour, shop_displays.crate(None, colour=colour))
+        )
         stage.place(
             built,
             "crate",

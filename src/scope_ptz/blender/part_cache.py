@@ -1,4 +1,4 @@
-"""The parts of an unfinished bake on disk. Each is a file named by its inputs, so that an interrupted bake resumes."""
+"""A cache of the parts of a bake on disk. Each part is a file named after its inputs, so that an interrupted bake can resume."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class Progress(Protocol):
     def __call__(self, part: str, done: int, total: int, seconds: float) -> None: ...
 
 
-class Workshop:
-    """A folder with the parts of one state of a scene."""
+class PartCache:
+    """The folder with the cached parts of one version of a scene."""
 
     def __init__(self, root: Path, scene_key: str, progress: Progress) -> None:
         self.folder = root / scene_key
@@ -25,7 +25,7 @@ class Workshop:
         self._progress = progress
 
     def part(self, name: str, suffix: str, parameters: dict[str, Any], produce: Callable[[Path], None]) -> Path:
-        """Return the finished file of a part. If it is missing, ``produce`` writes it to the path that it receives."""
+        """Return the file of a part. If it is missing, call ``produce`` with the path to write."""
         stamp = digest(json.dumps([name, parameters], sort_keys=True))[:12]
         path = self.folder / f"{name.replace('/', '-')}-{stamp}{suffix}"
         if not path.exists():
@@ -35,7 +35,7 @@ class Workshop:
         return path
 
     def steps(self, part: str, total: int) -> Callable[[], None]:
-        """Return a function to call after each step of a part."""
+        """Return a function that must be called after each step of a part."""
         started, done = time.monotonic(), 0
         self._progress(part, 0, total, 0.0)
 
@@ -47,7 +47,7 @@ class Workshop:
         return step
 
     def follow(self, part: str) -> Callable[[int, int], None]:
-        """Return a progress function for an operation that counts its own steps."""
+        """Return a progress callback for an operation that counts its own steps."""
         started = time.monotonic()
         return lambda done, total: self._progress(part, done, total, time.monotonic() - started)
 

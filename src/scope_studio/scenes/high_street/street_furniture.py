@@ -1,4 +1,4 @@
-"""High street: things on the footways and at the kerbs, and the works at a manhole."""
+"""High street: street furniture on the footways and along the kerbs, scaffolding, and works at a manhole."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_studio.scenes.high_street.plan import EAST_KERB, WEST_KERB, ZEBRA, Pl
 from scope_studio.scenes.high_street.shops import plots
 
 WEST_X, EAST_X = WEST_KERB - 0.55, EAST_KERB + 0.55
-"""The lines of posts along the kerbs."""
+"""x coordinates of the posts along the kerbs."""
 
 LAMPS = (
     (WEST_X - 5.0, -51.3, True), (WEST_X, -16.5, True), (WEST_X, 6.0, True), (WEST_X, 31.0, False),
@@ -35,20 +35,22 @@ def build(stage: Stage) -> None:
 
 def _lamps(stage: Stage) -> None:
     prototypes: dict[bool, Built] = {}
-    hung: dict[int, Built] = {}
+    baskets: dict[int, Built] = {}
     for k, (x, y, lit) in enumerate(LAMPS):
         built = prototypes[lit].copy() if lit in prototypes else prototypes.setdefault(lit, traditional.street_lamp(lit=lit))
         post = stage.place(
             built, "lamp post", "street lamp", (x, y, KERB_M), 90, colour="dark green", state="lit" if lit else "unlit"
         )
         for side in (-1, 1):
-            pick = (2 * k + (side > 0)) % len(BASKETS)
-            made = (
-                hung[pick].copy() if pick in hung else hung.setdefault(pick, traditional.hanging_basket(BASKETS[pick], seed=pick))
+            index = (2 * k + (side > 0)) % len(BASKETS)
+            basket = (
+                baskets[index].copy()
+                if index in baskets
+                else baskets.setdefault(index, traditional.hanging_basket(BASKETS[index], seed=index))
             )
             stage.place(
-                made, "hanging basket", f"hanging basket of {BASKETS[pick][0]} flowers", (x, y + side * 0.63, KERB_M + 3.28),
-                40.0 * k, parent=post, colour=BASKETS[pick][0],
+                basket, "hanging basket", f"hanging basket of {BASKETS[index][0]} flowers", (x, y + side * 0.63, KERB_M + 3.28),
+                40.0 * k, parent=post, colour=BASKETS[index][0],
             )  # fmt: skip
 
 
@@ -142,13 +144,13 @@ def _signals(stage: Stage) -> None:
 
 
 def _signs(stage: Stage) -> None:
-    where = plots()
+    plot_of = plots()
     post = traditional.fingerpost([("STATION", 0), ("MARKET HALL", 255), ("RIVER WALK", 100), ("MUSEUM", 180)])
     stage.place(post, "signpost", "green signpost", (WEST_X - 0.1, 43.0, KERB_M), 0, colour="dark green")
     for number, x, text in ((1, 1.6, "HIGH STREET"), (2, 2.2, "HIGH STREET"), (25, -3.3, "HIGH STREET"), (26, 3.6, "HIGH STREET")):
-        plot = where[number]
-        made = shopfronts.plate((text,), 0.12, "white", "black")
-        stage.place(made, "street name sign", "High Street name plate", plot.at(x, 0.035, 3.95), plot.bearing_deg, colour="white")
+        plot = plot_of[number]
+        plate = shopfronts.plate((text,), 0.12, "white", "black")
+        stage.place(plate, "street name sign", "High Street name plate", plot.at(x, 0.035, 3.95), plot.bearing_deg, colour="white")
     for x, y, bearing, text in (
         (-10.5, 48.03, 0, "CHURCH ROAD"),
         (13.0, 48.03, 0, "CHURCH ROAD"),
@@ -156,16 +158,16 @@ def _signs(stage: Stage) -> None:
         (13.0, -48.03, 180, "MILL LANE"),
         (0.95, -62.96, 0, "MILL LANE"),
     ):
-        made = shopfronts.plate((text,), 0.12, "white", "black")
-        stage.place(made, "street name sign", f"{text.title()} name plate", (x, y, KERB_M + 3.2), bearing, colour="white")
+        plate = shopfronts.plate((text,), 0.12, "white", "black")
+        stage.place(plate, "street name sign", f"{text.title()} name plate", (x, y, KERB_M + 3.2), bearing, colour="white")
     for number, x, lines, colour in (
         (8, 2.2, ("TO LET", "WARD & LISLE", "01632 960144"), "red"),
         (14, -2.4, ("SOLD", "FINCH & POTTER", "01632 960188"), "navy"),
     ):
-        plot = where[number]
-        made = shopfronts.plate(lines, 0.14, colour, "white")
+        plot = plot_of[number]
+        plate = shopfronts.plate(lines, 0.14, colour, "white")
         stage.place(
-            made,
+            plate,
             "estate agent board",
             f"{lines[0].lower()} board",
             plot.at(x, 0.55, 4.6),
@@ -173,7 +175,7 @@ def _signs(stage: Stage) -> None:
             colour=colour,
             says=lines[0].lower(),
         )
-    plot = where[24]
+    plot = plot_of[24]
     clock = traditional.bracket_clock(3, 40)
     stage.place(clock, "clock", "jeweller's clock", plot.at(1.6, 0.0, 4.7), plot.bearing_deg, shows="3:40", colour="black")
     for x, y, bearing, lines in (
@@ -181,9 +183,9 @@ def _signs(stage: Stage) -> None:
         "WITHIN 2 HOURS")),
         (EAST_X, 41.1, 270, ("PERMIT", "HOLDERS B", "OR 1 HOUR")), (WEST_X, 31.1, 90, ("NO LOADING", "AT ANY TIME")),
     ):  # fmt: skip
-        made = shopfronts.plate(lines, 0.055, "white", "black")
+        plate = shopfronts.plate(lines, 0.055, "white", "black")
         dx = 0.09 if bearing == 90 else -0.09
-        stage.place(made, "parking sign", "parking restriction sign", (x + dx, y - 0.1, KERB_M + 2.35), bearing, colour="white")
+        stage.place(plate, "parking sign", "parking restriction sign", (x + dx, y - 0.1, KERB_M + 2.35), bearing, colour="white")
 
 
 def _manhole(stage: Stage) -> None:

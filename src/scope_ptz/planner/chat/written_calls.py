@@ -1,4 +1,4 @@
-"""Calls written as text, and the parsing of their arguments."""
+"""Tool calls written as text, and the parsing of their arguments."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Any
 
 from scope_ptz.planner.chat.strict import strict_json
 
-_NAME_IN_WRECK = re.compile(r"""["']name["']\s*:\s*["'](?P<name>[^"']{1,80})["']""")
-_SHOWN_CHARS = 300
+_NAME = re.compile(r"""["']name["']\s*:\s*["'](?P<name>[^"']{1,80})["']""")
+MAX_QUOTED_CHARS = 300  # characters of a malformed call that its error message quotes
 
 
 @dataclass(frozen=True, slots=True)
 class WrittenCall:
-    """A call in a text.
+    """A tool call that was parsed from text.
 
     Attributes:
-        malformed: What stood in place of a JSON object; ``arguments`` is empty then.
+        malformed: The text found in place of a JSON object, in which case ``arguments`` is empty; otherwise None.
     """
 
     name: str
@@ -28,7 +28,7 @@ class WrittenCall:
 
 @dataclass(frozen=True, slots=True)
 class Signatures:
-    """The offered tools: their names, and the JSON types of their parameters, for notations without types."""
+    """The names of the offered tools and the JSON types of their parameters, for notations whose values have no types."""
 
     types: Mapping[str, Mapping[str, frozenset[str]]]
 
@@ -44,7 +44,7 @@ class Signatures:
     def value(self, tool: str, parameter: str, text: str) -> Any:
         """Return a value that was written without quotes, converted to the type in the schema.
 
-        Text that does not fit stays text, so that validation refuses it.
+        Text that cannot be converted is returned unchanged, so that validation rejects it.
         """
         types = self.types.get(tool, {}).get(parameter, frozenset())
         if types == {"string"}:
@@ -63,8 +63,10 @@ def _types(schema: Mapping[str, Any]) -> frozenset[str]:
 
 
 def read_arguments(text: str) -> tuple[dict[str, Any], str | None]:
-    """Parse arguments from JSON text. Returns the arguments, and the text itself when it is no object. Empty text means no
-    arguments.
+    """Parse arguments from JSON text.
+
+    Returns:
+        The arguments and None, or no arguments and the truncated text if it is not a JSON object. An empty text means no arguments.
     """
     stripped = text.strip()
     if not stripped or stripped == "null":
@@ -74,12 +76,15 @@ def read_arguments(text: str) -> tuple[dict[str, Any], str | None]:
         if isinstance(value, str):  # some servers encode the object twice
             value = strict_json(value)
     except ValueError:
-        return {}, stripped[:_SHOWN_CHARS]
-    return (value, None) if isinstance(value, dict) else ({}, stripped[:_SHOWN_CHARS])
+        return {}, stripped[:MAX_QUOTED_CHARS]
+    return (value, None) if isinstance(value, dict) else ({}, stripped[:MAX_QUOTED_CHARS])
 
 
-def from_object(value: Any) -> WrittenCall | None:
-    """Return the call in a JSON object such as ``{"name": ..., "arguments": {...}}``, in the spellings that models use, or None."""
+def call_from_object(value: Any) -> WrittenCall | None:
+    """Return the call in a JSON object, or None.
+
+    The usual form is ``{"name": ..., "arguments": {...}}``; other keys that models use are accepted, too.
+    """
     if not isinstance(value, dict):
         return None
     inner = value.get("function")
@@ -97,12 +102,12 @@ def from_object(value: Any) -> WrittenCall | None:
     return WrittenCall(plain_name(name), arguments, malformed)
 
 
-def wreck(text: str) -> WrittenCall:
-    """Return a failed call for text that was marked as a call and cannot be parsed, with its name where that can be found."""
-    found = _NAME_IN_WRECK.search(text)
-    return WrittenCall(plain_name(found["name"]) if found else "", {}, text.strip()[:_SHOWN_CHARS] or "nothing")
+def malformed_call(text: str) -> WrittenCall:
+    """Return a malformed call for tagged text that cannot be parsed, with the tool's name if the text contains one."""
+    found = _NAME.search(text)
+    return WrittenCall(plain_name(found["name"]) if found else "", {}, text.strip()[:MAX_QUOTED_CHARS] or "nothing")
 
 
 def plain_name(name: str) -> str:
-    """Return a tool's name without the namespace that some models put before it."""
+    """Return a tool's name without the namespace that some models prepend."""
     return name.strip().removeprefix("functions.").removeprefix("default_api.")

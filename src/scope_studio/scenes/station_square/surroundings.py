@@ -1,4 +1,4 @@
-"""Station square: the streets that lead away, roofs and trees behind the rows, the church."""
+"""Station square: the surroundings of the square (side streets, roofs and trees behind the rows, the church)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_studio.scenes.station_square.town import walls
 
 
 def build(stage: Stage) -> None:
-    """Place the streets that lead away, closed by houses, and the roofs behind the rows. They are not annotated."""
+    """Place the houses along the streets that lead away, the roofs behind the rows, and trees. They are not annotated."""
     w = walls()
     kinds = [
         House(9.0, w["red brick"], 3, 3, seed=50),
@@ -29,18 +29,18 @@ def build(stage: Stage) -> None:
     rng = random.Random("beyond")
 
     def row(x: float, y: float, bearing: float, length: float, first: int) -> None:
-        """Place houses side by side from (x, y) on, over ``length`` metres; ``bearing`` is that of their fronts."""
+        """Place a row of houses that starts at (x, y) and is ``length`` metres long. ``bearing`` is that of their fronts."""
         b = math.radians(bearing)
         step, k = 0.0, first
         while step < length:
             index = k % len(kinds)
             width = kinds[index].width
             step += width / 2
-            _lay(index, x + step * math.cos(b), y - step * math.sin(b), bearing)
+            _house(index, x + step * math.cos(b), y - step * math.sin(b), bearing)
             step += width / 2
             k += rng.choice((1, 2, 3))
 
-    def _lay(index: int, x: float, y: float, bearing: float) -> None:
+    def _house(index: int, x: float, y: float, bearing: float) -> None:
         built: Built = prototypes[index].copy() if index in used else prototypes[index]
         used.add(index)
         stage.put(built, (x, y, 0.0), bearing)
@@ -49,7 +49,7 @@ def build(stage: Stage) -> None:
     row(110.0, -8.0, 180, 62, 2)  # north side, east of the square
     row(-110.0, -34.0, 0, 62, 1)  # south side
     row(48.5, -34.0, 0, 62, 3)
-    row(-112.0, 4.0, 90, 60, 2)  # houses that close the ends of the street
+    row(-112.0, 4.0, 90, 60, 2)  # houses that close off the ends of the street
     row(112.0, -58.0, 270, 60, 4)
     row(-47.5, -36.0, 90, 50, 1)  # side streets to the south
     row(-34.0, -85.0, 270, 38, 0)
@@ -57,7 +57,7 @@ def build(stage: Stage) -> None:
     row(35.6, -44.0, 90, 38, 3)
     row(-50.0, -92.0, 0, 110, 4)
     row(-66.0, 16.0, 90, 26, 2)  # behind the western row
-    row(-24.0, 46.0, 180, 12, 1)  # beside the station
+    row(-24.0, 46.0, 180, 12, 1)  # next to the station
     row(36.0, 46.0, 180, 12, 3)
     for _ in range(150):
         a, r = rng.uniform(0, 2 * math.pi), rng.uniform(58, 210)
@@ -68,7 +68,7 @@ def build(stage: Stage) -> None:
         behind_south = abs(x) < 30 and -84 < y < -50
         if inside and not (behind_west or behind_east or behind_south):
             continue
-        _lay(rng.randrange(len(kinds)), x, y, rng.choice((0, 90, 180, 270)) + rng.uniform(-9, 9))
+        _house(rng.randrange(len(kinds)), x, y, rng.choice((0, 90, 180, 270)) + rng.uniform(-9, 9))
     _trees(stage, rng)
 
 

@@ -18,7 +18,7 @@ def build(stage: Stage) -> None:
     prototypes = Prototypes()
     _bicycles(stage, prototypes)
     _luggage(stage)
-    _green(stage, prototypes)
+    _trees(stage, prototypes)
     _pigeons(stage, prototypes)
 
 
@@ -82,7 +82,7 @@ def _luggage(stage: Stage) -> None:
         stage.place(built, category, name, (x, y, z), bearing, colour=colour)
 
 
-def _green(stage: Stage, prototypes: Prototypes) -> None:
+def _trees(stage: Stage, prototypes: Prototypes) -> None:
     rng = random.Random("square trees")
     trees: dict[int, Built] = {}
     for k, (x, y) in enumerate(TREES):

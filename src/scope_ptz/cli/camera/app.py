@@ -1,0 +1,26 @@
+"""The commands of ``scope camera``, grouped as in its help."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import typer
+
+from scope_ptz.cli.camera import HELP
+from scope_ptz.cli.options import command
+
+FIND, CONTROL, TEST = "Find and measure", "Control by hand", "Virtual camera"
+
+camera_app = typer.Typer(help=HELP, no_args_is_help=True)
+
+
+@camera_app.callback(help=HELP)
+def _camera() -> None:
+    """Group the camera commands."""
+
+
+COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = ()
+"""Panel of the help, name, and function of each command."""
+
+for panel, name, function in COMMANDS:
+    camera_app.command(name, rich_help_panel=panel)(command(function))

@@ -1,0 +1,52 @@
+"""Validate tasks with ground-truth perception, in the scenes that they belong to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import anyio
+
+from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
+from scope_ptz.factory.worlds import worlds_of
+from scope_ptz.taskgen.validation.validate import validate
+from scope_ptz.taskgen.validation.validation_report import ValidationReport
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.tasks.task import Task
+    from scope_ptz.simulator.pack import Scene
+    from scope_ptz.taskgen.generating.drafting_loop import ValidateTask
+
+
+def validate_tasks(
+    tasks: Sequence[Task], seed: int, progress: Callable[[int, int], None] | None = None, dataset: Sequence[Task] = ()
+) -> ValidationReport:
+    """Run the reference programs and adversarial attempts of tasks, and report those with the wrong result.
+
+    Args:
+        tasks: The tasks to validate.
+        seed: Seed for choosing wrong answers.
+        progress: Receives the number of validated tasks and the total.
+        dataset: The whole dataset, if ``tasks`` is a selection from it.
+    """
+    worlds, truth = worlds_of(tasks), CachedTruth()
+    make_context = ground_truth_tools(worlds, truth)
+    return anyio.run(
+        lambda: validate(tasks, worlds, make_context, seed=seed, read_truth=truth.read, progress=progress, dataset=dataset)
+    )
+
+
+def task_validator(scene: Scene) -> ValidateTask:
+    """Return a function that validates a single task in a scene and returns its first fault; None if there is none.
+
+    The checks are those of ``scope bench validate``.
+    """
+    truth = CachedTruth()
+    make_context = ground_truth_tools({scene.name: scene}, truth)
+
+    async def validate_task(task: Task) -> str | None:
+        report = await validate([task], {task.world: scene}, make_context, read_truth=truth.read)
+        faults = [*report.faults, *report.adversarial_passes, *report.disagreements]
+        return f"{faults[0].attempt}: {faults[0].reason}" if faults else None
+
+    return validate_task
