@@ -225,7 +225,8 @@ async def test_wrong_pictures_are_typed(device: VirtualDevice, picture: str) -> 
         assert caught.value.fault == picture
 
 
-def _generic_only(name: str, reply: bytes) -> bytes:
+def generic_only(name: str, reply: bytes) -> bytes:
+    """Take the spaces in degrees out of what a device states."""
     if name not in ("GetConfigurationOptions", "GetNode"):
         return reply
     pattern = rb"<((?:[\w-]+:)?)(\w+Space)>(?:(?!</\1\2>).)*SphericalPositionSpaceDegrees.*?</\1\2>"
@@ -234,9 +235,9 @@ def _generic_only(name: str, reply: bytes) -> bytes:
 
 async def test_generic_space_needs_a_mapping(device: VirtualDevice) -> None:
     with pytest.raises(CameraError, match=r"pan range and the tilt range.*scope camera calibrate"):
-        async with driver(device, Vendor(change=_generic_only)):
+        async with driver(device, Vendor(change=generic_only)):
             pass
-    async with driver(device, Vendor(change=_generic_only), mapping=MEASURED) as camera:
+    async with driver(device, Vendor(change=generic_only), mapping=MEASURED) as camera:
         await camera.move(THERE)
         assert device.pose().pan_deg == pytest.approx(40.0, abs=0.05)
         assert device.pose().tilt_deg == pytest.approx(-12.0, abs=0.05)
@@ -244,7 +245,7 @@ async def test_generic_space_needs_a_mapping(device: VirtualDevice) -> None:
 
 async def test_generic_space_that_counts_the_other_way(device: VirtualDevice) -> None:
     turned = OnvifMapping(pan_deg=(179.0, -179.0), tilt_deg=(-60.0, 30.0), fields=MEASURED.fields)
-    async with driver(device, Vendor(change=_generic_only), mapping=turned) as camera:
+    async with driver(device, Vendor(change=generic_only), mapping=turned) as camera:
         assert (await camera.move(THERE)).pose.pan_deg == pytest.approx(40.0, abs=0.1)
         assert device.pose().pan_deg == pytest.approx(-40.0, abs=0.05)
         await camera.drive(30.0, timeout_s=5.0)
