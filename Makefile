@@ -16,14 +16,14 @@ demo: $(BASE)
 	@$(BIN)/scope ask "$(DEMO)" --next-steps
 
 test: $(DEV)
-	$(BIN)/pytest -q -n 2 -m "not full" tests
+	$(BIN)/pytest -q -n 2 --dist loadgroup -m "not full" tests
 
 test-full: test $(FULL)
 	$(BIN)/pytest -q -m full tests
 
 # Both tiers again with line coverage of everything but the modelling code, which runs inside Blender.
 coverage: $(FULL)
-	$(BIN)/pytest -q -n 2 --cov --cov-report= -m "not full" tests
+	$(BIN)/pytest -q -n 2 --dist loadgroup --cov --cov-report= -m "not full" tests
 	$(BIN)/pytest -q --cov --cov-append --cov-report=term:skip-covered -m full tests
 
 check: $(DEV)

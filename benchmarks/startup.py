@@ -2,14 +2,16 @@
 
     python benchmarks/startup.py [--rounds N]
 
-The reference and the commands run alternately, so that other load on the machine affects all of them equally. The output is the
-median processor time, the median wall time and the peak memory of each.
+The reference and the commands take turns, so that a busy machine slows all of them alike. The benchmark prints the medians of
+processor time and wall time as multiples of the reference's, the largest memory, and the targets, which apply to processor time and
+memory. The first run of each command is not measured, because it compiles bytecode and fills caches.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import statistics
 import subprocess
 import sys
@@ -18,7 +20,22 @@ import time
 from typing import NamedTuple
 
 REFERENCE = "import numpy, cv2, pydantic"
-COMMANDS = (["--help"], ["tools"], ["plan", "pan right 5"], ["ask", "pan right 5", "--fast"])
+
+
+class Command(NamedTuple):
+    """A command with its targets: processor time in multiples of the reference's, and memory."""
+
+    words: list[str]
+    ratio: float
+    memory_mb: float | None = None
+
+
+COMMANDS = (
+    Command(["--help"], 1.2),
+    Command(["tools"], 1.2),
+    Command(["plan", "pan right 20, then tilt down 10"], 1.7),
+    Command(["ask", "pan right 5"], 5.0, 350.0),
+)
 
 
 class Cost(NamedTuple):
@@ -50,23 +67,33 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7, help="number of runs of each command (default: 7)")
     rounds = parser.parse_args().rounds
     reference = [sys.executable, "-c", REFERENCE]
-    commands = {" ".join(words): [sys.executable, "-m", "scope_ptz.cli", *words] for words in COMMANDS}
+    programs = [[sys.executable, "-m", "scope_ptz.cli", *command.words] for command in COMMANDS]
+    base: list[Cost] = []
+    costs: list[list[Cost]] = [[] for _ in COMMANDS]
     with tempfile.TemporaryDirectory() as folder:
-        for command in (reference, *commands.values()):
-            cost(command, folder)  # warm-up: compiles bytecode and fills the file cache
-        references: list[Cost] = []
-        costs: dict[str, list[Cost]] = {name: [] for name in commands}
+        for program in (reference, *programs):
+            cost(program, folder)
         for _ in range(rounds):
-            references.append(cost(reference, folder))
-            for name, command in commands.items():
-                costs[name].append(cost(command, folder))
-    cpu, wall = (statistics.median(run[n] for run in references) for n in (0, 1))
-    print(f"reference: {cpu:.2f} s of processor time, {wall:.2f} s of wall time, {max(run.memory_mb for run in references):.0f} MB")
-    for name, runs in costs.items():
-        cpu_ratio, wall_ratio = statistics.median(r.cpu_s for r in runs) / cpu, statistics.median(r.wall_s for r in runs) / wall
-        print(
-            f"scope {name}: {cpu_ratio:.1f} x processor time, {wall_ratio:.1f} x wall time, {max(r.memory_mb for r in runs):.0f} MB"
-        )
+            base.append(cost(reference, folder))
+            for program, runs in zip(programs, costs, strict=True):
+                runs.append(cost(program, folder))
+    cpu_s, wall_s, memory_mb = summary(base)
+    print(f'reference: {cpu_s:.2f} s of processor time, {wall_s:.2f} s, {memory_mb:.0f} MB (python -c "{REFERENCE}")')
+    met = True
+    for command, runs in zip(COMMANDS, costs, strict=True):
+        own = summary(runs)
+        ratio = own.cpu_s / cpu_s
+        target = f"{command.ratio:g} x" + (f", {command.memory_mb:g} MB" if command.memory_mb else "")
+        met = met and ratio <= command.ratio and own.memory_mb <= (command.memory_mb or own.memory_mb)
+        line = f"scope {shlex.join(command.words)}: {ratio:.2f} x processor time, {own.wall_s / wall_s:.2f} x wall time"
+        print(f"{line}, {own.memory_mb:.0f} MB (target: {target})")
+    print("All targets are met." if met else "MISSED: not all targets are met.")
+
+
+def summary(runs: list[Cost]) -> Cost:
+    """Return the medians of the times and the largest memory."""
+    cpu_s, wall_s = (statistics.median(times) for times in ([run.cpu_s for run in runs], [run.wall_s for run in runs]))
+    return Cost(cpu_s, wall_s, max(run.memory_mb for run in runs))
 
 
 if __name__ == "__main__":

@@ -35,7 +35,15 @@ def scope_commands(block: str) -> list[str]:
     return [line for line in block.splitlines() if line.startswith("scope ")]
 
 
-@pytest.mark.parametrize("command", [c for block in COMMANDS for c in scope_commands(block) if not c.startswith("scope bench")])
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(c, marks=pytest.mark.full if c.startswith("scope scene show") else ())  # renders every preset
+        for block in COMMANDS
+        for c in scope_commands(block)
+        if not c.startswith("scope bench")
+    ],
+)
 def test_commands_run(command: str, tmp_path: Path) -> None:
     done = run(command, tmp_path)
     assert done.returncode == 0, done.stderr

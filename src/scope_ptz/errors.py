@@ -6,7 +6,7 @@ ScopeError
 │   ├── UnknownNameError    a scene, viewpoint, preset, planner or tool does not exist
 │   └── OutputError         a folder or file cannot be written
 ├── PackError               a pack is missing, damaged or has an unsupported version (exit code 2)
-├── CameraError             the camera fails or does not answer
+├── CameraError             the camera fails or does not answer (camera.network.errors lists those of network cameras)
 ├── PerceptionError         perception cannot interpret a frame (an empty result is not an error)
 ├── PlannerError            the planner fails, or its reply is not a decision
 ├── ServerFailure           a model server gives no usable reply (endpoints.failures); callers get one of the two errors above

@@ -8,16 +8,15 @@ from pathlib import Path
 from typing import Literal
 
 from platformdirs import user_cache_path, user_config_path
-from pydantic import Field, SecretStr, ValidationError
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import BaseModel, Field, SecretStr, ValidationError
 
 from scope_ptz.errors import ConfigError
 
+_PREFIX = "scope_"
 
-class ScopeSettings(BaseSettings):
+
+class ScopeSettings(BaseModel):
     """Defaults for every command. Command-line options take precedence."""
-
-    model_config = SettingsConfigDict(env_prefix="SCOPE_", extra="ignore")
 
     runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
     scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
@@ -26,6 +25,9 @@ class ScopeSettings(BaseSettings):
     )
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
+    )
+    pictures_dir: Path | None = Field(
+        default=None, description="Folder for decoded pictures of scenes (default: in the cache folder)."
     )
     blender_python: Path | None = Field(default=None, description="A Python interpreter that can import bpy.")
     blender: Path | None = Field(default=None, description="A blender program to use in place of the bpy wheel.")
@@ -48,6 +50,10 @@ class ScopeSettings(BaseSettings):
         """Return the limit on the memory of a viewpoint's tiles in bytes."""
         return None if self.tile_cache_mb is None else self.tile_cache_mb * 1_000_000
 
+    def pictures_folder(self) -> Path:
+        """Return the folder for decoded pictures of scenes."""
+        return self.pictures_dir or self.cache_dir / "pictures"
+
     def models_file(self) -> Path | None:
         """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""
         if self.models is not None:
@@ -62,8 +68,9 @@ def load_settings() -> ScopeSettings:
     Raises:
         ConfigError: A variable has an invalid value. The message names the variable.
     """
+    given = {name.lower().removeprefix(_PREFIX): text for name, text in os.environ.items() if name.lower().startswith(_PREFIX)}
     try:
-        return ScopeSettings()
+        return ScopeSettings.model_validate({name: given[name] for name in ScopeSettings.model_fields if name in given})
     except ValidationError as error:
         first = error.errors()[0]
         name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 from PIL import Image
 
 from scope_ptz.agent.loop import MAX_CALLS_PER_STEP, MAX_REPEATED_BAD_CALLS
+from scope_ptz.cli.exit import run_until_interrupted
 from scope_ptz.planner.base import Finish
 from tests.agent.scripted import ScriptedPlanner, Step, answer, calls
 from tests.cli.conftest import SCENE, Scope
@@ -194,3 +196,24 @@ def test_control_characters_do_not_reach_the_terminal(scope: Scope, monkeypatch:
     assert "\x1b" not in done.out
     assert "\x07" not in done.out
     assert "[bold]done[/bold]" in done.out
+
+
+@pytest.mark.parametrize(
+    ("on_path", "started", "shown"),
+    [
+        (True, "/usr/bin/scope", "scope"),
+        (False, "my env/bin/scope", "'my env/bin/scope'"),
+        (False, "/src/scope_ptz/cli/__main__.py", f"{sys.executable} -m scope_ptz.cli"),
+    ],
+)
+def test_next_steps_can_be_typed(on_path: bool, started: str, shown: str, scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shutil.which", lambda _: "/usr/bin/scope" if on_path else None)
+    monkeypatch.setattr("scope_ptz.cli.ask.run_until_interrupted", lambda work: _started_as(started, monkeypatch, work))
+    done = scope("ask", "pan right 5", "--scene", SCENE, "--next-steps")
+    assert done.code == 0
+    assert f'\n  {shown} ask "count the workers"' in done.out
+
+
+def _started_as(program: str, monkeypatch: pytest.MonkeyPatch, work: Any) -> bool:
+    monkeypatch.setattr("sys.argv", [program])
+    return run_until_interrupted(work)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from inspect import signature
+from pathlib import Path
 from typing import Annotated
 
 import pytest
 import typer
+from typer.core import TyperGroup
 from typer.testing import CliRunner
 
 from scope_ptz.cli.options import JsonOption, ModelFlags, PairFlags, SessionFlags, command
+from scope_ptz.cli.parameters import LeanGroup
 from scope_ptz.errors import InputError, PlannerError
 
 
@@ -80,3 +84,35 @@ def test_names_of_options_are_unique_within_a_command() -> None:
     names = list(signature(command(show)).parameters)
     assert len(set(names)) == len(names)
     assert names.index("pair") < names.index("planner")
+
+
+@pytest.mark.parametrize("words", [
+    "", "--help", "show", "show a", "show a b", "show a --level", "show a --level 3", "show a --level 5", "show a --level x",
+    "show a --level 99", "show a --file f", "show a --name x --name y", "show a --share 0.5", "show a --share 1", "show a --on",
+    "show a --off --loud", "show '' --text ''", "show a --text é --no-such", "--loudly show a", "--loudly", "show --help", "shwo a",
+])  # fmt: skip
+def test_conversions_without_effect_are_left_out_without_effect(words: str) -> None:
+    def made(cls: type[TyperGroup]) -> typer.Typer:
+        app = typer.Typer(cls=cls, pretty_exceptions_enable=False)
+
+        @app.callback()
+        def root(loudly: Annotated[bool, typer.Option("--loudly", callback=lambda value: value)] = False) -> None:
+            typer.echo(f"loudly {loudly!r}")
+
+        @app.command()
+        def show(
+            label: str,
+            level: Annotated[int, typer.Option("--level", min=1, max=9)] = 5,
+            share: Annotated[float | None, typer.Option("--share", min=0.0)] = None,
+            text: Annotated[str | None, typer.Option("--text")] = None,
+            file: Annotated[Path | None, typer.Option("--file")] = None,
+            names: Annotated[list[str] | None, typer.Option("--name")] = None,
+            on: Annotated[bool | None, typer.Option("--on/--off")] = None,
+            loud: Annotated[bool, typer.Option("--loud")] = False,
+        ) -> None:
+            typer.echo(repr((label, level, share, text, file, names, on, loud)))
+
+        return app
+
+    lean, plain = (CliRunner().invoke(made(cls), shlex.split(words)) for cls in (LeanGroup, TyperGroup))
+    assert (lean.exit_code, lean.output) == (plain.exit_code, plain.output)

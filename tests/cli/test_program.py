@@ -22,17 +22,52 @@ LIGHT = {"typer", "click", "shellingham", "rich", "pygments", "markdown_it", "li
 LIGHT |= {"annotated_doc", "typing_extensions", "scope_ptz"}
 
 
-def test_help_loads_only_the_modules_that_it_needs() -> None:
-    """Help is fast because few modules are loaded. Its duration depends on the machine and is not tested."""
+def modules_of(*words: str, folder: Path) -> set[str]:
+    """Return the names of the modules that a command loads, beyond those of a bare Python."""
     loaded = "import sys; from scope_ptz.cli import main\ntry: main()\nfinally: print(*sys.modules, file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", loaded, "--help"], capture_output=True, text=True, check=True)
-    assert "ask" in done.stdout
+    done = subprocess.run([sys.executable, "-c", loaded, *words], capture_output=True, text=True, check=True, cwd=folder)
     bare = subprocess.run([sys.executable, "-c", "import sys; print(*sys.modules)"], capture_output=True, text=True, check=True)
-    packages = {name.partition(".")[0] for name in done.stderr.split()} - {name.partition(".")[0] for name in bare.stdout.split()}
-    assert packages - sys.stdlib_module_names <= LIGHT
-    ours = [name for name in done.stderr.split() if name.startswith("scope_ptz")]
+    assert done.stdout
+    return set(done.stderr.split()) - set(bare.stdout.split())
+
+
+def packages_of(modules: set[str]) -> set[str]:
+    names = {name.partition(".")[0] for name in modules} - sys.stdlib_module_names
+    return {name for name in names if not name.startswith("_sysconfigdata")}
+
+
+def test_help_loads_only_what_draws_help(tmp_path: Path) -> None:
+    """This is what makes it instant; how long it takes depends on the machine, and is not for a test."""
+    modules = modules_of("--help", folder=tmp_path)
+    assert packages_of(modules) <= LIGHT
+    ours = [name for name in modules if name.startswith("scope_ptz")]
     assert "scope_ptz.cli.app" in ours
     assert len(ours) <= 31
+
+
+def test_tools_loads_the_shipped_schemas_and_no_models(tmp_path: Path) -> None:
+    modules = modules_of("tools", folder=tmp_path)
+    assert packages_of(modules) <= LIGHT - {"rich", "pygments", "markdown_it"}
+    assert "scope_ptz.tools.registry" not in modules
+
+
+def test_plan_loads_no_models_no_images_and_no_grammar_compiler(tmp_path: Path) -> None:
+    modules = modules_of("plan", "pan right 5, then count the cars", folder=tmp_path)
+    assert packages_of(modules) <= LIGHT
+    assert not modules & {"scope_ptz.planner.base", "scope_ptz.agent.records", "scope_ptz.tools.registry", "scope_ptz.cli.display"}
+
+
+def test_a_run_that_asks_nothing_loads_no_language_of_perception(
+    scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SCOPE_SCENES_DIR", str(scenes))
+    modules = modules_of("ask", "pan right 5", "--scene", SCENE, folder=tmp_path)
+    assert packages_of(modules) <= LIGHT | {
+        "PIL", "annotated_types", "anyio", "cv2", "idna", "numpy", "platformdirs", "pydantic", "pydantic_core", "sniffio",
+        "typing_inspection",
+    }  # fmt: skip
+    assert not {name for name in modules if name.startswith("scope_ptz.perception.ground_truth.language")}
+    assert "PIL.PdfImagePlugin" not in modules
 
 
 def test_the_entry_point_is_installed() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -24,3 +26,17 @@ def analytic_scene(analytic_folder: Path) -> Scene:
 @pytest.fixture(scope="session")
 def anyio_backend() -> str:
     return "asyncio"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def pictures_dir(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """The folder in which the tests of all workers, and the programs that they start, keep decoded pictures."""
+    root = tmp_path_factory.getbasetemp()
+    folder = (root.parent if "PYTEST_XDIST_WORKER" in os.environ else root) / "pictures"
+    before = os.environ.get("SCOPE_PICTURES_DIR")
+    os.environ["SCOPE_PICTURES_DIR"] = str(folder)
+    yield folder
+    if before is None:
+        del os.environ["SCOPE_PICTURES_DIR"]
+    else:
+        os.environ["SCOPE_PICTURES_DIR"] = before

@@ -20,6 +20,7 @@ from scope_ptz.tools.arguments import Arguments, Degrees
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.tools.results import PoseData, Result
+from scope_ptz.tools.schemas import shipped_schemas
 from scope_ptz.tools.tool import Tool
 from tests.agent.scripted import ScriptedCamera, ScriptedPerception, ScriptedPlanner, answer, calls
 
@@ -107,3 +108,8 @@ def test_schemas_are_unchanged() -> None:
     """The digest covers every byte of the schemas. Scores are not comparable across a change."""
     text = json.dumps(TOOLS.schemas(), ensure_ascii=False)
     assert hashlib.sha256(text.encode()).hexdigest() == "a6a1b4179787f45017d0093f38ebbd4b727c4959ac9e4ef80cb229e7f0d6f2c2"
+
+
+def test_the_shipped_schemas_are_up_to_date() -> None:
+    assert shipped_schemas() == TOOLS.schemas(), 'run: python -c "from scope_ptz.tools.schemas import renew; renew()"'
+    assert json.dumps(shipped_schemas()) == json.dumps(TOOLS.schemas()), "the same, but in another order"

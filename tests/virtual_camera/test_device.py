@@ -165,3 +165,9 @@ def test_a_reboot_returns_to_the_home_pose(device: VirtualDevice, time: HandCloc
     time.now += 10
     device.reboot()
     assert device.pose() == device.home
+
+
+def test_a_viewpoint_can_be_read_in_advance(device: VirtualDevice) -> None:
+    reading = device.prefetch()
+    assert reading.wait(30)
+    assert device.expose().image.shape == (90, 160, 3)

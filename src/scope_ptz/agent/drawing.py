@@ -5,6 +5,8 @@ from __future__ import annotations
 import unicodedata
 from functools import lru_cache
 
+import cv2
+import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 SCALE = 2  # drawing pixels per picture pixel
@@ -69,12 +71,18 @@ def wrap(text: str, size: float, width: float, max_lines: int) -> list[str]:
     return [cut(line, size, width) for line in lines]
 
 
+def _resized(image: Image.Image, size: tuple[int, int]) -> Image.Image:
+    """Return an image at another size. OpenCV needs a fifth of Pillow's time for it."""
+    way = cv2.INTER_AREA if size[0] < image.width else cv2.INTER_CUBIC
+    return Image.fromarray(np.asarray(cv2.resize(np.asarray(image.convert("RGB")), size, interpolation=way)))
+
+
 class Canvas:
     """A picture that is being drawn. All lengths are in picture pixels."""
 
     def __init__(self, width: float, height: float) -> None:
         self.width, self.height = width, height
-        self._image = Image.new("RGB", (round(width * SCALE), round(height * SCALE)), BACKGROUND)
+        self._image = Image.new("RGB", (round(width) * SCALE, round(height) * SCALE), BACKGROUND)
         self._draw = ImageDraw.Draw(self._image, "RGBA")
 
     def panel(
@@ -102,7 +110,7 @@ class Canvas:
         size = (round(width * SCALE), round(height * SCALE))
         mask = Image.new("L", size, 0)
         ImageDraw.Draw(mask).rounded_rectangle((0, 0, size[0] - 1, size[1] - 1), round(radius * SCALE), fill=255)
-        self._image.paste(image.resize(size, Image.Resampling.LANCZOS), (round(x * SCALE), round(y * SCALE)), mask)
+        self._image.paste(_resized(image, size), (round(x * SCALE), round(y * SCALE)), mask)
 
     def frame(self, x: float, y: float, width: float, height: float, colour: str) -> None:
         """Draw a thin box that is visible on light and dark backgrounds."""
@@ -141,4 +149,4 @@ class Canvas:
 
     def finish(self) -> Image.Image:
         """Return the finished picture, scaled down to its final size."""
-        return self._image.resize((round(self.width), round(self.height)), Image.Resampling.LANCZOS)
+        return self._image.reduce(SCALE)

@@ -34,6 +34,7 @@ MARGIN = 32
 GAP = 20
 CAPTION = 60
 MAX_PANELS = 12
+COMPRESSION = 2  # of PNG: a third of the time of level 6 for a file that is 7% larger
 MAX_NUMBERED_BOXES = 40  # with more boxes in a panel, the numbers would cover the picture
 
 _BOX_MARGIN = 2.0  # picture pixels between an object and its box, so that the box does not cover small objects
@@ -64,7 +65,7 @@ def write_filmstrip(trace: Trace) -> Path | None:
         return None
     path = trace.folder / "filmstrip.png"
     try:
-        image.save(path, optimize=False, compress_level=6)
+        image.save(path, optimize=False, compress_level=COMPRESSION)
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error}.") from error
     return path

@@ -22,7 +22,6 @@ from scope_ptz.errors import CameraError, InputError, OutputError, PackError, Pl
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import (
-    MAX_INSTRUCTION_CHARS,
     Briefing,
     CallTools,
     Decision,
@@ -33,6 +32,7 @@ from scope_ptz.planner.base import (
     State,
     Usage,
 )
+from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
 from scope_ptz.tools.context import ImageStore
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.version import __version__

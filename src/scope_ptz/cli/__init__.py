@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 
 def main() -> None:
     """Run ``scope``. This is the entry point of the installed program."""
     from scope_ptz.cli.exit import guarded_streams, readable_arguments
+    from scope_ptz.cli.starting import collector_paused
 
+    # The command line uses no plug-ins of pydantic, and looking for them reads the metadata of every installed package.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     with guarded_streams():
-        from scope_ptz.cli.app import app
+        with collector_paused():
+            from scope_ptz.cli.app import app
 
         sys.argv[1:] = readable_arguments(sys.argv[1:])
         app(prog_name="scope")

@@ -15,10 +15,13 @@ from scope_ptz.cli.camera import HELP as CAMERA_HELP
 from scope_ptz.cli.camera import CameraGroup
 from scope_ptz.cli.exit import EXIT_CODES
 from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
+from scope_ptz.cli.parameters import LeanGroup
+from scope_ptz.cli.starting import collector_paused
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 
 app = typer.Typer(
+    cls=LeanGroup,
     help="Talk to a pan-tilt-zoom camera in plain language.",
     epilog=EXIT_CODES,
     no_args_is_help=True,
@@ -26,8 +29,10 @@ app = typer.Typer(
     add_completion=False,
     context_settings=_HELP,
 )
-scene_app = typer.Typer(help="Scenes: list, show, view, build, bake and verify them.", no_args_is_help=True)
-models_app = typer.Typer(help="Models: list them, show one, print how to serve it, list pairs.", invoke_without_command=True)
+scene_app = typer.Typer(cls=LeanGroup, help="Scenes: list, show, view, build, bake and verify them.", no_args_is_help=True)
+models_app = typer.Typer(
+    cls=LeanGroup, help="Models: list them, show one, print how to serve it, list pairs.", invoke_without_command=True
+)
 app.add_typer(scene_app, name="scene", rich_help_panel="Set up")
 app.add_typer(models_app, name="models", rich_help_panel="Set up")
 app.add_typer(
@@ -67,7 +72,8 @@ def ask(
     as_json: JsonOption = False,
 ) -> int:
     """Carry out one instruction and save the run: its trace, frames and a filmstrip."""
-    from scope_ptz.cli.ask import ask as run
+    with collector_paused():
+        from scope_ptz.cli.ask import ask as run
 
     return run(instruction, session, models.options(), as_json=as_json, next_steps=hints)
 
@@ -92,7 +98,8 @@ def plan(
     as_json: JsonOption = False,
 ) -> int:
     """Show the tool calls that the planner would make, without moving the camera."""
-    from scope_ptz.cli.plan import plan as run
+    with collector_paused():
+        from scope_ptz.cli.plan import plan as run
 
     return run(instruction, presets, source, as_json=as_json)
 
@@ -114,9 +121,9 @@ def replay(
 def tools(as_json: Annotated[bool, typer.Option("--json", help="Print on one line instead of indented.")] = False) -> None:
     """Print the schemas of the nine tools in the OpenAI function format."""
     from scope_ptz.cli.exit import put_json
-    from scope_ptz.tools.registry import schemas
+    from scope_ptz.tools.schemas import shipped_schemas
 
-    put_json(schemas(), indent=None if as_json else 2)
+    put_json(shipped_schemas(), indent=None if as_json else 2)
 
 
 # Models and servers ----------------------------------------------------------------------------------------------------

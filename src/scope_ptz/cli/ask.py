@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import signal
 import sys
@@ -20,6 +21,7 @@ from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
 from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.exit import CANCELLED, exit_code, interrupts_handled_by, put, put_json, run_until_interrupted
 from scope_ptz.cli.options import SessionFlags
+from scope_ptz.cli.starting import collector_paused
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import OpenCamera
 from scope_ptz.factory.models import ModelOptions, make_perception, make_planner, perception_note, resolve_models
@@ -93,7 +95,8 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
 
     async def work() -> None:
         nonlocal folder
-        session = await Session.open(flags, models, realtime=flags.in_real_time(as_json=as_json))
+        with collector_paused():  # what a planner, a camera and perception need is imported when they are made
+            session = await Session.open(flags, models, realtime=flags.in_real_time(as_json=as_json))
         try:
             await checkpoint()
             folder = RunFolder.create(session.runs_dir, instruction)
@@ -113,8 +116,16 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
     with interrupts_handled_by(signal.SIG_IGN):
         code = _report(folder, as_json=as_json)
     if next_steps and not as_json and code == 0:
-        put(_NEXT_STEPS.format(program="scope" if shutil.which("scope") else sys.argv[0]))
+        put(_NEXT_STEPS.format(program=_program()))
     return code
+
+
+def _program() -> str:
+    """Return how this program can be started again from a shell."""
+    if shutil.which("scope"):
+        return "scope"
+    started = Path(sys.argv[0])
+    return shlex.quote(sys.argv[0]) if started.name != "__main__.py" else f"{shlex.quote(sys.executable)} -m scope_ptz.cli"
 
 
 def make_filmstrip(trace: Trace) -> Path | None:

@@ -18,9 +18,10 @@ from rich.text import Text
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import read_trace
 from scope_ptz.cli.ask import Session, make_filmstrip
-from scope_ptz.cli.display import LiveView, plain, show_end
+from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.exit import complain, has_input
 from scope_ptz.cli.options import SessionFlags
+from scope_ptz.cli.texts import plain
 from scope_ptz.errors import InputError
 from scope_ptz.factory.models import ModelOptions
 from scope_ptz.planner.base import PastTurn

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Any
 
 from rich.console import Console
 from rich.padding import Padding
@@ -14,10 +12,10 @@ from rich.text import Text
 
 from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.timing import Timings
+from scope_ptz.cli.texts import arguments_text, plain, seconds, shortened
 from scope_ptz.planner.base import CallTools, ToolCall
 
 MAX_MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
-MAX_SHOWN_CHARS = 200  # longer instructions and arguments are truncated when printed
 _OUTCOME_WORDS = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
@@ -28,27 +26,6 @@ _OUTCOME_WORDS = {
     "camera_error": ("Camera failed", "bold red"),
     "cancelled": ("Cancelled", "bold red"),
 }
-
-
-def plain(text: str) -> str:
-    """Return text without control characters, so that text from models and scenes cannot control the terminal."""
-    return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
-
-
-def shortened(text: str, limit: int = MAX_SHOWN_CHARS) -> str:
-    """Truncate a text to a number of characters, and append its full length."""
-    return text if len(text) <= limit else f"{text[:limit].rstrip()}… ({len(text)} characters)"
-
-
-def arguments_text(arguments: dict[str, Any]) -> str:
-    """Format arguments for display: ``pan_deg=15, view=current``."""
-    parts = (f"{k}={v if isinstance(v, str) and v.isprintable() else json.dumps(v)}" for k, v in arguments.items())
-    return plain(shortened(", ".join(parts)))
-
-
-def seconds(value: float) -> str:
-    """Format a duration in seconds or milliseconds."""
-    return f"{value:.1f} s" if value >= 1 else f"{value * 1000:.0f} ms"
 
 
 class LiveView:

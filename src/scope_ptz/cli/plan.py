@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, ValidationError
 from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
 
-from scope_ptz.cli.display import arguments_text, plain, shortened
 from scope_ptz.cli.exit import BAD_INPUT, complain, put_json
+from scope_ptz.cli.texts import arguments_text, plain, shortened
 from scope_ptz.errors import InputError
-from scope_ptz.planner.base import MAX_INSTRUCTION_CHARS
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock, OutlineCall
+from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
 from scope_ptz.planner.plan import Plan
 from scope_ptz.planner.plan import plan as make_plan
 
 _INDENT = 5
-
-
-class _Line(BaseModel):
-    """One line of a file of instructions. Other fields are ignored, so that a task file works, too."""
-
-    model_config = ConfigDict(strict=True)
-
-    instruction: str
-    presets: list[str] = []
 
 
 def plan(instruction: str | None, presets: str | None, source: Path | None, *, as_json: bool) -> int:
@@ -45,33 +33,18 @@ def plan(instruction: str | None, presets: str | None, source: Path | None, *, a
 
 
 def _plan_file(source: Path, *, as_json: bool) -> int:
+    from scope_ptz.cli.instruction_file import read_instructions
+
     code = 0
-    for number, line in enumerate(_lines(source), 1):
-        if not line.strip():
-            continue
+    for number, line in read_instructions(source):
         try:
-            given = _Line.model_validate_json(line)
-            _show(_planned(given.instruction, given.presets), as_json=as_json)
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            where = ".".join(str(part) for part in first["loc"])
-            complain(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.")
-            code = BAD_INPUT
+            if isinstance(line, InputError):
+                raise line
+            _show(_planned(line.instruction, line.presets), as_json=as_json)
         except InputError as error:
             complain(f"{source}, line {number}: {error}")
             code = BAD_INPUT
     return code
-
-
-def _lines(source: Path) -> Iterator[str]:
-    try:
-        if str(source) == "-":
-            yield from sys.stdin
-            return
-        with source.open(encoding="utf-8") as file:
-            yield from file
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{source} cannot be read: {error}.") from error
 
 
 def _planned(instruction: str, presets: list[str]) -> Plan:

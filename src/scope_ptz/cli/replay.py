@@ -13,8 +13,9 @@ from scope_ptz.agent.replay import replay as repeat
 from scope_ptz.agent.trace import Trace, read_trace
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.cli.ask import summary
-from scope_ptz.cli.display import LiveView, plain, show_end
+from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.exit import BAD_INPUT, FAILED, put_json, run_async
+from scope_ptz.cli.texts import plain
 from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.simulator.clock import SceneClock

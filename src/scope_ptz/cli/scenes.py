@@ -14,9 +14,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from scope_ptz.cli.display import plain
 from scope_ptz.cli.exit import put, put_json, run_async
 from scope_ptz.cli.options import StartFlags
+from scope_ptz.cli.texts import plain
 from scope_ptz.errors import InputError, OutputError, PackError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.scenes import open_scene, scene_search

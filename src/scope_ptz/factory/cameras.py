@@ -211,7 +211,7 @@ def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | Non
     from scope_ptz.factory.scenes import open_scene
     from scope_ptz.simulator.clock import SceneClock
 
-    scene = open_scene(spec.address)
+    scene = open_scene(spec.address, keep=True)
     clock = SceneClock(scene.file.start_s if time_s is None else time_s, realtime=realtime)
     width, height = frame_size(spec)
     return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, width=width, height=height), scene)

@@ -139,7 +139,7 @@ async def _open_axis(spec: CameraSpec, address: DeviceAddress, credentials: Cred
         width=int(options.get("width", 1280)),
         height=int(options.get("height", 720)),
         stream="rtsp" if options.get("stream") == "rtsp" else "mjpeg",
-        rtsp_port=int(options.get("rtsp_port", 554)),
+        rtsp_port=int(options["rtsp_port"]) if "rtsp_port" in options else None,
         latency_s=int(options.get("latency_ms", 100)) / 1000,
         fields_deg=_fields(spec),
     )

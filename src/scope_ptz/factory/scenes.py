@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.errors import ConfigError
 from scope_ptz.settings import ScopeSettings, load_settings
+from scope_ptz.version import __version__
 
 if TYPE_CHECKING:
     from scope_ptz.simulator.pack import Scene
@@ -25,14 +26,21 @@ def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
     return (settings.scenes_dir,)
 
 
-def open_scene(name: str) -> Scene:
+def open_scene(name: str, *, keep: bool = False) -> Scene:
     """Open a scene by name.
+
+    Args:
+        name: Name of the scene or variation.
+        keep: Whether decoded pictures stay on disk, so that the next program shows its first view sooner.
 
     Raises:
         UnknownNameError: There is no such scene.
         PackError: The files of the scene are damaged.
     """
     from scope_ptz.simulator.pack import load_scene
+    from scope_ptz.simulator.sheets.kept import KeptPictures
+    from scope_ptz.simulator.views import RENDERING_VERSION
 
     settings = load_settings()
-    return load_scene(name, scene_search(settings), tile_bytes=settings.tile_bytes())
+    kept = KeptPictures(settings.pictures_folder(), f"{__version__} {RENDERING_VERSION}") if keep else None
+    return load_scene(name, scene_search(settings), tile_bytes=settings.tile_bytes(), kept=kept)

@@ -39,6 +39,7 @@ class VirtualCameraOptions:
         faults: Faults by name.
         truth: Whether clients on this machine get the ground truth of frames.
         discovery: Whether the cameras answer WS-Discovery on the interface of ``host``.
+        prefetch: Whether viewpoints are read in the background when the cameras start.
     """
 
     scenes: tuple[str, ...]
@@ -52,6 +53,7 @@ class VirtualCameraOptions:
     faults: Mapping[str, object] | None = None
     truth: bool = False
     discovery: bool = True
+    prefetch: bool = True
 
 
 def make_accounts(users: Sequence[str], settings: ScopeSettings) -> list[Account]:
@@ -152,4 +154,9 @@ async def serve_virtual_cameras(
                 await stack.enter_async_context(discoverable(found, host=options.host))
             except ConfigError as error:  # the cameras can be used without being found
                 logger.warning("%s", error)
-        yield cameras
+        reading = [device.prefetch() for device in devices] if options.prefetch else []
+        try:
+            yield cameras
+        finally:
+            for each in reading:
+                each.cancel()

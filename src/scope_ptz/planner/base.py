@@ -15,8 +15,6 @@ from pydantic import BaseModel, ConfigDict, Field
 from scope_ptz.endpoints.failures import Attempt
 from scope_ptz.geometry import Limits, Pose
 
-MAX_INSTRUCTION_CHARS = 4000  # longer instructions raise InputError
-
 
 class _Model(BaseModel):
     model_config = ConfigDict(frozen=True, arbitrary_types_allowed=True)

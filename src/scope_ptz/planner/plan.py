@@ -10,11 +10,11 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
-from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.planner.grammar.binding.understand import understand
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock
 from scope_ptz.planner.grammar.execution.outline import outline as make_outline
 from scope_ptz.planner.grammar.execution.program import Program
+from scope_ptz.planner.grammar.execution.run_state import AssumedOutcome
 
 _MAX_CALLS = 200  # longer plans are truncated
 _OBJECT_ZOOM_FACTOR = 2.0  # assumed effect of zoom_to_object
@@ -82,8 +82,7 @@ def plan(
         name, arguments = next(run)
         while len(calls) < _MAX_CALLS:
             calls.append(PlannedCall(name, arguments))
-            call = ToolCall(id=f"call-{len(calls)}", name=name, arguments=arguments)
-            name, arguments = run.send(ToolOutcome(call=call, result=world.result(name, arguments)))
+            name, arguments = run.send(AssumedOutcome(world.result(name, arguments)))
     except StopIteration:
         pass
     world = _AssumedWorld(pose, limits, preset_poses or {})

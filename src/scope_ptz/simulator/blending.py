@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
+from functools import cache
 
 import cv2
 import numpy as np
@@ -82,13 +83,18 @@ class TileBlender:
         read: Reads tile ``i`` as (H, W, 3) RGB, as stored.
         tiles: Geometry of the tiles.
         band: The band of the sphere that the panorama covers.
-        keep_sharp: Outlines, each (n, 3) directions, of things that stay sharp where they are small.
+        keep_sharp: Returns outlines, each (n, 3) directions, of things that stay sharp where they are small. Called with the first
+            tile.
     """
 
     def __init__(
-        self, read: Callable[[int], NDArray[np.uint8]], tiles: Tiles, band: Band, keep_sharp: Sequence[NDArray[np.float64]]
+        self,
+        read: Callable[[int], NDArray[np.uint8]],
+        tiles: Tiles,
+        band: Band,
+        keep_sharp: Callable[[], Sequence[NDArray[np.float64]]],
     ) -> None:
-        self._read, self._tiles, self._band, self._outlines = read, tiles, band, Outlines(keep_sharp)
+        self._read, self._tiles, self._band, self._outlines = read, tiles, band, cache(lambda: Outlines(keep_sharp()))
         self._toned: OrderedDict[int, NDArray[np.uint8]] = OrderedDict()
 
     def blended(self, atlas: Atlas, index: int) -> NDArray[np.uint8]:
@@ -120,7 +126,7 @@ class TileBlender:
         if index not in self._toned:
             view = self._tiles.views[index]
             around = self._panorama(atlas, view) if panorama is None else panorama
-            share = np.rint(_share(self._tiles, index, self._outlines) * 255).astype(np.uint8)
+            share = np.rint(_share(self._tiles, index, self._outlines()) * 255).astype(np.uint8)
             self._toned[index] = cv2.merge([*cv2.split(_in_tone(self._read(index), around)), share])
             while len(self._toned) > KEPT_TILES:
                 self._toned.popitem(last=False)

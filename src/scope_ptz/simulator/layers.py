@@ -13,6 +13,7 @@ from typing import Any
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from PIL import AvifImagePlugin as AvifImagePlugin  # Pillow would import all of its plug-ins to find this one
 from PIL import Image
 
 from scope_ptz.errors import PackError

@@ -16,6 +16,7 @@ from threading import RLock
 from scope_ptz.errors import PackError, UnknownNameError
 from scope_ptz.simulator.models import SceneActor, SceneFile, SceneInstance
 from scope_ptz.simulator.recent import RecentViewpoints
+from scope_ptz.simulator.sheets.kept import KeptPictures
 from scope_ptz.simulator.variation import HeldObject, vary
 from scope_ptz.simulator.viewpoint import Viewpoint, read_json
 
@@ -47,7 +48,11 @@ def list_scenes(search: Iterable[Path] = ()) -> list[str]:
 
 
 def load_scene(
-    name: str, search: Iterable[Path] = (), recent: RecentViewpoints | None = None, tile_bytes: int | None = None
+    name: str,
+    search: Iterable[Path] = (),
+    recent: RecentViewpoints | None = None,
+    tile_bytes: int | None = None,
+    kept: KeptPictures | None = None,
 ) -> Scene:
     """Open a scene (``highway-works``) or a variation of one (``highway-works-v7``) by name.
 
@@ -56,6 +61,7 @@ def load_scene(
         search: Extra folders of scenes, searched before the built-in ones.
         recent: Limits how many viewpoints stay in memory; see ``Scene``.
         tile_bytes: Limits the memory of each viewpoint's tiles; see ``Scene``.
+        kept: Where decoded pictures stay on disk; see ``Scene``.
 
     Raises:
         UnknownNameError: The scene does not exist.
@@ -63,11 +69,11 @@ def load_scene(
     """
     folders = find_scenes(search)
     if name in folders:
-        return Scene(folders[name], recent, tile_bytes)
+        return Scene(folders[name], recent, tile_bytes, kept)
     scene, number = variation_of(name)
     if number is None or scene not in folders:
         raise UnknownNameError("scene", name, folders)
-    return Scene(folders[scene], recent, tile_bytes).varied(number)
+    return Scene(folders[scene], recent, tile_bytes, kept).varied(number)
 
 
 def variation_name(scene: str, number: int) -> str:
@@ -96,12 +102,19 @@ class Scene:
         recent: Releases viewpoints when many scenes are open. Without it, every opened viewpoint stays in memory.
         tile_bytes: Limit on the memory of each viewpoint's tiles. Beyond it, tiles that were not used for longest are released and
             read again on request. Without it, everything that was read stays in memory.
+        kept: Where decoded pictures stay on disk, so that the next program need not decode them. Not used with ``tile_bytes``.
 
     Raises:
         PackError: A file is missing, damaged or inconsistent.
     """
 
-    def __init__(self, folder: Path, recent: RecentViewpoints | None = None, tile_bytes: int | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        recent: RecentViewpoints | None = None,
+        tile_bytes: int | None = None,
+        kept: KeptPictures | None = None,
+    ) -> None:
         self.folder = folder
         self.file = read_json(folder / "scene.json", SceneFile)
         if self.file.name != folder.name:
@@ -110,7 +123,7 @@ class Scene:
         self.variation: int | None = None
         self.held: tuple[HeldObject, ...] = ()
         self._viewpoints: dict[str, Viewpoint] = {}
-        self._recent, self._tile_bytes = recent, tile_bytes
+        self._recent, self._tile_bytes, self._kept = recent, tile_bytes, kept
         self._lock = RLock()
         _check_references(self.file, folder)
 
@@ -118,7 +131,7 @@ class Scene:
         """Return a variation of this scene, which shares the layers of its viewpoints."""
         extents = {place.name: self.viewpoint(place.name).manifest.extents for place in self.file.viewpoints}
         variation = vary(self.file, number, extents)
-        other = Scene(self.folder, self._recent, self._tile_bytes)
+        other = Scene(self.folder, self._recent, self._tile_bytes, self._kept)
         other.variation = number
         other.name, other.file, other.held = variation_name(self.name, number), variation.file, variation.held
         other._viewpoints, other._lock = self._viewpoints, self._lock
@@ -169,7 +182,7 @@ class Scene:
             raise UnknownNameError("viewpoint", name, known)
         with self._lock:
             if name not in self._viewpoints:
-                self._viewpoints[name] = Viewpoint(self.folder / name, self.file, known[name], self._tile_bytes)
+                self._viewpoints[name] = Viewpoint(self.folder / name, self.file, known[name], self._tile_bytes, self._kept)
             viewpoint = self._viewpoints[name]
             if self._recent is not None:
                 self._recent.used(self._viewpoints, name)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
@@ -20,7 +21,8 @@ from scope_ptz.simulator.files import read_regular_file
 from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pictures import Pictures
-from scope_ptz.simulator.sheets.atlas import Atlas, Scale
+from scope_ptz.simulator.sheets.atlas import Atlas, Keep, Scale
+from scope_ptz.simulator.sheets.kept import KeptPictures
 from scope_ptz.simulator.sprites.choice import SpriteChoice
 from scope_ptz.simulator.sprites.store import SpriteStore
 
@@ -49,16 +51,24 @@ class Viewpoint:
         scene: The scene that it belongs to.
         place: The scene's entry for this viewpoint.
         tile_bytes: Limit on the memory of tiles at all scales; see ``Atlas``.
+        kept: Where decoded pictures stay on disk.
 
     Raises:
         PackError: The manifest is missing, damaged or belongs to another scene.
     """
 
-    def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint, tile_bytes: int | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        scene: SceneFile,
+        place: SceneViewpoint,
+        tile_bytes: int | None = None,
+        kept: KeptPictures | None = None,
+    ) -> None:
         self.folder, self.pictures = folder, Pictures(folder)
         self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
         self.name = place.name
-        self.sprites = SpriteStore(self.pictures)
+        self.sprites = SpriteStore(self.pictures, kept)
         self._choices: dict[int, SpriteChoice] = {}
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
@@ -72,19 +82,31 @@ class Viewpoint:
         # The sheets refer to the files and not to this object. Without a reference cycle, memory is freed with the last reference.
         read, depth = self.pictures, manifest.depth
         pans_deg = [tile.pan_deg for tile in tiles]
-        blender = TileBlender(lambda i: read.colour(tiles[i].colour), self.tiles, manifest.band, _small_things(scene, manifest))
+        blender = TileBlender(
+            lambda i: read.colour(tiles[i].colour), self.tiles, manifest.band, lambda: _small_things(scene, manifest)
+        )
 
         def colour(atlas: Atlas, index: int) -> NDArray[np.uint8]:
             return blender.blended(atlas, index - 1) if index else read.colour(manifest.base)
 
         sizes = [_size(c) for c in colours]
-        self.colour_atlas = Atlas(sizes, colour, np.uint8, 3, COLOUR_SCALES, pans_deg=pans_deg, tile_bytes=tile_bytes)
+        source = "" if kept is None else _source(folder)
+
+        def keep(kind: str, files: Sequence[Layer]) -> Keep | None:
+            return None if kept is None else Keep(kept, f"{kind} {source}", lambda i: read.checked(files[i]))
+
+        self.colour_atlas = Atlas(
+            sizes, colour, np.uint8, 3, COLOUR_SCALES, pans_deg=pans_deg, tile_bytes=tile_bytes, kept=keep("colour", colours)
+        )
         decode = layers.decode_numbers
         self.id_atlas = id_atlas = Atlas(
-            [_size(n) for n in ids], lambda _, i: read.coded_numbers(ids[i]), np.uint16, 1, decode=decode
+            [_size(n) for n in ids], lambda _, i: read.coded_numbers(ids[i]), np.uint16, 1, decode=decode, kept=keep("ids", ids)
         )
-        self.depth_atlas = Atlas([_size(depth)], lambda *_: read.coded_numbers(depth), np.uint16, 1, decode=decode)
-        self.owner_atlas = Atlas([_size(depth)], lambda *_: _owners(id_atlas, depth), np.uint16, 1)
+        depths, size = [depth], [_size(depth)]
+        self.depth_atlas = Atlas(
+            size, lambda *_: read.coded_numbers(depth), np.uint16, 1, decode=decode, kept=keep("depth", depths)
+        )
+        self.owner_atlas = Atlas(size, lambda *_: _owners(id_atlas, depth), np.uint16, 1, kept=keep("owners", depths))
 
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
@@ -166,6 +188,12 @@ def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
     rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
     columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
     return np.ascontiguousarray(ids.sheet[rows[:, None], columns])
+
+
+def _source(folder: Path) -> str:
+    """Return the hash of everything but the code that a viewpoint's sheets depend on; the manifest has the files' checksums."""
+    files = (folder / "manifest.json", folder.parent / "scene.json")
+    return hashlib.sha256(b"".join(read_regular_file(path) for path in files)).hexdigest()
 
 
 def _size(layer: Layer) -> tuple[int, int]:

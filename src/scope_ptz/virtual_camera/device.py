@@ -17,6 +17,7 @@ from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.simulator.views import picture
 from scope_ptz.virtual_camera.accounts import Account, Accounts
 from scope_ptz.virtual_camera.faults import Faults
@@ -269,6 +270,10 @@ class VirtualDevice:
     def set_home(self) -> None:
         """Make the current pose home."""
         self.home = self.pose()
+
+    def prefetch(self) -> Prefetch:
+        """Read the viewpoint in the background, so that no later picture has to wait for a file."""
+        return Prefetch(self.scene.viewpoint(self.viewpoint), self.width, self.optics, self.limits)
 
     def expose(self, width: int | None = None, height: int | None = None) -> Exposure:
         """Take a picture. It blocks for the time of one re-projection.

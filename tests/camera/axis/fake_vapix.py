@@ -54,6 +54,7 @@ class FakeVapix:
     queueing: bool = False
     cloak: frozenset[str] = frozenset()  # queries that the device does not know
     clamp_pan: float | None = None  # a limit that appears later
+    locked: bool = False
     shake: bool = False  # the picture keeps moving
     actor: bool = False  # something walks through the picture
     stall_after: int | None = None  # the MJPEG stream falls silent after so many pictures
@@ -179,7 +180,8 @@ class FakeVapix:
                 "AutoIris",
             )
             lines = [f"root.PTZ.Support.S1.{name}=true" for name in supported]
-            return "\r\n".join([*lines, f"root.PTZ.Various.V1.CtlQueueing={str(self.queueing).lower()}"])
+            various = {"CtlQueueing": self.queueing, "Locked": self.locked}
+            return "\r\n".join([*lines, *(f"root.PTZ.Various.V1.{name}={str(on).lower()}" for name, on in various.items())])
         if group == "root.Properties.Image":
             return "root.Properties.Image.Resolution=640x360,320x180,160x120"
         return f"# Error: Error -1 getting param in group '{group}'"

@@ -21,6 +21,7 @@ pytestmark = pytest.mark.anyio
 
 class TestFakeDevice(CameraConformance):
     driving_s = 0.1
+    stopping_s = 0.8  # the stop is a request of its own
     angle_tolerance_deg = 0.1
 
     @pytest.fixture(autouse=True)
@@ -37,6 +38,7 @@ class TestVirtualCamera(CameraConformance):
     """The device is written from the protocol and not from this driver, so their agreement proves something."""
 
     driving_s = 0.1
+    stopping_s = 0.8  # the stop is a request of its own
     angle_tolerance_deg = 0.1
     same_picture_mean_difference = 6.0  # actors go on walking
 

@@ -57,7 +57,7 @@ async def test_unreachable_at_start() -> None:
 async def test_wrong_password_is_named_and_not_shown(fake: FakeVapix, caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.DEBUG)
     with pytest.raises(CameraSignInError, match="refuses the user name or the password") as caught:
-        async with opened(fake.loopback.port, password="not-the-password"):  # noqa: S106 - a wrong one
+        async with opened(fake.loopback.port, password="not-the-password"):
             pass
     shown = f"{caught.value!r} {caught.value.__cause__!r} {caplog.text}"
     assert "not-the-password" not in shown
@@ -144,8 +144,8 @@ async def test_short_interruption_is_survived(fake: FakeVapix) -> None:
 
 
 async def test_slow_camera_times_out(fake: FakeVapix) -> None:
-    async with opened(fake.loopback.port, reply_s=0.2) as camera:
-        fake.delay_s = 2.0
+    async with opened(fake.loopback.port, reply_s=1.0) as camera:
+        fake.delay_s = 5.0
         with pytest.raises(CameraTimeoutError, match="did not answer in time"):
             await camera.pose()
         fake.delay_s = 0.0
@@ -164,7 +164,7 @@ async def test_reboot_between_commands(fake: FakeVapix) -> None:
 
 async def test_account_changed_meanwhile(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
-        fake.password = "changed"  # noqa: S105 - of the fake
+        fake.password = "changed"
         with pytest.raises(CameraSignInError):
             await camera.move(THERE)
         fake.password = PASSWORD
@@ -331,6 +331,23 @@ async def test_preset_names_that_the_device_refuses(fake: FakeVapix) -> None:
         assert not fake.moves
 
 
+async def test_an_account_that_may_not_save_presets(fake: FakeVapix) -> None:
+    async with opened(fake.loopback.port) as camera:
+        fake.status = 403
+        with pytest.raises(CameraSignInError, match="may not do this"):
+            await camera.save_preset("gate two")
+        fake.status = 0
+
+
+async def test_locked_position(fake: FakeVapix) -> None:
+    fake.locked = True
+    async with opened(fake.loopback.port) as camera:
+        for command in (camera.move(THERE), camera.drive(5.0), camera.go_home()):
+            with pytest.raises(CameraError, match="is locked"):
+                await command
+    assert not fake.moves
+
+
 # --- control queue
 
 
@@ -363,8 +380,11 @@ async def test_drive_ends_although_the_loop_is_blocked(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
         await camera.drive(20.0, timeout_s=0.2)
         assert fake.driving
-        threading.Event().wait(0.8)  # the event loop is blocked, on purpose
-        assert not fake.driving
+        for _ in range(200):
+            threading.Event().wait(0.05)  # the event loop is blocked, on purpose
+            if not fake.driving:
+                return
+        raise AssertionError("the camera ran away")
 
 
 async def test_drive_ends_when_the_camera_is_closed(fake: FakeVapix) -> None:
@@ -402,8 +422,9 @@ async def test_drive_whose_reply_is_lost_ends(fake: FakeVapix) -> None:
 
 async def test_lost_link_is_stopped_when_it_is_back(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
-        await camera.drive(20.0, timeout_s=0.1)
+        await camera.drive(5.0, timeout_s=10.0)
         fake.status = 503
+        camera._watch.stop_now()
         await anyio.sleep(0.3)
         assert fake.driving
         fake.status = 0
@@ -413,8 +434,8 @@ async def test_lost_link_is_stopped_when_it_is_back(fake: FakeVapix) -> None:
 async def test_renewed_drive_goes_on(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
         for _ in range(6):
-            await camera.drive(10.0, timeout_s=0.3)
-            await anyio.sleep(0.1)
+            await camera.drive(5.0, timeout_s=1.0)
+            await anyio.sleep(0.25)
             assert fake.driving
         await camera.stop()
         assert not fake.driving

@@ -19,7 +19,7 @@ def main(port: int) -> dict[str, Any]:
     password = os.environ["CAMERA_PASSWORD"]
     client = ONVIFClient("127.0.0.1", port, "admin", password)
     media, ptz = client.media2(), client.ptz()
-    (profile,) = media.GetProfiles(Type=["All"])
+    profile, small = media.GetProfiles(Type=["All"])
     encoder, source, configuration = (getattr(profile.Configurations, kind) for kind in ("VideoEncoder", "VideoSource", "PTZ"))
     (options,) = media.GetVideoEncoderConfigurationOptions(ConfigurationToken=encoder.token)
     found = {
@@ -29,6 +29,7 @@ def main(port: int) -> dict[str, Any]:
         "size": [encoder.Resolution.Width, encoder.Resolution.Height],
         "rates": [float(rate) for rate in options.FrameRatesSupported],
         "bounds": [source.Bounds.width, source.Bounds.height],
+        "small_stream": media.GetStreamUri(Protocol="RtspUnicast", ProfileToken=small.token),
         "stream": media.GetStreamUri(Protocol="RTSP", ProfileToken=profile.token),
         "snapshot": media.GetSnapshotUri(ProfileToken=profile.token),
         "instances": media.GetVideoEncoderInstances(ConfigurationToken=source.token).Total,

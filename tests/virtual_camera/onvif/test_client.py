@@ -58,7 +58,7 @@ async def test_services_and_what_the_device_is(client: Any, served: ServedCamera
 
 
 async def test_media_profile_stream_and_snapshot(client: Any, media: Any, device: VirtualDevice, served: ServedCamera) -> None:
-    (profile,) = await media.GetProfiles()
+    profile, small = await media.GetProfiles()
     assert profile.VideoEncoderConfiguration.Encoding == "H264"
     size = profile.VideoEncoderConfiguration.Resolution
     assert (size.Width, size.Height) == (device.width, device.height)
@@ -70,6 +70,11 @@ async def test_media_profile_stream_and_snapshot(client: Any, media: Any, device
     setup = {"Stream": "RTP-Unicast", "Transport": {"Protocol": "RTSP"}}
     stream = await media.GetStreamUri({"StreamSetup": setup, "ProfileToken": profile.token})
     assert stream.Uri == f"rtsp://127.0.0.1:{RTSP_PORT}/axis-media/media.amp"
+    stream = await media.GetStreamUri({"StreamSetup": setup, "ProfileToken": small.token})
+    assert stream.Uri == f"rtsp://127.0.0.1:{RTSP_PORT}/axis-media/media.amp?resolution=160x90"
+    configuration = {"ConfigurationToken": small.VideoEncoderConfiguration.token}
+    assert (await media.GetVideoEncoderConfiguration(configuration)).Resolution.Width == device.width // 2
+    assert len(await media.GetVideoEncoderConfigurations()) == 2
     assert (await client.get_snapshot_uri(profile.token)).startswith(f"{served.url}/axis-cgi/jpg/image.cgi")
     jpeg = await client.get_snapshot(profile.token)
     picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
@@ -232,7 +237,7 @@ async def test_home_can_be_set(ptz: Any, device: VirtualDevice, time: HandClock)
 
 
 async def test_a_wrong_password_is_a_fault(served: ServedCamera) -> None:
-    async with connect(served, password="wrong") as client:  # noqa: S106 - it is wrong
+    async with connect(served, password="wrong") as client:
         media = await client.create_media_service()
         with pytest.raises(Fault) as refused:
             await media.GetProfiles()
@@ -270,7 +275,7 @@ async def test_a_client_can_adjust_to_a_wrong_clock(served: ServedCamera, device
         assert subcodes(refused.value) == ["NotAuthorized"]
     async with connect(served, adjust_time=True) as client:
         media = await client.create_media_service()
-        assert len(await media.GetProfiles()) == 1
+        assert len(await media.GetProfiles()) == 2
 
 
 async def test_services_that_the_device_lacks_are_not_listed(client: Any) -> None:

@@ -133,7 +133,7 @@ async def test_consistency_of_configurations_and_options(ptz: Any) -> None:
 async def test_fault_for_an_invalid_configuration(ptz: Any) -> None:
     """PTZ-2-1-10 SET CONFIGURATION WITH INVALID TOKEN: env:Sender / ter:InvalidArgVal / ter:NoConfig."""
     (configuration,) = await ptz.GetConfigurations()
-    configuration.token = "no-such-configuration"  # noqa: S105 - not a secret
+    configuration.token = "no-such-configuration"
     with pytest.raises(Fault) as refused:
         await ptz.SetConfiguration({"PTZConfiguration": configuration, "ForcePersistence": False})
     assert subcodes(refused.value) == ["InvalidArgVal", "NoConfig"]
@@ -226,8 +226,10 @@ async def test_continuous_move_and_stop(ptz: Any, device: VirtualDevice, time: H
 
 async def test_profile_has_the_configuration(ptz: Any, media: Any) -> None:
     """MEDIA2_PTZ-1-1-1 and PTZ-2-1-x, with the profile of Media: its PTZ configuration is the listed one, and compatible."""
-    (profile,) = await media.GetProfiles()
     (listed,) = await ptz.GetConfigurations()
-    assert plain(profile.PTZConfiguration) == plain(listed)
-    compatible = await ptz.GetCompatibleConfigurations({"ProfileToken": profile.token})
-    assert [each.token for each in compatible] == [listed.token]
+    profiles = await media.GetProfiles()
+    assert len(profiles) == listed.UseCount
+    for profile in profiles:
+        assert plain(profile.PTZConfiguration) == plain(listed)
+        compatible = await ptz.GetCompatibleConfigurations({"ProfileToken": profile.token})
+        assert [each.token for each in compatible] == [listed.token]

@@ -82,7 +82,7 @@ async def test_home_assistant_sets_a_camera_up(client: Any, served: ServedCamera
     assert capabilities["PTZ"]["XAddr"]
     media = await client.create_media_service()
     assert (await media.GetServiceCapabilities()).SnapshotUri
-    (profile,) = await media.GetProfiles()
+    profile = (await media.GetProfiles())[0]
     assert profile.VideoEncoderConfiguration.Encoding == "H264"
     ptz = await client.create_ptz_service()
     presets = await ptz.GetPresets(profile.token)

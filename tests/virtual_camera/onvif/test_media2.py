@@ -116,14 +116,15 @@ async def test_onvif_python(analytic_scene: Scene, tmp_path: Path) -> None:
         assert (heard["encoding"], heard["size"], heard["bounds"]) == ("H264", [320, 180], [320, 180])
         assert heard["rates"] == [25.0]
         assert heard["stream"] == f"rtsp://127.0.0.1:{RTSP_PORT}/axis-media/media.amp"
+        assert heard["small_stream"] == f"{heard['stream']}?resolution=160x90"
         assert heard["snapshot"].startswith(f"{camera.url}/axis-cgi/jpg/image.cgi")
-        assert heard["instances"] == 1
+        assert heard["instances"] == 2
         assert heard["listed"]
         assert heard["move_status"] is True
         assert heard["presets"] == [preset.name for preset in device.presets()]
         assert heard["zoom"] == pytest.approx(0.5)
         assert "NotAuthorized" in heard["refused"] or "wrong" in heard["refused"]
-        assert heard["by_http_digest"] == 1
+        assert heard["by_http_digest"] == 2
         assert str(device_uuid(device)) in heard["discovered"][str(camera.port)]
 
 

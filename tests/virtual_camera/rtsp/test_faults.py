@@ -78,7 +78,7 @@ async def test_replies_are_late(open_device: VirtualDevice) -> None:
 
 async def test_every_account_is_refused(served_device: VirtualDevice) -> None:
     served_device.faults = Faults(unauthorized=True)
-    async with serving(served_device) as served, RtspClient(served.port, user="root", password="pass word") as client:  # noqa: S106
+    async with serving(served_device) as served, RtspClient(served.port, user="root", password="pass word") as client:
         assert (await client.request("DESCRIBE")).status == 401
         served_device.faults = Faults()
         assert (await client.request("DESCRIBE")).status == 200

@@ -12,7 +12,7 @@ from anyio import to_thread
 
 from scope_ptz.camera.axis import requests
 from scope_ptz.camera.axis.client import VapixClient
-from scope_ptz.camera.axis.device import AxisDevice, read_device
+from scope_ptz.camera.axis.device import RTSP_PORT, AxisDevice, read_device, read_rtsp_port
 from scope_ptz.camera.axis.lens import LensControls
 from scope_ptz.camera.axis.pictures import AxisPictures, StreamKind
 from scope_ptz.camera.axis.replies import VapixError, check_done, parse_limits
@@ -69,7 +69,7 @@ class AxisCamera(LensControls, Camera):
         width: int = 1280,
         height: int = 720,
         stream: StreamKind = "mjpeg",
-        rtsp_port: int = 554,
+        rtsp_port: int | None = None,
         latency_s: float = 0.1,
         fields_deg: tuple[float, float] | None = None,
         settling: Settling | None = None,
@@ -83,7 +83,7 @@ class AxisCamera(LensControls, Camera):
             width: Width of a frame in pixels.
             height: Height of a frame in pixels.
             stream: How ``frames`` are transported.
-            rtsp_port: Port of the RTSP server.
+            rtsp_port: Port of the RTSP server; None for the one that the device reports.
             latency_s: Seconds from the exposure of a streamed frame to its arrival.
             fields_deg: Horizontal fields of view at the widest and the closest zoom, in place of what the device reports.
             settling: When the camera counts as settled.
@@ -95,6 +95,8 @@ class AxisCamera(LensControls, Camera):
         try:
             device = await read_device(client, fields_deg=fields_deg)
             client.queueing = device.queueing
+            if rtsp_port is None:
+                rtsp_port = await read_rtsp_port(client) if stream == "rtsp" else RTSP_PORT
             pictures = AxisPictures(
                 client, credentials, width, height, sizes=device.sizes, stream=stream, rtsp_port=rtsp_port, latency_s=latency_s
             )

@@ -16,6 +16,9 @@ from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics
 KNOWN_OPTICS = {"AXIS M5075-G": AXIS_M5075_G}
 """Optics of models by product name, for devices that do not report their field angles."""
 
+RTSP_PORT = 554
+"""The standard port of RTSP servers."""
+
 DEFAULT_SPEEDS = ((1.0, 1.0), (100.0, 100.0))
 """Assumed for devices without a speed table: 100 is 100 degrees per second."""
 
@@ -90,6 +93,12 @@ async def read_device(client: VapixClient, *, fields_deg: tuple[float, float] | 
         locked=ptz.get(f"{various}Locked") == "true",
         sizes=_sizes(image.get("Properties.Image.Resolution", "")),
     )
+
+
+async def read_rtsp_port(client: VapixClient) -> int:
+    """Return the port of the RTSP server: the one that the device reports, or the standard port."""
+    text = (await _parameters(client, "root.Network.RTSP")).get("Network.RTSP.Port", "")
+    return int(text) if text.isdecimal() and 0 < int(text) < 65536 else RTSP_PORT
 
 
 def _capabilities(supported: frozenset[str], speeds: SpeedScale) -> Capabilities:

@@ -48,6 +48,9 @@ def serve(
         list[str] | None,
         typer.Option("--fault", metavar="NAME=VALUE", help="Fault to show, for example stall_s=2 (repeatable)."),
     ] = None,
+    prefetch: Annotated[
+        bool, typer.Option("--prefetch/--no-prefetch", help="Read viewpoints at the start: no stalls, more memory (default: on).")
+    ] = True,
     truth: Annotated[bool, typer.Option("--truth", help="Give programs on this machine the ground truth of frames.")] = False,
     no_discovery: Annotated[bool, typer.Option("--no-discovery", help="Do not answer WS-Discovery (ONVIF).")] = False,
     as_json: JsonOption = False,
@@ -73,6 +76,7 @@ def serve(
         faults=parse_faults(fault or []),
         truth=truth,
         discovery=not no_discovery,
+        prefetch=prefetch,
     )
     devices = make_devices(options, accounts)
     shown = [] if settings.virtual_camera_password else accounts

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from anyio import to_thread
 
@@ -12,19 +13,20 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PackError, PerceptionError, UnknownNameError
 from scope_ptz.geometry import Projection
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.ground_truth.answers import AnswerText, answer
-from scope_ptz.perception.ground_truth.language import parse_description, parse_question
-from scope_ptz.perception.ground_truth.language.question_tree import Describe
-from scope_ptz.perception.ground_truth.thing_search import find
-from scope_ptz.perception.ground_truth.view import Thing, View, read_view
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import ViewTruth, view_truth
+
+if TYPE_CHECKING:
+    from scope_ptz.perception.ground_truth.answers import AnswerText
+    from scope_ptz.perception.ground_truth.view import Thing, View
 
 TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
 
 
 class GroundTruthPerception(Perception):
     """Answers from the ground truth of simulated frames. Frames of real cameras have none and raise ``PerceptionError``.
+
+    What reads questions and descriptions is imported with the first of them: many instructions ask nothing.
 
     Visibility and legibility are as the simulator defines them. Boxes come largest first, unless the description orders them ("the
     nearest car"). Their label is the name of the thing, and they have no score.
@@ -45,7 +47,7 @@ class GroundTruthPerception(Perception):
 
     async def caption(self, frame: Frame) -> Caption:
         began = time.perf_counter()
-        reply = await to_thread.run_sync(lambda: answer(self.view(frame, ""), Describe()))
+        reply = await to_thread.run_sync(self._described, frame)
         return Caption(text=reply.text, source=self.name, raw=reply.text, latency_s=time.perf_counter() - began)
 
     async def query(self, frame: Frame, question: str) -> Answer:
@@ -70,6 +72,8 @@ class GroundTruthPerception(Perception):
 
         ``asked`` is the question. The truth does not depend on it, but simulated noise does.
         """
+        from scope_ptz.perception.ground_truth.view import read_view
+
         origin = frame.origin
         if origin is None:
             raise PerceptionError(
@@ -86,12 +90,24 @@ class GroundTruthPerception(Perception):
         """Return the part of the truth that the backend perceives. This one perceives everything; subclasses add errors."""
         return truth
 
+    def _described(self, frame: Frame) -> AnswerText:
+        from scope_ptz.perception.ground_truth.answers import answer
+        from scope_ptz.perception.ground_truth.language.question_tree import Describe
+
+        return answer(self.view(frame, ""), Describe())
+
     def _answer(self, frame: Frame, question: str) -> AnswerText:
+        from scope_ptz.perception.ground_truth.answers import answer
+        from scope_ptz.perception.ground_truth.language import parse_question
+
         if not question.strip():
             raise PerceptionError("The question is empty.")
         return answer(self.view(frame, question), parse_question(question))
 
     def _find(self, frame: Frame, description: str) -> list[Thing]:
+        from scope_ptz.perception.ground_truth.language import parse_description
+        from scope_ptz.perception.ground_truth.thing_search import find
+
         if not description.strip():
             raise PerceptionError("The description is empty.")
         return find(self.view(frame, description), parse_description(description))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from scope_ptz.tools.arguments import View
+if TYPE_CHECKING:
+    from scope_ptz.tools.arguments import View
+
 
 Operator = Literal[">=", "<=", ">", "<", "=="]
 Sense = Literal["more", "fewer"]

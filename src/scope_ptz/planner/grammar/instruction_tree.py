@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from scope_ptz.planner.grammar.conditions import Answered as Answered
 from scope_ptz.planner.grammar.conditions import Condition as Condition
@@ -19,7 +19,9 @@ from scope_ptz.planner.grammar.conditions import Seen as Seen
 from scope_ptz.planner.grammar.conditions import Sense as Sense
 from scope_ptz.planner.grammar.conditions import Statement as Statement
 from scope_ptz.planner.grammar.conditions import Thing as Thing
-from scope_ptz.tools.arguments import View
+
+if TYPE_CHECKING:
+    from scope_ptz.tools.arguments import View
 
 Axis = Literal["pan", "tilt"]
 

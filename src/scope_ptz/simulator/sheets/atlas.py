@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from threading import RLock
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from scope_ptz.simulator.sheets.kept import KeptPictures, KeptSheet
 from scope_ptz.simulator.sheets.layout import BORDER_PX, Size, Slot, lay_out
 from scope_ptz.simulator.sheets.memory import CAN_RELEASE, ReleasableArray
 
@@ -32,6 +34,25 @@ class Scale(NamedTuple):
     sharpening: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class Keep:
+    """Where a sheet stays on disk.
+
+    Attributes:
+        pictures: The folder.
+        source: What the pixels of the sheet depend on, besides its layout.
+        verify: Verifies the file of picture ``i``. Raises ``PackError`` if it is damaged.
+    """
+
+    pictures: KeptPictures
+    source: str
+    verify: Callable[[int], object]
+
+    def open(self, slots: Sequence[tuple[Slot, ...]], shape: tuple[int, ...], dtype: type[np.generic]) -> KeptSheet | None:
+        """Return the sheet, None if nothing can be kept."""
+        return self.pictures.sheet(self.pictures.name(self.source, slots, shape), shape, dtype)
+
+
 class Atlas:
     """One sheet with every picture of one kind, each at every scale. Safe to share between threads.
 
@@ -46,6 +67,7 @@ class Atlas:
         decode: Turns rows of a loaded picture into pixels; the default takes them as they are.
         pans_deg: Directions of the tiles; see ``lay_out``. Needed for a limit.
         tile_bytes: Limit on the memory of tiles. The panorama is always kept.
+        kept: Where the sheet stays on disk. Without it, or with a limit, the sheet is only in memory.
     """
 
     def __init__(
@@ -59,15 +81,24 @@ class Atlas:
         decode: Callable[[NDArray[Any]], NDArray[Any]] | None = None,
         pans_deg: Sequence[float] | None = None,
         tile_bytes: int | None = None,
+        kept: Keep | None = None,
     ) -> None:
         self.scales = tuple(scales)
         self.slots, self._shelves, (width, height) = lay_out(sizes, [scale.size for scale in scales], pans_deg)
         self._load, self._decode = load, decode
         self._ready: set[tuple[int, int]] = set()
         self._lock = RLock()
-        self._memory = ReleasableArray((height, width, channels) if channels > 1 else (height, width), dtype)
-        self.sheet: NDArray[Any] = self._memory.array
         self._tile_bytes = tile_bytes if CAN_RELEASE else None
+        shape = (height, width, channels) if channels > 1 else (height, width)
+        self._keep = None if self._tile_bytes is not None else kept
+        self._kept = self._keep.open(self.slots, shape, dtype) if self._keep is not None else None
+        self._memory: ReleasableArray | None = None
+        self.sheet: NDArray[Any]
+        if self._kept is not None:
+            self.sheet = self._kept.array
+        else:
+            self._memory = ReleasableArray(shape, dtype)
+            self.sheet = self._memory.array
         self._clock = 0
         self._last_used: dict[int, int] = {}  # of each shelf of tiles that holds something
         self._readers: list[int] = []
@@ -95,12 +126,40 @@ class Atlas:
                 self._clock += 1
                 self._last_used |= {self.slots[index][scale].shelf: self._clock for scale in scales}
             missing = [scale for scale in scales if (index, scale) not in self._ready]
-            if missing:
-                picture = self._load(self, index)
-                for scale in missing:
-                    self._fill(self.slots[index][scale], picture, self.scales[scale].sharpening, index)
-                    self._ready.add((index, scale))
+            if missing and self._kept is not None:
+                self._find_or_fill(self._kept, index, missing)
+            elif missing:
+                self._fill_scales(index, missing)
                 self._release_oldest()
+
+    def _fill_scales(self, index: int, scales: Sequence[int]) -> None:
+        picture = self._load(self, index)
+        for scale in scales:
+            self._fill(self.slots[index][scale], picture, self.scales[scale].sharpening, index)
+            self._ready.add((index, scale))
+
+    def _verify(self, index: int) -> None:
+        if self._keep is not None:
+            self._keep.verify(index)
+
+    def _find_or_fill(self, kept: KeptSheet, index: int, scales: Sequence[int]) -> None:
+        """Use what is complete on disk, after verifying the file that it was read from, and fill the rest."""
+        pairs = {(index, scale) for scale in scales}
+        if pairs <= kept.complete():
+            self._verify(index)
+            self._ready |= pairs
+            return
+        with kept.filling():
+            found = pairs & kept.complete()
+            if found:
+                self._verify(index)
+            self._ready |= found
+            missing = sorted(scale for _, scale in pairs - found)
+            if missing:
+                self._fill_scales(index, missing)
+            for scale in missing:
+                slot = self.slots[index][scale]
+                kept.completed(index, scale, (slot.y - BORDER_PX, slot.y + slot.height + BORDER_PX))
 
     @contextmanager
     def reading(self) -> Iterator[None]:
@@ -121,7 +180,8 @@ class Atlas:
 
     def _release_oldest(self) -> None:
         """Release shelves of tiles, the least recently used first, until the limit holds or every shelf is in use."""
-        if self._tile_bytes is None:
+        memory = self._memory
+        if self._tile_bytes is None or memory is None:
             return
         free_before = min(self._readers, default=self._clock)
         row_bytes = self.sheet[0].nbytes
@@ -131,7 +191,7 @@ class Atlas:
             if total <= self._tile_bytes or self._last_used[shelf] >= free_before:
                 return
             self._ready.difference_update(self._shelves[shelf].pictures)
-            self._memory.release_rows(self._shelves[shelf].top, self._shelves[shelf].bottom)
+            memory.release_rows(self._shelves[shelf].top, self._shelves[shelf].bottom)
             del self._last_used[shelf]
             total -= held[shelf]
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scope_ptz.errors import PackError
 from scope_ptz.simulator.models import ActorSheet, Sprite
 from scope_ptz.simulator.pictures import Pictures
+from scope_ptz.simulator.sheets.kept import KeptPictures
 
 EXPANDED_BYTES = 32_000_000
 """Limit on the memory of expanded sprites. Expanding one takes about a millisecond."""
@@ -36,8 +37,14 @@ class SpriteStore:
     Uncompressed, the sprites of a viewpoint take up to 300 MB; compressed, about 20 MB.
     """
 
-    def __init__(self, pictures: Pictures) -> None:
-        self._pictures = pictures
+    def __init__(self, pictures: Pictures, kept: KeptPictures | None = None) -> None:
+        """Set up the store.
+
+        Args:
+            pictures: The files of the viewpoint.
+            kept: Where compressed sprites stay on disk.
+        """
+        self._pictures, self._kept = pictures, kept
         self._packed: dict[Key, bytes] = {}
         self._boxes: dict[tuple[int, int, int], tuple[int, int, int, int]] = {}
         self._expanded: OrderedDict[Key, NDArray[Any]] = OrderedDict()
@@ -90,7 +97,7 @@ class SpriteStore:
         """Decode a sheet and pack its sprites, unless that was done before."""
         places = {(s.left, s.top): s for s in sheet.sprites}
         first = next(iter(places))
-        if (part, sheet.number, *first) in self._packed:
+        if (part, sheet.number, *first) in self._packed or self._read_kept(part, sheet, list(places)):
             return
         whole = self._pictures.numbers(sheet.depth) if part == "distances" else self._pictures.colour(sheet.colour)
         if part == "colour" and (whole.ndim != 3 or whole.shape[2] != 4):
@@ -98,6 +105,29 @@ class SpriteStore:
         for (left, top), sprite in places.items():
             crop = whole[top : top + sprite.height, left : left + sprite.width]
             self._packed[part, sheet.number, left, top] = zlib.compress(crop.tobytes(), 1)
+        if self._kept is not None:
+            packed = [self._packed[part, sheet.number, *place] for place in places]
+            lengths = np.array([len(sprite) for sprite in packed], np.uint32)
+            self._kept.keep_blob(self._kept_name(self._kept, part, sheet), lengths.tobytes() + b"".join(packed))
+
+    def _read_kept(self, part: Part, sheet: ActorSheet, places: list[tuple[int, int]]) -> bool:
+        """Use compressed sprites that are on disk, after verifying the sheet's file. Return whether there were any."""
+        if self._kept is None:
+            return False
+        blob = self._kept.blob(self._kept_name(self._kept, part, sheet))
+        if blob is None:
+            return False
+        self._pictures.checked(sheet.depth if part == "distances" else sheet.colour)
+        lengths = np.frombuffer(blob, np.uint32, len(places))
+        ends = lengths.nbytes + np.cumsum(lengths, dtype=np.int64)
+        for place, length, end in zip(places, lengths.tolist(), ends.tolist(), strict=True):
+            self._packed[part, sheet.number, *place] = blob[end - length : end]
+        return True
+
+    @staticmethod
+    def _kept_name(kept: KeptPictures, part: Part, sheet: ActorSheet) -> str:
+        layer = sheet.depth if part == "distances" else sheet.colour
+        return kept.name("sprites", part, layer.sha256, [(s.left, s.top, s.width, s.height) for s in sheet.sprites])
 
     def _expand(self, key: Key, sheet: ActorSheet, sprite: Sprite) -> NDArray[Any]:
         pixels = zlib.decompress(self._packed[key])

@@ -1,4 +1,4 @@
-"""The Media2 service: the same profile in the types of Media2."""
+"""The Media2 service: the same profiles in the types of Media2."""
 
 from __future__ import annotations
 
@@ -41,6 +41,7 @@ class Media2Service:
         }
 
     def _capabilities(self, _: Request) -> Reply:
+        count = len(profiles.media_profiles(self._device))
         return {
             "Capabilities": {
                 "SnapshotUri": True,
@@ -48,7 +49,9 @@ class Media2Service:
                 "VideoSourceMode": False,
                 "OSD": False,
                 "Mask": False,
-                "ProfileCapabilities": {"MaximumNumberOfProfiles": 1, "ConfigurationsSupported": "VideoSource VideoEncoder PTZ"},
+                "ProfileCapabilities": {
+                    "MaximumNumberOfProfiles": count, "ConfigurationsSupported": "VideoSource VideoEncoder PTZ",
+                },
                 "StreamingCapabilities": {
                     "RTSPStreaming": True, "RTPMulticast": False, "RTP_RTSP_TCP": True, "NonAggregateControl": False,
                 },
@@ -56,48 +59,38 @@ class Media2Service:
         }  # fmt: skip
 
     def _profiles(self, request: Request) -> Reply:
+        found = profiles.media_profiles(self._device)
         if request.Token:
-            profiles.require_profile(request.Token)
+            found = (profiles.find_profile(self._device, request.Token),)
+        wanted = set(request.Type or ())
+        return {"Profiles": [self._profile(profile, wanted) for profile in found]}
+
+    def _profile(self, profile: profiles.MediaProfile, wanted: set[str]) -> dict[str, Any]:
         kinds = {
             "VideoSource": lambda: profiles.source_configuration(self._device),
-            "VideoEncoder": self._encoder,
+            "VideoEncoder": lambda: _encoder(profile),
             "PTZ": self._ptz.values,
         }
-        wanted = set(request.Type or ())
         configurations = {kind: values() for kind, values in kinds.items() if wanted & {"All", kind}}
-        profile: dict[str, Any] = {"token": profiles.PROFILE, "fixed": True, "Name": "H.264"}
+        described: dict[str, Any] = {"token": profile.token, "fixed": True, "Name": profile.name}
         if configurations:
-            profile["Configurations"] = configurations
-        return {"Profiles": [profile]}
+            described["Configurations"] = configurations
+        return described
 
     def _source_configurations(self, request: Request) -> Reply:
-        _check(request, profiles.SOURCE_CONFIGURATION)
+        self._check_source(request)
         return {"Configurations": [profiles.source_configuration(self._device)]}
 
     def _source_options(self, request: Request) -> Reply:
-        _check(request, profiles.SOURCE_CONFIGURATION)
+        self._check_source(request)
         return {"Options": profiles.source_options(self._device)}
 
-    def _encoder(self) -> dict[str, Any]:
-        return {
-            "token": profiles.ENCODER_CONFIGURATION,
-            "Name": "H.264",
-            "UseCount": 1,
-            "GovLength": profiles.GOP_FRAMES,
-            "Profile": "Baseline",
-            "Encoding": "H264",
-            "Resolution": {"Width": self._device.width, "Height": self._device.height},
-            "RateControl": {"FrameRateLimit": profiles.FRAME_RATE, "BitrateLimit": profiles.BITRATE_KBPS},
-            "Multicast": profiles.MULTICAST,
-            "Quality": 70.0,
-        }
-
     def _encoder_configurations(self, request: Request) -> Reply:
-        _check(request, profiles.ENCODER_CONFIGURATION)
-        return {"Configurations": [self._encoder()]}
+        return {"Configurations": [_encoder(profile) for profile in profiles.asked_encoders(self._device, request)]}
 
     def _encoder_options(self, request: Request) -> Reply:
-        _check(request, profiles.ENCODER_CONFIGURATION)
+        sizes = [profile.resolution for profile in profiles.asked_encoders(self._device, request)]
+        rates = [profile.bitrate_kbps for profile in profiles.asked_encoders(self._device, request)]
         return {
             "Options": [
                 {
@@ -105,35 +98,50 @@ class Media2Service:
                     "FrameRatesSupported": str(profiles.FRAME_RATE),
                     "ProfilesSupported": "Baseline",
                     "Encoding": "H264",
-                    "QualityRange": {"Min": 70.0, "Max": 70.0},
-                    "ResolutionsAvailable": [{"Width": self._device.width, "Height": self._device.height}],
-                    "BitrateRange": {"Min": profiles.BITRATE_KBPS, "Max": profiles.BITRATE_KBPS},
+                    "QualityRange": {"Min": profiles.QUALITY, "Max": profiles.QUALITY},
+                    "ResolutionsAvailable": sizes,
+                    "BitrateRange": {"Min": min(rates), "Max": max(rates)},
                 }
             ]
         }
 
     def _instances(self, request: Request) -> Reply:
         profiles.require_configuration(request.ConfigurationToken, profiles.SOURCE_CONFIGURATION)
-        return {"Info": {"Codec": [{"Encoding": "H264", "Number": 1}], "Total": 1}}
+        count = len(profiles.media_profiles(self._device))
+        return {"Info": {"Codec": [{"Encoding": "H264", "Number": count}], "Total": count}}
 
     def _stream_uri(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
+        profile = profiles.find_profile(self._device, request.ProfileToken)
         if request.Protocol not in _PROTOCOLS:
             raise invalid_argument("The stream is offered over RTSP, by unicast.", "InvalidStreamSetup")
-        return {"Uri": profiles.stream_uri(request, self._rtsp_port)}
+        return {"Uri": profiles.stream_uri(request, profile, self._rtsp_port)}
 
     def _snapshot_uri(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
-        return {"Uri": profiles.snapshot_uri(request, self._device)}
+        profile = profiles.find_profile(self._device, request.ProfileToken)
+        return {"Uri": profiles.snapshot_uri(request, profile)}
 
     def _synchronise(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
+        profiles.find_profile(self._device, request.ProfileToken)
         return {}
 
+    def _check_source(self, request: Request) -> None:
+        """Raise a fault if a request names a video source configuration or a profile that is not there."""
+        if request.ConfigurationToken:
+            profiles.require_configuration(request.ConfigurationToken, profiles.SOURCE_CONFIGURATION)
+        if request.ProfileToken:
+            profiles.find_profile(self._device, request.ProfileToken)
 
-def _check(request: Request, configuration: str) -> None:
-    """Raise a fault if a request names another configuration or profile."""
-    if request.ConfigurationToken:
-        profiles.require_configuration(request.ConfigurationToken, configuration)
-    if request.ProfileToken:
-        profiles.require_profile(request.ProfileToken)
+
+def _encoder(profile: profiles.MediaProfile) -> dict[str, Any]:
+    return {
+        "token": profile.encoder_token,
+        "Name": f"H.264 {profile.name}",
+        "UseCount": 1,
+        "GovLength": profiles.GOP_FRAMES,
+        "Profile": "Baseline",
+        "Encoding": "H264",
+        "Resolution": profile.resolution,
+        "RateControl": {"FrameRateLimit": profiles.FRAME_RATE, "BitrateLimit": profile.bitrate_kbps},
+        "Multicast": profiles.MULTICAST,
+        "Quality": profiles.QUALITY,
+    }

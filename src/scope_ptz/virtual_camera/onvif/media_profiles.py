@@ -1,23 +1,23 @@
-"""The media profile and its configurations, which Media and Media2 describe in their own types."""
+"""The media profiles and their configurations, which Media and Media2 describe in their own types."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.onvif.device_service import require_token
 from scope_ptz.virtual_camera.onvif.operations import Request
+from scope_ptz.virtual_camera.onvif.soap import invalid_argument
 
-PROFILE = "profile-1"
 SOURCE = "video-source"
 SOURCE_CONFIGURATION = "video-source-configuration"
-ENCODER_CONFIGURATION = "h264-configuration"
 
 FRAME_RATE = 25
 """Frames per second of the stream."""
 
 GOP_FRAMES = 25
-BITRATE_KBPS = 4096
+QUALITY = 70.0
 
 STREAM_PATH = "/axis-media/media.amp"
 SNAPSHOT_PATH = "/axis-cgi/jpg/image.cgi"
@@ -26,9 +26,71 @@ MULTICAST = {"Address": {"Type": "IPv4", "IPv4Address": "0.0.0.0"}, "Port": 0, "
 """There is no multicast stream, but the types demand an address."""
 
 
-def require_profile(token: str | None) -> None:
-    """Raise a fault unless a token is that of the profile."""
-    require_token("profile", token, PROFILE, "NoProfile")
+@dataclass(frozen=True, slots=True)
+class MediaProfile:
+    """A stream: its size in pixels and bit rate, and the tokens of the profile and of its encoder configuration."""
+
+    token: str
+    encoder_token: str
+    name: str
+    width: int
+    height: int
+    bitrate_kbps: int
+    query: str
+
+    @property
+    def resolution(self) -> dict[str, int]:
+        """The size as replies have it."""
+        return {"Width": self.width, "Height": self.height}
+
+
+def media_profiles(device: VirtualDevice) -> tuple[MediaProfile, ...]:
+    """Return the profiles: the full picture, and one of half its width and height for programs that analyse it."""
+    width, height = device.width, device.height
+    main = MediaProfile("profile-1", "h264-configuration-1", "Main", width, height, 4096, "")
+    if width % 4 or height % 4:  # H.264 needs even sizes
+        return (main,)
+    width, height = width // 2, height // 2
+    return main, MediaProfile("profile-2", "h264-configuration-2", "Small", width, height, 1024, f"?resolution={width}x{height}")
+
+
+def find_profile(device: VirtualDevice, token: str | None) -> MediaProfile:
+    """Return a profile by its token.
+
+    Raises:
+        SoapFault: There is no such profile.
+    """
+    for profile in media_profiles(device):
+        if profile.token == token:
+            return profile
+    raise invalid_argument(f"There is no profile '{str(token)[:64]}'.", "NoProfile")
+
+
+def find_encoder(device: VirtualDevice, token: str | None) -> MediaProfile:
+    """Return the profile of an encoder configuration, by the configuration's token.
+
+    Raises:
+        SoapFault: There is no such configuration.
+    """
+    for profile in media_profiles(device):
+        if profile.encoder_token == token:
+            return profile
+    raise invalid_argument(f"There is no configuration '{str(token)[:64]}'.", "NoConfig")
+
+
+def asked_encoders(device: VirtualDevice, request: Request) -> tuple[MediaProfile, ...]:
+    """Return the profiles whose encoders a request means: by configuration, by profile, or all.
+
+    Raises:
+        SoapFault: It names what is not there.
+    """
+    found = media_profiles(device)
+    if request.ConfigurationToken:
+        found = (find_encoder(device, request.ConfigurationToken),)
+    if request.ProfileToken:
+        wanted = find_profile(device, request.ProfileToken)
+        found = (wanted,) if wanted in found else ()
+    return found
 
 
 def require_configuration(token: str | None, known: str) -> None:
@@ -41,7 +103,7 @@ def source_configuration(device: VirtualDevice) -> dict[str, Any]:
     return {
         "token": SOURCE_CONFIGURATION,
         "Name": "Video source",
-        "UseCount": 1,
+        "UseCount": len(media_profiles(device)),
         "SourceToken": SOURCE,
         "Bounds": {"x": 0, "y": 0, "width": device.width, "height": device.height},
     }
@@ -61,12 +123,12 @@ def source_options(device: VirtualDevice) -> dict[str, Any]:
     }
 
 
-def stream_uri(request: Request, rtsp_port: int) -> str:
-    """Return the address of the stream as the client can reach it."""
+def stream_uri(request: Request, profile: MediaProfile, rtsp_port: int) -> str:
+    """Return the address of a stream as the client can reach it."""
     port = "" if rtsp_port == 554 else f":{rtsp_port}"
-    return f"rtsp://{request.host}{port}{STREAM_PATH}"
+    return f"rtsp://{request.host}{port}{STREAM_PATH}{profile.query}"
 
 
-def snapshot_uri(request: Request, device: VirtualDevice) -> str:
+def snapshot_uri(request: Request, profile: MediaProfile) -> str:
     """Return the address of the current picture as the client can reach it."""
-    return f"{request.origin}{SNAPSHOT_PATH}?resolution={device.width}x{device.height}"
+    return f"{request.origin}{SNAPSHOT_PATH}?resolution={profile.width}x{profile.height}"

@@ -1,4 +1,4 @@
-"""The Media service (version 1): one profile with an H.264 stream."""
+"""The Media service (version 1): profiles with an H.264 stream each."""
 
 from __future__ import annotations
 
@@ -28,14 +28,16 @@ class MediaService:
         """Return the operations by name."""
         return {
             "GetServiceCapabilities": Operation(self._capabilities, None),
-            "GetProfiles": Operation(lambda _: {"Profiles": [self._profile()]}),
+            "GetProfiles": Operation(
+                lambda _: {"Profiles": [self._profile(each) for each in profiles.media_profiles(self._device)]}
+            ),
             "GetProfile": Operation(self._get_profile),
             "GetVideoSources": Operation(self._sources),
             "GetVideoSourceConfigurations": Operation(lambda _: {"Configurations": [profiles.source_configuration(self._device)]}),
             "GetVideoSourceConfiguration": Operation(self._source_configuration),
             "GetVideoSourceConfigurationOptions": Operation(lambda _: {"Options": profiles.source_options(self._device)}),
             "GetCompatibleVideoSourceConfigurations": Operation(self._compatible_sources),
-            "GetVideoEncoderConfigurations": Operation(lambda _: {"Configurations": [self._encoder()]}),
+            "GetVideoEncoderConfigurations": Operation(lambda _: {"Configurations": self._encoders()}),
             "GetVideoEncoderConfiguration": Operation(self._encoder_configuration),
             "GetVideoEncoderConfigurationOptions": Operation(self._encoder_options),
             "GetCompatibleVideoEncoderConfigurations": Operation(self._compatible_encoders),
@@ -52,7 +54,7 @@ class MediaService:
                 "Rotation": False,
                 "VideoSourceMode": False,
                 "OSD": False,
-                "ProfileCapabilities": {"MaximumNumberOfProfiles": 1},
+                "ProfileCapabilities": {"MaximumNumberOfProfiles": len(profiles.media_profiles(self._device))},
                 "StreamingCapabilities": {
                     "RTPMulticast": False,
                     "RTP_TCP": True,
@@ -62,19 +64,18 @@ class MediaService:
             }
         }
 
-    def _profile(self) -> dict[str, Any]:
+    def _profile(self, profile: profiles.MediaProfile) -> dict[str, Any]:
         return {
-            "token": profiles.PROFILE,
+            "token": profile.token,
             "fixed": True,
-            "Name": "H.264",
+            "Name": profile.name,
             "VideoSourceConfiguration": profiles.source_configuration(self._device),
-            "VideoEncoderConfiguration": self._encoder(),
+            "VideoEncoderConfiguration": _encoder(profile),
             "PTZConfiguration": self._ptz.values(),
         }
 
     def _get_profile(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
-        return {"Profile": self._profile()}
+        return {"Profile": self._profile(profiles.find_profile(self._device, request.ProfileToken))}
 
     def _sources(self, _: Request) -> Reply:
         size = {"Width": self._device.width, "Height": self._device.height}
@@ -85,64 +86,65 @@ class MediaService:
         return {"Configuration": profiles.source_configuration(self._device)}
 
     def _compatible_sources(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
+        profiles.find_profile(self._device, request.ProfileToken)
         return {"Configurations": [profiles.source_configuration(self._device)]}
 
-    def _encoder(self) -> dict[str, Any]:
-        return {
-            "token": profiles.ENCODER_CONFIGURATION,
-            "Name": "H.264",
-            "UseCount": 1,
-            "Encoding": "H264",
-            "Resolution": {"Width": self._device.width, "Height": self._device.height},
-            "Quality": 70.0,
-            "RateControl": {"FrameRateLimit": profiles.FRAME_RATE, "EncodingInterval": 1, "BitrateLimit": profiles.BITRATE_KBPS},
-            "H264": {"GovLength": profiles.GOP_FRAMES, "H264Profile": "Baseline"},
-            "Multicast": profiles.MULTICAST,
-            "SessionTimeout": timedelta(seconds=60),
-        }
+    def _encoders(self) -> list[dict[str, Any]]:
+        return [_encoder(profile) for profile in profiles.media_profiles(self._device)]
 
     def _encoder_configuration(self, request: Request) -> Reply:
-        profiles.require_configuration(request.ConfigurationToken, profiles.ENCODER_CONFIGURATION)
-        return {"Configuration": self._encoder()}
+        return {"Configuration": _encoder(profiles.find_encoder(self._device, request.ConfigurationToken))}
 
     def _encoder_options(self, request: Request) -> Reply:
-        if request.ConfigurationToken:
-            profiles.require_configuration(request.ConfigurationToken, profiles.ENCODER_CONFIGURATION)
-        if request.ProfileToken:
-            profiles.require_profile(request.ProfileToken)
         rate, gop = profiles.FRAME_RATE, profiles.GOP_FRAMES
         h264 = {
-            "ResolutionsAvailable": [{"Width": self._device.width, "Height": self._device.height}],
+            "ResolutionsAvailable": [profile.resolution for profile in profiles.asked_encoders(self._device, request)],
             "GovLengthRange": {"Min": gop, "Max": gop},
             "FrameRateRange": {"Min": rate, "Max": rate},
             "EncodingIntervalRange": {"Min": 1, "Max": 1},
             "H264ProfilesSupported": ["Baseline"],
         }
-        return {"Options": {"QualityRange": {"Min": 70, "Max": 70}, "H264": h264}}
+        quality = round(profiles.QUALITY)
+        return {"Options": {"QualityRange": {"Min": quality, "Max": quality}, "H264": h264}}
 
     def _compatible_encoders(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
-        return {"Configurations": [self._encoder()]}
+        profiles.find_profile(self._device, request.ProfileToken)
+        return {"Configurations": self._encoders()}
 
     def _instances(self, request: Request) -> Reply:
         profiles.require_configuration(request.ConfigurationToken, profiles.SOURCE_CONFIGURATION)
-        return {"TotalNumber": 1, "H264": 1}
+        count = len(profiles.media_profiles(self._device))
+        return {"TotalNumber": count, "H264": count}
 
     def _stream_uri(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
+        profile = profiles.find_profile(self._device, request.ProfileToken)
         setup = request.StreamSetup
         if getattr(setup, "Stream", None) == "RTP-Multicast":
             raise invalid_argument("There is no multicast stream.", "InvalidStreamSetup")
-        return {"MediaUri": _media_uri(profiles.stream_uri(request, self._rtsp_port))}
+        return {"MediaUri": _media_uri(profiles.stream_uri(request, profile, self._rtsp_port))}
 
     def _snapshot_uri(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
-        return {"MediaUri": _media_uri(profiles.snapshot_uri(request, self._device))}
+        profile = profiles.find_profile(self._device, request.ProfileToken)
+        return {"MediaUri": _media_uri(profiles.snapshot_uri(request, profile))}
 
     def _synchronise(self, request: Request) -> Reply:
-        profiles.require_profile(request.ProfileToken)
+        profiles.find_profile(self._device, request.ProfileToken)
         return {}
+
+
+def _encoder(profile: profiles.MediaProfile) -> dict[str, Any]:
+    return {
+        "token": profile.encoder_token,
+        "Name": f"H.264 {profile.name}",
+        "UseCount": 1,
+        "Encoding": "H264",
+        "Resolution": profile.resolution,
+        "Quality": profiles.QUALITY,
+        "RateControl": {"FrameRateLimit": profiles.FRAME_RATE, "EncodingInterval": 1, "BitrateLimit": profile.bitrate_kbps},
+        "H264": {"GovLength": profiles.GOP_FRAMES, "H264Profile": "Baseline"},
+        "Multicast": profiles.MULTICAST,
+        "SessionTimeout": timedelta(seconds=60),
+    }
 
 
 def _media_uri(uri: str) -> dict[str, Any]:

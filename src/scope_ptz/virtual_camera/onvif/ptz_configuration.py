@@ -9,13 +9,12 @@ from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import MAX_PRESETS, VirtualDevice
 from scope_ptz.virtual_camera.onvif import spaces as s
 from scope_ptz.virtual_camera.onvif.device_service import require_token
+from scope_ptz.virtual_camera.onvif.media_profiles import media_profiles
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
 from scope_ptz.virtual_camera.onvif.soap import invalid_argument
 
 NODE = "ptz-node"
 CONFIGURATION = "ptz-configuration"
-PROFILE_COUNT = 1
-
 MIN_TIMEOUT_S, MAX_TIMEOUT_S = 0.1, 60.0
 """Shortest and longest time of a continuous move, in seconds."""
 
@@ -40,6 +39,7 @@ class PtzConfiguration:
 
     def __init__(self, device: VirtualDevice) -> None:
         self.spaces = s.Spaces(device.limits, device.optics, device.width / device.height)
+        self._use_count = len(media_profiles(device))
         self.name = "PTZ"
         self.position, self.translation = s.POSITION, s.TRANSLATION
         self.timeout_s, self.speed, self.zoom_speed = 5.0, 1.0, 1.0
@@ -62,7 +62,7 @@ class PtzConfiguration:
         return {
             "token": CONFIGURATION,
             "Name": self.name,
-            "UseCount": PROFILE_COUNT,
+            "UseCount": self._use_count,
             "NodeToken": NODE,
             "DefaultAbsolutePantTiltPositionSpace": self.position,
             "DefaultAbsoluteZoomPositionSpace": s.ZOOM_POSITION,

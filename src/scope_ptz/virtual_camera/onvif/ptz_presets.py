@@ -5,7 +5,7 @@ from __future__ import annotations
 from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import DevicePreset, VirtualDevice
-from scope_ptz.virtual_camera.onvif.media_profiles import require_profile
+from scope_ptz.virtual_camera.onvif.media_profiles import find_profile
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
 from scope_ptz.virtual_camera.onvif.ptz_configuration import PtzConfiguration
 from scope_ptz.virtual_camera.onvif.ptz_service import PtzService
@@ -36,7 +36,7 @@ class PresetOperations:
         }
 
     def _presets(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         return {
             "Preset": [
                 {"token": str(preset.number), "Name": preset.name, "PTZPosition": self._service.position(preset.pose)}
@@ -45,7 +45,7 @@ class PresetOperations:
         }
 
     def _set(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         if self._device.moving():
             raise SoapFault("A preset cannot be saved while the camera moves.", "Action", "MovingPTZ", receiver=True)
         old = None if not request.PresetToken else self._preset(request.PresetToken)
@@ -62,24 +62,24 @@ class PresetOperations:
         return {"PresetToken": str(preset.number)}
 
     def _remove(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         self._device.remove_preset(self._preset(request.PresetToken).number)
         return {}
 
     def _go_to(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         share, zoom_share = self._configuration.shares(request.Speed)
         self._device.move(self._preset(request.PresetToken).pose, speed_share=share, zoom_share=zoom_share)
         return {}
 
     def _go_home(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         share, zoom_share = self._configuration.shares(request.Speed)
         self._device.move(self._device.home, speed_share=share, zoom_share=zoom_share)
         return {}
 
     def _set_home(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         self._device.set_home()
         return {}
 

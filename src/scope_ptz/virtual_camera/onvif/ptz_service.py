@@ -12,7 +12,7 @@ from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.onvif import spaces as s
 from scope_ptz.virtual_camera.onvif.clock import device_datetime, device_time_s
-from scope_ptz.virtual_camera.onvif.media_profiles import require_profile
+from scope_ptz.virtual_camera.onvif.media_profiles import find_profile
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
 from scope_ptz.virtual_camera.onvif.ptz_configuration import PtzConfiguration, duration_s
 from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
@@ -55,7 +55,7 @@ class PtzService:
         return {"Capabilities": {"EFlip": False, "Reverse": False, "GetCompatibleConfigurations": True, "_attr_1": more}}
 
     def _status(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         status = {"Position": self.position(self._device.pose()), "UtcTime": device_datetime(self._device)}
         if (moving := self._device.reported_moving()) is not None:
             word = "MOVING" if moving else "IDLE"
@@ -63,7 +63,7 @@ class PtzService:
         return {"PTZStatus": status}
 
     def _absolute(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         pan_tilt, zoom = _axes(request.Position)
         pose = self._device.destination
         if pan_tilt is not None:
@@ -77,7 +77,7 @@ class PtzService:
         return {}
 
     def _relative(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         pan_tilt, zoom = _axes(request.Translation)
         here, pose = self._device.pose(), self._device.destination
         if pan_tilt is not None:
@@ -92,7 +92,7 @@ class PtzService:
         return {}
 
     def _continuous(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         pan_tilt, zoom = _axes(request.Velocity)
         velocity, top = self._device.driven, top_speed(self._device.head)
         if pan_tilt is not None:
@@ -112,7 +112,7 @@ class PtzService:
         return {}
 
     def _stop(self, request: Request) -> Reply:
-        require_profile(request.ProfileToken)
+        find_profile(self._device, request.ProfileToken)
         pan_tilt, zoom = request.PanTilt, request.Zoom
         if pan_tilt is None and zoom is None:
             pan_tilt = zoom = True

@@ -6,15 +6,14 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
+from typing import TYPE_CHECKING
 
-from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.lexing.lexer import preset_key, within_one_edit
-from scope_ptz.planner.grammar.lexing.vocabulary import phrase_table
-from scope_ptz.tools.arguments import View
+from scope_ptz.planner.grammar.lexing.phrases import phrase_table
 
 _MIN_SIMILARITY = 0.8  # of two preset names, from 0 to 1
 _MAX_NAME_WORDS = 4
@@ -46,6 +45,10 @@ _RELATIVE_POSITION = re.compile(
     r"((?:to the )?(?:left|right) of|above|below|under|underneath|beneath|over|beyond|past|behind|beside|next to|in front of) \w",
     re.IGNORECASE,
 )
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn
+    from scope_ptz.tools.arguments import View
 
 
 class UnresolvedError(Exception):
@@ -99,7 +102,7 @@ def plausible_name(text: str) -> bool:
     }  # fmt: skip
     if not 0 < len(words) <= _MAX_NAME_WORDS or any(word in _NOT_PRESETS for (word,) in words):
         return False
-    return not any(phrase_table().get(word, frozenset()) & command_terminals for word in words)
+    return not any(phrase_table().get(word) & command_terminals for word in words)
 
 
 @dataclass(slots=True)

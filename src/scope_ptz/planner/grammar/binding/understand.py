@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_about_the_scene, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn
 
 _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on the sign and read it'"
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from scope_ptz.geometry import Pose
-from scope_ptz.planner.base import PastTurn, ToolOutcome
-from scope_ptz.tools.registry import TOOLS
 
-_MOVING_TOOLS = TOOLS.moving
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn, ToolOutcome
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +36,17 @@ class PositionHistory:
 
 def position_history(conversation: Sequence[PastTurn]) -> PositionHistory:
     """Return the camera's positions according to the tool results of earlier turns."""
+    if not conversation:
+        return PositionHistory()
+    from scope_ptz.tools.registry import TOOLS
+
     here: VisitedPosition | None = None
     before: VisitedPosition | None = None
     for turn in conversation:
         at_start = here
         for outcome in (o for exchange in turn.exchanges for o in exchange.outcomes):
             pose = _pose(outcome.result)
-            if outcome.error is not None or pose is None or outcome.call.name not in _MOVING_TOOLS:
+            if outcome.error is not None or pose is None or outcome.call.name not in TOOLS.moving:
                 continue
             at_start = at_start or _start_of_move(outcome, pose)
             before = at_start or before

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.run_state import Run, RunState
-from scope_ptz.tools.arguments import View
+
+if TYPE_CHECKING:
+    from scope_ptz.tools.arguments import View
 
 
 class ConditionTests(RunState):

@@ -12,12 +12,11 @@ from typing import Any
 
 from scope_ptz import english
 from scope_ptz.geometry import Limits, Pose
-from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.move_arguments import arguments_of
 from scope_ptz.planner.grammar.execution.program import Program
-from scope_ptz.planner.grammar.execution.run_state import Run
+from scope_ptz.planner.grammar.execution.run_state import AssumedOutcome, Run
 
 MAX_LINES = 200  # further lines are left out
 AssumedResult = Callable[[str, Mapping[str, Any]], dict[str, Any]]
@@ -67,10 +66,9 @@ class _OutlineProgram(Program):
     def _call(self, tool: str, **arguments: Any) -> Run:
         yield from ()
         self._add(OutlineCall(tool, arguments))
-        call = ToolCall(id=f"call-{self._lines}", name=tool, arguments=arguments)
         result = self._assumed_result(tool, arguments)
         self.pose = Pose(**result["pose"])
-        return ToolOutcome(call=call, result=result)
+        return AssumedOutcome(result)
 
     def _add(self, line: OutlineCall | OutlineBlock) -> None:
         self._lines += 1

@@ -4,17 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from scope_ptz.geometry import Limits, Pose
-from scope_ptz.planner.base import ToolOutcome
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.camera_history import PositionHistory, VisitedPosition
 
 CallRequest = tuple[str, dict[str, Any]]
 """The name and arguments of a tool call."""
 
-Run = Generator[CallRequest, ToolOutcome, Any]
+
+class Outcome(Protocol):
+    """The outcome of a tool call: its result as JSON data, or ``error`` if it failed."""
+
+    @property
+    def result(self) -> dict[str, Any] | None: ...
+
+    @property
+    def error(self) -> str | None: ...
+
+
+Run = Generator[CallRequest, Outcome, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class AssumedOutcome:
+    """The assumed outcome of a call that was not made."""
+
+    result: dict[str, Any]
+    error: None = None
 
 
 class HaltedError(Exception):
@@ -67,14 +85,14 @@ class RunState:
 
     def _camera_call(self, tool: str, **arguments: Any) -> Run:
         """Make a camera call and return its result. A failure ends the run, because later steps depend on the pose."""
-        outcome: ToolOutcome = yield from self._call(tool, **arguments)
+        outcome: Outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
             raise HaltedError(f"I stopped because the camera did not do {tool}: {outcome.error or 'no result'}")
         return outcome.result
 
     def _perception_call(self, tool: str, **arguments: Any) -> Run:
         """Make a perception call and return its result. If it fails twice, add a note to the answer and return None."""
-        outcome: ToolOutcome = yield from self._call(tool, **arguments)
+        outcome: Outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None:
             outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:

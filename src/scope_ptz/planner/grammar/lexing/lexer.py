@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import takewhile
 
 from scope_ptz.planner.grammar.lexing.number_phrases import NumberPhrase, read_number
-from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, phrase_table, spelling, word_list
+from scope_ptz.planner.grammar.lexing.phrases import phrase_table
+from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, spelling, word_list
 
 _TOKEN = re.compile(
     r"""(?P<quote>"[^"\n]+"|“[^”\n]+”|(?<!\w)'[^'\n]+'(?!\w))
@@ -175,7 +176,7 @@ class Lexer:
 
         In some contexts only the first word counts, because the words of the phrase have separate meanings.
         """
-        phrase = self._longest(run, self._table)
+        phrase = self._longest(run, self._table.starting_with(run[0]) if run else {})
         if phrase < 2:
             return phrase
         kinds = self._table[tuple(run[:phrase])]
@@ -194,7 +195,7 @@ class Lexer:
     def _number(self, words: list[_Word], i: int, number: NumberPhrase, phrase: list[str], before: list[Lexeme]) -> Lexeme | None:
         """Return the lexeme of a number; None if it only numbers a sentence ("first, ...")."""
         used = words[i : i + number.used]
-        if _starts_clause(before) and "FILLER" in self._table.get(tuple(w.text for w in used), ()):
+        if _starts_clause(before) and "FILLER" in self._table.get(tuple(w.text for w in used)):
             return None
         kinds = number.kinds | (self._table[tuple(phrase)] if len(phrase) == number.used else frozenset())
         return Lexeme(frozenset(kinds), used[0].start, used[-1].end, number.value)
@@ -234,7 +235,7 @@ class Lexer:
         return Lexeme(self._table[(guess,)] if guess else frozenset({"TEXT"}), word.start, word.end)
 
     @staticmethod
-    def _longest(run: list[str], table: dict[tuple[str, ...], frozenset[str]] | dict[tuple[str, ...], str]) -> int:
+    def _longest(run: list[str], table: Mapping[tuple[str, ...], object]) -> int:
         return next((n for n in range(len(run), 0, -1) if tuple(run[:n]) in table), 0)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 
 from scope_ptz.english.numerals import CARDINALS, ORDINALS, SCALES
 
@@ -65,7 +65,7 @@ def _sections(file: str) -> dict[str, list[str]]:
     """Return the comma-separated lists of a data file by heading. The key "@" contains the lines of the form "@name pattern"."""
     sections: dict[str, list[str]] = {"@": []}
     current: list[str] = []
-    for line in files(__package__).joinpath(file).read_text(encoding="utf-8").splitlines():
+    for line in Path(__file__).with_name(file).read_text(encoding="utf-8").splitlines():
         if line.startswith("@"):
             sections["@"].append(line[1:])
         elif line.endswith(":") and not line.startswith(("#", " ")):
@@ -95,14 +95,3 @@ def vocabulary() -> dict[str, tuple[str, ...]]:
     macros = {f"${name}": pattern for name, _, pattern in (line.partition(" ") for line in patterns.pop("@"))}
     replace = re.compile("|".join(re.escape(name) + r"\b" for name in macros))
     return {terminal: tuple(replace.sub(lambda match: macros[match[0]], p) for p in found) for terminal, found in patterns.items()}
-
-
-@cache
-def phrase_table() -> dict[tuple[str, ...], frozenset[str]]:
-    """Return the possible terminals of each word sequence. The terminal ``FILLER`` is for words without meaning."""
-    table: dict[tuple[str, ...], set[str]] = {}
-    for terminal, patterns in vocabulary().items():
-        for pattern in patterns:
-            for words in expand(pattern):
-                table.setdefault(words, set()).add(terminal)
-    return {words: frozenset(kinds) for words, kinds in table.items()}

@@ -4,8 +4,8 @@ Lark's own parsers are not suitable. Camera instructions are ambiguous ("left" i
 part of a description), which rules out a deterministic LALR parser. Lark's Earley parser takes 100 to 900 ms for an instruction,
 because it predicts every alternative of every optional word at every position.
 
-Lark is therefore used only to read, check and expand the grammar. In this parser, all right-hand sides share one prefix tree, and
-only constituents that can begin with the given lexemes are tried, bottom-up, which takes a few milliseconds. The parser returns the
+Lark is therefore used only to read, check and expand the grammar. In this parser, right-hand sides share a prefix tree, and only
+constituents that can begin with the given lexemes are tried, bottom-up, which takes a few milliseconds. The parser returns the
 reading with the highest sum of rule priorities; among equals, the one with the fewest rules.
 """
 
@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from scope_ptz.planner.grammar.parsing.rules import Rule
+from scope_ptz.planner.grammar.parsing.rules import Rule, RuleBook
 
 _RULE_COST = 1e-3  # prefers readings with fewer rules
 _ORDER_COST = 1e-8  # prefers rules that come earlier in the grammar
@@ -51,19 +51,23 @@ _Best = tuple[float, _Link | None, Rule | None]  # score, last link, rule
 class ChartParser:
     """Parses sequences of lexemes. Each lexeme is given as the set of terminals that it may be."""
 
-    def __init__(self, rules: Sequence[Rule]) -> None:
-        self._ids: dict[str, int] = {}
-        self._root = _Node()
-        for order, rule in enumerate(rules):
-            node = self._root
-            for symbol in rule.symbols:
-                node = node.children.setdefault(self._id(symbol), _Node())
-            gain = rule.priority - _RULE_COST - _ORDER_COST * order
-            node.complete.append((self._id(rule.name), gain, rule))
-        self._names = {number: name for name, number in self._ids.items()}
+    def __init__(self, rules: RuleBook) -> None:
+        self._rules = rules
+        self._names = rules.symbols
+        self._ids = {name: number for number, name in enumerate(rules.symbols)}
+        self._first: dict[int, _Node] = {}
 
-    def _id(self, name: str) -> int:
-        return self._ids.setdefault(name, len(self._ids))
+    def _read_first(self, symbol: int) -> _Node:
+        """Read the rules that begin with a symbol, and return their first node."""
+        first = _Node()
+        for order, rule in self._rules.starting_with(self._names[symbol]):
+            node = first
+            for following in rule.symbols[1:]:
+                node = node.children.setdefault(self._ids[following], _Node())
+            gain = rule.priority - _RULE_COST - _ORDER_COST * order
+            node.complete.append((self._ids[rule.name], gain, rule))
+        self._first[symbol] = first
+        return first
 
     def parse(self, lexemes: Sequence[Collection[str]], start: str) -> Branch | None:
         """Return the best parse tree of the lexemes, whose root is the rule ``start``; None if there is none."""
@@ -86,9 +90,7 @@ class ChartParser:
             agenda.append((terminal, i + 1))
         while agenda:
             symbol, end = agenda.pop()
-            node = self._root.children.get(symbol)
-            if node is None:
-                continue
+            node = self._first.get(symbol) or self._read_first(symbol)
             edges: list[tuple[_Node, int, float, _Link]] = [(node, end, here[symbol][end][0], (None, symbol, i, end))]
             while edges:
                 node, end, score, link = edges.pop()

@@ -26,7 +26,6 @@ _SOFT = frozenset(
 )  # fmt: skip
 """Terminals that often occur in descriptions, and therefore have a lower cost there than the others."""
 
-_RULES_FOR_KNOWN_PRESETS = frozenset({"far_ref"})  # left out of the grammar if the presets are unknown
 MAX_CHARS = 2000  # the rest of a longer text is ignored
 MAX_LEXEMES = 120  # longer texts are not parsed
 
@@ -46,7 +45,7 @@ def parser(presets_known: bool) -> ChartParser:
     Args:
         presets_known: Whether the camera's presets are known. If not, free words after "at" or "in" are not read as a preset.
     """
-    return ChartParser([rule for rule in load_rules() if presets_known or rule.name not in _RULES_FOR_KNOWN_PRESETS])
+    return ChartParser(load_rules(presets_known=presets_known))
 
 
 @lru_cache(maxsize=512)

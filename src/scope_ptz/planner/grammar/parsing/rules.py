@@ -1,18 +1,24 @@
 """The rules of ``language.lark`` in the plain form that the chart parser needs, compiled by Lark ahead of time.
 
 Lark needs about half a second to read and expand the grammar, which would delay every ``scope ask``. The expanded rules are
-therefore stored in ``language.rules``, with the hash of the grammar in the first line. If the hash does not match, the rules are
-compiled again, so that an edited grammar takes effect at once. ``renew()`` rewrites the file.
+therefore stored in ``language.rules`` and their symbols in ``language.symbols``. Only rules that an instruction can begin are
+parsed. After an edit of the grammar, the rules are compiled at each start until ``renew()`` rewrites the files.
 """
 
 from __future__ import annotations
 
-import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 
-_SOURCE, _COMPILED = "language.lark", "language.rules"
+from scope_ptz.planner.grammar.compiled import compiled_lines, heading
+
+RULES_FOR_KNOWN_PRESETS = frozenset({"far_ref"})
+"""Rules that are left out of the grammar if the presets are unknown."""
+
+_SOURCE = Path(__file__).with_name("language.lark")
+_RULES = Path(__file__).with_name("language.rules")
+_SYMBOLS = Path(__file__).with_name("language.symbols")
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,22 +48,58 @@ class Rule:
         return Rule(name, tuple(symbols), int(priority), label, inline.strip("."))
 
 
-def load_rules() -> list[Rule]:
+class RuleBook:
+    """Rules by the first symbol on their right-hand side, parsed on request.
+
+    Attributes:
+        symbols: All symbols, numbered by their position.
+
+    Args:
+        lines: The rules as lines of ``language.rules``.
+        symbols: All symbols in the order of ``symbols_of``.
+        left_out: Names of rules to leave out.
+    """
+
+    def __init__(self, lines: Sequence[str], symbols: Sequence[str], left_out: frozenset[str] = frozenset()) -> None:
+        self.symbols = tuple(symbols)
+        self._groups: dict[str, list[tuple[int, str]]] = {}
+        order = 0
+        for line in lines:
+            _, name, _, _, first, *_ = line.split(" ", 5)
+            if name not in left_out:
+                self._groups.setdefault(first, []).append((order, line))
+                order += 1
+
+    def starting_with(self, symbol: str) -> list[tuple[int, Rule]]:
+        """Return the rules whose right-hand side begins with a symbol, each with its position among all rules."""
+        return [(order, Rule.from_line(line)) for order, line in self._groups.get(symbol, ())]
+
+
+def load_rules(*, presets_known: bool = True) -> RuleBook:
     """Return the rules of the grammar, compiled if the stored ones are out of date."""
-    source = _text(_SOURCE)
-    head, *lines = _text(_COMPILED).splitlines()
-    return [Rule.from_line(line) for line in lines] if head == _heading(source) else compile_rules(source)
+    rules, symbols = compiled_lines(_SOURCE, _RULES), compiled_lines(_SOURCE, _SYMBOLS)
+    if rules is None or symbols is None:
+        rules, symbols = (text.splitlines()[1:] for text in compiled_texts().values())
+    return RuleBook(rules, symbols[0 if presets_known else 1].split(" "), frozenset() if presets_known else RULES_FOR_KNOWN_PRESETS)
+
+
+def symbols_of(rules: Sequence[Rule]) -> list[str]:
+    """Return the symbols of rules in the order in which they first occur, right-hand sides first."""
+    return list(dict.fromkeys(symbol for rule in rules for symbol in (*rule.symbols, rule.name)))
 
 
 def compile_rules(source: str) -> list[Rule]:
-    """Compile a grammar with Lark, which expands options, repetitions and groups."""
+    """Return a grammar's rules, with options, repetitions and groups expanded by Lark.
+
+    A rule without symbols gets an empty one, which nothing matches.
+    """
     from lark import Lark
 
     compiled = Lark(source, parser="earley", lexer="basic", maybe_placeholders=False).rules
     return [
         Rule(
             name := str(rule.origin.name),
-            tuple(symbol.name for symbol in rule.expansion),
+            tuple(symbol.name for symbol in rule.expansion) or ("",),
             rule.options.priority or 0,
             str(rule.alias or name),
             "_" if name.startswith("_") else "?" if rule.options.expand1 and not rule.alias else "",
@@ -66,24 +108,18 @@ def compile_rules(source: str) -> list[Rule]:
     ]
 
 
-def compiled_text(source: str) -> str:
-    """Return the content of ``language.rules`` for a grammar."""
-    return "\n".join([_heading(source), *map(str, compile_rules(source)), ""])
+def compiled_texts() -> dict[Path, str]:
+    """Return the content of both files for the grammar.
+
+    The lines of ``language.symbols`` are all symbols, and the symbols if the presets are unknown.
+    """
+    rules = compile_rules(_SOURCE.read_text(encoding="utf-8"))
+    other = [rule for rule in rules if rule.name not in RULES_FOR_KNOWN_PRESETS]
+    symbols = (" ".join(symbols_of(some)) for some in (rules, other))
+    return {path: "\n".join([heading(_SOURCE), *lines, ""]) for path, lines in ((_RULES, map(str, rules)), (_SYMBOLS, symbols))}
 
 
 def renew() -> None:
-    """Rewrite ``language.rules``. Needed after every edit of the grammar."""
-    Path(__file__).with_name(_COMPILED).write_text(compiled_text(_text(_SOURCE)), encoding="utf-8")
-
-
-def is_current() -> bool:
-    """Return whether ``language.rules`` is up to date with the grammar."""
-    return _text(_COMPILED) == compiled_text(_text(_SOURCE))
-
-
-def _heading(source: str) -> str:
-    return f"# Generated from {_SOURCE}; sha256 {hashlib.sha256(source.encode()).hexdigest()}"
-
-
-def _text(name: str) -> str:
-    return files(__package__).joinpath(name).read_text(encoding="utf-8")
+    """Rewrite both files after the grammar was edited."""
+    for path, text in compiled_texts().items():
+        path.write_text(text, encoding="utf-8")

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
@@ -31,7 +31,6 @@ from scope_ptz.planner.grammar.instruction_tree import (
     ZoomTo,
 )
 from scope_ptz.planner.grammar.parsing.tree_nodes import Node, RuleBuilder
-from scope_ptz.tools.arguments import View
 
 SCOPES = {"now", "full", "scene"}
 _ALL_AROUND = re.compile(r"\b(whole|entire|full) (scene|area|site|panorama|place|surroundings)\b", re.IGNORECASE)
@@ -51,6 +50,9 @@ _RELATIVE = (
     (re.compile(r"^(?:currently )?visible (?=\w)", re.IGNORECASE), ""),
     (re.compile(r" (?:what|that)$", re.IGNORECASE), ""),
 )
+
+if TYPE_CHECKING:
+    from scope_ptz.tools.arguments import View
 _ASKING = re.compile(r"(?:what|where|which|who|why|how|is|are|does|do)(?:['’]s)?\b", re.IGNORECASE)
 _ARTICLE_IN_PHRASE = re.compile(r"^(?:the|this|that) (?=\w+ ?\w)", re.IGNORECASE)
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}

@@ -1,0 +1,58 @@
+"""Groups of commands whose parameters are converted only where there is something to convert.
+
+Typer validates every parameter with pydantic, also one that was not given. Importing pydantic and building the validators takes
+longer than all else that ``scope tools`` does.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from typer.core import TyperGroup
+
+
+class LeanGroup(TyperGroup):
+    """A group of commands that leaves out conversions without effect, in its own parameters and in those of its commands."""
+
+    def get_params(self, ctx: Any) -> Any:
+        return _lean(super().get_params(ctx))
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        command = super().get_command(ctx, cmd_name)
+        if command is not None and not isinstance(command, LeanGroup) and "get_params" not in vars(command):
+            params_of = command.get_params
+            vars(command)["get_params"] = lambda context: _lean(params_of(context))
+        return command
+
+
+def _lean(parameters: list[Any]) -> list[Any]:
+    for parameter in parameters:
+        if not isinstance(parameter.process_value, _Conversion):
+            parameter.process_value = _Conversion(parameter)
+    return parameters
+
+
+class _Conversion:
+    """Converts the value of a parameter, unless it is None, a text that stays a text, or a number that is the default."""
+
+    def __init__(self, parameter: Any) -> None:
+        self._parameter, self._convert = parameter, parameter.process_value
+        self._single = parameter.nargs == 1 and not getattr(parameter, "multiple", False)
+        self._is_text = getattr(getattr(parameter, "type_descriptor", None), "annotation", None) is str
+
+    def __call__(self, ctx: Any, value: Any) -> Any:
+        parameter = self._parameter
+        if not self._is_final(value):
+            return self._convert(ctx, value)
+        if value is None and not self._single:
+            value = ()
+        return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
+
+    def _is_final(self, value: Any) -> bool:
+        if value is None:
+            return not self._parameter.required
+        if not self._single:
+            return False
+        if type(value) is str and self._is_text:
+            return True
+        return type(value) in (int, float) and value == self._parameter.default

@@ -1,0 +1,96 @@
+"""The phrases of ``vocabulary.txt``, expanded ahead of time.
+
+Expanding the patterns takes a tenth of a second, so the phrases are stored in ``vocabulary.phrases``: a line with the sets of
+terminals that occur, then a line for each first word with the rests of its phrases. An edited vocabulary is expanded again.
+``renew()`` rewrites the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from scope_ptz.planner.grammar.compiled import compiled_lines, heading
+from scope_ptz.planner.grammar.lexing.vocabulary import expand, vocabulary
+
+_SOURCE = Path(__file__).with_name("vocabulary.txt")
+_COMPILED = Path(__file__).with_name("vocabulary.phrases")
+
+Words = tuple[str, ...]
+Kinds = frozenset[str]
+_NONE: dict[Words, Kinds] = {}
+
+
+class PhraseTable:
+    """The possible terminals of each phrase; ``FILLER`` marks words without meaning. Phrases are read by their first word.
+
+    Args:
+        lines: The lines of ``vocabulary.phrases`` after its heading.
+    """
+
+    def __init__(self, lines: Iterable[str]) -> None:
+        sets, *groups = lines
+        self._sets = [frozenset(kinds.split(" ")) for kinds in sets.split("\t")]
+        self._unread = dict(line.split("\t", 1) for line in groups)
+        self._read: dict[str, dict[Words, Kinds]] = {}
+
+    def __contains__(self, words: Words) -> bool:
+        return words in self.starting_with(words[0])
+
+    def __getitem__(self, words: Words) -> Kinds:
+        return self.starting_with(words[0])[words]
+
+    def get(self, words: Words) -> Kinds:
+        """Return the terminals of a phrase, none if it is unknown."""
+        return self.starting_with(words[0]).get(words, frozenset())
+
+    def phrases(self) -> dict[Words, Kinds]:
+        """Return all phrases with their terminals."""
+        return {words: kinds for first in self._unread for words, kinds in self.starting_with(first).items()}
+
+    def starting_with(self, first: str) -> dict[Words, Kinds]:
+        """Return the phrases that begin with a word."""
+        if first not in self._unread:
+            return _NONE
+        if first not in self._read:
+            entries = (entry.split(" ") for entry in self._unread[first].split("\t"))
+            self._read[first] = {(first, *rest): self._sets[int(number)] for number, *rest in entries}
+        return self._read[first]
+
+
+@cache
+def phrase_table() -> PhraseTable:
+    """Return the phrases of the current vocabulary."""
+    return PhraseTable(compiled_lines(_SOURCE, _COMPILED) or compiled_text().splitlines()[1:])
+
+
+def expanded() -> dict[Words, Kinds]:
+    """Return all phrases with their terminals, expanded from their patterns."""
+    table: dict[Words, set[str]] = {}
+    for terminal, patterns in vocabulary().items():
+        for pattern in patterns:
+            for words in expand(pattern):
+                table.setdefault(words, set()).add(terminal)
+    return {words: frozenset(kinds) for words, kinds in table.items()}
+
+
+def compiled_text() -> str:
+    """Return the expected content of ``vocabulary.phrases``."""
+    phrases = {words: " ".join(sorted(kinds)) for words, kinds in sorted(expanded().items())}
+    sets = sorted(set(phrases.values()))
+    numbers = {kinds: str(number) for number, kinds in enumerate(sets)}
+    groups: dict[str, list[str]] = {}
+    for (first, *rest), kinds in phrases.items():
+        groups.setdefault(first, []).append(" ".join([numbers[kinds], *rest]))
+    return "\n".join([heading(_SOURCE), "\t".join(sets), *("\t".join([first, *entries]) for first, entries in groups.items()), ""])
+
+
+def renew() -> None:
+    """Rewrite ``vocabulary.phrases`` after the vocabulary was edited."""
+    _COMPILED.write_text(compiled_text(), encoding="utf-8")
+
+
+def is_current() -> bool:
+    """Return whether the compiled phrases belong to the current vocabulary."""
+    return _COMPILED.read_text(encoding="utf-8") == compiled_text()
