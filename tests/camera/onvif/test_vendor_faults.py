@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import os
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -117,6 +119,15 @@ async def test_redirects_are_refused(device: VirtualDevice) -> None:
     assert PASSWORD not in str(caught.value)
 
 
+async def test_library_leaves_process_alone(device: VirtualDevice, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("http_proxy", "http://proxy.example:3128")
+    handlers = list(logging.getLogger().handlers)
+    async with driver(device) as camera:
+        await camera.pose()
+    assert os.environ["http_proxy"] == "http://proxy.example:3128"
+    assert logging.getLogger().handlers == handlers
+
+
 async def test_wrong_password_is_said(device: VirtualDevice) -> None:
     with pytest.raises(CameraSignInError) as caught:
         async with driver(device, password="another-secret"):
@@ -149,10 +160,11 @@ async def test_clock_that_cannot_be_read(device: VirtualDevice) -> None:
 
 
 async def test_garbage_is_a_camera_error(device: VirtualDevice) -> None:
-    for garbage in (b"\x00\xff<<", b"<html><body>login</body></html>", b"", b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>"):
-        answers = [garbage]
-        vendor = Vendor(change=lambda name, reply, answers=answers: answers[0] if name == "GetStatus" else reply)
-        async with driver(device, vendor) as camera:
+    answer = [b""]
+    vendor = Vendor(change=lambda name, reply: answer[0] if name == "GetStatus" else reply)
+    async with driver(device, vendor) as camera:
+        for garbage in (b"\x00\xff<<", b"<html><body>login</body></html>", b"", b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>"):
+            answer[0] = garbage
             with pytest.raises(CameraError):
                 await camera.pose()
 

@@ -9,7 +9,7 @@ import anyio
 
 from scope_ptz.camera.network.errors import CameraReplyError, CameraSignInError
 from scope_ptz.camera.onvif.faults import soap_errors
-from scope_ptz.camera.onvif.transport import PinnedTransport, import_onvif, pinned_path, to_bytes
+from scope_ptz.camera.onvif.transport import PinnedTransport, import_onvif, pinned_path, to_bytes, unchanged_proxies
 
 if TYPE_CHECKING:
     from scope_ptz.camera.network.address import DeviceAddress
@@ -121,9 +121,10 @@ class OnvifClient:
     def _make_camera(self, adjust_time: bool) -> Any:
         address, account = self.address, self._credentials
         scheme = "https" if address.tls else "http"
-        camera = self._library.ONVIFCamera(
-            f"{scheme}://{address.host}", address.port, account.user, account.password, no_cache=True, adjust_time=adjust_time
-        )
+        with unchanged_proxies():
+            camera = self._library.ONVIFCamera(
+                f"{scheme}://{address.host}", address.port, account.user, account.password, no_cache=True, adjust_time=adjust_time
+            )
         # The library's services bring transports that follow redirects and go wherever the device points.
         camera.create_onvif_service = partial(_service_of, self, camera)
         return camera
