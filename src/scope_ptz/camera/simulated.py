@@ -56,7 +56,8 @@ class SimulatedCamera(Camera):
         self.clock = clock or SceneClock()
         self._scene = scene
         self._presets = ScenePresets(scene.file, viewpoint)
-        self._viewpoint = scene.viewpoint(self._presets.home.viewpoint)
+        # Only the name: opening a viewpoint would release the layers of another one, and a camera that only moves needs none.
+        self._viewpoint = self._presets.home.viewpoint
         self._info = CameraInfo(
             name=f"simulated AXIS M5075-G in {scene.file.title}",
             limits=Limits(),
@@ -76,11 +77,11 @@ class SimulatedCamera(Camera):
     @property
     def viewpoint(self) -> str:
         """Name of the current optical centre."""
-        return self._viewpoint.name
+        return self._viewpoint
 
     def prefetch(self) -> Prefetch:
         """Read the current viewpoint in the background, so that no later frame from there has to wait for a file."""
-        return Prefetch(self._viewpoint, self._info.frame_width, self._info.optics, self._info.limits)
+        return Prefetch(self._scene.viewpoint(self._viewpoint), self._info.frame_width, self._info.optics, self._info.limits)
 
     async def pose(self) -> Pose:
         return self._pose_now()
@@ -110,7 +111,7 @@ class SimulatedCamera(Camera):
         return await self._go_to(self._presets.home)
 
     async def frame(self) -> Frame:
-        pose, time_s, viewpoint = self._pose_now(), self.clock.now_s(), self._viewpoint.name
+        pose, time_s, viewpoint = self._pose_now(), self.clock.now_s(), self._viewpoint
         hfov_deg = self._info.optics.hfov_deg(pose.zoom)
         view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, self._info.frame_width, self._info.frame_height)
         image = await to_thread.run_sync(picture, self._scene, viewpoint, view, time_s)
@@ -130,10 +131,10 @@ class SimulatedCamera(Camera):
         return self._motion.pose(self.clock.elapsed_s())
 
     async def _go_to(self, preset: ScenePreset) -> Arrival:
-        if preset.viewpoint == self._viewpoint.name:
+        if preset.viewpoint == self._viewpoint:
             return await self.move(preset_pose(preset))
         end, clamped = self._info.limits.clamp(preset_pose(preset))
-        self._viewpoint = self._scene.viewpoint(preset.viewpoint)
+        self._viewpoint = preset.viewpoint
         self._motion.halt(end, self.clock.elapsed_s())
         await self.clock.sleep(CUT_S)
         return Arrival(end, clamped)

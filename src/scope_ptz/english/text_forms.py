@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Sequence
+from functools import lru_cache
 
 
 def listing(items: Sequence[str], word: str = "and") -> str:
@@ -19,6 +20,7 @@ def sentence(text: str) -> str:
     return text[:1].upper() + text[1:].rstrip(".") + "."
 
 
+@lru_cache(maxsize=8192)
 def letters(text: str) -> str:
     """Return only the letters and digits of a text, in lower case, with one space between words."""
     return " ".join(re.findall(r"[a-z0-9]+", unicodedata.normalize("NFKC", text).lower()))

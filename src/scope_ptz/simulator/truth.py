@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.errors import PackError
-from scope_ptz.geometry import Equirectangular, Projection, angle_between_deg, direction, pan_tilt_deg
-from scope_ptz.simulator.actors import TOLERANCE_M, TOLERANCE_SHARE, composited, extent
+from scope_ptz.geometry import Equirectangular, Projection, direction, pan_tilt_deg
+from scope_ptz.simulator.actors import Appearance, composited, extent
 from scope_ptz.simulator.models import Extent, SceneActor, SceneInstance, SceneText
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import distances_m
 from scope_ptz.simulator.runs import measure
+from scope_ptz.simulator.text_geometry import CELLS, text_geometry
 from scope_ptz.simulator.viewpoint import Viewpoint
 from scope_ptz.simulator.views import instance_numbers
 
@@ -112,36 +112,38 @@ def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: flo
     """Return the ground truth of a picture taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
     here = scene.viewpoint(viewpoint)
     numbers = instance_numbers(scene, viewpoint, projection, time_s)
-    extents = here.extents | {a.actor.number: extent(here, a) for a in composited(scene, here, time_s)}
-    return ViewTruth(_sightings(scene, projection, numbers, extents), _texts(scene, here, projection, numbers))
+    actors = {a.actor.number: a for a in composited(scene, here, time_s)}
+    return ViewTruth(_sightings(scene, here, actors, projection, numbers), _texts(scene, here, projection, numbers))
 
 
 def _sightings(
-    scene: Scene, projection: Projection, numbers: NDArray[np.uint16], extents: Mapping[int, Extent]
+    scene: Scene, viewpoint: Viewpoint, actors: Mapping[int, Appearance], projection: Projection, numbers: NDArray[np.uint16]
 ) -> tuple[Sighting, ...]:
     seen = measure(numbers, projection)
     pan, tilt = pan_tilt_deg(projection.directions(seen.middle))
-    found = []
+    extents = dict[int, Extent]()
     for k, number in enumerate(seen.numbers.tolist()):
         if number not in scene.by_number:
             raise PackError(
                 f"A pixel of scene '{scene.name}' shows instance {number}, which scene.json does not know. Bake it again."
             )
-        if number not in extents:
-            continue  # it covers less than one pixel of the bake from here, so it can never be visible
-        extent = extents[number]
-        share = min(1.0, float(seen.solid_angle_sr[k]) / max(extent.solid_angle_sr, 1e-12))
-        inside = _share_inside(extent, projection)
+        if number in actors:
+            extents[k] = extent(viewpoint, actors[number])
+        elif number in viewpoint.extents:  # else it covers less than one pixel of the bake from here: it can never be visible
+            extents[k] = viewpoint.extents[number]
+    found = []
+    for (k, extent_), inside in zip(extents.items(), _shares_inside(list(extents.values()), projection), strict=True):
+        share = min(1.0, float(seen.solid_angle_sr[k]) / max(extent_.solid_angle_sr, 1e-12))
         found.append(
             Sighting(
-                instance=scene.by_number[number],
+                instance=scene.by_number[extent_.number],
                 box=_box(seen.box[k]),
                 point=(float(seen.point[k, 0]), float(seen.point[k, 1])),
                 pixels=int(seen.pixels[k]),
                 share=share,
                 pan_deg=float(pan[k]),
                 tilt_deg=float(tilt[k]),
-                distance_m=extent.distance_m,
+                distance_m=extent_.distance_m,
                 cut=inside < 1.0,
                 occluded=share < UNOCCLUDED_SHARE * inside,
             )
@@ -149,13 +151,20 @@ def _sightings(
     return tuple(sorted(found, key=lambda s: (s.distance_m, s.instance.number)))
 
 
-def _share_inside(extent: Extent, projection: Projection) -> float:
-    """Return the share of an outline's area that lies inside the frame, 1 when nothing is cut off."""
-    hull = np.array(extent.hull, dtype=np.float64).reshape(-1, 2)
-    points = projection.points(direction(hull[:, 0], hull[:, 1]))
+def _shares_inside(extents: Sequence[Extent], projection: Projection) -> list[float]:
+    """Return the share of each outline's area that lies inside the frame, 1 when nothing is cut off."""
+    hulls = [np.array(extent.hull, dtype=np.float64).reshape(-1, 2) for extent in extents]
+    if not hulls:
+        return []
+    corners = np.concatenate(hulls)
+    points = projection.points(direction(corners[:, 0], corners[:, 1]))
+    ends = np.cumsum([len(hull) for hull in hulls])[:-1]
+    return [_share_inside(outline, projection) for outline in np.split(points, ends)]
+
+
+def _share_inside(points: NDArray[np.float64], projection: Projection) -> float:
     if isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0:
         # A full panorama cuts nothing at its left and right edges.
-        points[:, 0] = 0.5
         return float(np.mean((points[:, 1] >= 0) & (points[:, 1] <= 1))) if len(points) else 1.0
     points = points[~np.isnan(points).any(axis=-1)]
     if np.all((points >= 0) & (points <= 1)):
@@ -168,68 +177,39 @@ def _share_inside(extent: Extent, projection: Projection) -> float:
 
 
 def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> tuple[TextSighting, ...]:
-    families, texts = scene.families, scene.file.texts
-    near = np.flatnonzero(_may_show(texts, viewpoint, projection)) if texts else ()
-    seen = (_text(texts[k], families[texts[k].parent], viewpoint, projection, numbers) for k in near)
-    return tuple(s for s in seen if s is not None)
-
-
-def _may_show(texts: Sequence[SceneText], viewpoint: Viewpoint, projection: Projection) -> NDArray[np.bool_]:
-    """Return the texts that face the viewpoint and whose corners do not all lie beyond one edge of the frame."""
-    centre, right, up = (np.array([getattr(t, name) for t in texts], dtype=np.float64) for name in ("centre_m", "right", "up"))
-    half = np.array([(t.width_m / 2, t.height_m / 2) for t in texts])
-    facing = np.sum(np.cross(right, up) * (viewpoint.position_m - centre), axis=-1) > 0
-    across, along = right * half[:, :1], up * half[:, 1:]
-    corners = np.stack([centre + a * across + b * along for a in (-1, 1) for b in (-1, 1)], axis=1)
-    points = projection.points(viewpoint.offset(corners.reshape(-1, 3))).reshape(len(texts), 4, 2)
-    with np.errstate(invalid="ignore"):
-        beyond = np.any(np.all(points < 0, axis=1) | np.all(points > 1, axis=1), axis=-1)
-    behind = np.isnan(points).all(axis=(1, 2))
-    return np.asarray(facing & ~beyond & ~behind)
-
-
-def _text(
-    text: SceneText, family: frozenset[int], viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]
-) -> TextSighting | None:
-    """Return the sighting of a text, or None when no part of its front is in the frame."""
-    centre, right, up = (np.array(v, dtype=np.float64) for v in (text.centre_m, text.right, text.up))
-    towards = viewpoint.position_m - centre
-    angle_deg = float(angle_between_deg(np.cross(right, up), towards))
-    if angle_deg >= 90.0:
-        return None
-    # Sample the cells of a grid over the letters; the corners give the box.
-    across, along = np.meshgrid((np.arange(24) + 0.5) / 24 - 0.5, (np.arange(8) + 0.5) / 8 - 0.5)
-    cells = centre + across[..., None] * text.width_m * right + along[..., None] * text.height_m * up
-    rays = viewpoint.offset(cells.reshape(-1, 3))
-    points = projection.points(rays)
+    """Return the sightings of the texts of which some of the front is in the frame."""
+    if not scene.file.texts:
+        return ()
+    geometry = text_geometry(scene, viewpoint)
+    near = geometry.may_show(projection)
+    points = projection.points(geometry.rays[near])
     inside = np.all((points >= 0) & (points < 1), axis=-1)
-    if not inside.any():
-        return None
-    height, width = numbers.shape
-    pixels = (points[inside] * (width, height)).astype(int)
-    shown = numbers[pixels[:, 1], pixels[:, 0]]
-    own = np.isin(shown, list(family)) & ~_behind_its_own(viewpoint, rays[inside], shown)
-    cap = projection.points(viewpoint.offset(centre + np.array([[-0.5], [0.5]]) * text.cap_height_m * up))
-    cap_height_px = float(np.linalg.norm((cap[1] - cap[0]) * (width, height)))
-    low, high = points[inside].min(axis=0), points[inside].max(axis=0)
-    return TextSighting(
-        text=text,
-        box=_box(np.concatenate([low, high])),
-        cap_height_px=0.0 if np.isnan(cap_height_px) else cap_height_px,
-        angle_deg=angle_deg,
-        unhidden_share=float(own.sum() / len(points)),
-    )
-
-
-def _behind_its_own(viewpoint: Viewpoint, rays: NDArray[np.float64], shown: NDArray[np.uint16]) -> NDArray[np.bool_]:
-    """Return which points of a text, as vectors (n, 3) from the optical centre, lie behind what their pixels show.
-
-    Instance numbers reveal other objects that hide a text. Distances reveal parts of the same object that do, such as a shop's
-    awning in front of the name on its door.
-    """
-    still_m, owners = distances_m(viewpoint, rays)
-    away_m = np.linalg.norm(rays, axis=-1)
-    return np.asarray((owners == shown) & (still_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M < away_m))
+    shows = inside.any(axis=-1)
+    near, points, inside = near[shows], points[shows], inside[shows]
+    if not near.size:
+        return ()
+    size = np.array([numbers.shape[1], numbers.shape[0]])
+    texts, cells = np.nonzero(inside)
+    pixels = (points[inside] * size).astype(int)
+    unhidden = geometry.unhidden(viewpoint, near[texts], cells, numbers[pixels[:, 1], pixels[:, 0]])
+    count = np.bincount(texts[unhidden], minlength=len(near))
+    low = np.where(inside[..., None], points, np.inf).min(axis=1)
+    high = np.where(inside[..., None], points, -np.inf).max(axis=1)
+    boxes = np.concatenate([low, high], axis=-1)
+    capitals = projection.points(geometry.capitals[near])
+    found = []
+    for k, text in enumerate(near.tolist()):
+        cap_height_px = float(np.linalg.norm((capitals[k, 1] - capitals[k, 0]) * size))
+        found.append(
+            TextSighting(
+                text=geometry.texts[text],
+                box=_box(boxes[k]),
+                cap_height_px=0.0 if np.isnan(cap_height_px) else cap_height_px,
+                angle_deg=geometry.angle_deg[text],
+                unhidden_share=float(count[k] / CELLS),
+            )
+        )
+    return tuple(found)
 
 
 def _box(box: NDArray[np.float64]) -> BoxTuple:

@@ -89,18 +89,21 @@ def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
     span = max(b.right_pan_deg for b in blocks) - left
     bottom = min(b.bottom_tilt_deg for b in blocks)
     width, height = round(span * density), round((top - bottom) * density)
+    projection = Equirectangular(left, span, top, bottom, width, height)
+    if all(frame.image.strides == (0, 0, 0) and frame.image[0, 0, 0] == first.image[0, 0, 0] for frame in frames):
+        # The camera renders nothing: its images repeat one value, which takes neither memory nor time.
+        return Frame(np.broadcast_to(first.image[:1, :1], (height, width, 3)), pose, span, first.time_s, projection, first.origin)
     panorama = np.empty((height, width, 3), np.uint8)
     for block, frame in zip(blocks, frames, strict=True):
         x0, x1 = (round((p - left) / span * width) for p in (block.left_pan_deg, block.right_pan_deg))
         y0, y1 = (round((top - t) / (top - bottom) * height) for t in (block.top_tilt_deg, block.bottom_tilt_deg))
-        whole = Equirectangular(left, span, top, bottom, width, height)
         if not isinstance(frame.projection, Perspective):
             raise CameraError("A sweep needs perspective frames.")
-        map_x, map_y = _block_maps(whole, frame.projection, x0, y0, x1, y1)
+        map_x, map_y = _block_maps(projection, frame.projection, x0, y0, x1, y1)
         # A site's rules may have kept the camera away from a block. What its frame does not show stays black.
         border = cv2.BORDER_REPLICATE if _aims_at(frame, block) else cv2.BORDER_CONSTANT
         panorama[y0:y1, x0:x1] = cv2.remap(frame.image, map_x, map_y, cv2.INTER_LINEAR, borderMode=border)
-    return Frame(panorama, pose, span, first.time_s, Equirectangular(left, span, top, bottom, width, height), origin=first.origin)
+    return Frame(panorama, pose, span, first.time_s, projection, first.origin)
 
 
 def _aims_at(frame: Frame, block: Block) -> bool:

@@ -79,7 +79,12 @@ def _plain_letter(letter: str) -> str:
 
 def plain_words(text: str) -> list[str]:
     """Return the normalised words of a text."""
-    return [w.text for w in words_of(clean(text))]
+    return list(_plain_words(text))
+
+
+@lru_cache(maxsize=4096)
+def _plain_words(text: str) -> tuple[str, ...]:
+    return tuple(w.text for w in words_of(clean(text)))
 
 
 def _british(word: str) -> str:
@@ -94,7 +99,8 @@ def words_of(text: str) -> list[Word]:
     for pattern, plain in _CONTRACTIONS:
         low = pattern.sub(plain, low)
     for idiom in _IDIOMS:
-        low = re.sub(rf"\b{idiom}\b", " ", low)
+        if idiom in low:
+            low = re.sub(rf"\b{idiom}\b", " ", low)
     words, end, clause, segment = list[Word](), 0, 0, 0
     for match in _WORD.finditer(low):
         gap, word = low[end : match.start()], match.group()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in, singular_phrase
@@ -256,6 +257,7 @@ def _fits(view: View, thing: Thing, word: str) -> bool | None:
     return False if lexicon().concept(word) else None
 
 
+@lru_cache(maxsize=4096)
 def _forms(word: str) -> frozenset[str]:
     """Return a word with its other forms, so that "kneeling" fits "kneel"."""
     stems = {word, english.singular(word)}

@@ -126,36 +126,75 @@ class View:
         return tuple(t for t in self.things if t.parent is None or t.parent not in self.by_id)
 
 
-def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
-    """Create the view of a frame from its ground truth."""
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneFacts:
+    """The facts of a scene that every view of it shares. They have the meaning of the attributes of ``View``."""
+
+    file: SceneFile
+    parents: Mapping[str, str]
+    instances: Mapping[str, SceneInstance | SceneActor]
+    values: Mapping[str, frozenset[str]]
+    nouns: frozenset[str]
+    concepts: Mapping[str, frozenset[str]]
+    """The concepts of each instance id."""
+
+
+_SCENES: dict[int, SceneFacts] = {}
+_MAX_SCENES = 32
+
+
+def scene_facts(scene: SceneFile) -> SceneFacts:
+    """Return the facts of a scene. They are read once for each scene file in memory."""
+    known = _SCENES.get(id(scene))
+    if known is None or known.file is not scene:
+        if len(_SCENES) >= _MAX_SCENES:
+            _SCENES.clear()
+        known = _SCENES[id(scene)] = _read_facts(scene)
+    return known
+
+
+def _read_facts(scene: SceneFile) -> SceneFacts:
     everything: list[SceneInstance | SceneActor] = [*scene.instances, *scene.actors]
-    parents = {i.id: i.parent for i in scene.instances if i.parent}
     values: dict[str, set[str]] = {}
     nouns: set[str] = set()
     for instance in everything:
         nouns |= {singular_phrase(n.lower()) for n in (instance.category, head_of(instance.name)) if n.strip()}
         for key, value in instance.attributes.items():
             values.setdefault(key, set()).update(english.letters(str(value)).split())
+    return SceneFacts(
+        file=scene,
+        parents={i.id: i.parent for i in scene.instances if i.parent},
+        instances={i.id: i for i in everything},
+        values={k: frozenset(v) for k, v in values.items()},
+        nouns=frozenset(nouns),
+        concepts={i.id: concepts_of(i) for i in everything},
+    )
+
+
+def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
+    """Create the view of a frame from its ground truth."""
+    facts = scene_facts(scene)
     texts = tuple(sorted(truth.texts, key=lambda t: (round(t.box[1], 2), t.box[0])))
     legible: dict[str, list[str]] = {}
     for text in (t for t in texts if t.legible):
         holder: str | None = text.text.parent
         while holder is not None:
             legible.setdefault(holder, []).append(text.text.text)
-            holder = parents.get(holder)
+            holder = facts.parents.get(holder)
 
     def thing(sighting: Sighting) -> Thing:
         instance = sighting.instance
         low, high = _world_box(instance, time_s)
-        return Thing(sighting, low, high, concepts_of(instance), _motion(instance, time_s), tuple(legible.get(instance.id, ())))
+        concepts = facts.concepts[instance.id]
+        return Thing(sighting, low, high, concepts, _motion(instance, time_s), tuple(legible.get(instance.id, ())))
 
     return View(
         things=tuple(thing(x) for x in truth.visible),
         texts=texts,
-        parents=parents,
-        instances={i.id: i for i in everything},
-        values={k: frozenset(v) for k, v in values.items()},
-        nouns=frozenset(nouns),
+        parents=facts.parents,
+        instances=facts.instances,
+        values=facts.values,
+        nouns=facts.nouns,
         hosts=tuple(thing(x) for x in truth.sightings if not x.visible and x.instance.id in legible),
     )
 

@@ -152,31 +152,37 @@ class RobustTruth:
 
     def all_of(self, kind: Kind) -> tuple[Sighting, ...] | None:
         """Return all visible objects of a kind; None if their number is uncertain or people could disagree about it."""
-        found = []
         if self.unreliable(kind.category):
             return None
+        found = []
         for sighting in self.samples[0].sightings:
-            thing = sighting.instance
-            if kind.fits(thing):
-                if self.visibility(thing.number) is not False and not self.recognisable(thing):
-                    return None
-                if thing.attributes.get("behind") == "glass" and self.visibility(thing.number) is not False:
-                    return None  # people disagree whether objects behind a window count
-                if self.visibility(thing.number) is None or (not self.visibility(thing.number) and thing.number in self.faint):
-                    return None
-                if self.visibility(thing.number):
-                    if self.split_by_sweep(sighting):
-                        return None
-                    found.append(sighting)
-            elif kind.ambiguous_with(thing) and self.visibility(thing.number) is not False:
+            counts = self._counts_as(kind, sighting)
+            if counts is None:
                 return None
-        if any(kind.fits(a) or kind.may_ride_on(a) for a in self.scene.file.actors if a.number in self.passing_actors):
+            if counts:
+                found.append(sighting)
+        return None if self._may_appear(kind) else tuple(found)
+
+    def _counts_as(self, kind: Kind, sighting: Sighting) -> bool | None:
+        """Return whether an object certainly counts as a visible one of a kind; None if people could disagree about it."""
+        thing = sighting.instance
+        visible = self.visibility(thing.number)
+        if not kind.fits(thing):
+            return None if visible is not False and kind.ambiguous_with(thing) else False
+        if visible is False:
+            return None if thing.number in self.faint else False
+        behind_glass = thing.attributes.get("behind") == "glass"  # people disagree whether objects behind a window count
+        if visible is None or behind_glass or not self.recognisable(thing) or self.split_by_sweep(sighting):
             return None
+        return True
+
+    def _may_appear(self, kind: Kind) -> bool:
+        """Return whether objects of a kind that do not show in the view itself may show around it or later."""
+        if any(kind.fits(a) or kind.may_ride_on(a) for a in self.scene.file.actors if a.number in self.passing_actors):
+            return True
         shown = {s.instance.number for s in self.samples[0].sightings}
         others = (s for truth in self.samples[1:] for s in truth.sightings if s.instance.number not in shown)
-        if any(kind.fits(s.instance) and self.visibility(s.instance.number) is not False for s in others):
-            return None
-        return tuple(found)
+        return any(kind.fits(s.instance) and self.visibility(s.instance.number) is not False for s in others)
 
     def split_by_sweep(self, sighting: Sighting) -> bool:
         """Return whether an object extends over both ends of a sweep, so that it has no single position."""

@@ -36,25 +36,37 @@ _TEXT_AND_PROPERTY_NOUNS = frozenset(
 """Words for texts and properties, which name no things."""
 
 
-def cost(reading: Any) -> tuple[float, str]:
-    """Return the sort key of a reading, lowest first: its cost, and its text to break ties independently of the parser's order."""
-    kind = 0.0 if isinstance(reading, _SPECIFIC) else 20.0
-    return kind + _cost(reading), repr(reading)
+def cheapest(readings: Sequence[Any]) -> Any:
+    """Return the best of several readings, None if there are none.
+
+    Readings that cost the same are ordered by their text, so that the choice never depends on the parser's order.
+    """
+    known: dict[int, float] = {}
+    costs = [(0.0 if isinstance(reading, _SPECIFIC) else 20.0) + _cost(reading, known) for reading in readings]
+    least = min(costs, default=0.0)
+    return min((reading for reading, cost in zip(readings, costs, strict=True) if cost == least), key=repr, default=None)
 
 
-def _cost(node: Any) -> float:
-    if isinstance(node, tuple):
-        return sum(_cost(child) for child in node)
-    if not is_dataclass(node):
-        return 0.0
-    total = sum(_cost(getattr(node, field.name)) for field in fields(node))
+def _cost(node: Any, known: dict[int, float]) -> float:
+    """Return the cost of a part of a reading; lower is better. Readings share parts, and ``known`` holds the costs of these."""
+    if id(node) not in known:
+        if isinstance(node, tuple):
+            known[id(node)] = sum(_cost(child, known) for child in node)
+        else:
+            known[id(node)] = _cost_of_node(node, known) if is_dataclass(node) else 0.0
+    return known[id(node)]
+
+
+def _cost_of_node(node: Any, known: dict[int, float]) -> float:
+    total: float = sum(_cost(getattr(node, field.name), known) for field in fields(node))
     match node:
         case s.Phrase(words=("thing",)):
             total += 1.5
         case s.Phrase(words=words):
-            total += 1.0 if nouns_in(words) else 2.0
+            spans = nouns_in(words)
+            total += 1.0 if spans else 2.0
             total += 4.0 if words[-1] in _TEXT_AND_PROPERTY_NOUNS else 0.0
-            total += 0.3 if nouns_in(words) and nouns_in(words)[0][1] < len(words) else 0.0
+            total += 0.3 if spans and spans[0][1] < len(words) else 0.0
             total += 0.2 * max(0, len(node.tests) - 1)
         case s.Is(words=words):
             total += 3.0 if nouns_in(words) else 0.5

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 
 from scope_ptz import english
 
+CACHED = 8192
+"""Results of a function that are kept: questions and scenes repeat the same few thousand phrases."""
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True, eq=False)
 class Lexicon:
-    """All concepts, with their names and the kinds that they belong to."""
+    """All concepts, with their names and the kinds that they belong to. There is only one, so its methods cache their results."""
 
     parents: dict[str, tuple[str, ...]]
     names: dict[str, str]
     """Every noun, in the singular, with its concept."""
 
+    @lru_cache(maxsize=CACHED)  # noqa: B019
     def concept(self, phrase: str) -> str | None:
         """Return the concept of a noun in the singular or plural."""
         words = phrase.replace("-", " ").split()
@@ -26,6 +30,7 @@ class Lexicon:
                 return self.names[form]
         return None
 
+    @lru_cache(maxsize=CACHED)  # noqa: B019
     def kinds(self, concept: str) -> frozenset[str]:
         """Return the concept and everything that it is a kind of."""
         found = {concept}
@@ -33,11 +38,13 @@ class Lexicon:
             found |= self.kinds(parent)
         return frozenset(found)
 
+    @lru_cache(maxsize=CACHED)  # noqa: B019
     def all_names(self, concept: str) -> frozenset[str]:
         """Return every noun, in the singular, for the concept or for a more specific one."""
         return frozenset(name for name, meant in self.names.items() if concept in self.kinds(meant))
 
 
+@lru_cache(maxsize=CACHED)
 def singular_phrase(phrase: str) -> str:
     """Return the phrase with its last word in the singular."""
     *first, last = phrase.split()
@@ -71,6 +78,11 @@ def nouns_in(words: Sequence[str], known: frozenset[str] = frozenset()) -> list[
         words: The words of the phrase.
         known: Nouns in addition to the lexicon's (categories and names of the scene), in the singular.
     """
+    return list(_nouns_in(tuple(words), known))
+
+
+@lru_cache(maxsize=CACHED)
+def _nouns_in(words: tuple[str, ...], known: frozenset[str]) -> tuple[tuple[int, int], ...]:
     table = lexicon()
     spans = [
         (i, j)
@@ -79,6 +91,6 @@ def nouns_in(words: Sequence[str], known: frozenset[str] = frozenset()) -> list[
         if table.concept(phrase := " ".join(words[i:j])) or phrase in known or singular_phrase(phrase) in known
     ]
     if not spans:
-        return []
+        return ()
     end = max(j for _, j in spans)
-    return sorted((s for s in spans if s[1] == end), key=lambda s: s[0])
+    return tuple(sorted((s for s in spans if s[1] == end), key=lambda s: s[0]))

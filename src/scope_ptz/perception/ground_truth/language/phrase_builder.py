@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, cast
 
-from lark import Token, Transformer
+from lark import Token, Tree
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.language import question_tree as s
@@ -65,8 +65,13 @@ def _digits(token: Token) -> str:
     return str(token) if number is None else str(number)
 
 
-class NounPhrases(Transformer[Token, Any]):
-    """Builds noun phrases and their modifiers. Each method builds the grammar rule of its name."""
+class NounPhrases:
+    """Builds noun phrases and their modifiers. Each method builds the grammar rule, or the alias of a rule, of its name."""
+
+    def build(self, rule: str, children: Children) -> Any:
+        """Return the meaning of a rule. A rule without a method of its own is a plain node."""
+        method = getattr(self, rule, None)
+        return Tree(rule, children) if method is None else method(children)
 
     def description(self, c: Children) -> s.Description:
         return cast(s.Description, c[0])

@@ -5,15 +5,14 @@ from __future__ import annotations
 from functools import cache, lru_cache
 from importlib.resources import files
 
-from lark import Lark
 from lark.exceptions import LarkError
-from lark.visitors import CollapseAmbiguities
 
-from scope_ptz.perception.ground_truth.language.ambiguity import cost
+from scope_ptz.perception.ground_truth.language.ambiguity import cheapest
 from scope_ptz.perception.ground_truth.language.concepts import nouns_in
+from scope_ptz.perception.ground_truth.language.earley import EarleyGrammar, readings
 from scope_ptz.perception.ground_truth.language.question_builder import QuestionBuilder
 from scope_ptz.perception.ground_truth.language.question_tree import Description, Exists, Phrase, Question
-from scope_ptz.perception.ground_truth.language.tokeniser import PretokenisedLexer, tokenise
+from scope_ptz.perception.ground_truth.language.tokeniser import tokenise
 
 MAX_TOKENS = 40
 """Longer input is not parsed: it is slow to parse and unlikely to describe a picture."""
@@ -25,9 +24,9 @@ _CONNECTIVES = frozenset({"REL", "WITH", "WITHOUT", "WEAR", "HAVE", "OF", "BETWE
 
 
 @cache
-def _grammar() -> Lark:
+def _grammar() -> EarleyGrammar:
     text = files(__package__).joinpath("grammar.lark").read_text("utf-8")
-    return Lark(text, parser="earley", lexer=PretokenisedLexer, ambiguity="explicit", start=["description", "question"])
+    return EarleyGrammar(text, ("description", "question"))
 
 
 @lru_cache(maxsize=512)
@@ -54,8 +53,8 @@ def _best(text: str, start: str) -> Description | Question | None:
     if not 0 < len(tokens) <= MAX_TOKENS or sum(t.type in _CONNECTIVES for t in tokens) > MAX_CONNECTIVES:
         return None
     try:
-        forest = _grammar().parse(tokens, start=start)
+        forest = _grammar().parse(tokens, start)
     except LarkError:
         return None
-    readings = [QuestionBuilder().transform(tree) for tree in CollapseAmbiguities().transform(forest)]
-    return min(readings, key=cost, default=None)
+    found: Description | Question | None = cheapest(readings(forest, QuestionBuilder().build))
+    return found

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
-from typing import Any
 
 from lark import Token
-from lark.lexer import Lexer
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.language.concepts import lexicon
@@ -56,18 +53,6 @@ _PLACE_WORDS = frozenset(["site", "area", "place", "premises", "property", "work
 _FRAME_PREPOSITIONS = frozenset(["in", "of", "from", "on", "across", "within", "throughout", "inside", "around", "for"])
 _TEXT_ENDS = frozenset({"visible", "there", "?"})
 _PARTICLES = frozenset(["on", "off", "up", "down", "in", "out"])
-
-
-class PretokenisedLexer(Lexer):
-    """A lexer that passes on tokens, because this module creates them before Lark runs."""
-
-    __future_interface__ = 1
-
-    def __init__(self, lexer_conf: Any) -> None:
-        pass
-
-    def lex(self, lexer_state: Any, _parser_state: Any) -> Iterator[Token]:
-        yield from lexer_state.text
 
 
 @cache
