@@ -80,7 +80,7 @@ class Calibration:
     Attributes:
         pan: Response of pan.
         tilt: Response of tilt.
-        tilt_offset_deg: Degrees by which the picture's tilt is above the stated one.
+        tilt_offset_deg: The real tilt where the camera states 0, in degrees.
         fields: Fields of view, widest first.
         snapshot_s: Median seconds to take a picture.
         move_s: Median seconds of a move of 20 degrees, until the driver reports arrival.
@@ -181,7 +181,7 @@ async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response
     seen_tilt = seen_tilt if pan > 0 else math.degrees(math.atan2(left.roll_deg - right.roll_deg, left.right_deg - right.right_deg))
     progress(f"Pan turns {pan:+.3f} and tilt {tilt:+.3f} degrees for each degree.")
     residual = statistics.mean(each.residual_px for each in (right, left, up))
-    return _Response(pan, tilt, seen_tilt - here.tilt_deg, focal, residual)
+    return _Response(pan, tilt, seen_tilt - tilt * here.tilt_deg, focal, residual)
 
 
 async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, progress: Progress) -> tuple[FieldOfView, ...]:
@@ -290,7 +290,10 @@ def _contradictions(
         elif f"{name} range" not in assumed and abs(response.scale - 1) > ANGLE_TOLERANCE:
             found.append(f"The {name} turns {response.scale:.3f} degrees for each degree that the camera states.")
     if "tilt range" not in assumed and not tilt.inverted and abs(tilt_offset_deg) > TILT_ZERO_TOLERANCE_DEG:
-        found.append(f"A tilt of 0 is {tilt_offset_deg:+.1f} degrees from the horizon. Level the camera or its mount.")
+        found.append(
+            f"Where the camera states a tilt of 0, it looks {tilt_offset_deg:+.1f} degrees from the horizon. "
+            "Level the camera or its mount."
+        )
     if "field of view" not in assumed:
         worst = max(fields, key=lambda each: abs(each.measured_deg / each.stated_deg - 1))
         if abs(worst.measured_deg / worst.stated_deg - 1) > FIELD_TOLERANCE:

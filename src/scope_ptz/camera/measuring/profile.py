@@ -169,5 +169,4 @@ def save_profile(folder: Path, profile: CameraProfile) -> Path:
 
 
 def _scaled(ends: tuple[float, float], scale: float, offset: float) -> tuple[float, float]:
-    middle = (ends[0] + ends[1]) / 2
-    return middle + (ends[0] - middle) * scale + offset, middle + (ends[1] - middle) * scale + offset
+    return scale * ends[0] + offset, scale * ends[1] + offset

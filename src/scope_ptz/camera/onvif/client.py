@@ -5,9 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import anyio
+
 from scope_ptz.camera.network.errors import CameraReplyError, CameraSignInError
 from scope_ptz.camera.onvif.faults import soap_errors
-from scope_ptz.camera.onvif.transport import PinnedTransport, import_onvif, pinned_path, to_bytes
+from scope_ptz.camera.onvif.transport import PinnedTransport, import_onvif, pinned_path, to_bytes, unchanged_proxies
 
 if TYPE_CHECKING:
     from scope_ptz.camera.network.address import DeviceAddress
@@ -34,7 +36,7 @@ class OnvifClient:
         self._credentials = credentials
         self._camera: Any = None
         self._stop_service: Any = None
-        self._signed_in = False
+        self._stop_profile, self._signed_in = "", False
 
     def __repr__(self) -> str:
         return f"OnvifClient({self.address})"
@@ -49,19 +51,22 @@ class OnvifClient:
         Raises:
             CameraError: The device cannot be reached, refuses the account, or has no ONVIF services.
         """
-        await self._close_services()
         for adjust_time in (True, False):
-            camera = self._camera = self._make_camera(adjust_time)
+            camera = self._make_camera(adjust_time)
             try:
                 with soap_errors(self.address, "GetServices"):
                     await camera.update_xaddrs()
-                break
-            except CameraReplyError:
-                # A device without a readable clock: its time stamps are taken for right.
-                await self._close_services()
-                if not adjust_time:
-                    raise
-        self._stop_service = None
+            except BaseException as error:
+                with anyio.CancelScope(shield=True):
+                    await _close(camera)
+                if isinstance(error, CameraReplyError) and adjust_time:
+                    continue  # a device without a readable clock: its time stamps are taken for right
+                raise
+            await self._close_services()
+            self._camera = camera
+            if self._stop_service is not None:
+                await self.prepare_stop(self._stop_profile)
+            return
 
     async def call(self, service: str, operation: str, **arguments: Any) -> Any:
         """Call an operation and return its reply. A sign-in that was right before is tried again with a fresh clock.
@@ -116,9 +121,10 @@ class OnvifClient:
     def _make_camera(self, adjust_time: bool) -> Any:
         address, account = self.address, self._credentials
         scheme = "https" if address.tls else "http"
-        camera = self._library.ONVIFCamera(
-            f"{scheme}://{address.host}", address.port, account.user, account.password, no_cache=True, adjust_time=adjust_time
-        )
+        with unchanged_proxies():
+            camera = self._library.ONVIFCamera(
+                f"{scheme}://{address.host}", address.port, account.user, account.password, no_cache=True, adjust_time=adjust_time
+            )
         # The library's services bring transports that follow redirects and go wherever the device points.
         camera.create_onvif_service = partial(_service_of, self, camera)
         return camera
@@ -139,9 +145,13 @@ class OnvifClient:
 
     async def _close_services(self) -> None:
         if self._camera is not None:
-            self._camera.services.clear()
-            await self._camera.close()
-            self._camera = None
+            camera, self._camera = self._camera, None
+            await _close(camera)
+
+
+async def _close(camera: Any) -> None:
+    camera.services.clear()  # their transports belong to this client
+    await camera.close()
 
 
 async def _service_of(client: OnvifClient, camera: Any, name: str, *_: Any, **__: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -102,6 +103,16 @@ def _unchanged_logging() -> Iterator[None]:
         root.setLevel(level)
         for handler in [each for each in root.handlers if each not in handlers]:
             root.removeHandler(handler)
+
+
+@contextmanager
+def unchanged_proxies() -> Iterator[None]:
+    """Return a context that restores the variables of the environment that the ONVIF client deletes: others use them."""
+    kept = {name: os.environ[name] for name in ("http_proxy", "https_proxy") if name in os.environ}
+    try:
+        yield
+    finally:
+        os.environ.update(kept)
 
 
 def _adds_up(envelope: Any) -> bool:

@@ -130,7 +130,7 @@ def _calibration_lines(record: CalibrationRecord) -> list[str]:
     ]
     return [
         *signs,
-        f"Horizon: at a tilt of {-record.tilt_offset_deg:+.1f} degrees",
+        f"Horizon: where the camera states a tilt of 0, it looks {record.tilt_offset_deg:+.1f} degrees from it",
         "Zoom     measured  stated (horizontal field of view in degrees)",
         *(f"{each.zoom:6.2f}x {each.measured_deg:9.2f} {each.stated_deg:7.2f}" for each in record.fields),
         f"Picture: {1000 * record.snapshot_s:.0f} ms; move of 20 degrees: {record.move_s:.2f} s; "
