@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from scope_ptz.cli.starting import prepare_help
 from tests.cli.conftest import SCENE, Scope
 
 SCOPE = [sys.executable, "-m", "scope_ptz.cli"]
@@ -40,9 +41,22 @@ def test_help_loads_only_what_draws_help(tmp_path: Path) -> None:
     """This is what makes it instant; how long it takes depends on the machine, and is not for a test."""
     modules = modules_of("--help", folder=tmp_path)
     assert packages_of(modules) <= LIGHT
+    assert not modules & {"rich.markdown", "markdown_it", "rich.traceback", "pygments.lexer"}
     ours = [name for name in modules if name.startswith("scope_ptz")]
     assert "scope_ptz.cli.app" in ours
     assert len(ours) <= 31
+
+
+def test_what_help_leaves_out_is_imported_on_first_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.startswith(("typer.rich_utils", "rich.markdown", "rich.traceback"))]:
+        monkeypatch.delitem(sys.modules, name)
+    prepare_help(["ask", "pan right 5"])
+    assert "typer.rich_utils" not in sys.modules
+    prepare_help(["ask", "--help"])
+    assert not {"rich.markdown", "rich.traceback"} & set(sys.modules)
+    made = sys.modules["typer.rich_utils"].Markdown("*text*")
+    assert type(made) is sys.modules["rich.markdown"].Markdown
+    monkeypatch.delitem(sys.modules, "typer.rich_utils")
 
 
 def test_tools_loads_the_shipped_schemas_and_no_models(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import sys
 def main() -> None:
     """Run ``scope``. This is the entry point of the installed program."""
     from scope_ptz.cli.exit import guarded_streams, readable_arguments
-    from scope_ptz.cli.starting import collector_paused
+    from scope_ptz.cli.starting import collector_paused, prepare_help
 
     # The command line uses no plug-ins of pydantic, and looking for them reads the metadata of every installed package.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
@@ -17,5 +17,6 @@ def main() -> None:
         with collector_paused():
             from scope_ptz.cli.app import app
 
-        sys.argv[1:] = readable_arguments(sys.argv[1:])
+            sys.argv[1:] = readable_arguments(sys.argv[1:])
+            prepare_help(sys.argv[1:])
         app(prog_name="scope")
