@@ -20,9 +20,9 @@ class ScopeSettings(BaseSettings):
     model_config = SettingsConfigDict(env_prefix="SCOPE_", extra="ignore")
 
     runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
-    scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
+    scenes_dir: Path | None = Field(default=None, description="Folder with additional scene packs.")
     tile_cache_mb: int | None = Field(
-        default=None, ge=1, description="Limit in MB on the memory of a viewpoint's tiles. Without it, all that was read is kept."
+        default=None, ge=1, description="Memory limit in MB for a viewpoint's tiles. By default, all tiles that were read are kept."
     )
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
@@ -31,7 +31,7 @@ class ScopeSettings(BaseSettings):
     blender: Path | None = Field(default=None, description="A blender program to use in place of the bpy wheel.")
     planner_key: SecretStr | None = Field(default=None, description="Key for the planner's server.")
     perception_key: SecretStr | None = Field(default=None, description="Key for the perception server.")
-    models: Path | None = Field(default=None, description="YAML file with more models.")
+    models: Path | None = Field(default=None, description="YAML file with additional models.")
     planner_url: str = Field(default="", description="Address of the planner's server.")
     perception_url: str = Field(default="", description="Address of the perception server.")
     judge_url: str = Field(default="", description="Address of the judge's server.")

@@ -12,7 +12,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from scope_ptz.cli.display import arguments_text, plain, shortened
-from scope_ptz.cli.exit import BAD_INPUT, complain, put_json
+from scope_ptz.cli.exit import BAD_INPUT, print_error, put_json
 from scope_ptz.errors import InputError
 from scope_ptz.planner.base import MAX_INSTRUCTION_CHARS
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock, OutlineCall
@@ -55,10 +55,10 @@ def _plan_file(source: Path, *, as_json: bool) -> int:
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             where = ".".join(str(part) for part in first["loc"])
-            complain(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.")
+            print_error(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.")
             code = BAD_INPUT
         except InputError as error:
-            complain(f"{source}, line {number}: {error}")
+            print_error(f"{source}, line {number}: {error}")
             code = BAD_INPUT
     return code
 
