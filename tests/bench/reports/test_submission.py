@@ -341,7 +341,7 @@ def test_a_submission_requires_a_complete_split(tmp_path: Path) -> None:
     assert (refused.exit_code, out.exists()) == (2, False)
     assert f"{first} is missing (repeats 1, 2)" in refused.stderr and "--partial" in refused.stderr
     partial = make(limited, *named, "--partial")
-    assert partial.exit_code == 0 and "is partial and no valid submission" in partial.stderr
+    assert partial.exit_code == 0 and "is incomplete and not a valid submission" in partial.stderr
     assert any(f"{first} is missing" in fault for fault in check_submission(out, TASKS).faults)
     core = limited.model_copy(update={"card": limited.card.model_copy(update={"split": "core"})})
     refused = make(core)
