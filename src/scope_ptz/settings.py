@@ -19,9 +19,9 @@ class ScopeSettings(BaseModel):
     """Defaults for every command. Command-line options take precedence."""
 
     runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
-    scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
+    scenes_dir: Path | None = Field(default=None, description="Folder with additional scene packs.")
     tile_cache_mb: int | None = Field(
-        default=None, ge=1, description="Limit in MB on the memory of a viewpoint's tiles. Without it, all that was read is kept."
+        default=None, ge=1, description="Memory limit in MB for a viewpoint's tiles. By default, all tiles that were read are kept."
     )
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
@@ -33,7 +33,7 @@ class ScopeSettings(BaseModel):
     blender: Path | None = Field(default=None, description="A blender program to use in place of the bpy wheel.")
     planner_key: SecretStr | None = Field(default=None, description="Key for the planner's server.")
     perception_key: SecretStr | None = Field(default=None, description="Key for the perception server.")
-    models: Path | None = Field(default=None, description="YAML file with more models.")
+    models: Path | None = Field(default=None, description="YAML file with additional models.")
     camera_password: SecretStr | None = Field(default=None, description="Password for the account of a network camera.")
     planner_url: str = Field(default="", description="Address of the planner's server.")
     perception_url: str = Field(default="", description="Address of the perception server.")

@@ -51,7 +51,7 @@ class RecordedPose(_Record):
 
 
 class Budgets(_Record):
-    """Limits of a run: planner steps (T_max), wall seconds, and input plus output tokens of the planner."""
+    """Limits of a run: planner steps (T_max), wall-clock seconds, and input plus output tokens of the planner."""
 
     max_steps: int = Field(default=60, ge=1)
     time_s: float | None = Field(default=None, gt=0)
@@ -140,7 +140,7 @@ class Called(_Record):
 
     @property
     def perception_s(self) -> float:
-        """Wall seconds of this call's own perception calls, without those of concurrent calls."""
+        """Wall-clock seconds of this call's own perception calls, without those of concurrent calls."""
         return sum(reply.wall_s for reply in self.replies)
 
 

@@ -23,7 +23,7 @@ _PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Po
 
 
 class Timings(BaseModel):
-    """Wall seconds by part of the system. Calls that overlap count once.
+    """Wall-clock seconds by part of the system. Calls that overlap count once.
 
     Attributes:
         planner_s: decisions of the planner.
@@ -169,7 +169,7 @@ class PerceptionReply(BaseModel):
         kind: the method that was called.
         asked: the question or description; empty for captions.
         frame_time_s: scene time of the frame.
-        wall_s: wall seconds of the call.
+        wall_s: wall-clock seconds of the call.
         server_events: number of failed requests to the model server by failure kind, including those that a retry recovered.
     """
 

@@ -1,4 +1,4 @@
-"""Create the camera, the planner and the perception of a session from its options."""
+"""Create the camera, the planner and the perception backend of a session from its options."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _perception(options: SessionOptions, resolved: ResolvedPerception, camera: C
         if options.perception is None:
             return NoPerception()
         raise InputError(
-            f"The perception '{resolved.name}' reads the ground truth of a simulated scene, and the camera '{camera.info.name}' "
+            f"The backend '{resolved.name}' reads the ground truth of a simulated scene, and the camera '{camera.info.name}' "
             "has none. Pass perception= with the name of a vision model or a Perception object."
         )
     return make_perception(resolved, scenes, options.seed)

@@ -77,7 +77,7 @@ def read_results(path: Path) -> Evaluation:
 
 
 def _options(request: EvaluationRequest) -> EvaluationOptions:
-    from scope_ptz.factory.evaluate import OWN_AGENT, EvaluationOptions
+    from scope_ptz.factory.evaluate import BUILT_IN_AGENT, EvaluationOptions
 
     served = ServedModels(
         pair=request.pair,
@@ -96,7 +96,7 @@ def _options(request: EvaluationRequest) -> EvaluationOptions:
         limit=request.limit,
         epochs=request.epochs,
         seed=request.seed,
-        agent=request.agent or OWN_AGENT,
+        agent=request.agent or BUILT_IN_AGENT,
         max_steps=request.max_steps,
         time_s=request.time_budget_s,
         concurrency=request.concurrency,

@@ -1,4 +1,4 @@
-"""A planner and a perception for a person: commands are typed, and the person says what a picture shows."""
+"""A planner and a perception backend for a person: commands are typed, and the person says what a picture shows."""
 
 from __future__ import annotations
 

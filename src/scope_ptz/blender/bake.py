@@ -77,7 +77,7 @@ def bake(
         progress: Called after every step.
 
     Raises:
-        BlenderError: Blender fails, or the folder has another name than the scene.
+        BlenderError: Blender fails, or the folder does not have the name of the scene.
         UnknownNameError: The scene has no such viewpoint.
     """
     key = scene_key(source)

@@ -201,7 +201,7 @@ class Camera(ABC):
         Use it with ``contextlib.aclosing``, so that a stream is released when its consumer leaves.
         """
         if not (math.isfinite(rate_hz) and rate_hz > 0):
-            raise InputError(f"The frame rate is a number of frames per second above 0, got {rate_hz}.")
+            raise InputError(f"The frame rate must be above 0 frames per second, got {rate_hz}.")
         while True:
             due_s = self.clock.now_s() + 1.0 / rate_hz
             yield await self.frame()

@@ -57,18 +57,18 @@ def check_drive(pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: fl
     """
     for name, value in (("pan_dps", pan_dps), ("tilt_dps", tilt_dps), ("zoom_rate", zoom_rate)):
         if not math.isfinite(value):
-            raise InputError(f"{name} is a finite number, got {value}.")
+            raise InputError(f"{name} must be a finite number, got {value}.")
     if not 0 < timeout_s <= MAX_DRIVE_TIMEOUT_S:
-        raise InputError(f"timeout_s is above 0 and at most {MAX_DRIVE_TIMEOUT_S:g} seconds, got {timeout_s}.")
+        raise InputError(f"timeout_s must be above 0 and at most {MAX_DRIVE_TIMEOUT_S:g} seconds, got {timeout_s}.")
 
 
 def check_preset_name(name: str) -> None:
     """Check the name of a new preset.
 
     Raises:
-        InputError: The name is empty, too long, or has characters that cannot be printed.
+        InputError: The name is empty, too long, or has non-printable characters.
     """
     if not name.strip() or name != name.strip() or not name.isprintable() or len(name) > MAX_PRESET_NAME:
         raise InputError(
-            f"A preset name has 1 to {MAX_PRESET_NAME} printable characters and no spaces at its ends, got {name[:60]!r}."
+            f"A preset name must have 1 to {MAX_PRESET_NAME} printable characters, no spaces at either end, got {name[:60]!r}."
         )

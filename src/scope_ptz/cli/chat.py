@@ -19,7 +19,7 @@ from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import read_trace
 from scope_ptz.cli.ask import Session, make_filmstrip
 from scope_ptz.cli.display import LiveView, show_end
-from scope_ptz.cli.exit import complain, has_input
+from scope_ptz.cli.exit import has_input, print_error
 from scope_ptz.cli.options import SessionFlags
 from scope_ptz.cli.texts import plain
 from scope_ptz.errors import InputError
@@ -79,13 +79,13 @@ def _read_and_run(portal: BlockingPortal, chat: _Chat) -> None:
         try:
             turn.result()
         except InputError as error:
-            complain(str(error))
+            print_error(str(error))
         except KeyboardInterrupt:
             turn.cancel()
             chat.idle.wait()
             with suppress(CancelledError):
                 turn.result()
-            complain("the run was cancelled; /quit ends the chat.")
+            print_error("the run was cancelled; /quit ends the chat.")
 
 
 class _Chat:

@@ -48,7 +48,7 @@ def put_json(content: Any, *, indent: int | None = None) -> None:
     put(json.dumps(content, indent=indent, ensure_ascii=not _is_unicode(sys.stdout)))
 
 
-def complain(message: str) -> None:
+def print_error(message: str) -> None:
     """Print one line on stderr."""
     sys.stderr.write(f"scope: {message}\n")
 
@@ -57,7 +57,7 @@ class _LogLines(logging.Handler):
     """Prints the package's warnings as lines on stderr."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        complain(record.getMessage())
+        print_error(record.getMessage())
 
 
 def _show_warnings() -> None:
@@ -79,13 +79,13 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
         yield
     except ScopeError as error:
         bad_input = isinstance(error, InputError | PackError | TraceError | ToolCallError)
-        complain(str(error))
+        print_error(str(error))
         if as_json:
             put_json({"error": str(error)})
         sys.exit(BAD_INPUT if bad_input else FAILED)
     except KeyboardInterrupt:
         _ignore_interrupts()
-        complain("cancelled.")
+        print_error("cancelled.")
         sys.exit(CANCELLED)
 
 
@@ -161,12 +161,12 @@ def guarded_streams() -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         _ignore_interrupts()
-        complain("cancelled.")
+        print_error("cancelled.")
         sys.exit(CANCELLED)
     finally:
         stdout.flush()
         if stdout.failure is not None:
-            complain(f"the output cannot be written: {stdout.failure.strerror or stdout.failure}.")
+            print_error(f"the output cannot be written: {stdout.failure.strerror or stdout.failure}.")
         stderr.flush()
         sys.stdin, sys.stdout, sys.stderr = before
         if stdout.failure is not None and sys.exc_info()[0] in (None, SystemExit):
@@ -236,7 +236,7 @@ def _set_error_handlers(stdin: TextIO, *outputs: _Output) -> None:
 
 
 def _ascii_replacement(error: UnicodeError) -> tuple[str, int]:
-    """Replace characters by an ASCII equivalent, or by a question mark. This is a codec error handler."""
+    """Replace characters with an ASCII equivalent or a question mark. This is a codec error handler."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return "".join(_ASCII.get(c, "?") for c in error.object[error.start : error.end]), error.end
@@ -247,7 +247,7 @@ def _is_unicode(stream: Any) -> bool:
 
 
 def readable_arguments(arguments: list[str]) -> list[str]:
-    """Decode arguments as UTF-8 that the locale's encoding could not decode."""
+    """Decode the arguments that the locale's encoding could not decode as UTF-8."""
     return [os.fsencode(text).decode("utf-8", "replace") if _has_surrogates(text) else text for text in arguments]
 
 

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
 
-from scope_ptz.cli.exit import BAD_INPUT, complain, put_json
+from scope_ptz.cli.exit import BAD_INPUT, print_error, put_json
 from scope_ptz.cli.texts import arguments_text, plain, shortened
 from scope_ptz.errors import InputError
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock, OutlineCall
@@ -42,7 +42,7 @@ def _plan_file(source: Path, *, as_json: bool) -> int:
                 raise line
             _show(_planned(line.instruction, line.presets), as_json=as_json)
         except InputError as error:
-            complain(f"{source}, line {number}: {error}")
+            print_error(f"{source}, line {number}: {error}")
             code = BAD_INPUT
     return code
 

@@ -9,8 +9,8 @@ import anyio
 
 from scope_ptz.errors import ConfigError
 from scope_ptz.factory.evaluation_options import (
+    BUILT_IN_AGENT,
     DEFAULT_LOG_FOLDER,
-    OWN_AGENT,
     EvaluationOptions,
     EvaluationPlan,
     EvaluationProgress,
@@ -20,8 +20,15 @@ from scope_ptz.factory.evaluation_options import (
 from scope_ptz.factory.models import resolve_models
 
 __all__ = [
-    "DEFAULT_LOG_FOLDER", "OWN_AGENT", "EvaluationOptions", "EvaluationPlan", "EvaluationProgress", "EvaluationResult",
-    "JudgeSettings", "evaluate", "require_engine",
+    "BUILT_IN_AGENT",
+    "DEFAULT_LOG_FOLDER",
+    "EvaluationOptions",
+    "EvaluationPlan",
+    "EvaluationProgress",
+    "EvaluationResult",
+    "JudgeSettings",
+    "evaluate",
+    "require_engine",
 ]  # fmt: skip
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.judging.judgement_tally import JudgementTally
     from scope_ptz.bench.scoring.trials import Evaluation, Trial
 
-OWN_AGENT = "scope"
+BUILT_IN_AGENT = "scope"
 DEFAULT_LOG_FOLDER = Path("evaluations")
 JUDGE_TIMEOUT_S = 300.0
 
@@ -81,7 +81,7 @@ class EvaluationOptions:
     limit: int | None = None
     epochs: int = 1
     seed: int = 1
-    agent: str = OWN_AGENT
+    agent: str = BUILT_IN_AGENT
     max_steps: int = 60
     time_s: float | None = None
     concurrency: int | None = None
@@ -101,7 +101,7 @@ class EvaluationPlan:
     Attributes:
         runs: Number of runs, including finished ones.
         planner: Name of the planner.
-        perception: Name of the perception.
+        perception: Name of the perception backend.
         agent: Name of the external agent; None for the built-in agent loop.
         concurrency: Number of concurrent runs.
         finished: Trials from the log that is resumed.
@@ -122,7 +122,7 @@ class EvaluationPlan:
 
     @property
     def pair(self) -> str:
-        """Names of the planner (or external agent) and the perception, as shown in tables."""
+        """Names of the planner (or external agent) and the perception backend, as shown in tables."""
         return f"{self.agent or self.planner} + {self.perception}"
 
 
@@ -130,13 +130,13 @@ class EvaluationProgress(Watcher):
     """Receives the progress of an evaluation. Subclasses override the methods that they need; the defaults do nothing."""
 
     def note(self, text: str) -> None:
-        """Receive a sentence for the user, such as that judgements are missing."""
+        """Receive a message for the user, for example that judgements are missing."""
 
     def planned(self, plan: EvaluationPlan) -> None:
         """Receive the plan with its estimate, once, before the first run."""
 
     def closed(self) -> None:
-        """Receive the end of the evaluation, after the last run or an interruption. Called once for each call of ``planned``."""
+        """Called when the evaluation has ended or was interrupted, once for each call of ``planned``."""
 
 
 @dataclass(frozen=True, slots=True)

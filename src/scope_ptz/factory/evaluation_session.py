@@ -16,7 +16,7 @@ from scope_ptz.bench.engine.context import Watcher
 from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR
 from scope_ptz.errors import InputError, ScopeError
 from scope_ptz.factory.evaluation_options import (
-    OWN_AGENT,
+    BUILT_IN_AGENT,
     EvaluationOptions,
     EvaluationPlan,
     EvaluationProgress,
@@ -55,14 +55,14 @@ class EvaluationSession:
 
         self.options, self.pair, self.progress = options, pair, progress
         self.judge: JudgeServer | None = None
-        self.agent_source = source_digest(options.agent) if options.agent != OWN_AGENT else ""
-        self.planner = planner_for(pair.planner) if options.agent == OWN_AGENT else None
+        self.agent_source = source_digest(options.agent) if options.agent != BUILT_IN_AGENT else ""
+        self.planner = planner_for(pair.planner) if options.agent == BUILT_IN_AGENT else None
         self.context = eval_context(seed=options.seed, planner=self.planner, perception=pair.perception)
         self.entries: tuple[Entry, ...] = select(
             self.context.load_tasks(options.tasks), options.categories, options.scenes, options.limit
         )
         _check_pictures(options, pair, self.planner)
-        local = pair.planner.endpoint is None and pair.perception.spec is None and options.agent == OWN_AGENT
+        local = pair.planner.endpoint is None and pair.perception.spec is None and options.agent == BUILT_IN_AGENT
         # Without servers, runs compete for the interpreter: concurrency would use more memory and save no time.
         default = 1 if local else DEFAULT_CONCURRENCY_WITH_SERVERS
         self.concurrency = 1 if options.latency else options.concurrency or default
@@ -205,7 +205,7 @@ class EvaluationSession:
         from scope_ptz.bench.engine.runs import earlier_evaluations, log_of_other_source
 
         options, pair = self.options, self.pair
-        agent = options.agent if options.agent != OWN_AGENT else None
+        agent = options.agent if options.agent != BUILT_IN_AGENT else None
         runs, origin = len(self.entries) * options.epochs, ""
         if stored:
             origin = f"Resuming {stored[0].path}: {len(finished)} of {runs} runs are done."
@@ -280,7 +280,7 @@ def _check_pictures(options: EvaluationOptions, pair: ResolvedPair, planner: Pla
     if options.pictures:
         return
     if pair.perception.spec is not None:
-        raise InputError(f"The perception '{pair.perception.name}' needs pictures: remove --no-pictures.")
+        raise InputError(f"The perception backend '{pair.perception.name}' needs pictures: remove --no-pictures.")
     if planner is not None and planner.sees:
         raise InputError(f"The planner '{planner.name}' needs pictures: remove --no-pictures.")
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from inspect_ai.scorer import Scorer, scorer
 from inspect_ai.solver import Solver, solver
 
-from scope_ptz.bench.engine.agent_solver import OWN_AGENT, agent_solver
+from scope_ptz.bench.engine.agent_solver import BUILT_IN_AGENT, agent_solver
 from scope_ptz.bench.engine.benchmark_task import benchmark_task
 from scope_ptz.bench.engine.checks_scorer import CHECKS, METRICS, checks_scorer
 from scope_ptz.bench.engine.judge_scorer import judge_scorer
@@ -26,7 +26,7 @@ bench = benchmark_task(lambda seed: eval_context(seed=seed))
 
 @solver
 def scope_agent(
-    agent: str = OWN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
+    agent: str = BUILT_IN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
 ) -> Solver:
     """The agent as a solver, under the name that logs store. The parameters are those of ``bench``."""
     context = eval_context(seed=seed)

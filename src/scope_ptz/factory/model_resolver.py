@@ -1,4 +1,4 @@
-"""Resolve options, the model registry and environment variables to one planner and one perception."""
+"""Resolve options, the model registry and environment variables to one planner and one perception backend."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class ModelResolver:
         self.registry: Registry = load_registry(settings.models_file())
 
     async def resolve(self) -> ResolvedPair:
-        """Return the planner and the perception.
+        """Return the planner and the perception backend.
 
         Raises:
             InputError: A name, an address or a combination of options is invalid.
@@ -119,7 +119,7 @@ class ModelResolver:
         if name in BUILT_IN_PERCEPTION:
             if options.perception_url or options.perception_model or options.perception_options or options.perception_key_file:
                 raise InputError(
-                    f"The perception '{name}' has no server and no options. Remove the --perception-... options, or name a model."
+                    f"The backend '{name}' has no server and no options. Remove the --perception-... options, or name a model."
                 )
             return ResolvedPerception(name)
         if shared is not None and shared.endpoint is not None and not (options.perception_url or options.perception_model):
@@ -158,7 +158,7 @@ class ModelResolver:
         return normalised(str(requested or (model.backend if model else name)))
 
     def _routed(self, perception: ResolvedPerception) -> ResolvedPerception:
-        """Combine the perception with the requested reader and detector in a router. Without them, return it unchanged."""
+        """Combine the perception backend with the requested reader and detector in a router. Without them, return it unchanged."""
         from scope_ptz.perception.backends.spec import BackendSpec
 
         requested = {"reader": self.options.reader, "detector": self.options.detector}
@@ -230,7 +230,7 @@ class ModelResolver:
 
 
 def read_pair(registry: Registry, text: str) -> tuple[str, str]:
-    """Return the names of the planner and the perception of a pair.
+    """Return the names of the planner and the perception backend of a pair.
 
     Args:
         registry: The known models and pairs.

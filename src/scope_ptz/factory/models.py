@@ -41,7 +41,7 @@ _NOTES = {GROUND_TRUTH: GROUND_TRUTH_NOTE, NOISY: NOISY_NOTE}
 
 
 async def resolve_models(options: ModelOptions) -> ResolvedPair:
-    """Return the planner and the perception that the options name.
+    """Return the planner and the perception backend that the options name.
 
     If the options do not give a model's served name, it is looked up in the server's list of models.
 
@@ -126,7 +126,7 @@ def make_perception(
         return make_backend(resolved.spec)
     if scenes is None:
         raise InputError(
-            f"The perception '{resolved.name}' reads the ground truth of a simulated scene, and this camera has none. Name a "
+            f"The backend '{resolved.name}' reads the ground truth of a simulated scene, and this camera has none. Name a "
             "vision model with --perception; `scope models --role perception` lists them."
         )
     from scope_ptz.perception.ground_truth import GroundTruthPerception

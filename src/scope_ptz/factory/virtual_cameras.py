@@ -102,7 +102,7 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
             f"There are {len(options.scenes)} scenes and {len(options.viewpoints)} viewpoints. Give one viewpoint for each scene."
         )
     if not 0 < options.time_scale <= MAX_TIME_SCALE:
-        raise InputError(f"The time scale is above 0 and at most {MAX_TIME_SCALE:g}, got {options.time_scale}.")
+        raise InputError(f"The time scale must be above 0 and at most {MAX_TIME_SCALE:g}, got {options.time_scale}.")
     faults = checked_faults(options.faults or {})
     devices = []
     for scene_name, viewpoint in zip(options.scenes, options.viewpoints or (None,) * len(options.scenes), strict=True):

@@ -116,7 +116,7 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
         (change(2, answer="I cannot tell."), "the answer is wrong, but its check says right"),
         (change(2, scored_by="judge"), "but no judgement has this verdict"),
         (change(2, category="ocr"), "the category is ocr, but that of the task is"),
-        (change(2, outcome="won"), "outcome won is none of"),
+        (change(2, outcome="won"), "outcome won is not one of"),
         (change(2, steps=61), "61 steps, but the limit is 60"),
         (change(2, steps=-1), "steps: Input should be greater than or equal to 0"),
         (change(2, steps=1.5), "line 3: trial.steps"),
@@ -188,13 +188,13 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
         (broken(perception_failures=1), "broken by infrastructure although it ended answered"),
         (change(1, headline="correct", error_mode=None, scored_by="judge", judged=JUDGED), "although the task has checks"),
         (change(2, tool_calls={}, steps=0), "ended answered without a step"),
-        (change(2, tool_calls={}, steps=0), "coverage passed without a perception call"),
-        (unlooked, "coverage passed without a perception call"),
-        (counted(tool_calls={"count_objects": 1}), "calls passed with 0 of 1 calls of go_to_preset"),
+        (change(2, tool_calls={}, steps=0), "the check 'coverage' passed without a perception call"),
+        (unlooked, "the check 'coverage' passed without a perception call"),
+        (counted(tool_calls={"count_objects": 1}), "the check 'calls' passed, but only 0 of 1 required calls of go_to_preset"),
         (counted(steps=0), "2 calls, but no step"),
         (counted(bad_calls=2, perception_failures=1), "3 failed calls, but only 2 calls"),
         (unmoved, "passed, but no call moved the camera"),
-        (unpictured, "pictures passed with 0 of"),
+        (unpictured, "the check 'pictures' passed, but take_image was called 0 of"),
         (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, but"),
         (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but"),
     ],
@@ -341,7 +341,7 @@ def test_a_submission_requires_a_complete_split(tmp_path: Path) -> None:
     assert (refused.exit_code, out.exists()) == (2, False)
     assert f"{first} is missing (repeats 1, 2)" in refused.stderr and "--partial" in refused.stderr
     partial = make(limited, *named, "--partial")
-    assert partial.exit_code == 0 and "is partial and no valid submission" in partial.stderr
+    assert partial.exit_code == 0 and "is incomplete and not a valid submission" in partial.stderr
     assert any(f"{first} is missing" in fault for fault in check_submission(out, TASKS).faults)
     core = limited.model_copy(update={"card": limited.card.model_copy(update={"split": "core"})})
     refused = make(core)

@@ -55,7 +55,7 @@ def _stated_options(expected: Choice, text: AnswerText) -> list[NameMention]:
 
 
 def _parse_equality(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer | None:
-    """Parse an answer that says that the options are equal; return None if it does not say so."""
+    """Parse an answer that says that the options are equal; return None for other answers."""
     alike = [m for m in mentions if m.name == "same"]
     if not alike:
         return None

@@ -24,7 +24,7 @@ from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.planner.base import Planner
 from scope_ptz.simulator.clock import SceneClock
 
-OWN_AGENT = "scope"
+BUILT_IN_AGENT = "scope"
 WIDTH, HEIGHT = 1280, 720
 """Size of a frame in pixels."""
 
@@ -36,7 +36,7 @@ class BrokenRunError(Exception):
 def agent_solver(
     context: EvalContext,
     *,
-    agent: str = OWN_AGENT,
+    agent: str = BUILT_IN_AGENT,
     pictures: bool = True,
     max_steps: int = 60,
     time_s: float | None = None,
@@ -49,20 +49,20 @@ def agent_solver(
         agent: "scope" for the built-in loop with its planner, or ``module:Class`` of an external agent.
         pictures: Render frames and log them; without pictures, only ground-truth perception works.
         max_steps: Planner steps after which a run ends (T_max).
-        time_s: Wall seconds after which a run ends.
+        time_s: Wall-clock seconds after which a run ends.
         seed: Seed for every random choice.
     """
 
     @solver
     def scope_agent(
-        agent: str = OWN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
+        agent: str = BUILT_IN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
     ) -> Solver:
         async def solve(state: TaskState, generate: Generate) -> TaskState:  # noqa: ARG001 - the engine's signature
             entry = Entry.of_metadata(state.metadata)
             context.watcher.began(sample_name(entry.facts.id, state.epoch), entry)
             planner: Planner = (
                 await LoggedPlanner.of(get_model(role="planner", required=True), context)
-                if agent == OWN_AGENT
+                if agent == BUILT_IN_AGENT
                 else ExternalPlanner(load_external_agent(agent), agent)
             )
             run = _SampleRun(context, entry, planner, pictures=pictures, seed=seed)

@@ -8,7 +8,7 @@ from typing import Any
 
 from inspect_ai import Epochs, Task, task
 
-from scope_ptz.bench.engine.agent_solver import OWN_AGENT, agent_solver
+from scope_ptz.bench.engine.agent_solver import BUILT_IN_AGENT, agent_solver
 from scope_ptz.bench.engine.checks_scorer import checks_scorer
 from scope_ptz.bench.engine.context import EvalContext
 from scope_ptz.bench.engine.entries import Entry, datasets, digest, select
@@ -37,7 +37,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
         category: str | list[str] | None = None,
         scene: str | list[str] | None = None,
         limit: int | None = None,
-        agent: str = OWN_AGENT,
+        agent: str = BUILT_IN_AGENT,
         pictures: bool = True,
         max_steps: int = 60,
         time_s: float | None = None,
@@ -55,7 +55,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
             agent: "scope" for the built-in loop, or ``module:Class`` of an external agent.
             pictures: Render frames and log them.
             max_steps: Planner steps after which a run ends.
-            time_s: Wall seconds after which a run ends.
+            time_s: Wall-clock seconds after which a run ends.
             seed: Seed for every random choice.
             epochs: Number of runs of each task.
             judgements: Judgements of each run by the model in the role "judge".
@@ -94,6 +94,6 @@ def _log_metadata(entries: Sequence[Entry], split: str, *, agent: str, max_steps
             "agent": agent,
             "max_steps": max_steps,
             "seed": seed,
-            **({AGENT_SOURCE: source_digest(agent)} if agent != OWN_AGENT else {}),
+            **({AGENT_SOURCE: source_digest(agent)} if agent != BUILT_IN_AGENT else {}),
         }
     }

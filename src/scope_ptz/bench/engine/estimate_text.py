@@ -15,7 +15,7 @@ def estimate_lines(
     Args:
         estimate: The estimate.
         planner: Name of the planner.
-        perception: Name of the perception.
+        perception: Name of the perception backend.
         concurrency: Number of concurrent runs.
         agent: External agent that replaces the planner, if any.
         planner_is_free: Whether planning uses no paid server.

@@ -74,7 +74,7 @@ async def _judgement(state: TaskState, context: EvalContext, repeat: int, journa
     judgement = journal.find(name, model.name, repeat)
     if judgement is None:
         port = LoggedJudge(model, context, repeat)
-        judgement = await Judge(model.name, port).judge(entry.facts, trace, repeat=repeat, places=kept.places)
+        judgement = await Judge(model.name, port).judge(entry.facts, trace, repeat=repeat, preset_viewpoints=kept.places)
         journal.add(name, judgement)
     return score_of_judgement(judgement)
 

@@ -38,7 +38,7 @@ class JudgeCase:
         answer: The agent's final answer.
         outcome: How the run ended; None if it was interrupted.
         sees: Whether the agent was shown pictures and may answer from them.
-        places: The viewpoints of the presets, if known.
+        preset_viewpoints: The viewpoints of the presets, if known.
     """
 
     instruction: str
@@ -50,21 +50,21 @@ class JudgeCase:
     answer: str
     outcome: str | None
     sees: bool = False
-    places: PresetViewpoints | None = None
+    preset_viewpoints: PresetViewpoints | None = None
 
 
-def case_of(trace: Trace, places: PresetViewpoints | None = None) -> JudgeCase:
+def case_of(trace: Trace, preset_viewpoints: PresetViewpoints | None = None) -> JudgeCase:
     """Build a case from a trace.
 
     Args:
         trace: The recorded run.
-        places: The viewpoints of the presets. Without them the viewpoint is unknown after the first move to a preset.
+        preset_viewpoints: The viewpoints of the presets. Without them the viewpoint is unknown after the first move to a preset.
     """
     started, ended = trace.started, trace.ended
     at, calls = started.viewpoint, list[CaseCall]()
     for called in trace.calls:
         outcome = called.outcome
-        at = _viewpoint_after(outcome, at, places, started.labels.home_viewpoint)
+        at = _viewpoint_after(outcome, at, preset_viewpoints, started.labels.home_viewpoint)
         calls.append(
             CaseCall(
                 name=outcome.call.name,
@@ -86,23 +86,23 @@ def case_of(trace: Trace, places: PresetViewpoints | None = None) -> JudgeCase:
         answer=ended.text if ended else "",
         outcome=ended.outcome if ended else None,
         sees=any(decided.view is not None for decided in trace.decisions),
-        places=places,
+        preset_viewpoints=preset_viewpoints,
     )
 
 
-def case_of_episode(episode: Episode, places: PresetViewpoints) -> JudgeCase:
-    """Build a case from a run without a trace, such as a gold run. ``places`` are the presets of its scene."""
+def case_of_episode(episode: Episode, preset_viewpoints: PresetViewpoints) -> JudgeCase:
+    """Build a case from a run without a trace, such as a gold run."""
     return JudgeCase(
         instruction=episode.instruction,
         start=episode.start.pose,
         viewpoint=episode.start.viewpoint,
-        presets=tuple(places.presets),
+        presets=tuple(preset_viewpoints.presets),
         calls=tuple(_call(call.name, call.arguments, call.result, call.error, call.after) for call in episode.calls),
         final=episode.final.pose,
         answer=episode.answer,
         outcome=episode.outcome,
         sees=bool(episode.planner_views),
-        places=places,
+        preset_viewpoints=preset_viewpoints,
     )
 
 
@@ -112,10 +112,12 @@ def _call(
     return CaseCall(name=name, arguments=arguments, result=result, error=error, pose=after.pose, viewpoint=after.viewpoint)
 
 
-def _viewpoint_after(outcome: ToolOutcome, before: str | None, places: PresetViewpoints | None, home: str | None) -> str | None:
+def _viewpoint_after(
+    outcome: ToolOutcome, before: str | None, preset_viewpoints: PresetViewpoints | None, home: str | None
+) -> str | None:
     name = outcome.call.name
     if outcome.error is not None or name not in ("go_to_preset", "go_home"):
         return before
     if name == "go_home":
-        return home or (places.home if places else None)
-    return places.presets.get(str(outcome.call.arguments.get("name"))) if places else None
+        return home or (preset_viewpoints.home if preset_viewpoints else None)
+    return preset_viewpoints.presets.get(str(outcome.call.arguments.get("name"))) if preset_viewpoints else None

@@ -67,16 +67,18 @@ class Judge:
     def __init__(self, name: str, complete: Complete, *, attempts: int = ATTEMPTS, budget_chars: int = BUDGET_CHARS) -> None:
         self.name, self.complete, self.attempts, self.budget_chars = name, complete, attempts, budget_chars
 
-    async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, places: PresetViewpoints | None = None) -> Judgement:
+    async def judge(
+        self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, preset_viewpoints: PresetViewpoints | None = None
+    ) -> Judgement:
         """Judge a recorded run. Errors of models and servers are recorded in the judgement and not raised.
 
         Args:
             facts: The facts about the task.
             trace: The recorded run.
             repeat: Index of the judgement, from 0, if the judge gives several.
-            places: The viewpoints of the presets, so that the judge knows where the camera stood.
+            preset_viewpoints: The viewpoints of the presets, so that the judge knows where the camera stood.
         """
-        return await self.judge_case(facts, case_of(trace, places), repeat=repeat)
+        return await self.judge_case(facts, case_of(trace, preset_viewpoints), repeat=repeat)
 
     async def judge_case(self, facts: TaskFacts, case: JudgeCase, *, repeat: int = 0) -> Judgement:
         """Judge a run. ``repeat`` is the index of the judgement, from 0."""
@@ -107,19 +109,19 @@ class _Session:
                     budget = max(budget // 2, MIN_CHARS)
                     messages = opening = judge_messages(facts, case, budget)
                     continue
-                return self._made("failed", str(failure))
+                return self._judgement("failed", str(failure))
             answers += 1
             self.input_tokens += reply.input_tokens
             self.output_tokens += reply.output_tokens
             read = "it was cut off at the limit of tokens" if reply.cut_off else parse_judge_reply(reply.text)
             if isinstance(read, JudgeReply):
-                made = self._made(read.verdict, read.reason)
-                return made.model_copy(update={"error_mode": read.error_mode})
+                judged = self._judgement(read.verdict, read.reason)
+                return judged.model_copy(update={"error_mode": read.error_mode})
             problem = read
             messages = [*opening, *_correction(reply.text, problem)]
-        return self._made("unparseable", problem)
+        return self._judgement("unparseable", problem)
 
-    def _made(self, verdict: str, reason: str) -> Judgement:
+    def _judgement(self, verdict: str, reason: str) -> Judgement:
         return Judgement.model_validate(
             {
                 "judge": self.judge.name,

@@ -86,7 +86,7 @@ def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
 
 def _preset(name: str, case: JudgeCase) -> str:
     """Return a preset with its viewpoint, if known."""
-    at = case.places.presets.get(name) if case.places is not None else None
+    at = case.preset_viewpoints.presets.get(name) if case.preset_viewpoints is not None else None
     return inline(name, _NAME_CHARS) + (f" (viewpoint {inline(at, _NAME_CHARS)})" if at else "")
 
 

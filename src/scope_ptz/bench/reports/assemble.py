@@ -105,7 +105,7 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
 
 
 def _without_empty_tables(section: Section) -> Section:
-    """Replace the empty tables of a section by a sentence that names them."""
+    """Replace the empty tables of a section with a sentence that names them."""
     empty = [table.title for table in section.tables if not table.rows]
     if not empty:
         return section
@@ -193,12 +193,12 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Seq
     ]
     if left_out := [run.label for run in ranked if run not in alike]:
         warnings.append(
-            f"These pairs cover other tasks than the rest: {'; '.join(left_out)}. Their averages are not comparable. They are left "
+            f"These pairs ran different tasks than most: {'; '.join(left_out)}. Their averages are not comparable. They are left "
             "out of the oracle setting, the spreads and the choice of a pair. Paired comparisons use the shared tasks."
         )
     if further := [run.label for run in runs if run.other_tasks and run not in ranked]:
         warnings.append(
-            f"These reference runs, variants and baselines cover other tasks than the model pairs: {'; '.join(further)}. Their "
+            f"These reference runs, variants and baselines cover different tasks from the model pairs: {'; '.join(further)}. Their "
             "labels say so. Their averages are not comparable with those of the pairs."
         )
     warnings += _served_models_warning(runs)
@@ -217,7 +217,7 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Seq
 
 
 def _served_models_warning(runs: Sequence[ReportRun]) -> list[str]:
-    """Return a warning if a server reported another model than the requested one."""
+    """Return a warning if a server reported a model other than the requested one."""
     found: dict[str, str] = {}
     for run in runs:
         card = run.evaluation.card
@@ -228,7 +228,7 @@ def _served_models_warning(runs: Sequence[ReportRun]) -> list[str]:
     if not found:
         return []
     return [
-        f"Servers reported another model than the requested one: {'; '.join(found)}. The rows of these models say so. Size, "
+        f"Servers reported a model other than the requested one: {'; '.join(found)}. The rows of these models say so. Size, "
         "precision and memory are those of the requested model in the registry."
     ]
 

@@ -184,10 +184,10 @@ def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
         axes.set_xlim(0, max(left) * 1.45)
         axes.set_yticks(range(len(rows)), labels)
         axes.grid(axis="y", visible=False)
-        axes.set_xlabel("Mean wall seconds per trial without the camera, by stage")
+        axes.set_xlabel("Mean wall-clock seconds per trial without the camera, by stage")
         figure.legend(loc="outside lower center", ncols=3, fontsize=9.5)
         totals = "; ".join(f"{r.label} {m['own_s']:.2f} s and the camera {m['capture_s']:.2f} s" for r, m in reversed(rows))
-        alt = f"Mean wall seconds of a trial by stage, without the camera. Totals: {totals}."
+        alt = f"Mean wall-clock seconds of a trial by stage, without the camera. Totals: {totals}."
         return as_chart("chart-time", "Time of each pair by stage", alt, figure)
 
 
@@ -218,7 +218,7 @@ def front_chart(found: Sequence[Candidate]) -> Chart:
         axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)))
         axes.xaxis.set_major_formatter(ScalarFormatter())
         axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.set_xlabel("Median wall seconds per trial without the camera: planner, perception and tools (logarithmic)")
+        axes.set_xlabel("Median wall-clock seconds per trial without the camera: planner, perception and tools (logarithmic)")
         axes.set_ylabel("Macro accuracy (%)")
         one_on_the_other = {tuple: HandlerTuple(ndivide=1)}
         figure.legend(keys, names, handler_map=one_on_the_other, loc="outside right upper", fontsize=9.5, labelspacing=0.9)

@@ -44,14 +44,14 @@ PERCEPTION_NOTE = (
 
 def latency_section(runs: Sequence[ReportRun]) -> Section:
     """Return the section on the latency of all runs. The tables by model cover only ranked runs."""
-    having = [run for run in runs if run.scored_trials]
-    pairs = [(run, timing_run(run, having)) for run in pairs_of(having)]
+    scored = [run for run in runs if run.scored_trials]
+    pairs = [(run, timing_run(run, scored)) for run in pairs_of(scored)]
     sources = [source for _, source in pairs]
-    tables = (_by_stage(having), _by_planner(pairs), _by_perception(pairs), _views(sources))
+    tables = (_by_stage(scored), _by_planner(pairs), _by_perception(pairs), _views(sources))
     shared = [run.label for run in sources if run.evaluation.card.contended]
     text = [
-        "All values are wall seconds; concurrent work counts once. The values of a stage cover the trials that used it. If a pair "
-        "was also run without contention, its latency is taken from that run.",
+        "All values are wall-clock seconds; concurrent work counts once. The values of a stage cover the trials that used it. If a "
+        "pair was also run without contention, its latency is taken from that run.",
         STAGES_NOTE,
     ]
     if shared:
@@ -59,7 +59,7 @@ def latency_section(runs: Sequence[ReportRun]) -> Section:
             f"“Contended” marks {len(shared)} of {len(sources)} model pairs. They were timed only while other runs used the same "
             "machine or servers, which increases their latency."
         )
-    charts = (drawing.time_chart(having, STAGE_TITLES),) if any(stage_seconds(r, "total_s") for r in having) else ()
+    charts = (drawing.time_chart(scored, STAGE_TITLES),) if any(stage_seconds(r, "total_s") for r in scored) else ()
     return Section("latency", "Latency and tool calls", tuple(text), charts, tables)
 
 

@@ -12,7 +12,7 @@ from scope_ptz.bench.scoring.trials import Trial
 
 
 def stage_seconds(run: ReportRun, stage: str) -> list[float]:
-    """Return the wall seconds of a stage in each timed trial that used the stage. ``stage`` is a field of ``Timings``."""
+    """Return the wall-clock seconds of a stage in each timed trial that used the stage. ``stage`` is a field of ``Timings``."""
     seconds = [float(getattr(t.timings, stage)) for t in run.scored_trials if t.timings.total_s > 0]
     return [value for value in seconds if value > 0]
 

@@ -1,6 +1,6 @@
 """Submissions to a public leaderboard: a header and one JSON line per trial, without keys and addresses.
 
-The schema is ``data/submission.schema.json``; docs/reports.md describes its validation. The docstrings of the models of lines are
+The schema is ``data/submission.schema.json``; docs/reports.md describes its validation. The docstrings of the line models are
 part of that schema and change only with its version.
 """
 

@@ -33,7 +33,7 @@ def trial_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator
         yield "an incorrect trial has no error mode"
     yield from _verdict_faults(line)
     if line.outcome is not None and line.outcome not in OUTCOMES:
-        yield f"outcome {line.outcome} is none of {', '.join(OUTCOMES)}"
+        yield f"outcome {line.outcome} is not one of {', '.join(OUTCOMES)}"
     if strange := sorted(set(line.tool_calls) - TOOLS - {UNKNOWN_TOOL}):
         yield f"unknown tools: {', '.join(strange)[:200]}"
     if line.steps > header.card.max_steps:
@@ -131,7 +131,7 @@ def _broken_faults(line: TrialLine, task: Task) -> Iterator[str]:
         or line.checks.get("coverage") is not False
         or (claimed and isinstance(parse_answer(task.expected, line.answer), ParsedValue))
     ):
-        yield f"broken by infrastructure although it ended {line.outcome} and failures of perception do not explain it"
+        yield f"broken by infrastructure although it ended {line.outcome} and perception failures do not explain it"
 
 
 def _call_faults(line: TrialLine, header: Header, task: Task) -> Iterator[str]:
@@ -144,18 +144,18 @@ def _call_faults(line: TrialLine, header: Header, task: Task) -> Iterator[str]:
     if line.bad_calls + line.perception_failures > made:
         yield f"{line.bad_calls + line.perception_failures} failed calls, but only {made} calls"
     if line.checks.get("coverage") and not _may_see(header.card) and not any(calls[tool] for tool in PERCEPTION_TOOLS):
-        yield "coverage passed without a perception call"
+        yield "the check 'coverage' passed without a perception call"
     if line.checks.get("calls"):
         needed = Counter[str]()
         for call in task.behaviour.calls:
             needed[call.tool] += call.times
         for tool, number in (needed - calls).items():
-            yield f"calls passed with {calls[tool]} of {calls[tool] + number} calls of {tool}"
+            yield f"the check 'calls' passed, but only {calls[tool]} of {calls[tool] + number} required calls of {tool} were made"
     if line.checks.get("pictures") and calls["take_image"] < (task.behaviour.pictures or 0):
-        yield f"pictures passed with {calls['take_image']} of {task.behaviour.pictures} calls of take_image"
+        yield f"the check 'pictures' passed, but take_image was called {calls['take_image']} of {task.behaviour.pictures} times"
     moved = [name for name in ("pose", "framing") if line.checks.get(name)]
     if moved and set(task.needs) & MOVING and not any(calls[tool] for tool in MOVERS):
-        yield f"{moved[0]} passed, but no call moved the camera"
+        yield f"the check '{moved[0]}' passed, but no call moved the camera"
 
 
 def _may_see(card: RunCard) -> bool:

@@ -44,7 +44,7 @@ class Judgement(_Record):
         attempts: Number of requests.
         input_tokens: Tokens of all requests.
         output_tokens: Tokens of all replies.
-        latency_s: Wall seconds of the whole judgement.
+        latency_s: Wall-clock seconds of the whole judgement.
     """
 
     judge: str
@@ -69,7 +69,7 @@ class Label(_Record):
 
 
 class ObservationTime(_Record):
-    """Wall seconds of one perception call. Concurrent calls share a frame and its capture.
+    """Wall-clock seconds of one perception call. Concurrent calls share a frame and its capture.
 
     Attributes:
         view: The view that was observed.
@@ -107,8 +107,8 @@ class Trial(_Record):
         input_tokens: Tokens of the planner's requests.
         output_tokens: Tokens of the planner's replies.
         cost_usd: Cost of the planner's tokens; None if unknown.
-        timings: Wall seconds by stage.
-        looks: Wall seconds of each perception call.
+        timings: Wall-clock seconds by stage.
+        looks: Wall-clock seconds of each perception call.
         judgements: The verdicts of judges.
         labels: The human labels.
     """

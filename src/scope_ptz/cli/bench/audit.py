@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from scope_ptz.cli.bench.flags import TasksOption
-from scope_ptz.cli.exit import complain, put, put_json
+from scope_ptz.cli.exit import print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, command
 from scope_ptz.errors import InputError, OutputError
 
@@ -58,7 +58,7 @@ def audit_make(
         raise OutputError(f"{out} exists already. Name a new folder with --out.") from error
     except OSError as error:
         raise OutputError(f"{out} cannot be created: {error.strerror}.") from error
-    questions = [anyio.run(write_question, q, task, runners[task.world], out, complain) for q, task in chosen]
+    questions = [anyio.run(write_question, q, task, runners[task.world], out, print_error) for q, task in chosen]
     (out / QUESTIONS).write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in questions), "utf-8")
     draw = QuestionDraw(number=number, seed=seed, tasks=digest_of(rows))
     (out / DRAW).write_text(draw.model_dump_json() + "\n", "utf-8")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.bench.flags import SceneNames, TasksOption
-from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, command
 from scope_ptz.errors import InputError, OutputError
 
@@ -53,14 +53,14 @@ def build(
         return _build_all(scene, out, card, seed, numbers or UNSEEN_VARIATIONS, quotas)
     scenes = list(scenes_named(scene).values())
     if numbers:
-        built = build_unseen(scenes, numbers, quotas, complain, is_answerable)
+        built = build_unseen(scenes, numbers, quotas, print_error, is_answerable)
     else:
-        built = build_tasks(scenes, seed, quotas, complain, is_answerable)
+        built = build_tasks(scenes, seed, quotas, print_error, is_answerable)
     out.parent.mkdir(parents=True, exist_ok=True)
     dump_tasks(built.tasks, out)
     put(f"{len(built.tasks)} tasks in {out}")
     if missing := shortfall(built):
-        complain(missing)
+        print_error(missing)
         return FAILED
     return 0
 
@@ -75,7 +75,7 @@ def _build_all(
 
     good = build_dataset(
         scenes_named(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
-        report=put, notify=complain,
+        report=put, notify=print_error,
     )  # fmt: skip
     if card is not None:
         write_card(out, card)

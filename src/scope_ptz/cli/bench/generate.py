@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import ConfigError, InputError, OutputError
 
@@ -74,7 +74,7 @@ def generate(
     put(f"{len(ledger.kept)} tasks accepted of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
     if missing:
         names = ", ".join(f"{n} of {name}" for name, n in missing.items())
-        complain(f"still missing: {names}. Run the same command again with more --requests.")
+        print_error(f"still missing: {names}. Run the same command again with more --requests.")
         return FAILED
     return 0
 
@@ -87,7 +87,7 @@ async def _draft(request: GenerationRequest, ledger: DraftLedger, endpoint: Endp
     options = JudgeModelOptions(temperature=temperature, seed=request.seed)
     server = JudgeServer(await _with_model(endpoint, model), options)
     try:
-        await generate_tasks(request, server, task_validator(request.scene), ledger, complain)
+        await generate_tasks(request, server, task_validator(request.scene), ledger, print_error)
     finally:
         await server.close()
 
@@ -185,10 +185,10 @@ def import_tasks(
         if any(content["map_to_fill"].values()):
             put("Map unknown names of scenes and presets with --map; 'map_to_fill' in the report lists them.")
     if not imported.tasks and not content["rows"]:
-        complain(f"{file} has a header and no rows: there is nothing to import.")
+        print_error(f"{file} has a header and no rows: there is nothing to import.")
     elif not imported.tasks:
         known = ", ".join(sorted(places_in(scenes, mapping).scenes)) or "none"
-        complain(
+        print_error(
             f"no row can be run. Known scenes: {known}. Give the scenes of the file with --scenes, or map their names with --map."
         )
     return 0 if imported.tasks else FAILED

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.bench.flags import TasksOption, judge_settings
-from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags
 from scope_ptz.errors import InputError
 
@@ -65,7 +65,7 @@ def rescore(
             for log in logs:
                 if checks or server is not None:
                     tally = await add_scores(
-                        log, server, eval_context(seed=1), repeats=repeats, checks=checks, at_a_time=concurrency, notify=complain
+                        log, server, eval_context(seed=1), repeats=repeats, checks=checks, at_a_time=concurrency, notify=print_error
                     )
                     total += tally
                     done = ["checked again"] if checks else []
@@ -81,7 +81,7 @@ def rescore(
 
     total = anyio.run(work)
     if total.failed:
-        complain(retry_message(total))
+        print_error(retry_message(total))
         return FAILED
     return 0
 
@@ -175,7 +175,7 @@ def judge_gold(
     async def work() -> JudgementTally:
         server = await open_requested_judge(judge_settings(judge))
         try:
-            return await judge_all(server, cases, before, out, repeats=repeats, concurrency=concurrency, notify=complain)
+            return await judge_all(server, cases, before, out, repeats=repeats, concurrency=concurrency, notify=print_error)
         finally:
             await server.close()
 
@@ -188,6 +188,6 @@ def judge_gold(
             for line in result_lines(result):
                 put(line)
     if tally.failed:
-        complain(retry_message(tally))
+        print_error(retry_message(tally))
         return FAILED
     return 0

@@ -19,7 +19,7 @@ from scope_ptz.bench.engine.run_totals import CATEGORIES, accuracy
 from scope_ptz.bench.judging.deciding_judge import other_judges_note
 from scope_ptz.bench.judging.judgement_tally import not_judged, without_verdict
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
-from scope_ptz.cli.exit import complain
+from scope_ptz.cli.exit import print_error
 from scope_ptz.factory.evaluation_options import EvaluationPlan, EvaluationProgress
 
 PRINT_EVERY_S = 15.0
@@ -47,7 +47,7 @@ class LiveProgress(EvaluationProgress):
         self._live: Live | None = None
 
     def note(self, text: str) -> None:
-        complain(text)
+        print_error(text)
 
     def _print(self, text: str) -> None:
         self._console.print(text, highlight=False, soft_wrap=True, markup=False)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.bench.flags import published_tasks
-from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, command
 from scope_ptz.errors import InputError
 
@@ -104,7 +104,7 @@ def gate(
         for line in comparison_lines(found, now):
             put(line)
     if note := judge_change_note(now, before):
-        complain(note)
+        print_error(note)
     return 0 if found.passed else FAILED
 
 
@@ -140,7 +140,7 @@ def submission_make(
     write_submission((header, lines), out)
     put(f"{out}: {len(evaluation.trials)} trials of {evaluation.card.pair}")
     if lacking:
-        complain(f"{out} is incomplete and not a valid submission: {_first(lacking)}.")
+        print_error(f"{out} is incomplete and not a valid submission: {_first(lacking)}.")
 
 
 @submission_app.command("validate")
@@ -160,9 +160,9 @@ def submission_validate(
         put_json(found.as_dict(), indent=1)
     else:
         for fault in found.faults[:MAX_FAULTS_LISTED]:
-            complain(fault)
+            print_error(fault)
         if len(found.faults) > MAX_FAULTS_LISTED:
-            complain(f"and {len(found.faults) - MAX_FAULTS_LISTED} more")
+            print_error(f"and {len(found.faults) - MAX_FAULTS_LISTED} more")
         put(found.summary)
     return FAILED if found.faults else 0
 

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, judge_settings, price_of
-from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags, PairFlags
 
 if TYPE_CHECKING:
@@ -82,17 +82,17 @@ def _report_failures(result: EvaluationResult) -> int:
     broken = sum(trial.headline == "infrastructure" for trial in evaluation.trials)
     missing = max(evaluation.wanted - len(evaluation.trials), 0)
     for line in failure_summary(evaluation.trials, evaluation.card):
-        complain(line)
+        print_error(line)
     if broken or missing:
         parts = []
         if broken:
             parts.append(f"{broken} {'run was' if broken == 1 else 'runs were'} broken by infrastructure")
         if missing:
             parts.append(f"{missing} {'run is' if missing == 1 else 'runs are'} missing")
-        complain(f"{' and '.join(parts)}; running the same command again repeats {'it' if broken + missing == 1 else 'them'}.")
+        print_error(f"{' and '.join(parts)}; running the same command again repeats {'it' if broken + missing == 1 else 'them'}.")
     failed = judgements is not None and judgements.failed
     if judgements is not None and failed:
-        complain(
+        print_error(
             f"{judge_failure(judgements)} No run is lost. Run the same command again to retry, or "
             f"`scope bench rescore {evaluation.log} --judge-url ...`."
         )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import typer
 
 from scope_ptz.cli.bench.flags import EvaluationFlags, SelectionFlags
-from scope_ptz.cli.exit import FAILED, complain, put_json
+from scope_ptz.cli.exit import FAILED, print_error, put_json
 from scope_ptz.cli.options import JsonOption, ModelFlags
 from scope_ptz.errors import InputError, ScopeError
 
@@ -87,7 +87,7 @@ def sweep(
         for table in sweep_tables(done, console.width):
             console.print(table, "")
     if any(isinstance(result, str) or not is_complete(result) for result in done.values()):
-        complain("not every pair is complete; running the same command again resumes them.")
+        print_error("not every pair is complete; running the same command again resumes them.")
         return FAILED
     return 0
 
@@ -129,10 +129,10 @@ def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> d
             evaluation = anyio.run(work, replace(shared, models=_models_of_pair(shared.models, name))).evaluation
             done[name] = evaluation
             for line in failure_summary(evaluation.trials, evaluation.card):
-                complain(f"{name}: {line}")
+                print_error(f"{name}: {line}")
         except ScopeError as error:
             done[name] = str(error)
-            complain(f"{name}: {error}")
+            print_error(f"{name}: {error}")
     return done
 
 

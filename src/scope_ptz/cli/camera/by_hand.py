@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from scope_ptz.cli.exit import complain, put, put_json, run_async
+from scope_ptz.cli.exit import print_error, put, put_json, run_async
 from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import InputError, OutputError
 
@@ -175,7 +175,7 @@ async def _opened(spec: str, *, dry_run: bool = False, realtime: bool = False) -
     from scope_ptz.factory.cameras import open_camera
 
     async with await open_camera(spec, realtime=realtime, actor=f"scope camera: {user_name()}") as opened:
-        yield DryRunCamera(opened.camera, complain) if dry_run else opened.camera
+        yield DryRunCamera(opened.camera, print_error) if dry_run else opened.camera
 
 
 def _pose_text(pose: dict[str, Any]) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.camera.by_hand import CameraSpecArgument
-from scope_ptz.cli.exit import FAILED, complain, put, put_json, run_async
+from scope_ptz.cli.exit import FAILED, print_error, put, put_json, run_async
 from scope_ptz.cli.options import JsonOption
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def calibrate(
     shown = sys.stderr.isatty() and not as_json
 
     async def work() -> None:
-        done.append(await calibrate_camera(camera, zooms=zooms, progress=complain if shown else lambda _: None))
+        done.append(await calibrate_camera(camera, zooms=zooms, progress=print_error if shown else lambda _: None))
 
     run_async(work)
     record, file = done[0]
@@ -95,7 +95,7 @@ def calibrate(
             put(line)
         put(f"Stored in {file}")
     for sentence in record.contradictions:
-        complain(sentence)
+        print_error(sentence)
     return FAILED if record.contradictions else 0
 
 

@@ -71,14 +71,14 @@ class OpenAIVisionPerception(Perception):
         return self._read(await self._ask(await self._picture(frame), query_prompt(question)), began).answer()
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        style, began = self._places(), perf_counter()
+        style, began = self._required_style(), perf_counter()
         picture = await self._picture(frame)
         prompt = detect_prompt(style, description, picture.size)
         reply = await self._ask(picture, prompt, places_schema(style.box_key, 4))
         return self._read(reply, began).detections(style, picture.size)
 
     async def point(self, frame: Frame, description: str) -> Points:
-        style, began = self._places(), perf_counter()
+        style, began = self._required_style(), perf_counter()
         picture = await self._picture(frame)
         prompt = point_prompt(style, description, picture.size)
         reply = await self._ask(picture, prompt, places_schema(style.point_key, 2))
@@ -87,7 +87,7 @@ class OpenAIVisionPerception(Perception):
     async def close(self) -> None:
         await self._client.close()
 
-    def _places(self) -> Convention:
+    def _required_style(self) -> Convention:
         if self._style is None:
             raise place_error(self.name)
         return self._style

@@ -77,7 +77,7 @@ class GroundTruthPerception(Perception):
         origin = frame.origin
         if origin is None:
             raise PerceptionError(
-                "Ground truth exists for simulated frames only, and this frame comes from a real camera. Choose another perception."
+                "This frame is from a real camera and has no ground truth. Name a vision model with --perception."
             )
         try:
             scene = self.open_scene(origin.scene)

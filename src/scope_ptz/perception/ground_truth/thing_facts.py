@@ -123,7 +123,8 @@ FILLERS = frozenset(
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
 """Attributes that repeat the text on a thing. They are never used, because only legible text may be reported."""
 COLOUR_KEYS = ("colour", "color")
-NOTHING = frozenset({"", "none", "no", "false", "nothing", "without"})
+ABSENT_VALUES = frozenset({"", "none", "no", "false", "nothing", "without"})
+"""Attribute values in lower case that mean that a thing lacks the attribute."""
 
 
 def canonical(word: str) -> str:
@@ -160,7 +161,7 @@ def fact_words(thing: Thing) -> set[str]:
             is_worn(key) and "person" in thing.concepts
         ):
             found |= set(value_words(value))
-        if words[-1] in {"load", "cargo"} and str(value).lower() not in NOTHING:
+        if words[-1] in {"load", "cargo"} and str(value).lower() not in ABSENT_VALUES:
             found.add("full")
     if "lit" in found:
         found.add("on")
@@ -281,14 +282,14 @@ def _in_context(view: View, thing: Thing, word: str) -> bool:
 
 
 def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None = None) -> bool:
-    """Return whether a thing has an attribute, part, clothing or text that fits. What the scene does not state is absent."""
+    """Return whether a thing has an attribute, part, clothing or text that fits. Anything not stated counts as absent."""
     rest = [x for x in words if x not in FILLERS]
     spans = nouns_in(rest, view.nouns)
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))
     noun, others = " ".join(rest[start:end]), [canonical(x) for x in (*rest[:start], *rest[end:])]
     if lexicon().concept(noun) == "thing":  # "carrying something"
         held = [v for k, v in facts(thing) if set(key_words(k)) & {"carrying", "load", "holding"}]
-        return any(str(v).lower() not in NOTHING for v in held)
+        return any(str(v).lower() not in ABSENT_VALUES for v in held)
     if any(_attribute_has(key, value, names_of(noun), others, amount) for key, value in facts(thing)):
         return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
@@ -302,7 +303,7 @@ def _attribute_has(key: str, value: Attribute, names: frozenset[str], others: Se
     """Return whether an attribute contains one of the names, in its key or its value, together with all other words."""
     if _key_is(key, names):
         stated = value_words(value)
-        if str(value).lower() not in NOTHING and value is not False and all(x in stated for x in others):
+        if str(value).lower() not in ABSENT_VALUES and value is not False and all(x in stated for x in others):
             return amount is None or not isinstance(value, int) or isinstance(value, bool) or value == amount
     return any(
         any(name in chunk for name in names) and all(x in value_words(chunk) for x in others) and "no" not in chunk.split()

@@ -140,7 +140,7 @@ class _Writer:
 
 
 def callable_name(name: str) -> str:
-    """Replace characters that the OpenAI API does not allow in tool names by underscores. Models may invent any name."""
+    """Replace characters that the OpenAI API does not allow in tool names with underscores. Models may invent any name."""
     return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:64] or "unreadable"
 
 

@@ -52,7 +52,7 @@ class EditEffect(_Model):
     """The effect of an edit.
 
     Attributes:
-        tools_changed: How often the planner chose other tools than without the edit.
+        tools_changed: How often the planner chose different tools than without the edit.
         calls_changed: How often the tools or their arguments changed.
     """
 

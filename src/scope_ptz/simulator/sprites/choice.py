@@ -14,7 +14,7 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.simulator.models import SceneActor, Sprite, Vec3
 
 SAME_HEADING_DEG = 15.0
-"""A sprite of an actor that faces another way than now by more than this is never used: its light would be wrong."""
+"""Largest difference in degrees between an actor's heading now and in its sprite. Beyond it, the light would be wrong."""
 
 DEGREES_PER_OCTAVE = 6.0
 """A sprite taken at half or twice the distance is as unsuitable as one seen from this many degrees aside."""

@@ -15,7 +15,7 @@ _MAX_COUNT, _MAX_COUNT_IN_SWEEP = 15, 8
 """Maximum count in a view and in a sweep. People disagree about larger counts."""
 
 _MIN_SHARE = 0.5
-"""Minimum visible share of a counted object. People disagree whether to count objects that are hidden more."""
+"""Minimum visible share of a counted object. People disagree about counting objects of which less is visible."""
 
 _MIN_PX, _MIN_PX_IN_SWEEP = 220, 450
 """Minimum size of a counted object in a view and in a sweep, in pixels. People overlook smaller objects."""
@@ -71,12 +71,12 @@ def absent_kinds(truth: RobustTruth, nouns: frozenset[str]) -> tuple[Kind, ...]:
 
 
 def disjoint(truth: RobustTruth, kinds: Sequence[Kind]) -> bool:
-    """Return whether no object in view could belong to two of these kinds, as to "people" and "workers"."""
+    """Return whether no object in view could belong to two of these kinds, as with "people" and "workers"."""
     return not any(sum(kind.fits(thing) or kind.ambiguous_with(thing) for kind in kinds) > 1 for thing in truth.traces)
 
 
 def scene_kinds_first(place: TaskPlace, kinds: Sequence[Kind], rng: random.Random) -> list[Kind]:
-    """Shuffle kinds, and put those first that the scene has in other views.
+    """Shuffle kinds, and put first those that the scene has in other views.
 
     The noun in a question then does not reveal that the answer is "there is none".
     """

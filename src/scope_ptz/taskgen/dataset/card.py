@@ -136,7 +136,10 @@ def _contents(data: Dataset) -> Iterator[str]:
     yield d.markdown_table(("split", "tasks", "description"), [(n, len(rows), _ABOUT[n]) for n, rows in data.splits.items()])
     yield "Core tasks by category and scene:"
     yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.scene))
-    yield "By category and difficulty, which depends on the number of calls, the number of objects to tell apart, and a sweep:"
+    yield (
+        "By category and difficulty, which depends on the number of calls, the number of objects to tell apart, and whether a "
+        "sweep is needed:"
+    )
     yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.difficulty))
     yield "By category and scope:"
     yield d.markdown_table(*d.cross_table(core, lambda t: t.category, lambda t: t.scope))

@@ -48,7 +48,7 @@ def replayed(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetti
 
 
 def _position_after(call: EpisodeCall, at: CameraPosition, episode: Episode, setting: FaultSetting) -> CameraPosition:
-    """Return the camera position after a call that begins at another position than in the original run."""
+    """Return the camera position after a call that begins at a different position from that in the original run."""
     if not call.succeeded or call.name not in MOVERS:
         return at
     if call.name == "go_to_preset":
@@ -106,7 +106,7 @@ _REPLACEMENTS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
 
 
 def swap_tools(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Replace every call of one tool by a call of an unsuitable tool."""
+    """Replace every call of one tool with a call of an unsuitable tool."""
     name = rng.choice([call.name for call in episode.calls])
     other, arguments, result = _REPLACEMENTS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
     if any(call.name == other for call in episode.calls):

@@ -107,7 +107,7 @@ _CURRENT = ("current", "current_view", "view", "now", "present", "local", "curre
 
 
 def normalise(text: str) -> str:
-    """Return a name in lower case, with one underscore instead of each sequence of other characters than letters and digits."""
+    """Return a name in lower case, with each run of characters other than letters and digits replaced by one underscore."""
     return re.sub(r"[^a-z0-9]+", "_", text.strip().lower()).strip("_")
 
 
@@ -128,7 +128,7 @@ def policy_of(text: str) -> Policy | None:
 
 
 def order_of(text: str) -> Literal["ordered", "any"] | None:
-    """Return whether the order of calls matters, which it does not for a single step; None for an unknown word."""
+    """Return "ordered" if the order of calls matters, "any" if not (as for a single step), and None for an unknown word."""
     name = normalise(text)
     return "ordered" if name in _ORDERED else "any" if name in _UNORDERED or name in _SINGLE else None
 

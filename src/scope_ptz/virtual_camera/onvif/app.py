@@ -128,7 +128,7 @@ class OnvifApp:
         return as_bytes(self._serialized(namespace, name, reply))
 
     def _admit(self, envelope: Envelope, caller: Caller, role: Role) -> Stamp | None:
-        """Check that the sender of a request may make it, and return when it was created, None if it does not say so.
+        """Check that the sender of a request may make it, and return when it was created, None if it does not state that.
 
         Raises:
             SoapFault: The sender may not.

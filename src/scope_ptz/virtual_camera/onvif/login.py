@@ -68,7 +68,7 @@ class UsernameTokens:
             return None
         password = token.find(f"{{{SECURITY}}}Password")
         if password is None or not password.get("Type", _DIGEST).endswith(_DIGEST):
-            raise not_authorized("The device accepts only digests of passwords.")
+            raise not_authorized("The device accepts only password digests.")
         created = _text(token, _UTILITY, "Created")
         nonce = _decoded(_text(token, SECURITY, "Nonce"))
         digest = _decoded(_text(token, SECURITY, "Password"))
@@ -94,7 +94,7 @@ class UsernameTokens:
 
 
 def created(header: Any) -> Stamp | None:
-    """Return when a request to a device without accounts was created, None if it does not say so."""
+    """Return when a request to a device without accounts was created, None if the request does not state it."""
     token = _token(header)
     text = None if token is None else token.findtext(f"{{{_UTILITY}}}Created")
     return _stamp(text.strip()) if text else None
@@ -109,7 +109,7 @@ def _stamp(text: str) -> Stamp:
         time = datetime.fromisoformat(text)
         created_s = (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
     except (ValueError, OverflowError) as error:
-        raise not_authorized("The time in the token is not a time in ISO 8601.") from error
+        raise not_authorized("The time in the token must be in ISO 8601 format.") from error
     return Stamp(created_s, created_s if _FRACTION.search(text) else created_s + 0.999)
 
 

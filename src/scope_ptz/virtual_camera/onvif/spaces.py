@@ -49,7 +49,7 @@ class Space:
                 continue
             value = getattr(vector, axis)
             if value is None or not limits[0] - _TOLERANCE <= value <= limits[1] + _TOLERANCE:
-                raise invalid_argument(f"{axis} is from {limits[0]:g} to {limits[1]:g}, got {value}.", subcode)
+                raise invalid_argument(f"{axis} must be from {limits[0]:g} to {limits[1]:g}, got {value}.", subcode)
 
 
 def chosen(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:

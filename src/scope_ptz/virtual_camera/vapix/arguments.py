@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 
 from scope_ptz.errors import InputError
 
-MAX_SHOWN = 60  # characters of a client's text that an error repeats
+MAX_SHOWN_CHARS = 60  # longer text from a client is truncated in error messages
 
 
 class Arguments:
     """The arguments of a request by name. All conversions raise ``InputError`` for a wrong value.
 
     Args:
-        values: Text by name; the first of several values of one name counts.
+        values: Argument texts by name. If a request repeats a name, its first value is used.
     """
 
     def __init__(self, values: Mapping[str, str]) -> None:
@@ -38,8 +38,8 @@ class Arguments:
         """Return a finite number, clamped to a range."""
         return min(max(self._numbers(name, 1)[0], low), high)
 
-    def whole(self, name: str, low: int, high: int) -> int:
-        """Return a whole number, clamped to a range. Decimals are cut off, as AXIS documents."""
+    def integer(self, name: str, low: int, high: int) -> int:
+        """Return an integer, clamped to a range. Decimals are truncated, as AXIS documents."""
         return int(self.number(name, low, high))
 
     def numbers(self, name: str, count: int) -> tuple[float, ...]:
@@ -50,7 +50,7 @@ class Arguments:
         """Return one of several words."""
         value = self._values[name]
         if value not in known:
-            raise InputError(f"{name}: unknown value: {value[:MAX_SHOWN]}")
+            raise InputError(f"{name}: unknown value: {value[:MAX_SHOWN_CHARS]}")
         return value
 
     def _numbers(self, name: str, count: int) -> list[float]:
@@ -61,5 +61,5 @@ class Arguments:
             found = []
         if len(found) != count or not all(map(math.isfinite, found)):
             what = "a number" if count == 1 else f"{count} numbers with commas between them"
-            raise InputError(f"{name}: expected {what}, got {text[:MAX_SHOWN]!r}")
+            raise InputError(f"{name}: expected {what}, got {text[:MAX_SHOWN_CHARS]!r}")
         return found

@@ -11,7 +11,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.geometry import Perspective, Pose, pan_tilt_deg
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.vapix import scales
-from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN, Arguments
+from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 STEP_SHARE = 0.25
@@ -85,9 +85,9 @@ def _target(device: VirtualDevice, arguments: Arguments) -> Pose:
     elif "rtilt" in arguments:
         tilt = here.tilt_deg + arguments.number("rtilt", -360, 360)
     if "zoom" in arguments:
-        zoom = scales.magnification(arguments.whole("zoom", 1, scales.MAX_ZOOM_STEP), device.limits)
+        zoom = scales.magnification(arguments.integer("zoom", 1, scales.MAX_ZOOM_STEP), device.limits)
     elif "rzoom" in arguments:
-        steps = arguments.whole("rzoom", -scales.MAX_ZOOM_STEP, scales.MAX_ZOOM_STEP)
+        steps = arguments.integer("rzoom", -scales.MAX_ZOOM_STEP, scales.MAX_ZOOM_STEP)
         zoom = scales.magnification(scales.zoom_step(here.zoom, device.limits) + steps, device.limits)
     return Pose(pan, tilt, zoom)
 
@@ -109,20 +109,20 @@ def _drive(device: VirtualDevice, arguments: Arguments) -> None:
 
 def _preset_pose(device: VirtualDevice, arguments: Arguments) -> Pose:
     if "gotoserverpresetname" in arguments:
-        return device.find_preset(arguments.text("gotoserverpresetname")[:MAX_SHOWN]).pose
+        return device.find_preset(arguments.text("gotoserverpresetname")[:MAX_SHOWN_CHARS]).pose
     name = "gotoserverpresetno" if "gotoserverpresetno" in arguments else "gotodevicepreset"
-    return device.preset(arguments.whole(name, 0, 10_000)).pose
+    return device.preset(arguments.integer(name, 0, 10_000)).pose
 
 
 def _pixel_pose(device: VirtualDevice, arguments: Arguments) -> Pose:
     """Return the pose that brings a pixel to the centre, for ``areazoom`` with another magnification."""
-    width = arguments.whole("imagewidth", 1, 100_000) if "imagewidth" in arguments else device.width
-    height = arguments.whole("imageheight", 1, 100_000) if "imageheight" in arguments else device.height
+    width = arguments.integer("imagewidth", 1, 100_000) if "imagewidth" in arguments else device.width
+    height = arguments.integer("imageheight", 1, 100_000) if "imageheight" in arguments else device.height
     here = device.pose()
     if "areazoom" in arguments:
         x, y, percent = arguments.numbers("areazoom", 3)
         if percent < 1:
-            raise InputError(f"areazoom: the zoom is 1 or more, got {percent:g}")
+            raise InputError(f"areazoom: the zoom must be 1 or more, got {percent:g}")
         zoom = device.optics.zoom_for_focal(device.optics.focal(here.zoom) * percent / 100)
     else:
         (x, y), zoom = arguments.numbers("center", 2), here.zoom

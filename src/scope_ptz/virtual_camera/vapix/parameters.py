@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.vapix import replies
-from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN, Arguments
+from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
 from scope_ptz.virtual_camera.vapix.control_queue import CONTROL_S, PRIORITIES
 from scope_ptz.virtual_camera.vapix.identity import identity
 from scope_ptz.virtual_camera.vapix.queries import limit_values, preset_data
@@ -36,7 +36,7 @@ def param(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
         if client.role < Role.ADMINISTRATOR:
             return Reply(403, "Forbidden\n")
         return _update(unit, arguments)
-    return replies.parameter_error(f"action: expected list or update, got {action[:MAX_SHOWN]!r}")
+    return replies.parameter_error(f"action: expected list or update, got {action[:MAX_SHOWN_CHARS]!r}")
 
 
 def parameters(unit: VapixUnit) -> dict[str, str]:
@@ -52,7 +52,7 @@ def _list(unit: VapixUnit, groups: str) -> Reply:
         pattern = "*" if name in ("", "root") else name
         found = {key: value for key, value in known.items() if _matches(key, pattern)}
         if not found:
-            return replies.parameter_error(f"Error -1 getting param in group '{group.strip()[:MAX_SHOWN]}'")
+            return replies.parameter_error(f"Error -1 getting param in group '{group.strip()[:MAX_SHOWN_CHARS]}'")
         rows.update(found)
     return replies.values({f"root.{key}": value for key, value in rows.items()})
 
@@ -77,13 +77,13 @@ def _set(unit: VapixUnit, name: str, arguments: Arguments, argument: str) -> Non
     if name == f"{QUEUE}.CtlQueueing":
         unit.queue.enabled = arguments.choice(argument, ("true", "false")) == "true"
     elif name == f"{QUEUE}.CtlQueueLimit":
-        unit.queue.limit = arguments.whole(argument, 1, 100)
+        unit.queue.limit = arguments.integer(argument, 1, 100)
     elif name == f"{QUEUE}.CtlQueuePollTime":
-        unit.queue.poll_s = arguments.whole(argument, 5, 3600)
+        unit.queue.poll_s = arguments.integer(argument, 5, 3600)
     elif name == "PTZ.UserAdv.U1.MoveSpeed":
-        unit.speed = arguments.whole(argument, 1, 100)
+        unit.speed = arguments.integer(argument, 1, 100)
     else:
-        raise InputError(f"'{name[:MAX_SHOWN]}' is unknown or read-only")
+        raise InputError(f"'{name[:MAX_SHOWN_CHARS]}' is unknown or read-only")
 
 
 def _properties(unit: VapixUnit) -> dict[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from scope_ptz.errors import CameraError, InputError
 from scope_ptz.virtual_camera.identity import PRODUCT
 from scope_ptz.virtual_camera.vapix import moves, replies
-from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN, Arguments
+from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
 from scope_ptz.virtual_camera.vapix.control_queue import QueueStatus
 from scope_ptz.virtual_camera.vapix.queries import QUERIES, query
 from scope_ptz.virtual_camera.vapix.replies import DONE, Client, Reply
@@ -81,7 +81,7 @@ def _command(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
         raise InputError("no command; info=1 lists the commands")
     unit.queue.check(client)
     if "speed" in arguments:
-        unit.speed = arguments.whole("speed", 1, 100)
+        unit.speed = arguments.integer("speed", 1, 100)
     if moving:
         moves.move(unit, arguments)
     return DONE
@@ -103,20 +103,20 @@ def _configure(unit: VapixUnit, arguments: Arguments) -> None:
     if "setserverpresetname" in arguments:
         device.save_preset(_preset_name(arguments, "setserverpresetname"))
     elif "setserverpresetno" in arguments:
-        number = arguments.whole("setserverpresetno", 0, 10_000)
+        number = arguments.integer("setserverpresetno", 0, 10_000)
         known = {preset.number: preset.name for preset in device.presets()}
         device.save_preset(known.get(number, f"p{number}"), number=number)
     elif "renameserverpresetno" in arguments:
-        device.rename_preset(arguments.whole("renameserverpresetno", 0, 10_000), _preset_name(arguments, "newname"))
+        device.rename_preset(arguments.integer("renameserverpresetno", 0, 10_000), _preset_name(arguments, "newname"))
     elif "removeserverpresetname" in arguments:
-        device.remove_preset(device.find_preset(arguments.text("removeserverpresetname")[:MAX_SHOWN]).number)
+        device.remove_preset(device.find_preset(arguments.text("removeserverpresetname")[:MAX_SHOWN_CHARS]).number)
     elif "removeserverpresetno" in arguments:
-        device.remove_preset(arguments.whole("removeserverpresetno", 0, 10_000))
+        device.remove_preset(arguments.integer("removeserverpresetno", 0, 10_000))
     elif "removeallserverpresets" in arguments and arguments.choice("removeallserverpresets", ("yes",)):
         for preset in device.presets():
             device.remove_preset(preset.number)
     elif not home:
-        raise InputError("no command; setserverpresetname, removeserverpresetname and home are some")
+        raise InputError("no command; use setserverpresetname, removeserverpresetname, home or another preset command")
     if home:
         device.set_home()
 
@@ -143,7 +143,7 @@ def _queue_status(unit: VapixUnit, arguments: Arguments, client: Client) -> Queu
 
 def _check_camera(arguments: Arguments) -> None:
     if "camera" in arguments and arguments.text("camera") not in ("1", "all"):
-        raise InputError(f"camera: there is only camera 1, got {arguments.text('camera')[:MAX_SHOWN]!r}")
+        raise InputError(f"camera: there is only camera 1, got {arguments.text('camera')[:MAX_SHOWN_CHARS]!r}")
 
 
 def _preset_name(arguments: Arguments, argument: str) -> str:

@@ -86,13 +86,13 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
         rise, reach = _bough_shape(sp, share)
         reach *= rng.uniform(0.82, 1.12)
         heading = Vector((math.cos(azimuth) * math.cos(rise), math.sin(azimuth) * math.cos(rise), math.sin(rise)))
-        bough = _limb(base, heading, reach, rng, 6, 0.20, _droop(sp))
+        bough = _limb(base, heading, reach, rng, 6, 0.20, _lift(sp))
         radius = max(0.022, girth * (0.42 - 0.26 * share))
         limbs.append((bough, radius, radius * 0.3))
         for j in range(7):
             fork_at = 1.2 + 4.7 * (j + rng.random()) / 7
             side = _fork(bough, fork_at, rng, 0.75)
-            branch = _limb(_along(bough, fork_at), side, reach * rng.uniform(0.26, 0.46), rng, 4, 0.25, _droop(sp))
+            branch = _limb(_along(bough, fork_at), side, reach * rng.uniform(0.26, 0.46), rng, 4, 0.25, _lift(sp))
             limbs.append((branch, radius * 0.34, 0.007))
             for _ in range(5):
                 position = rng.uniform(0.8, 3.99)
@@ -116,7 +116,7 @@ def _bough_shape(sp: Species, share: float) -> tuple[float, float]:
     return 0.75 + 0.25 * share, r * (1.15 - 0.75 * share)
 
 
-def _droop(sp: Species) -> float:
+def _lift(sp: Species) -> float:
     """Return how strongly limbs bend upwards (positive) or downwards at each step."""
     return {"round": -0.03, "column": 0.12, "cone": -0.06, "weeping": -0.22}[sp.crown]
 

@@ -28,11 +28,11 @@ def gantry(
     clearance_m: float = 5.8,
     *,
     signals: Sequence[tuple[float, Signal]] = (),
-    readable: str = "-Y",
+    facing: str = "-Y",
 ) -> Built:
     """Build a gantry along x with legs at x = +-span/2.
 
-    ``panels`` and ``signals`` hang at the given x, with their lower edges ``clearance_m`` above the road. ``readable`` is
+    ``panels`` and ``signals`` hang at the given x, with their lower edges ``clearance_m`` above the road. ``facing`` is
     the direction that they face: "-Y" for drivers who travel towards +y, "+Y" for drivers in the other direction.
     """
     s = Solid("gantry")
@@ -41,8 +41,8 @@ def gantry(
     _truss(s, span_m, base)
     for sign in (-1, 1):
         _leg(s, sign * span_m / 2, base + tall)
-    flip = 180.0 if readable == "-Y" else 0.0
-    front = -1.0 if readable == "-Y" else 1.0
+    flip = 180.0 if facing == "-Y" else 0.0
+    front = -1.0 if facing == "-Y" else 1.0
     _walkway(s, span_m, base, -front)
     for x, spec in panels:
         with s.at(x, front * (depth / 2 + 0.34), clearance_m + spec.height / 2, turn=flip):

@@ -60,7 +60,7 @@ def _trailer(s: Solid, width: float, length: float, colour: str) -> None:
 
 
 def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
-    """Build a trailer with a black board whose lamps show an arrow to the left or right as seen by a driver, facing +y.
+    """Build a trailer with a black board that faces +y. Its lamps show an arrow to the left or right, as a driver sees it.
 
     Below the board are red and white stripes.
     """

@@ -95,7 +95,7 @@ def _damp(s: Shader, p: Value, colour: Value, blotch: Value, height: Value) -> b
 
 
 def paint(colour: str) -> bpy.types.Material:
-    """Return the material of "white", "yellow" or "green" road paint, slightly dirty and worn through to the floor in places."""
+    """Return the material of white, yellow, green or blue road paint, slightly dirty and worn through to the floor in places."""
     found = bpy.data.materials.get(f"yard paint {colour}")
     if found is not None:
         return found

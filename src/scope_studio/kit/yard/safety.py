@@ -43,7 +43,7 @@ def wheel_stop(colour: str = "yellow") -> Built:
 
 
 def bay_plate(number: str, *, background: str = "blue") -> Built:
-    """Build the number plate of a parking bay on a low post, with the same text on both sides."""
+    """Build a plate with the number of a parking bay, on a low post. Both sides have the same text."""
     s = Solid("bay plate")
     s.box((0.05, 0.05, 0.55), (0, 0, 0.275), steel(), 0.005)
     for turn in (0, 180):

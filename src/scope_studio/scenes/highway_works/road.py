@@ -34,7 +34,7 @@ def _gantries(stage: Stage) -> None:
         ],
         5.8,
         signals=[(1.45, Signal("50"))],
-        readable="-Y",
+        facing="-Y",
     )
     stage.place(
         north, "gantry", "northbound gantry", (-8.7, 45.5, 0), 0, colour="blue", readable_by="northbound drivers", signal="50"
@@ -47,7 +47,7 @@ def _gantries(stage: Stage) -> None:
         ],
         5.8,
         signals=[(-6.1, Signal("60"))],
-        readable="+Y",
+        facing="+Y",
     )
     stage.place(
         south, "gantry", "southbound gantry", (8.7, -86.0, 0), 0, colour="blue", readable_by="southbound drivers", signal="60"

@@ -69,7 +69,7 @@ class ScopeModel(ModelAPI):
             return self._planner
 
     async def perception(self, context: EvalContext) -> Perception:
-        """Return the perception of this name, created on the first call."""
+        """Return the perception backend with this name, created on the first call."""
         async with self._lock:
             if self._perception is None:
                 self._perception = await context.make_perception(self.request)

@@ -13,7 +13,7 @@ from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, ar
 from scope_ptz.perception.ground_truth.answers.values import pose_of
 from scope_ptz.perception.ground_truth.language import question_tree as s
 from scope_ptz.perception.ground_truth.relations import BACKDROP
-from scope_ptz.perception.ground_truth.thing_facts import COLOUR_KEYS, NOTHING, colour_of, fact_words, facts, key_words
+from scope_ptz.perception.ground_truth.thing_facts import ABSENT_VALUES, COLOUR_KEYS, colour_of, fact_words, facts, key_words
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
 
@@ -46,7 +46,7 @@ def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
         case (s.Relation(kind="on", other=other),):
             carrier = next(iter(find(view, other)), None)
             load = carrier.attributes.get("load") if carrier is not None else None
-            if carrier is not None and isinstance(load, str) and load not in NOTHING:
+            if carrier is not None and isinstance(load, str) and load not in ABSENT_VALUES:
                 return reply(f"the {name(carrier)} {place(carrier)} carries {load}")
     return None
 

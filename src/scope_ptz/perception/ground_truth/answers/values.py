@@ -12,8 +12,8 @@ from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, ar
 from scope_ptz.perception.ground_truth.language import question_tree as s
 from scope_ptz.perception.ground_truth.language.concepts import singular_phrase
 from scope_ptz.perception.ground_truth.thing_facts import (
+    ABSENT_VALUES,
     COLOUR_KEYS,
-    NOTHING,
     canonical,
     colour_of,
     fact_words,
@@ -170,7 +170,7 @@ def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
     wanted = names_of(" ".join(words))
     for key, value in facts(thing):
         part = singular_phrase(" ".join(x for x in key_words(key) if x not in COLOUR_KEYS) or key)
-        if part in wanted and isinstance(value, str) and value.lower() not in NOTHING:
+        if part in wanted and isinstance(value, str) and value.lower() not in ABSENT_VALUES:
             return value
     return None
 
