@@ -93,7 +93,7 @@ class TestConformance(PerceptionConformance):
     def frame(self) -> Frame:
         return vision.frame("bottom right")
 
-    async def test_absent_objects_give_an_empty_list(self) -> None:
+    async def test_absent_things_are_an_empty_list(self) -> None:
         """The tiny model knows only one object, so the picture does not contain it."""
         async with opened(self.spec) as eyes:
             assert (await eyes.detect(vision.frame("nowhere"), self.absent)).boxes == ()
