@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import json
+import logging
 import socket
 import threading
 from collections.abc import AsyncIterator, Callable
@@ -216,6 +217,7 @@ async def test_a_live_picture_that_fails_is_started_again(
     served_device: VirtualDevice, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr(server_module, "RETRY_S", 0.01)
+    monkeypatch.setattr(logging.getLogger("scope_ptz"), "propagate", True)  # commands that ran before turn it off
     expose, failures = served_device.expose, iter([PackError("The pack is damaged."), OSError("disk")])
 
     def failing(*size: int) -> Exposure:

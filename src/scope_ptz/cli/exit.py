@@ -64,6 +64,8 @@ def _show_warnings() -> None:
     logger = logging.getLogger("scope_ptz")
     if not any(isinstance(handler, _LogLines) for handler in logger.handlers):
         logger.addHandler(_LogLines(logging.WARNING))
+        # A level of its own: libraries such as the evaluation engine set that of the root.
+        logger.setLevel(logging.WARNING)
         logger.propagate = False
 
 

@@ -107,9 +107,9 @@ def test_changed_source_is_a_different_evaluation(
     # Somebody else's loop plans: nothing is said of a planner of ours, and nothing is promised of costs.
     assert "grammar" not in first.out and "of the planner" not in first.out and "paid server" not in first.out
     assert "cost    unknown: the agent's own model calls are not measured" in first.out
-    assert "is complete" in run_as("x").err
+    assert "already complete" in run_as("x").err
     changed = run_as("a longer answer")
-    assert "is complete" not in changed.err
+    assert "already complete" not in changed.err
     assert re.search(r"The source of quick_loop:Agent differs from that in logs/\S+\.eval: this is a new evaluation\.", changed.out)
     assert "measured on 2 earlier runs of this agent" in changed.out
     # Names of logs begun in the same second do not tell which was the first.

@@ -114,8 +114,8 @@ def test_a_pair_without_a_server_does_not_stop_the_others(scope: Scope, tmp_path
 def test_a_sweep_rejects_unknown_pairs(scope: Scope) -> None:
     for options, words in (
         (("--pairs", "nobody+moondream3"), "There is no planner 'nobody'"),
-        ((), "Say which pairs"),
-        (("--pairs", "a+b", "--paper"), "Say which pairs"),
+        ((), "Give the pairs to run"),
+        (("--pairs", "a+b", "--paper"), "Give the pairs to run"),
     ):
         done = scope("bench", "sweep", *options)
         assert done.code == 2

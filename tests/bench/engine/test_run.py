@@ -82,7 +82,7 @@ def test_completed_runs_are_not_repeated(scope: Scope, evaluated: Path, tasks_fi
     before = evaluated.read_bytes()
     done = scope("bench", "run", "--tasks", str(tasks_file), "--out", str(evaluated.parent), "--json")
     assert done.code == 0
-    assert "is complete" in done.err
+    assert "already complete" in done.err
     assert done.json["headlines"] == {"correct": 3, "incorrect": 1, "unscored": 0, "infrastructure": 0}
     assert done.json["by_category"] == {"counting": 0.5, "single_call": 1.0}
     assert (done.json["macro"], done.json["micro"]) == (0.75, 0.75)

@@ -190,5 +190,5 @@ def test_a_missing_judge_and_wrong_options_are_reported() -> None:
         anyio.run(open_judge, None, None, None, 30.0)
     with pytest.raises(ConfigError, match="reasoning_effort"):
         anyio.run(open_judge, "http://127.0.0.1:9/v1", "x", None, 30.0, ["reasoning_effort=huge"])
-    with pytest.raises(ConfigError, match="no address"):
+    with pytest.raises(ConfigError, match="not the address"):
         anyio.run(open_judge, "file:///etc/passwd", "x", None, 30.0)

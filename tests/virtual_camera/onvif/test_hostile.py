@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import socket
+from collections.abc import Callable
 from pathlib import Path
 
 import httpx2
@@ -145,21 +146,21 @@ async def test_wrong_passwords_and_names_look_alike(served: ServedCamera, name: 
 
 
 @pytest.mark.parametrize(
-    "header",
+    "make_header",  # when the test runs: a token is about the present time
     [
-        token("admin", "s3cret", created=ago(10 * CLOCK_TOLERANCE_S)),
-        token("admin", "s3cret", created=ago(-10 * CLOCK_TOLERANCE_S)),
-        token("admin", "s3cret", created="yesterday"),
-        token("admin", "s3cret", created="0001-01-01T00:00:00+23:59"),
-        token("admin", "s3cret", text=True),
-        token("admin", "s3cret").replace("o:Nonce>", "o:Once>"),
-        token("admin", "s3cret").replace("<o:Nonce>", "<o:Nonce>???"),
-        token("", "s3cret"),
-        token("a" * 1000, "s3cret"),
+        lambda: token("admin", "s3cret", created=ago(10 * CLOCK_TOLERANCE_S)),
+        lambda: token("admin", "s3cret", created=ago(-10 * CLOCK_TOLERANCE_S)),
+        lambda: token("admin", "s3cret", created="yesterday"),
+        lambda: token("admin", "s3cret", created="0001-01-01T00:00:00+23:59"),
+        lambda: token("admin", "s3cret", text=True),
+        lambda: token("admin", "s3cret").replace("o:Nonce>", "o:Once>"),
+        lambda: token("admin", "s3cret").replace("<o:Nonce>", "<o:Nonce>???"),
+        lambda: token("", "s3cret"),
+        lambda: token("a" * 1000, "s3cret"),
     ],
 )
-async def test_unusable_tokens_are_refused(served: ServedCamera, header: str) -> None:
-    answer = await post(served.url, envelope(PROFILES, header))
+async def test_unusable_tokens_are_refused(served: ServedCamera, make_header: Callable[[], str]) -> None:
+    answer = await post(served.url, envelope(PROFILES, make_header()))
     assert (answer.status, answer.codes) == (400, ["Sender", "NotAuthorized"])
     assert "s3cret" not in answer.reason
 
