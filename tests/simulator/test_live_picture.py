@@ -76,6 +76,7 @@ def test_a_part_is_exactly_that_part_of_the_whole(
     whole = outlined_depth_view(viewpoint, view, id_view(viewpoint, view))
     needed = np.full((part[0].stop - part[0].start, part[1].stop - part[1].start), 255, np.uint8)
     np.testing.assert_array_equal(outlined_depth_part(viewpoint, view, part, needed), whole[part])
+    np.testing.assert_array_equal(outlined_depth_view(viewpoint, view, id_view(viewpoint, view), part), whole[part])
 
 
 @given(st.floats(-20, 20), st.floats(-12, 12), st.floats(5, 40))

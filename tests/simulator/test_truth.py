@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
 from scope_ptz.geometry import AXIS_M5075_G, Equirectangular, Perspective
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.runs import measure
+from scope_ptz.simulator.text_geometry import text_geometry
 from scope_ptz.simulator.truth import MIN_VISIBLE_PX, Sighting, view_truth
 from tests.support.synthetic_pack import HEIGHT, TEXT, VIEWPOINTS, WIDTH, perfect_view
 
@@ -162,3 +166,16 @@ def test_a_text_hidden_by_its_own_object_is_not_legible(analytic_scene: Scene) -
     (sighting,) = view_truth(scene, "mast", _view(-16.5, -3.0, 3.0), OUT_OF_SCENE_S).texts
     assert sighting.unhidden_share < 0.1
     assert not sighting.legible
+
+
+def test_texts_are_measured_once_for_each_viewpoint_and_released_with_it(analytic_scene: Scene) -> None:
+    viewpoint = analytic_scene.viewpoint("mast")
+    geometry = text_geometry(analytic_scene, viewpoint)
+    assert text_geometry(analytic_scene, viewpoint) is geometry
+    assert all(angle_deg < 90.0 for angle_deg in geometry.angle_deg)
+    released = weakref.ref(viewpoint)
+    analytic_scene.release()
+    del viewpoint
+    gc.collect()
+    assert released() is None
+    assert text_geometry(analytic_scene, analytic_scene.viewpoint("mast")) is not geometry

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Perspective, Projection, pan_tilt_deg
 from scope_ptz.simulator.mapping.grid import Grid, step_px
-from scope_ptz.simulator.mapping.tiles import Tiles
+from scope_ptz.simulator.mapping.tiles import Place, Tiles
 from scope_ptz.simulator.models import ActorSheet, Extent, SceneActor, Sprite
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.runs import measure
@@ -159,7 +159,13 @@ def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
 
 def shows(appearance: Appearance, projection: Projection) -> bool:
     """Return whether an actor may be inside a view, judged by directions alone."""
-    return bool(Tiles([appearance.view]).in_view(projection))
+    return place_of(appearance, projection) is not None
+
+
+def place_of(appearance: Appearance, projection: Projection) -> Place | None:
+    """Return the rows and columns of a view in which an actor may show, None if it is outside."""
+    showing = next(iter(Tiles([appearance.view]).in_view(projection)), None)
+    return None if showing is None else showing.place
 
 
 def draw_numbers(
@@ -175,7 +181,7 @@ def draw_numbers(
         viewpoint: The viewpoint that holds the actor's sprites.
         projection: Projection of the view.
         appearance: The actor at this instant.
-        depth_m: (H, W) distances of the still world.
+        depth_m: Distances of the still world in the rows and columns in which the actor may show; see ``place_of``.
         numbers: (H, W) instance numbers to draw into.
     """
     sprite = Tiles([appearance.view])
@@ -187,7 +193,7 @@ def draw_numbers(
     uv = sprite.points(showing, projection, grid.x, grid.y)
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
-    still_m = depth_m[place] * (1 + TOLERANCE_SHARE) + TOLERANCE_M
+    still_m = depth_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M
     numbers[place][(distance_m > 0) & (distance_m <= still_m)] = appearance.actor.number
 
 

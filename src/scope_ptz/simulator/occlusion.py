@@ -20,14 +20,23 @@ _AROUND = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
 """The eight neighbouring pixels, in the order in which they are tried."""
 
 
-def outlined_depth_view(viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> NDArray[np.float32]:
+def outlined_depth_view(
+    viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16], part: Place | None = None
+) -> NDArray[np.float32]:
     """Like ``depth_view``, but with the edges of instances as sharp as in ``numbers``, the view's (H, W) instance numbers.
 
     Where a distance was measured on a different instance than the pixel shows, it is replaced by a neighbour's distance that was
     measured on the right one.
+
+    Args:
+        viewpoint: The viewpoint.
+        projection: The view.
+        numbers: Its instance numbers.
+        part: The rows and columns that are needed; the default is the whole view.
     """
     whole = (slice(0, projection.height), slice(0, projection.width))
-    return _outlined(viewpoint, projection, whole, numbers, None)
+    around, inner = _with_margin(viewpoint, projection, part or whole)
+    return _outlined(viewpoint, projection, around, numbers[around], None)[inner]
 
 
 def outlined_depth_part(
@@ -41,16 +50,21 @@ def outlined_depth_part(
         part: The rows and columns that are needed.
         needed: (rows, columns) mask of the part. Edges are sharpened only where it is not 0.
     """
+    around, inner = _with_margin(viewpoint, projection, part)
+    mask = np.zeros([a.stop - a.start for a in around], bool)
+    mask[inner] = needed
+    return _outlined(viewpoint, projection, around, id_view(viewpoint, projection, around), mask)[inner]
+
+
+def _with_margin(viewpoint: Viewpoint, projection: Projection, part: Place) -> tuple[Place, Place]:
+    """Return a part of a view with the pixels around it that sharpening its edges reads, and the part's place in the result."""
     margin = math.ceil(max(REACHES_TEXELS) * _texel_px(viewpoint, projection)) + 1
-    around = tuple(
+    rows, columns = (
         slice(max(0, span.start - margin), min(size, span.stop + margin))
         for span, size in zip(part, (projection.height, projection.width), strict=True)
     )
-    rows, columns = (slice(p.start - a.start, p.stop - a.start) for p, a in zip(part, around, strict=True))
-    inner = np.zeros([a.stop - a.start for a in around], bool)
-    inner[rows, columns] = needed
-    place = (around[0], around[1])
-    return _outlined(viewpoint, projection, place, id_view(viewpoint, projection, place), inner)[rows, columns]
+    inner_rows, inner_columns = (slice(p.start - a.start, p.stop - a.start) for p, a in zip(part, (rows, columns), strict=True))
+    return (rows, columns), (inner_rows, inner_columns)
 
 
 def _outlined(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.actors import composited, composited_actors, draw_numbers, shows
+from scope_ptz.simulator.actors import composited, composited_actors, draw_numbers, place_of
 from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
@@ -38,8 +38,9 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     """Return the instance or actor that each pixel of that picture shows as (H, W) numbers, 0 for none."""
     here = scene.viewpoint(viewpoint)
     numbers = id_view(here, projection)
-    if actors := [a for a in composited(scene, here, time_s) if shows(a, projection)]:
-        depth_m = outlined_depth_view(here, projection, numbers)
-        for actor in actors:
-            draw_numbers(here, projection, actor, depth_m, numbers)
+    places = [(actor, place_of(actor, projection)) for actor in composited(scene, here, time_s)]
+    # The distances of all actors come first, because drawing changes the numbers that they are read with.
+    behind = [(actor, outlined_depth_view(here, projection, numbers, place)) for actor, place in places if place is not None]
+    for actor, depth_m in behind:
+        draw_numbers(here, projection, actor, depth_m, numbers)
     return numbers
