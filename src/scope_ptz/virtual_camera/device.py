@@ -182,7 +182,7 @@ class VirtualDevice:
         return self._motion.driven_at(self.now_s())
 
     def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
-        """Brake pan and tilt, the zoom, or all. The rest goes on.
+        """Brake pan and tilt, the zoom, or all. The other axes keep their motion.
 
         Args:
             pan_tilt: Whether pan and tilt stop.

@@ -127,7 +127,7 @@ class AxisCamera(LensControls, Camera):
         return Arrival(reached, clamped)
 
     async def presets(self) -> list[PresetInfo]:
-        # Two presets of one name can be told apart by number only, and only the first one can be reached by name.
+        # Two presets of one name can be distinguished by number only, and only the first one can be reached by name.
         return [PresetInfo(name) for name in dict.fromkeys((await self._client.presets()).values())]
 
     async def go_to_preset(self, name: str) -> Arrival:

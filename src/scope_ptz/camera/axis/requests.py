@@ -52,7 +52,7 @@ def continuous_pan_tilt(channel: int, pan: int, tilt: int, *, proportional: bool
         channel: The video channel.
         pan: Positive to the right.
         tilt: Positive upwards.
-        proportional: Whether the device would scale the velocity with the zoom; it is told not to.
+        proportional: Whether the device would scale the velocity with the zoom; the request says not to.
     """
     extra = {"proportionalspeed": "disabled"} if proportional else {}
     return _ptz(channel, continuouspantiltmove=f"{_speed(pan)},{_speed(tilt)}", **extra)

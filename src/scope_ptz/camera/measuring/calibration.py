@@ -112,7 +112,7 @@ async def calibrate(
         zooms: At how many zooms the field of view is measured.
         assumed: What the driver only assumes, so that a measurement replaces it and contradicts nothing: "pan range",
             "tilt range", "field of view".
-        progress: Is told what happens.
+        progress: Receives a sentence about each step.
 
     Raises:
         RegistrationError: No place has enough detail.

@@ -85,7 +85,7 @@ class DevicePictures(ABC):
         give_up_s = monotonic() + FROZEN_PATIENCE_S
         while True:
             data, image = await self._take(*self._small)
-            # Black pictures are all the same. Whoever wants to see something is told; the move itself has succeeded.
+            # Black pictures are all the same. Taking a picture reports the fault; the move itself has succeeded.
             if is_black(image) or not self._frozen_small.lags(data, pose, give_up_s):
                 return image
             await anyio.sleep(0.1)

@@ -18,7 +18,7 @@ GARBAGE = b"\x00\xff<<<%%garbage}{"
 
 
 class _BrokenOffError(Exception):
-    """The connection of a reply was broken off while it was sent."""
+    """The connection was closed while a reply was being sent."""
 
 
 class FaultMiddleware:

@@ -20,7 +20,7 @@ from scope_ptz.virtual_camera.truth import TruthLog, origin_fields
 from scope_ptz.virtual_camera.vapix.replies import Client
 
 DOWN_S = 10.0
-"""Seconds for which a camera is off the network while it reboots, unless told otherwise."""
+"""Seconds for which a camera is off the network while it reboots, by default."""
 
 
 class VirtualRoutes:

@@ -98,7 +98,7 @@ class RtspConnection:
                 await self._writer.wait_closed()
 
     async def _serve_next(self) -> bool:
-        """Serve a message and return whether the connection goes on."""
+        """Serve a message and return whether the connection stays open."""
         try:
             async with asyncio.timeout(IDLE_S):
                 first = await self._reader.readexactly(1)

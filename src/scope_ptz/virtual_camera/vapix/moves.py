@@ -93,7 +93,7 @@ def _target(device: VirtualDevice, arguments: Arguments) -> Pose:
 
 
 def _drive(device: VirtualDevice, arguments: Arguments) -> None:
-    """Drive pan and tilt, zoom, or all three. What a request does not name goes on at its speed."""
+    """Drive pan and tilt, zoom, or all three. Axes that a request does not name keep their speed."""
     velocity, head = device.driven, device.head
     if "continuouspantiltmove" in arguments:
         pan, tilt = (scales.speed_share(value) for value in arguments.numbers("continuouspantiltmove", 2))
