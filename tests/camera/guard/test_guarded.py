@@ -19,8 +19,9 @@ from scope_ptz.camera.guard.guarded import GuardedCamera, KeepOutError
 from scope_ptz.camera.guard.masking import masked
 from scope_ptz.camera.guard.rules import CameraRules, PixelMask, Region, SoftLimits, nearest_outside
 from scope_ptz.errors import ConfigError, OutputError
-from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt_deg
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, direction, pan_tilt_deg
 from scope_ptz.tools.context import pose_text
+from scope_ptz.tools.sweep import sweep
 from tests.camera.guard.worlds import HEIGHT, WIDTH, SphereCamera, pixel_points
 
 pytestmark = pytest.mark.anyio
@@ -200,3 +201,14 @@ def test_an_audit_log_that_cannot_be_written_is_an_error(tmp_path: Path) -> None
 def test_wrong_regions_are_refused(fields: dict[str, object]) -> None:
     with pytest.raises(ValueError, match="validation error"):
         Region.model_validate(fields)
+
+
+async def test_a_sweep_goes_around_a_keep_out_region_and_never_shows_it() -> None:
+    camera = GuardedCamera(SphereCamera(), CameraRules(keep_out=(WINDOWS,)))
+    start = await camera.pose()
+    panorama = await sweep(camera)
+    assert await camera.pose() == start
+    for pan_deg, tilt_deg, hidden in ((35.0, 0.0, True), (21.0, -14.0, True), (-90.0, -10.0, False), (120.0, 0.0, False)):
+        x, y = panorama.projection.points(direction(pan_deg, tilt_deg))
+        pixel = panorama.image[int(y * panorama.height), int(x * panorama.width)]
+        assert bool(pixel.any()) is not hidden
