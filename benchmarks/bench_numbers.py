@@ -1,10 +1,10 @@
-"""Measure the accuracy of the grammar planner by category, with ground-truth perception, noisy perception, or OCR.
+"""Measure the accuracy of the grammar planner by category with ground-truth perception, noisy perception or OCR.
 
     python benchmarks/bench_numbers.py [--split core --split unseen ...] [--perception truth --perception noisy ...]
 
-The tasks run in this process, with the agent loop, the real tools and the checks. Images are rendered only for ``rapidocr``, which
-runs only the tasks of the category ocr: rapidocr reads texts, and ground truth does the rest of perception. Time and memory are
-those of this process. ``scope bench run`` runs the same tasks through the evaluation engine.
+The tasks run in this process, with the agent loop, the real tools and the checks. With ``rapidocr``, only the tasks of the category
+ocr run: rapidocr reads texts, ground truth does the rest of perception, and images are rendered. Otherwise frames are blank. Time
+and memory are those of this process. ``scope bench run`` runs the same tasks through the evaluation engine.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ NOISE_SEED = 1
 
 @dataclass
 class Score:
-    """Counts of correct and of all runs by category, and descriptions of the runs that were not correct."""
+    """The numbers of correct runs and of all runs by category, and descriptions of the runs that were not correct."""
 
     correct: Counter[str] = field(default_factory=Counter)
     total: Counter[str] = field(default_factory=Counter)
@@ -55,7 +55,7 @@ class Score:
 
     @property
     def micro(self) -> float:
-        """The accuracy over all runs."""
+        """The share of correct runs."""
         return self.correct.total() / max(1, self.total.total())
 
     @property
@@ -64,23 +64,23 @@ class Score:
         return sum(self.correct[name] / n for name, n in self.total.items()) / max(1, len(self.total))
 
     def lines(self) -> Iterator[str]:
-        """Yield the accuracy of each category and the means as lines of text."""
+        """Yield lines of text with the accuracy of each category and the averages."""
         for name, n in self.total.items():
             yield f"  {name:<22}{self.correct[name]:>4} of {n:<4}{self.correct[name] / n:>7.1%}"
         yield f"  micro {self.micro:.1%}, macro {self.macro:.1%}; unscored {self.unscored}"
 
 
 def main() -> int:
-    """Run the selected splits and perceptions, and print accuracy and cost."""
+    """Run the selected splits with the selected perception backends, and print accuracy, time and memory."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--split", action="append", help="split or task file; repeatable (default: core, unseen, paraphrase)")
     parser.add_argument(
         "--perception",
         action="append",
         choices=("truth", "noisy", "rapidocr"),
-        help="perception to use; repeatable (default: truth and noisy)",
+        help="perception backend; repeatable (default: truth and noisy)",
     )
-    parser.add_argument("--failures", action="store_true", help="list the runs that were not correct, with the reason")
+    parser.add_argument("--failures", action="store_true", help="list the runs that were not correct, with their reasons")
     parser.add_argument("--json", action="store_true", help="print one JSON document at the end instead of text")
     arguments = parser.parse_args()
     results = {}
@@ -88,16 +88,16 @@ def main() -> int:
         tasks = load_split(split)
         for perception in arguments.perception or ("truth", "noisy"):
             rows = [task for task in tasks if perception != "rapidocr" or task.category == "ocr"]
-            began, cpu_began = time.perf_counter(), time.process_time()
+            wall_start, cpu_start = time.perf_counter(), time.process_time()
             score = anyio.run(_score, rows, perception)
-            took_s, cpu_s = time.perf_counter() - began, time.process_time() - cpu_began
+            wall_s, cpu_s = time.perf_counter() - wall_start, time.process_time() - cpu_start
             peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
             results[f"{Path(split).stem} {perception}"] = {
                 "right": dict(score.correct), "of": dict(score.total), "micro": score.micro, "macro": score.macro,
-                "unscored": score.unscored, "seconds": took_s, "cpu_seconds": cpu_s, "peak_mb": peak_mb,
+                "unscored": score.unscored, "seconds": wall_s, "cpu_seconds": cpu_s, "peak_mb": peak_mb,
             }  # fmt: skip
             if not arguments.json:
-                cost = f"{took_s:.1f} s ({cpu_s:.1f} s of processor time), peak memory so far {peak_mb:.0f} MB"
+                cost = f"{wall_s:.1f} s ({cpu_s:.1f} s of processor time), peak memory so far {peak_mb:.0f} MB"
                 print(f"{split}, grammar + {perception}: {len(rows)} tasks in {cost}")
                 print("\n".join((*score.lines(), *(score.failed if arguments.failures else ()))), flush=True)
     if arguments.json:
@@ -106,14 +106,15 @@ def main() -> int:
 
 
 async def _score(tasks: Sequence[Task], perception_name: str) -> Score:
+    """Run tasks with a perception backend and return their score."""
     worlds, score = worlds_of(tasks), Score()
     perception = _perception(perception_name, worlds)
-    last = ""
+    last_scene = ""
     for task in sorted(tasks, key=lambda t: (t.scene, t.world)):
-        if last and last != task.scene:  # keeping the images of only one scene in memory
+        if last_scene and last_scene != task.scene:  # Keep the images of only one scene in memory.
             for world in worlds.values():
                 world.release()
-        last = task.scene
+        last_scene = task.scene
         trace = await _run(task, worlds[task.world], perception, render=perception_name == "rapidocr")
         verdict = score_episode(task, episode_of(trace, PresetViewpoints.of(worlds[task.world].file), keeps_files=False))
         score.total[task.category] += 1

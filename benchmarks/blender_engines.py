@@ -2,7 +2,8 @@
 
     python benchmarks/blender_engines.py FILE.blend '{"position_m": [0, 0, 5], "bearing_deg": 0, "tilt_deg": -5, ...}'
 
-It needs a Python with ``bpy``. EEVEE and Workbench also need OpenGL (on Debian without a GPU: libegl1, libgl1-mesa-dri).
+The script requires a Python with ``bpy``. EEVEE and Workbench also require OpenGL (on Debian without a GPU: libegl1,
+libgl1-mesa-dri).
 """
 
 from __future__ import annotations
@@ -40,9 +41,9 @@ def main() -> None:
 
 
 def _render_seconds(scene: bpy.types.Scene, engine: str) -> float | None:
-    """Return the render time in seconds, or None if the engine does not run here.
+    """Return the render time of an engine in seconds, or None if the engine does not run on this machine.
 
-    A small render before it compiles the shaders and loads the data.
+    A small warm-up render, which is not measured, compiles the shaders and loads the data.
     """
     scene.render.engine = engine
     scene.render.use_persistent_data = True

@@ -1,6 +1,6 @@
-"""Measure the overhead of the evaluation engine: run the same tasks in a bare agent loop and through Inspect AI, without models.
+"""Measure the overhead of the evaluation engine. The same tasks run in a bare agent loop and through Inspect AI, without models.
 
-Processor times are compared, so that other load on the machine does not affect the result.
+The benchmark compares processor times, so that other load on the machine hardly affects the result.
 
     python benchmarks/evaluation_overhead.py tasks.jsonl [--pictures]
 """
@@ -56,9 +56,11 @@ async def main(tasks: Path, *, pictures: bool) -> None:
         engine_s = time.process_time() - start
         size = (await anyio.Path(evaluation.log).stat()).st_size / 1e6
     count = len(entries)
-    print(f"{count} runs   bare loop  {bare_s:.1f} s ({1000 * bare_s / count:.0f} ms a run)")
-    print(f"{'':>{len(str(count))}}        engine     {engine_s:.1f} s ({1000 * engine_s / count:.0f} ms a run), log {size:.1f} MB")
-    print(f"ratio {engine_s / bare_s:.2f}, {1000 * (engine_s - bare_s) / count:.0f} ms more a run")
+    print(f"{count} runs   bare loop  {bare_s:.1f} s ({1000 * bare_s / count:.0f} ms per run)")
+    print(
+        f"{'':>{len(str(count))}}        engine     {engine_s:.1f} s ({1000 * engine_s / count:.0f} ms per run), log {size:.1f} MB"
+    )
+    print(f"ratio {engine_s / bare_s:.2f}, overhead {1000 * (engine_s - bare_s) / count:.0f} ms per run")
 
 
 if __name__ == "__main__":

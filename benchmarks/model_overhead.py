@@ -1,9 +1,9 @@
-"""Measure the overhead of SCOPE in calls of a model server.
+"""Measure SCOPE's overhead in calls to a model server.
 
-Planner turns are compared with bare calls of the ``openai`` client, and perception calls with JPEG encoding plus a bare HTTP
+Planner turns are compared with bare calls of the ``openai`` client, and perception calls with JPEG encoding followed by a bare HTTP
 call. A loopback server in a separate process replies immediately. Bare calls and SCOPE's calls send the same conversation and
-images of the same size, and alternate, so that other load on the machine affects both. Each perception call gets a new frame,
-which has to be encoded. The overhead is the median of the differences within pairs of calls.
+images of the same size. They alternate, so that other load on the machine affects both. Each perception call gets a new frame,
+which must be encoded. The overhead is the median of the differences within pairs of calls.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ from scope_ptz.planner.chat.planner import ChatOptions, ChatPlanner
 from scope_ptz.tools.registry import schemas
 
 TARGET_MS = 1.0
-"""Largest acceptable overhead of a call, in milliseconds."""
+"""Maximum acceptable overhead of a call in milliseconds."""
 COORDINATES = ("qwen3-vl", "qwen2.5-vl")
-"""Coordinate conventions of vision models. For qwen2.5-vl, images are resized first, which counts as overhead."""
+"""Coordinate conventions of vision models. For qwen2.5-vl, images are also resized, and this counts as overhead."""
 WARM_UP_ROUNDS = 20
 MODEL = "loopback"
 CALL = {"name": "adjust_ptz", "arguments": '{"pan_deg": 15}'}
@@ -142,7 +142,7 @@ async def _compare(bare: Call, scope_call: Call, rounds: int, rng: random.Random
 
 
 class _Frames:
-    """Different frames of 1280x720, prepared before the measurement. Each is a shifted copy of one textured image."""
+    """Different frames of 1280x720 pixels, prepared before the measurement. Each frame is a shifted copy of one textured image."""
 
     def __init__(self) -> None:
         noise = np.random.default_rng(1).integers(0, 255, (90, 160, 3), np.uint8)
@@ -150,7 +150,7 @@ class _Frames:
         self._ready: list[Frame] = []
 
     def prepare(self, number: int) -> None:
-        """Prepare this many frames."""
+        """Prepare the given number of frames."""
         hfov_deg = AXIS_M5075_G.hfov_deg(1.0)
         view = Perspective(0.0, 0.0, hfov_deg, 1280, 720)
         images = [np.roll(self._image, 7 * i, axis=1) for i in range(number)]
@@ -187,8 +187,8 @@ async def _planner_cases(url: str, client: openai.AsyncOpenAI) -> dict[str, tupl
             def scope_call(planner: ChatPlanner = planner, state: State = state) -> Awaitable[object]:
                 return planner.step(state)
 
-            how = "streaming" if stream else "not streaming"
-            cases[f"turn, {how}, after {exchanges} steps"] = (bare_stream if stream else bare, scope_call)
+            mode = "streaming" if stream else "not streaming"
+            cases[f"turn, {mode}, after {exchanges} steps"] = (bare_stream if stream else bare, scope_call)
     return cases
 
 
@@ -229,11 +229,11 @@ async def _measure(url: str, rounds: int) -> None:
     print(f"{'':36}{'bare':>9}{'SCOPE':>9}{'overhead':>10}   (medians, ms)")
     met = True
     for name, (bare, scope_call) in cases.items():
-        perceiving = name.startswith("perception")
-        if perceiving:
+        is_perception = name.startswith("perception")
+        if is_perception:
             frames.prepare(2 * (rounds // 3 + WARM_UP_ROUNDS))
         gc.collect()
-        bare_ms, scope_ms = await _compare(bare, scope_call, rounds // 3 if perceiving else rounds, rng)
+        bare_ms, scope_ms = await _compare(bare, scope_call, rounds // 3 if is_perception else rounds, rng)
         overhead_ms = statistics.median(a - b for a, b in zip(scope_ms, bare_ms, strict=True))
         met = met and overhead_ms <= TARGET_MS
         print(f"{name:36}{statistics.median(bare_ms):9.2f}{statistics.median(scope_ms):9.2f}{overhead_ms:+10.2f}")
@@ -241,7 +241,7 @@ async def _measure(url: str, rounds: int) -> None:
 
 
 def main() -> None:
-    """Start the server, measure, and print the overheads."""
+    """Start the server, measure the overheads, and print them."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
         "--rounds",

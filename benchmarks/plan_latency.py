@@ -2,8 +2,8 @@
 
     python benchmarks/plan_latency.py [--limit N]
 
-Each instruction is planned twice: as the first step of a run, and again as a later step. Times are relative to parsing a JSON
-document in the same run, because absolute times on a shared machine are not comparable.
+Each instruction is planned twice: as the first step of a run, and again as a later step. Times are relative to the time for parsing
+a JSON document on the same machine, because absolute times on a shared machine are not comparable.
 """
 
 from __future__ import annotations
@@ -42,15 +42,15 @@ async def measure(limit: int) -> dict[str, list[float]]:
 
 
 def main() -> None:
-    """Measure, and print the ratios."""
+    """Measure the planning times and print their ratios to the reference."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--limit", type=int, default=1_000_000, help="plan at most this many instructions (default: all)")
     times = asyncio.run(measure(parser.parse_args().limit))
     reference = statistics.median(times.pop("reference"))
     print(f"reference: parsing {len(REFERENCE) / 1000:.0f} kB of JSON takes {reference:.2f} ms")
-    for kind, taken in times.items():
-        middle, p95 = statistics.median(taken), statistics.quantiles(taken, n=20)[-1]
-        print(f"{kind}: median {middle / reference:.1f} x reference, p95 {p95 / reference:.1f} x, {len(taken)} instructions")
+    for kind, step_ms in times.items():
+        median, p95 = statistics.median(step_ms), statistics.quantiles(step_ms, n=20)[-1]
+        print(f"{kind}: median {median / reference:.1f} x reference, p95 {p95 / reference:.1f} x, {len(step_ms)} instructions")
 
 
 if __name__ == "__main__":

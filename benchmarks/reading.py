@@ -1,16 +1,16 @@
-"""Measure how many of the legible texts of a scene an OCR engine (rapidocr) reads, in random views.
+"""Measure how many of the legible texts of a scene an OCR engine (rapidocr) reads in random views.
 
     python benchmarks/reading.py [--scene NAME ...] [--views 24] [--seed 1] [--misses]
     python benchmarks/reading.py --tasks core
 
-Each view is aimed near a text, at a zoom at which its letters are large enough to be legible. All legible texts in the view count.
-A text counts as read if the engine's output at its position contains it or has a similarity of at least
-5/6, ignoring case, spaces and punctuation.
+Each view is aimed near a text, at a zoom at which its letters are large enough to be legible. All legible texts in the view are
+counted. A text counts as read if the engine's output at its position contains it or has a similarity of at least 5/6 to it. Case,
+spaces and punctuation are ignored.
 
 With ``--tasks`` (a split or a task file), the views are those in which the reference programs of the OCR tasks read texts, and the
 benchmark's answer check decides whether the engine's output at the position of the answer is correct.
 
-It needs the extra ``ocr``.
+The benchmark requires the extra ``ocr``.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
 WIDTH, HEIGHT = 1280, 720
 MIN_SIMILARITY = 5 / 6
-"""Similarity between a text and the engine's output from which the text counts as read."""
+"""Minimum similarity between a text and the engine's output for the text to count as read."""
 MARGIN = 0.012
-"""Distance, as a fraction of the frame, by which the middle of the engine's box may lie outside the box of a text."""
+"""Maximum distance of the middle of the engine's box from the box of a text, as a fraction of the frame."""
 
 
 def main() -> int:
@@ -52,7 +52,7 @@ def main() -> int:
     parser.add_argument("--views", type=int, default=24, help="number of views per scene (default: 24)")
     parser.add_argument("--seed", type=int, default=1, help="seed for the random views (default: 1)")
     parser.add_argument("--misses", action="store_true", help="list the texts that were not read")
-    parser.add_argument("--tasks", help="split or task file: read the texts that its OCR tasks ask for")
+    parser.add_argument("--tasks", help="split or task file whose OCR tasks are measured instead of random views")
     arguments = parser.parse_args()
     if arguments.tasks:
         _measure_tasks([task for task in load_split(arguments.tasks) if task.category == "ocr"], RapidOCR(), arguments.misses)
@@ -63,9 +63,9 @@ def main() -> int:
         if name not in folders:
             print(f"No scene '{name}'. Known scenes: {', '.join(folders) or 'none'}.", file=sys.stderr)
             return 2
-        found, missed = _measure(Scene(folders[name]), engine, arguments.views, arguments.seed)
-        total = found + len(missed)
-        print(f"{name}: {found} of {total} legible texts read ({found / max(1, total):.1%}) in {arguments.views} views", flush=True)
+        read, missed = _measure(Scene(folders[name]), engine, arguments.views, arguments.seed)
+        total = read + len(missed)
+        print(f"{name}: {read} of {total} legible texts read ({read / max(1, total):.1%}) in {arguments.views} views", flush=True)
         if arguments.misses:
             for line in missed:
                 print(f"  {line}")
@@ -79,28 +79,28 @@ def _measure(scene: Scene, engine: RapidOCR, views: int, seed: int) -> tuple[int
         view = _perspective(pose)
         lines_read = _read_lines(engine, picture(scene, viewpoint, view, 0.0))
         for text in legible:
-            found = _read_at(text, lines_read)
-            if _similarity(text.text.text, found) >= MIN_SIMILARITY:
+            read = _read_at(text, lines_read)
+            if _similarity(text.text.text, read) >= MIN_SIMILARITY:
                 number_read += 1
             else:
                 place = f"{viewpoint} {pose.pan_deg:.1f} {pose.tilt_deg:.1f} {pose.zoom:.2f}x"
                 size = f"capitals {text.cap_height_px:.0f} px, {text.angle_deg:.0f} deg"
-                missed.append(f"{text.text.text!r} read as {found!r}, {size}, {place}")
+                missed.append(f"{text.text.text!r} read as {read!r}, {size}, {place}")
     return number_read, missed
 
 
 def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> None:
-    """Read the views of OCR tasks and print how many tasks are answered correctly."""
+    """Read the views of OCR tasks and print the number of tasks that are answered correctly."""
     worlds, correct, missed = worlds_of(tasks), 0, []
     for task in tasks:
-        scene, found = worlds[task.world], []
+        scene, parts = worlds[task.world], []
         for evidence in task.evidence:
             aim = evidence.aim
             view, instances = _perspective(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom)), [item.instance for item in evidence.items]
             lines_read = _read_lines(engine, picture(scene, aim.viewpoint, view, task.time_s))
             texts = {t.text.id: t for t in view_truth(scene, aim.viewpoint, view, task.time_s).texts}
-            found += [_read_at(texts[name], lines_read) for name in instances if name in texts]
-        read = " ".join(found)
+            parts += [_read_at(texts[name], lines_read) for name in instances if name in texts]
+        read = " ".join(parts)
         if agrees(task.expected, parse_answer(task.expected, f'It reads "{read}".')):
             correct += 1
         else:
@@ -111,14 +111,14 @@ def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> Non
 
 
 def _views(scene: Scene, count: int, rng: random.Random) -> Iterator[tuple[str, Pose, list[TextSighting]]]:
-    """Yield random poses (viewpoint and pose) that show at least one legible text, with their legible texts."""
-    limits, done = Limits(), 0
+    """Yield random views that show at least one legible text, as viewpoint, pose and legible texts."""
+    limits, yielded = Limits(), 0
     for _ in range(40 * count):
         place, text = rng.choice(scene.file.viewpoints), rng.choice(scene.file.texts)
         offset = np.array(text.centre_m) - np.array(place.position_m)
         pan, tilt = (float(v) for v in pan_tilt_deg(offset))
         caps_rad = text.cap_height_m / float(np.linalg.norm(offset))
-        for _ in range(4):  # find a zoom at which this text is legible, if there is one
+        for _ in range(4):  # Try to find a zoom at which this text is legible.
             zoom = rng.uniform(limits.min_zoom, limits.max_zoom)
             if caps_rad * _perspective(Pose(zoom=zoom)).focal_px >= MIN_CAP_HEIGHT_PX:
                 break
@@ -129,8 +129,8 @@ def _views(scene: Scene, count: int, rng: random.Random) -> Iterator[tuple[str, 
         legible = view_truth(scene, place.name, _perspective(pose), 0.0).legible
         if legible:
             yield place.name, pose, list(legible)
-            done += 1
-            if done == count:
+            yielded += 1
+            if yielded == count:
                 return
 
 
@@ -148,15 +148,18 @@ def _read_lines(engine: RapidOCR, image: NDArray[np.uint8]) -> list[tuple[float,
 
 
 def _read_at(text: TextSighting, lines: Sequence[tuple[float, float, str]]) -> str:
-    """Return what the engine read within the box of a text, in reading order."""
+    """Return the engine's output within the box of a text, in reading order."""
     x0, y0, x1, y1 = text.box
     in_box = [w for w in lines if x0 - MARGIN <= w[0] <= x1 + MARGIN and y0 - MARGIN <= w[1] <= y1 + MARGIN]
     return " ".join(w[2] for w in sorted(in_box, key=lambda w: (round(w[1] * 40), w[0])))
 
 
-def _similarity(expected: str, found: str) -> float:
-    """Return the similarity of two texts in [0, 1], ignoring case, spaces and punctuation."""
-    a, b = (re.sub(r"[^a-z0-9]", "", s.lower()) for s in (expected, found))
+def _similarity(expected: str, read: str) -> float:
+    """Return the similarity of two texts in [0, 1], ignoring case, spaces and punctuation.
+
+    It is 1 if ``read`` contains the other.
+    """
+    a, b = (re.sub(r"[^a-z0-9]", "", s.lower()) for s in (expected, read))
     if a and a in b:
         return 1.0
     return SequenceMatcher(None, a, b, autojunk=False).ratio()

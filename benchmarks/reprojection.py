@@ -1,4 +1,4 @@
-"""Measure the time to compute a view of a pack, relative to a ``cv2.remap`` of the same size with precomputed maps.
+"""Measure the time for computing a view of a pack, relative to a ``cv2.remap`` of the same size with precomputed maps.
 
     python benchmarks/reprojection.py [--scene highway-works] [--search FOLDER] [--blender-python PYTHON]
 
@@ -39,7 +39,7 @@ def main() -> int:
     parser.add_argument("--scene", default="highway-works", help="scene to measure (default: highway-works)")
     parser.add_argument("--search", type=Path, action="append", default=[], help="additional folder of scenes; repeatable")
     parser.add_argument("--blender-python", type=Path, help="Python with bpy, for comparison with Blender's engines")
-    parser.add_argument("--source", help="scene module or Python file to build the scene from (default: the module with its name)")
+    parser.add_argument("--source", help="scene module or Python file from which to build the scene (default: the scene's module)")
     parser.add_argument("--threads", type=int, default=cv2.getNumThreads(), help="number of OpenCV threads")
     arguments = parser.parse_args()
     cv2.setNumThreads(arguments.threads)
@@ -61,6 +61,7 @@ def main() -> int:
 
 
 def _poses(viewpoint: Viewpoint) -> dict[str, Pose]:
+    """Return the poses to measure by name: some without tiles, and three zooms at a tile if the viewpoint has tiles."""
     poses = {"panorama only": Pose(0.0, -5.0, 1.0), "nadir": Pose(0.0, -60.0, 1.0), "seam": Pose(179.0, -20.0, 1.0)}
     closest = Perspective(0.0, 0.0, AXIS_M5075_G.hfov_deg(5.0), WIDTH, HEIGHT)
     if tiles := [tile for tile in viewpoint.manifest.tiles if tile.suits(closest)]:
@@ -124,7 +125,7 @@ def _report_engines(scene: Scene, source: str, python: Path) -> None:
 def _interleaved(calls: dict[str, Callable[[], object]]) -> dict[str, list[float]]:
     """Return the seconds of each call in each round. Calls alternate, so that other load on the machine affects all equally.
 
-    Each round starts with a different call, because later calls profit from images that are already in the CPU caches.
+    Each round begins with a different call, because later calls benefit from images that are already in the CPU caches.
     """
     times: dict[str, list[float]] = {name: [] for name in calls}
     names = list(calls)
@@ -139,6 +140,7 @@ def _interleaved(calls: dict[str, Callable[[], object]]) -> dict[str, list[float
 
 
 def _ratio(times: dict[str, list[float]], reference: str) -> str:
+    """Return the median ratio of view times to reference times, with the 10th and 90th percentile, as text."""
     ratios = sorted(a / b for a, b in zip(times["view"], times[reference], strict=True))
     return f"{statistics.median(ratios):.2f}x ({ratios[len(ratios) // 10]:.2f} to {ratios[-1 - len(ratios) // 10]:.2f})"
 

@@ -2,9 +2,9 @@
 
     python benchmarks/startup.py [--rounds N]
 
-The reference and the commands take turns, so that a busy machine slows all of them alike. The benchmark prints the medians of
-processor time and wall time as multiples of the reference's, the largest memory, and the targets, which apply to processor time and
-memory. The first run of each command is not measured, because it compiles bytecode and fills caches.
+The reference and the commands are run in turn, so that other load on the machine slows all of them equally. The benchmark prints
+the medians of processor time and wall-clock time as multiples of those of the reference, the maximum memory, and the targets for
+processor time and memory. The first run of each command is not measured, because it compiles bytecode and fills caches.
 """
 
 from __future__ import annotations
@@ -23,11 +23,17 @@ REFERENCE = "import numpy, cv2, pydantic"
 
 
 class Command(NamedTuple):
-    """A command with its targets: processor time in multiples of the reference's, and memory."""
+    """A command with its targets.
 
-    words: list[str]
-    ratio: float
-    memory_mb: float | None = None
+    Attributes:
+        arguments: Arguments of ``scope``.
+        max_ratio: Maximum processor time as a multiple of that of the reference.
+        max_memory_mb: Maximum memory in MB; None if there is no target.
+    """
+
+    arguments: list[str]
+    max_ratio: float
+    max_memory_mb: float | None = None
 
 
 COMMANDS = (
@@ -39,7 +45,7 @@ COMMANDS = (
 
 
 class Cost(NamedTuple):
-    """Time and peak memory of one process."""
+    """Processor time, wall-clock time and peak memory of one process."""
 
     cpu_s: float
     wall_s: float
@@ -47,7 +53,7 @@ class Cost(NamedTuple):
 
 
 def cost(command: list[str], folder: str) -> Cost:
-    """Run a command in ``folder`` and return its cost. Exits with a message if the command fails."""
+    """Run a command in a folder and return its cost. Exit with a message if the command fails."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     start = time.perf_counter()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, cwd=folder, env=environment)
@@ -67,31 +73,31 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7, help="number of runs of each command (default: 7)")
     rounds = parser.parse_args().rounds
     reference = [sys.executable, "-c", REFERENCE]
-    programs = [[sys.executable, "-m", "scope_ptz.cli", *command.words] for command in COMMANDS]
-    base: list[Cost] = []
+    programs = [[sys.executable, "-m", "scope_ptz.cli", *command.arguments] for command in COMMANDS]
+    reference_costs: list[Cost] = []
     costs: list[list[Cost]] = [[] for _ in COMMANDS]
     with tempfile.TemporaryDirectory() as folder:
         for program in (reference, *programs):
             cost(program, folder)
         for _ in range(rounds):
-            base.append(cost(reference, folder))
+            reference_costs.append(cost(reference, folder))
             for program, runs in zip(programs, costs, strict=True):
                 runs.append(cost(program, folder))
-    cpu_s, wall_s, memory_mb = summary(base)
+    cpu_s, wall_s, memory_mb = summary(reference_costs)
     print(f'reference: {cpu_s:.2f} s of processor time, {wall_s:.2f} s, {memory_mb:.0f} MB (python -c "{REFERENCE}")')
     met = True
     for command, runs in zip(COMMANDS, costs, strict=True):
-        own = summary(runs)
-        ratio = own.cpu_s / cpu_s
-        target = f"{command.ratio:g} x" + (f", {command.memory_mb:g} MB" if command.memory_mb else "")
-        met = met and ratio <= command.ratio and own.memory_mb <= (command.memory_mb or own.memory_mb)
-        line = f"scope {shlex.join(command.words)}: {ratio:.2f} x processor time, {own.wall_s / wall_s:.2f} x wall time"
-        print(f"{line}, {own.memory_mb:.0f} MB (target: {target})")
+        measured = summary(runs)
+        ratio = measured.cpu_s / cpu_s
+        target = f"{command.max_ratio:g} x" + (f", {command.max_memory_mb:g} MB" if command.max_memory_mb else "")
+        met = met and ratio <= command.max_ratio and measured.memory_mb <= (command.max_memory_mb or measured.memory_mb)
+        times = f"{ratio:.2f} x processor time, {measured.wall_s / wall_s:.2f} x wall-clock time"
+        print(f"scope {shlex.join(command.arguments)}: {times}, {measured.memory_mb:.0f} MB (target: {target})")
     print("All targets are met." if met else "MISSED: not all targets are met.")
 
 
 def summary(runs: list[Cost]) -> Cost:
-    """Return the medians of the times and the largest memory."""
+    """Return the medians of the times and the maximum memory."""
     cpu_s, wall_s = (statistics.median(times) for times in ([run.cpu_s for run in runs], [run.wall_s for run in runs]))
     return Cost(cpu_s, wall_s, max(run.memory_mb for run in runs))
 

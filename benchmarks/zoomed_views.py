@@ -1,8 +1,8 @@
-"""Render random zoomed views of every viewpoint into contact sheets, to look for seams between tiles and the panorama.
+"""Render random zoomed views of every viewpoint into contact sheets, to check for seams between tiles and the panorama.
 
     python benchmarks/zoomed_views.py --out FOLDER [--count 40] [--seed 1]
 
-Half of the views are aimed at the border of a tile, where a seam would show; the others are aimed anywhere.
+Half of the views are aimed at the border of a tile, where a seam would be visible. The others are aimed at random.
 """
 
 from __future__ import annotations
@@ -23,15 +23,17 @@ from scope_ptz.simulator.pack import Scene, list_scenes
 from scope_ptz.simulator.views import picture
 
 WIDTH, HEIGHT = 1280, 720
-CELL = (960, 540)
+CELL_SIZE_PX = (960, 540)
 COLUMNS, ROWS = 2, 2
+"""Numbers of columns and rows of a contact sheet."""
 
 
 def main() -> int:
+    """Render the views and write the contact sheets."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, help="folder for the sheets")
     parser.add_argument("--count", type=int, default=40, help="number of views (default: 40)")
-    parser.add_argument("--seed", type=int, default=1, help="seed for poses (default: 1)")
+    parser.add_argument("--seed", type=int, default=1, help="seed for the random poses (default: 1)")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     library, rng = Library(open_viewpoints=1), random.Random(arguments.seed)
@@ -39,7 +41,7 @@ def main() -> int:
     cells = []
     for k in range(arguments.count):
         scene, viewpoint = places[k * len(places) // arguments.count]
-        pose = _pose(library(scene), viewpoint, rng, at_border=k % 2 == 0)
+        pose = _random_pose(library(scene), viewpoint, rng, at_border=k % 2 == 0)
         view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), WIDTH, HEIGHT)
         label = f"{k:02d} {scene}/{viewpoint} pan {pose.pan_deg:.1f} tilt {pose.tilt_deg:.1f} zoom {pose.zoom:.1f}"
         cells.append(_labelled(picture(library(scene), viewpoint, view, library(scene).file.start_s), label))
@@ -51,7 +53,8 @@ def main() -> int:
     return 0
 
 
-def _pose(scene: Scene, viewpoint: str, rng: random.Random, *, at_border: bool) -> Pose:
+def _random_pose(scene: Scene, viewpoint: str, rng: random.Random, *, at_border: bool) -> Pose:
+    """Return a random pose. With ``at_border``, it is aimed at the border of a tile if the viewpoint has tiles."""
     zoom = rng.uniform(2.0, 5.0)
     tiles = scene.viewpoint(viewpoint).tiles.views
     if not at_border or not tiles:
@@ -64,14 +67,14 @@ def _pose(scene: Scene, viewpoint: str, rng: random.Random, *, at_border: bool) 
 
 
 def _labelled(image: NDArray[np.uint8], label: str) -> NDArray[np.uint8]:
-    small = cv2.resize(image, CELL, interpolation=cv2.INTER_AREA)
+    small = cv2.resize(image, CELL_SIZE_PX, interpolation=cv2.INTER_AREA)
     cv2.putText(small, label, (8, 22), cv2.FONT_HERSHEY_SIMPLEX, 0.6, (0, 0, 0), 4, cv2.LINE_AA)
     cv2.putText(small, label, (8, 22), cv2.FONT_HERSHEY_SIMPLEX, 0.6, (255, 255, 0), 1, cv2.LINE_AA)
     return np.asarray(small)
 
 
 def _sheet(cells: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
-    blank = np.zeros((CELL[1], CELL[0], 3), dtype=np.uint8)
+    blank = np.zeros((CELL_SIZE_PX[1], CELL_SIZE_PX[0], 3), dtype=np.uint8)
     filled = cells + [blank] * (COLUMNS * ROWS - len(cells))
     return np.vstack([np.hstack(filled[row * COLUMNS : (row + 1) * COLUMNS]) for row in range(ROWS)])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shlex
@@ -10,7 +11,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import httpx2
 import pytest
+
+from tests.support.programs import started
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -19,6 +23,10 @@ TRANSCRIPTS = [block for block in CONSOLE if block.startswith("$ ")]
 COMMANDS = [block for block in CONSOLE if not block.startswith("$ ")]
 PYTHON = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
 MAKE = sorted(set(re.findall(r"`(make [a-z-]+)`", README)))
+
+
+MANY_VIEWS = ("scope scene show", 'scope ask "sweep', 'scope ask "zoom')
+"""Commands that render many views of a large scene."""
 
 
 def run(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
@@ -38,7 +46,7 @@ def scope_commands(block: str) -> list[str]:
 @pytest.mark.parametrize(
     "command",
     [
-        pytest.param(c, marks=pytest.mark.full if c.startswith("scope scene show") else ())  # renders every preset
+        pytest.param(c, marks=pytest.mark.full if c.startswith(MANY_VIEWS) else ())
         for block in COMMANDS
         for c in scope_commands(block)
         if not c.startswith("scope bench")
@@ -107,3 +115,24 @@ def test_linked_files_and_pictures_exist(target: str) -> None:
 def plain(text: str) -> str:
     """Return a text with every run of white space replaced by one space, so that line breaks do not matter."""
     return " ".join(text.split())
+
+
+@pytest.mark.full
+def test_network_camera_commands_run(tmp_path: Path) -> None:
+    section = README[README.index("## Use a camera on the network") :]
+    block = re.findall(r"```sh\n(.*?)```", section, flags=re.DOTALL)[0]
+    commands = [line for line in scope_commands(block) if not line.startswith("scope camera discover")]  # searches the network
+    assert len(commands) == 2
+    serve = [sys.executable, "-m", "scope_ptz.cli", "camera", "serve", "--scene", "highway-works", "--port", "0", "--json"]
+    serve += ["--rtsp-port", "0", "--user", "operator:operator", "--no-prefetch"]
+    with started(serve, stdout=subprocess.PIPE) as server:
+        assert server.stdout is not None
+        served = json.loads(server.stdout.readline())
+        address = served["cameras"][0]["url"].removeprefix("http://")
+        password = served["passwords"]["operator"]
+        picture = f"http://{address}/axis-cgi/jpg/image.cgi"  # the first one takes long, because the scene is read
+        httpx2.get(picture, auth=httpx2.DigestAuth("operator", password), timeout=300).raise_for_status()
+        for command in commands:
+            script = f"export SCOPE_CAMERA_PASSWORD={password}\n{command}".replace("10.0.0.7", address)
+            done = run(script, tmp_path)
+            assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""SCOPE: control a pan-tilt-zoom camera in plain language, and benchmark the models that do it.
+"""SCOPE: control a pan-tilt-zoom camera in plain language, and benchmark the models that interpret it.
 
     import scope_ptz
 

@@ -15,8 +15,11 @@ NOISY = "noisy"
 NOISY_SOURCE = "noisy-ground-truth"
 """The ``source`` of results from noisy perception."""
 
-BUILT_IN_PERCEPTION = (GROUND_TRUTH, NOISY)
-DETERMINISTIC = (GRAMMAR, GROUND_TRUTH, NOISY)
+SERVED_TRUTH = "simulation-only-truth"
+"""Perception that asks a virtual camera on the same machine for the ground truth of its frames."""
+
+BUILT_IN_PERCEPTION = (GROUND_TRUTH, NOISY, SERVED_TRUTH)
+DETERMINISTIC = (GRAMMAR, GROUND_TRUTH, NOISY, SERVED_TRUTH)
 """Planners and perception that need no model: the same input always gives the same output."""
 
 DEFAULT_SCENE = "highway-works"

@@ -29,7 +29,7 @@ class InstalledEntry:
         name: The declared name of the factory, with hyphens replaced by underscores.
         package: The distribution and its version, for example ``scope-yard 1.2``.
         target: The factory as ``module:attribute``.
-        point: The entry point, which imports the factory.
+        point: The entry point that imports the factory.
     """
 
     group: str
@@ -53,8 +53,8 @@ class InstalledEntry:
                 f"The plug-in '{self.name}' ({self.package}) declares {self.target} as its factory, but that is not "
                 f"callable: it is of type {type(factory).__name__}."
             )
-        loaded: Callable[..., Any] = factory
-        return loaded
+        callable_factory: Callable[..., Any] = factory
+        return callable_factory
 
 
 def call_factory(entry: InstalledEntry, contract: type[_Product], spec: object) -> _Product:
@@ -87,7 +87,7 @@ def expect_product(entry: InstalledEntry, contract: type[_Product], product: obj
     if not isinstance(product, contract):
         raise ConfigError(
             f"The plug-in '{entry.name}' ({entry.package}) returned an object of type {type(product).__name__}; "
-            f"a {contract.__name__} of {contract.__module__} is needed."
+            f"it must be a {contract.__name__} of {contract.__module__}."
         )
     return product
 
@@ -99,10 +99,10 @@ def normalised(name: str) -> str:
 
 def installed(group: str) -> tuple[InstalledEntry, ...]:
     """Return the entry points of a group, sorted by name, without importing them."""
-    found = [
+    entries = [
         InstalledEntry(group, normalised(point.name), _package(point), point.value, point) for point in entry_points(group=group)
     ]
-    return tuple(sorted(found, key=lambda entry: (entry.name, entry.package)))
+    return tuple(sorted(entries, key=lambda entry: (entry.name, entry.package)))
 
 
 def find(group: str, name: str) -> InstalledEntry | None:
@@ -115,7 +115,7 @@ def find(group: str, name: str) -> InstalledEntry | None:
     matches = [entry for entry in installed(group) if entry.name == key]
     if len(matches) > 1:
         packages = " and ".join(entry.package for entry in matches)
-        raise ConfigError(f"The packages {packages} both offer '{name}'. Uninstall one of them.")
+        raise ConfigError(f"Several packages provide '{name}': {packages}. Uninstall one of them.")
     return matches[0] if matches else None
 
 

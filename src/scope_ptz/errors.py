@@ -9,9 +9,10 @@ ScopeError
 ├── CameraError             the camera fails or does not answer (camera.network.errors lists those of network cameras)
 ├── PerceptionError         perception cannot interpret a frame (an empty result is not an error)
 ├── PlannerError            the planner fails, or its reply is not a decision
-├── ServerFailure           a model server gives no usable reply (endpoints.failures); callers get one of the two errors above
+├── ServerFailure           a model server gives no usable reply (endpoints.failures); converted to one of the two errors above
 ├── ToolCallError           a tool call has an unknown name or invalid arguments
 ├── TraceError              a trace cannot be read or replayed
+├── StoreError              the store of runs is locked, damaged, or made by a newer version
 └── BlenderError            the Blender worker is missing or fails
 """
 
@@ -32,6 +33,7 @@ __all__ = [
     "PlannerError",
     "RequestRecord",
     "ScopeError",
+    "StoreError",
     "ToolCallError",
     "TraceError",
     "UnknownNameError",
@@ -46,7 +48,7 @@ class RequestRecord(Protocol):
 
 
 class ScopeError(Exception):
-    """Root of all errors of SCOPE. The message says what is wrong and what to do."""
+    """Base class of all errors of SCOPE. The message states what is wrong and what to do."""
 
 
 class InputError(ScopeError):
@@ -107,6 +109,10 @@ class ToolCallError(ScopeError):
 
 class TraceError(ScopeError):
     """A trace cannot be read or replayed."""
+
+
+class StoreError(ScopeError):
+    """The store of runs is locked by another program, damaged, or made by a newer version."""
 
 
 class BlenderError(ScopeError):

@@ -21,7 +21,7 @@ class ScopeSettings(BaseModel):
     runs_dir: Path = Field(default=Path("runs"), description="Folder in which run folders are created.")
     scenes_dir: Path | None = Field(default=None, description="Folder with additional scene packs.")
     tile_cache_mb: int | None = Field(
-        default=None, ge=1, description="Memory limit in MB for a viewpoint's tiles. By default, all tiles that were read are kept."
+        default=None, ge=1, description="Memory limit in MB for a viewpoint's tiles. By default, all loaded tiles stay in memory."
     )
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
@@ -30,7 +30,7 @@ class ScopeSettings(BaseModel):
         default=None, description="Folder for decoded pictures of scenes (default: in the cache folder)."
     )
     blender_python: Path | None = Field(default=None, description="A Python interpreter that can import bpy.")
-    blender: Path | None = Field(default=None, description="A blender program to use in place of the bpy wheel.")
+    blender: Path | None = Field(default=None, description="A blender program to use instead of the bpy wheel.")
     planner_key: SecretStr | None = Field(default=None, description="Key for the planner's server.")
     perception_key: SecretStr | None = Field(default=None, description="Key for the perception server.")
     models: Path | None = Field(default=None, description="YAML file with additional models.")
@@ -42,8 +42,13 @@ class ScopeSettings(BaseModel):
     judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
     virtual_camera_password: SecretStr | None = Field(default=None, description="Password of the accounts of virtual cameras.")
     camera_profiles_dir: Path = Field(
-        default_factory=lambda: user_config_path("scope-ptz") / "cameras", description="Folder with what was measured on cameras."
+        default_factory=lambda: user_config_path("scope-ptz") / "cameras",
+        description="Folder for the measured properties of cameras.",
     )
+    tokens: Path = Field(
+        default_factory=lambda: user_config_path("scope-ptz") / "tokens.json", description="File with the tokens of `scope serve`."
+    )
+    token: SecretStr | None = Field(default=None, description="Token for a camera that `scope serve` serves elsewhere.")
     config: Path | None = Field(default=None, description="File with the cameras of a site (default: scope.yaml).")
 
     def tile_bytes(self) -> int | None:
@@ -68,9 +73,9 @@ def load_settings() -> ScopeSettings:
     Raises:
         ConfigError: A variable has an invalid value. The message names the variable.
     """
-    given = {name.lower().removeprefix(_PREFIX): text for name, text in os.environ.items() if name.lower().startswith(_PREFIX)}
+    values = {name.lower().removeprefix(_PREFIX): text for name, text in os.environ.items() if name.lower().startswith(_PREFIX)}
     try:
-        return ScopeSettings.model_validate({name: given[name] for name in ScopeSettings.model_fields if name in given})
+        return ScopeSettings.model_validate({name: values[name] for name in ScopeSettings.model_fields if name in values})
     except ValidationError as error:
         first = error.errors()[0]
         name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()

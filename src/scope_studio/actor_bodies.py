@@ -1,4 +1,4 @@
-"""Bodies of moving actors: built on first use, then placed on their paths at a given time."""
+"""The bodies of moving actors, which are built on first use and placed on their paths at a given time."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class ActorBodies:
         """Move the actor's body to its position at a scene time and show it.
 
         Returns:
-            The body, or None when the actor is not in the scene at that time.
+            The body, or None if the actor is not in the scene at that time.
         """
         t = time_s % actor.period_s
         if not actor.waypoints[0][0] <= t <= actor.waypoints[-1][0]:
@@ -56,7 +56,7 @@ class ActorBodies:
 
     @contextmanager
     def shown_at(self, time_s: float) -> Iterator[None]:
-        """Show every actor that is in the scene at that time while the context is active."""
+        """While the context is active, show every actor that is in the scene at the given time."""
         shown = [built for actor in self._stage.actors if (built := self.place(actor, time_s)) is not None]
         bpy.context.view_layer.update()
         try:
@@ -82,17 +82,17 @@ def along(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float
     for k, (a, b) in enumerate(zip(actor.waypoints, actor.waypoints[1:], strict=False)):
         length = math.dist(a[1:], b[1:])
         if t <= b[0] or k == last:
-            share = 0.0 if b[0] == a[0] else (t - a[0]) / (b[0] - a[0])
-            x, y, z = (a[i] + (b[i] - a[i]) * share for i in (1, 2, 3))
-            return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), walked + length * share
+            fraction = 0.0 if b[0] == a[0] else (t - a[0]) / (b[0] - a[0])
+            x, y, z = (a[i] + (b[i] - a[i]) * fraction for i in (1, 2, 3))
+            return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), walked + length * fraction
         walked += length
-    raise ValueError(f"the path of {actor.id} needs at least two waypoints")
+    raise ValueError(f"the path of {actor.id} must have at least two waypoints")
 
 
 def show(built: Built, on: bool) -> None:
     """Show or hide the objects of ``built`` in renders.
 
-    The viewport's own visibility flag must stay on: Cycles does not export objects that are hidden there.
+    The viewport's visibility flag stays on, because Cycles does not export objects that are hidden in the viewport.
     """
     for obj in built.objects:
         obj.hide_render = not on

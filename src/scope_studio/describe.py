@@ -1,4 +1,4 @@
-"""The description of a scene as plain data, from which ``scene.json`` is written."""
+"""Describe a scene as plain data. ``scene.json`` is written from this description."""
 
 from __future__ import annotations
 
@@ -68,7 +68,9 @@ def _instance(instance: Instance, depsgraph: bpy.types.Depsgraph, cache: dict[st
     """Describe an instance with its bounding box in world coordinates."""
     points = np.concatenate([_world_points(o, depsgraph, cache) for o in instance.built.objects])
     if len(points) == 0:
-        raise ValueError(f"instance {instance.id} has no mesh")
+        raise ValueError(
+            f"instance {instance.id} has no mesh with vertices. Add a mesh to the object, or place it without annotation"
+        )
     return {
         "id": instance.id,
         "number": instance.number,
@@ -82,7 +84,7 @@ def _instance(instance: Instance, depsgraph: bpy.types.Depsgraph, cache: dict[st
 
 
 def _world_points(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, cache: dict[str, np.ndarray]) -> np.ndarray:
-    """Return the vertices (n, 3) of an object in world coordinates. ``cache`` has the vertices of meshes seen so far."""
+    """Return the vertices (n, 3) of an object in world coordinates. ``cache`` stores the vertices of each mesh."""
     if obj.type not in {"MESH", "CURVE", "FONT", "SURFACE"}:
         return np.empty((0, 3))
     evaluated = obj.evaluated_get(depsgraph)

@@ -1,4 +1,4 @@
-"""Export the triangles of all annotated instances, so that their complete silhouettes, including hidden parts, can be computed."""
+"""Export the triangles of all annotated instances. Their complete silhouettes, including hidden parts, are computed from these."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_studio.kit.core.stage import Stage
 
 
 def write(stage: Stage, out: Path) -> None:
-    """Write the distinct meshes and their placements as an .npz file.
+    """Write the distinct meshes and their placements to an .npz file.
 
     The file contains ``vertices-K`` (n, 3) float32 and ``triangles-K`` (m, 3) int32 for each mesh K, ``uses`` (k, 2) int32 with the
     instance number and mesh number of each placement, and ``matrices`` (k, 4, 4) float64 with its world transform.

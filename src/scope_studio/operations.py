@@ -20,7 +20,7 @@ Progress = Callable[[int, int], None]
 
 
 class Studio:
-    """The scene that is currently loaded, and the operations on it."""
+    """The currently loaded scene, and the operations on it."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
@@ -47,7 +47,8 @@ class Studio:
         for candidate in self._file_cameras or self.stage.viewpoints:
             if candidate.name == name:
                 return candidate
-        raise ValueError(f"the scene has no viewpoint '{name}'")
+        names = ", ".join(v.name for v in self._file_cameras or self.stage.viewpoints)
+        raise ValueError(f"the scene has no viewpoint '{name}'. Its viewpoints are: {names}")
 
     def load_scene(self, source: str) -> dict[str, Any]:
         """Build a scene in an empty Blender file and return its name, title, number of instances and render device.
@@ -80,7 +81,7 @@ class Studio:
         return describe.scene(self.stage, self.actor_bodies)
 
     def save(self, path: str) -> None:
-        """Write the scene as a .blend file, for inspection in Blender."""
+        """Write the scene as a .blend file, to inspect it in Blender."""
         bpy.ops.wm.save_as_mainfile(filepath=path, compress=True)
 
     def meshes(self, out: str) -> None:
@@ -90,7 +91,7 @@ class Studio:
     def colour(
         self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, time_s: float | None = None
     ) -> None:
-        """Render a denoised image (8-bit PNG). With ``time_s``, moving actors are shown where they are at that time."""
+        """Render a denoised image (8-bit PNG). With ``time_s``, moving actors are shown at their positions at that time."""
         with self._actors_shown(time_s):
             render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
 
@@ -106,7 +107,7 @@ class Studio:
         )
 
     def _actors_shown(self, time_s: float | None) -> AbstractContextManager[None]:
-        """Show the moving actors at a scene time while the context is active. Without a time, no actor is built."""
+        """While the context is active, show the moving actors at a scene time. Without a time, no actor is built."""
         if self._file_cameras and time_s is not None:
             blend_files.set_time(time_s)
         return nullcontext() if self._file_cameras or time_s is None else self.actor_bodies.shown_at(time_s)
@@ -118,7 +119,7 @@ def _module(source: str) -> ModuleType:
         return importlib.import_module(f"scope_studio.scenes.{source.replace('-', '_')}")
     spec = importlib.util.spec_from_file_location("scope_user_scene", source)
     if spec is None or spec.loader is None:
-        raise ValueError(f"cannot load {source} as a Python module")
+        raise ValueError(f"cannot load {source} as a Python module. Check that it is a Python file")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

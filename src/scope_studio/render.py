@@ -1,4 +1,4 @@
-"""Cycles renders from one optical centre: denoised colour images, and exact instance numbers with distances."""
+"""Render views from one optical centre with Cycles: denoised colour images, and exact instance numbers with distances."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ GPU_INTERFACES = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
 """Compute interfaces in order of preference."""
 
 SKY_M = 1e9
-"""Depths in metres above this value count as sky. Cycles reports 1e10 where a ray hits nothing."""
+"""Depth in metres above which a pixel is sky. Cycles reports 1e10 where a ray hits nothing."""
 
 
 def colour(viewpoint: Viewpoint, projection: dict[str, float], samples: int, seed: int, out: Path, *, alpha: bool = False) -> None:
@@ -86,10 +86,10 @@ def _ray_lengths(projection: dict[str, float]) -> np.ndarray:
 
 
 def use_gpu() -> str | None:
-    """Make Cycles render on the GPUs that Blender finds.
+    """Configure Cycles to render on the GPUs that Blender finds.
 
     Returns:
-        The name of the compute interface, or None when rendering stays on the CPU.
+        The name of the compute interface, or None if Cycles renders on the CPU.
     """
     cycles = bpy.context.preferences.addons["cycles"].preferences
     for interface in GPU_INTERFACES:
@@ -147,11 +147,11 @@ def _prepare(viewpoint: Viewpoint, projection: dict[str, float], samples: int, s
 def _camera(scene: bpy.types.Scene) -> bpy.types.Object:
     """Return the object that is used as the camera, and create it on first use."""
     name = "scope camera"
-    found = bpy.data.objects.get(name)
-    if found is None:
-        found = bpy.data.objects.new(name, bpy.data.cameras.new(name))
-        scene.collection.objects.link(found)
-    return found
+    existing = bpy.data.objects.get(name)
+    if existing is None:
+        existing = bpy.data.objects.new(name, bpy.data.cameras.new(name))
+        scene.collection.objects.link(existing)
+    return existing
 
 
 def _passes(on: bool) -> None:

@@ -30,8 +30,8 @@ def render_frames(
 ) -> None:
     """Render one sprite for each frame.
 
-    Frame k (keys ``time_s``, ``phase``, ``position_m``, ``projection``) is written as ``k.png`` (RGBA) and ``k.npz``
-    (distances). Frames that exist already are skipped.
+    A frame is a dict with ``time_s``, ``phase``, ``position_m`` and ``projection``. Frame k is written as ``k.png`` (RGBA) and
+    ``k.npz`` (distances). Frames that exist already are skipped.
     """
     actor = next(a for a in stage.actors if a.id == actor_id)
     with _only_shadows() as ground:
@@ -40,7 +40,7 @@ def render_frames(
             if not picture.with_suffix(".npz").exists():
                 built = actor_bodies.place(actor, frame["time_s"], frame["phase"])
                 if built is None:
-                    raise ValueError(f"{actor_id} is not in the scene at {frame['time_s']} s")
+                    raise ValueError(f"no sprite can be rendered: {actor_id} is not in the scene at {frame['time_s']} s")
                 ground.location = frame["position_m"]
                 ground.hide_render = False
                 bpy.context.view_layer.update()
@@ -58,7 +58,7 @@ def render_frames(
 
 @contextmanager
 def _only_shadows() -> Iterator[bpy.types.Object]:
-    """Hide every visible object while the context is active, and yield a shadow-catcher plane."""
+    """While the context is active, hide every visible object. Yield a plane that receives shadows."""
     hidden = [o for o in bpy.data.objects if o.type not in {"LIGHT", "CAMERA"} and not o.hide_render]
     for obj in hidden:
         obj.hide_render = True

@@ -1,7 +1,7 @@
 """Worker process inside Blender: reads requests as JSON lines from stdin, executes them, and writes replies as JSON lines.
 
 Run this file by its path, either with a Python that has ``bpy`` or as ``blender --background --python worker.py``. Every reply
-starts with ``MARK``, which distinguishes it from Blender's own output. Blender's output goes to stderr.
+starts with ``MARK``, so that the main program can distinguish it from output of Blender. Blender's output goes to stderr.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ MARK = "@scope "
 def register_packages() -> None:
     """Make ``scope_studio`` and ``scope_ptz`` importable without adding their parent folder to ``sys.path``.
 
-    The parent folder is not added because it may contain packages that conflict with Blender's own, such as another version of
+    The parent folder is not added because it may contain packages that conflict with Blender's packages, such as another version of
     NumPy. The packages' ``__init__`` modules are not executed: that of ``scope_ptz`` imports packages that Blender's Python does
     not have, and only the ``geometry`` package is needed here.
     """
     for name in ("scope_studio", "scope_ptz"):
         home = Path(__file__).resolve().parents[1] / name
         if not home.is_dir():
-            raise ImportError(f"no package at {home}")
+            raise ImportError(f"the package folder {home} does not exist; reinstall scope-ptz")
         module = ModuleType(name)
         module.__path__ = [str(home)]
         sys.modules[name] = module
@@ -57,14 +57,14 @@ class Channel:
             self._number = request["id"]
             try:
                 result = operations[request["op"]](**request["params"])
-            except Exception as error:  # any failure in Blender is reported to the caller
+            except Exception as error:  # every failure in Blender is reported to the caller
                 traceback.print_exc()
                 self.send({"id": self._number, "error": f"{type(error).__name__}: {error}"})
             else:
                 self.send({"id": self._number, "result": result})
 
     def progress(self, done: int, total: int) -> None:
-        """Send how many steps of the current operation are done."""
+        """Send the number of finished steps of the current operation."""
         self.send({"id": self._number, "progress": [done, total]})
 
 

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from scope_ptz.agent.contact_sheet import contact_sheet
-from scope_ptz.agent.drawing import cut, drawable, width_of, wrap
+from scope_ptz.agent.drawing import printable, shorten, width_of, wrap
 from scope_ptz.agent.filmstrip import WIDTH, draw_filmstrip, write_filmstrip
 from scope_ptz.agent.panels import panels_of
 from scope_ptz.agent.records import Budgets
@@ -66,7 +66,7 @@ def test_other_steps_have_their_own_panels(tmp_path: Path) -> None:
     assert found[3][1:] == ("go to nowhere", "There is no preset 'nowhere'. Known: gate, highway.")
     assert found[4][1:] == ("pan right 999°", "at the pan limit")
     panels = panels_of(trace)
-    assert [p.whole for p in panels] == [False, True, False, False, False]
+    assert [p.is_panorama for p in panels] == [False, True, False, False, False]
     assert [p.failed for p in panels] == [False, False, False, True, False]
     assert panels[3].file == panels[2].file  # Nothing happened, so the view before it still stands.
 
@@ -121,9 +121,9 @@ def test_a_missing_picture_is_reported(tmp_path: Path) -> None:
 
 
 def test_drawable_text() -> None:
-    assert drawable("caf\u00e9 \u2013 15° \u00d7 2\n\tend \u770b") == "cafe - 15° x 2 end ?"
-    assert width_of(cut("a long line of words", 20, 100), 20) <= 100
-    assert cut("short", 20, 100) == "short"
+    assert printable("caf\u00e9 \u2013 15° \u00d7 2\n\tend \u770b") == "cafe - 15° x 2 end ?"
+    assert width_of(shorten("a long line of words", 20, 100), 20) <= 100
+    assert shorten("short", 20, 100) == "short"
     lines = wrap("one two three four five six seven eight nine ten", 20, 120, 2)
     assert len(lines) == 2
     assert lines[1].endswith("…")

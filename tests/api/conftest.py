@@ -10,6 +10,9 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.factory import scenes
+from tests.support.fixtures import one_search_for_packages
+
+__all__ = ["one_search_for_packages"]
 
 HERE = Path(__file__).parent
 WITH_EVALUATIONS = ("test_evaluations.py", "test_examples.py", "test_public_names.py")

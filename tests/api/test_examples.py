@@ -18,6 +18,7 @@ EXPECTED = {
     "own_perception.py": "Contract violations: none",
     "own_planner.py": "Most cars are at bridge-south: 8.",
 }
+SLOW = {"evaluate.py", "batch_over_views.py", "own_planner.py"}  # 6 to 10 s each
 
 
 def test_every_example_is_run() -> None:
@@ -25,7 +26,7 @@ def test_every_example_is_run() -> None:
 
 
 @pytest.mark.usefixtures("opened_once")
-@pytest.mark.parametrize("name", EXPECTED)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.full] if name in SLOW else []) for name in EXPECTED])
 def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(EXAMPLES / name), run_name="__main__")

@@ -93,7 +93,9 @@ def test_classes_have_a_description(name: str) -> None:
 
 
 @pytest.mark.usefixtures("opened_once")
-@pytest.mark.parametrize("name", [*FUNCTIONS, *OURS])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.full] if name == "evaluate" else []) for name in (*FUNCTIONS, *OURS)]
+)
 def test_examples_in_docstrings_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     value = getattr(scope_ptz, name)

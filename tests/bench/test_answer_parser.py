@@ -253,19 +253,29 @@ JOINTS = (
 )
 
 
+@pytest.mark.parametrize("step", [11, pytest.param(1, marks=pytest.mark.full)])
 @pytest.mark.parametrize("denial", DENIALS)
-def test_no_text_is_correct_for_both_an_absence_and_a_presence(denial: str) -> None:
+def test_no_text_is_correct_for_both_an_absence_and_a_presence(denial: str, step: int) -> None:
+    """Every pair of texts in the full tier; every 11th in the fast one, which still has each claim and each joint."""
     texts = [f"{one}{joint}{two}." for claim, joint in product(CLAIMS, JOINTS) for one, two in ((denial, claim), (claim, denial))]
-    for text in texts:
+    for text in texts[::step]:
         if verdict(NO_KITE, text) == "right":
             assert [twin for twin in TWINS if verdict(twin, text) == "right"] == [], text
 
 
+@pytest.mark.full
 @settings(deadline=None, max_examples=400)
 @given(st.lists(st.tuples(st.sampled_from(DENIALS + CLAIMS), st.sampled_from(JOINTS)), min_size=2, max_size=4))
 def test_no_longer_text_is_correct_for_both_an_absence_and_a_presence(pieces: list[tuple[str, str]]) -> None:
     text = "".join(piece + joint for piece, joint in pieces)
     assert not (verdict(NO_KITE, text) == "right" and any(verdict(twin, text) == "right" for twin in TWINS)), text
+
+
+@pytest.mark.parametrize(
+    "text", ["There are no kites (0: 3 and 3)", "There are no kites (0: 3 kites and 3.", "There are no kites. No that is "]
+)
+def test_odd_combinations_are_unscored(text: str) -> None:
+    assert [twin for twin in TWINS if verdict(twin, text) == "right"] == []
 
 
 def test_denials_and_claims_are_parsed_on_their_own() -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.scoring.checks import check_pose, framed, run_checks
+from scope_ptz.bench.scoring.checks import check_pose, framing_of, run_checks
 from scope_ptz.bench.scoring.episode import CameraPosition, Episode, SavedPicture
 from scope_ptz.bench.scoring.required_calls import missing_in_any_order, missing_in_order
 from scope_ptz.bench.scoring.verdict import score_episode
@@ -179,7 +179,7 @@ def test_framing_is_fill_of_the_limiting_side_and_offset_from_the_middle(pan: fl
     pans, tilts = pan_tilt_deg(corners)
     outline = tuple((float(p), float(t)) for p, t in zip(pans, tilts, strict=True))
     episode = replace(COUNT_RUN, final=CameraPosition("mast", Pose(pan, tilt, 3.0)))
-    measured, offset = framed(outline, episode)
+    measured, offset = framing_of(outline, episode)
     assert measured == pytest.approx(fill, abs=1e-3)
     assert offset == pytest.approx(abs(off), abs=1e-3)
     wanted = action(Behaviour(framing=Framing(instance="x", viewpoint="mast", outline_deg=outline)))

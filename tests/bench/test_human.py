@@ -13,7 +13,7 @@ import pytest
 from scope_ptz.agent.trace import read_trace
 from scope_ptz.bench.human_agent import TaskLeftError, parse
 from scope_ptz.bench.human_runs import open_run, read_result
-from scope_ptz.bench.human_viewer import Viewer, escape
+from scope_ptz.bench.human_viewer import Viewer, inline_sequence
 from scope_ptz.bench.tasks.expected import ActionOnly, Number
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Aim, Behaviour, EvidenceView, FinalPose, Task
@@ -106,7 +106,7 @@ def test_the_end_of_the_input_loses_nothing(scope: Scope, tasks: Path, tmp_path:
     done = scope("bench", "human", "--split", str(tasks), "--out", str(tmp_path / "human"))
     assert done.code == 0
     assert "There is no preset 'nowhere'" in done.out and "a yard (seen by a person)" in done.out
-    assert "nothing recorded" in done.out
+    assert "No run is recorded." in done.out
     assert list((tmp_path / "human").iterdir()) == []
 
 
@@ -168,8 +168,9 @@ def test_unknown_commands_are_reported(line: str) -> None:
 def test_terminals_that_support_pictures_get_them(tmp_path: Path) -> None:
     image = np.full((72, 128, 3), 90, np.uint8)
     frame = Frame(image=image, pose=Pose(), hfov_deg=60.0, time_s=0.0, projection=Perspective(0, 0, 60.0, 128, 72))
-    assert escape(frame, "iterm").startswith("\x1b]1337;File=inline=1") and escape(frame, "iterm").endswith("\x07\n")
-    assert escape(frame, "kitty").startswith("\x1b_Gf=100,a=T,m=0;") and escape(frame, "kitty").endswith("\x1b\\\n")
+    iterm, kitty = inline_sequence(frame, "iterm"), inline_sequence(frame, "kitty")
+    assert iterm.startswith("\x1b]1337;File=inline=1") and iterm.endswith("\x07\n")
+    assert kitty.startswith("\x1b_Gf=100,a=T,m=0;") and kitty.endswith("\x1b\\\n")
     terminal = io.StringIO()
     viewer = Viewer(tmp_path, terminal, "kitty")
     plain, gridded = viewer.show(frame), viewer.show(frame, grid=True)

@@ -35,7 +35,7 @@ def content(**changes: Any) -> dict[str, Any]:
         ({"stratum": "paraphrase"}, "paraphrase_of must be set"),
         ({"paraphrase_of": "scope1-test-counting-002"}, "paraphrase_of must be set"),
         ({"expected": {"kind": "action_only"}, "behaviour": {}}, "nothing is checked"),
-        ({"evidence": []}, "needs an evidence view"),
+        ({"evidence": []}, "must have an evidence view"),
         ({"answer": "five"}, "Extra inputs"),
         ({"expected": {"kind": "number", "value": float("nan")}}, "finite"),
         ({"canary": "another"}, "Input should be"),
@@ -55,11 +55,11 @@ def test_actions_need_checks_answers_need_evidence_and_reactions_need_neither() 
 
 
 def test_expected_values_must_be_among_their_options() -> None:
-    with pytest.raises(ValidationError, match="not among the options"):
+    with pytest.raises(ValidationError, match="must be one of the options"):
         Choice(value="mauve", options={"red": ()})
-    with pytest.raises(ValidationError, match="each once"):
+    with pytest.raises(ValidationError, match="exactly once"):
         Ordering(value=("a", "b"), options={"a": (), "b": (), "c": ()})
-    with pytest.raises(ValidationError, match="either equals"):
+    with pytest.raises(ValidationError, match="exactly one of equals"):
         Argument(equals=1.0, mentions=("one",))
     with pytest.raises(ValidationError):
         Number(value=1, tolerance=-1)
@@ -83,7 +83,7 @@ def test_a_damaged_file_is_reported_with_file_and_task(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be read"):
         load_tasks(path)
     path.write_text("{", "utf-8")
-    with pytest.raises(InputError, match="holds no tasks"):
+    with pytest.raises(InputError, match="neither valid JSONL"):
         load_tasks(path)
     path.write_text(json.dumps(content(scene=3)), "utf-8")
     with pytest.raises(InputError, match=r"scope1-test-counting-001: scene"):

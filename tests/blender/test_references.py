@@ -7,19 +7,14 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.blender.references import references
-from scope_ptz.blender.tolerances import shortcomings
+from scope_ptz.blender.tolerances import missed_tolerances
 from scope_ptz.blender.verify import PoseReport, compare
 from scope_ptz.simulator.pack import list_scenes, load_scene
 
 FOLDER = Path(__file__).parent.parent / "data" / "references"
 
 
-FAST = "high-street"  # the other scenes take minutes
-
-
-@pytest.fixture(
-    scope="module", params=[pytest.param(name, marks=() if name == FAST else pytest.mark.full) for name in list_scenes()]
-)
+@pytest.fixture(scope="module", params=[pytest.param(name, marks=pytest.mark.full) for name in list_scenes()])
 def reports(request: pytest.FixtureRequest) -> list[PoseReport]:
     scene = load_scene(request.param)
     return [compare(scene, *reference) for reference in references(FOLDER / scene.name)]
@@ -28,7 +23,7 @@ def reports(request: pytest.FixtureRequest) -> list[PoseReport]:
 def test_the_packs_match_the_renders(reports: list[PoseReport]) -> None:
     assert sum(r.pose.zoom == 1.0 for r in reports) >= 4
     assert sum(r.pose.zoom > 1.0 and r.tile_share > 0 for r in reports) >= 4
-    assert shortcomings(reports) == []
+    assert missed_tolerances(reports) == []
 
 
 @pytest.mark.parametrize("name", list_scenes())

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from scope_ptz.blender.tolerances import shortcomings
+from scope_ptz.blender.tolerances import missed_tolerances
 from scope_ptz.blender.verify import PoseReport
 from scope_ptz.geometry import Pose
 
@@ -15,7 +15,7 @@ TELE = PoseReport("mast", Pose(10.0, -5.0, 4.0), ssim=0.92, sharpness_ratio=0.7,
 
 
 def test_packs_within_all_tolerances_have_no_shortcomings() -> None:
-    assert shortcomings([WIDE, TELE, replace(WIDE, box_iou=None)]) == []
+    assert missed_tolerances([WIDE, TELE, replace(WIDE, box_iou=None)]) == []
 
 
 @pytest.mark.parametrize(
@@ -30,8 +30,8 @@ def test_packs_within_all_tolerances_have_no_shortcomings() -> None:
     ],
 )
 def test_every_tolerance_is_enforced(report: PoseReport, words: str) -> None:
-    assert words in " / ".join(shortcomings([report]))
+    assert words in " / ".join(missed_tolerances([report]))
 
 
 def test_zoomed_views_outside_tiles_are_not_compared() -> None:
-    assert shortcomings([replace(TELE, tile_share=0.0, ssim=0.5, sharpness_ratio=0.1)]) == []
+    assert missed_tolerances([replace(TELE, tile_share=0.0, ssim=0.5, sharpness_ratio=0.1)]) == []

@@ -99,5 +99,5 @@ def test_a_device_that_changes_later_fails_the_handshake(tmp_path: Path) -> None
 def test_no_device_is_a_typed_error() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
         port = listening.getsockname()[1]
-    with pytest.raises(CameraError, match="shows no certificate"):
+    with pytest.raises(CameraError, match="presents no certificate"):
         trust_fingerprint(DeviceAddress("127.0.0.1", port, tls=True), "0" * 64, timeout_s=1.0)

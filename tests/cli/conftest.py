@@ -1,9 +1,9 @@
-"""The command line in the tests' own process, on a small scene that is written for the purpose."""
+"""Run the command line in the process of the tests, on a small scene that is generated for them."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,13 +11,15 @@ from typing import Any
 import pytest
 
 from scope_ptz.cli import main
+from scope_ptz.simulator.pack import Scene
+from tests.cli.served_camera import PASSWORD, ServedCamera, served
 
 SCENE = "analytic-yard"
 
 
 @dataclass(frozen=True)
 class Done:
-    """How a command ended and what it printed."""
+    """The exit code and the output of a command."""
 
     code: int
     out: str
@@ -25,7 +27,7 @@ class Done:
 
     @property
     def json(self) -> Any:
-        """The one line of JSON on stdout."""
+        """The line of JSON on stdout."""
         (line,) = self.out.splitlines()
         return json.loads(line)
 
@@ -35,7 +37,7 @@ Scope = Callable[..., Done]
 
 @pytest.fixture(scope="session")
 def scenes(analytic_folder: Path) -> Path:
-    """A folder with the analytic scene. Read-only: damage a copy."""
+    """A folder with the analytic scene. Tests must not change it."""
     return analytic_folder.parent
 
 
@@ -56,3 +58,13 @@ def scope(scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys:
         return Done(code or 0, *capsys.readouterr())
 
     return run
+
+
+@pytest.fixture
+def served_camera(analytic_scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ServedCamera]:
+    """A virtual camera on this machine. Its password is in the environment."""
+    monkeypatch.setenv("SCOPE_CAMERA_PASSWORD", PASSWORD)
+    monkeypatch.setenv("SCOPE_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setenv("SCOPE_CAMERA_PROFILES_DIR", str(tmp_path / "profiles"))
+    with served(analytic_scene) as camera:
+        yield camera

@@ -46,19 +46,19 @@ def test_an_instruction_moves_the_camera_and_is_answered(scope: Scope, fake: Fak
 
 
 def test_ground_truth_is_refused(scope: Scope, fake: FakeVapix) -> None:
-    done = scope("ask", "count the people", "--camera", _spec(fake))
+    done = scope("ask", "count the people", "--camera", _spec(fake), "--perception", "ground-truth")
     assert done.code == 2
     assert "ground" in done.err
 
 
-def test_a_stuck_motor_is_told(scope: Scope, fake: FakeVapix) -> None:
+def test_a_stuck_motor_is_reported(scope: Scope, fake: FakeVapix) -> None:
     fake.stuck = frozenset({"pan"})
     code, summary, _ = _ask(scope, fake, "pan right 40 degrees")
     assert code != 0
     assert "position never arrived" in str(summary)
 
 
-def test_a_wrong_password_is_told_in_one_line(scope: Scope, fake: FakeVapix, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_wrong_password_is_reported_in_one_line(scope: Scope, fake: FakeVapix, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SCOPE_CAMERA_PASSWORD", "wrong-word")
     code, _, err = _ask(scope, fake, "pan right 40 degrees")
     assert code == 1
@@ -70,7 +70,7 @@ def test_a_wrong_password_is_told_in_one_line(scope: Scope, fake: FakeVapix, mon
 @pytest.mark.parametrize(
     ("spec", "message"),
     [
-        ("axis://127.0.0.1", "Name the account"),
+        ("axis://127.0.0.1", "must name the account"),
         ("axis://op:pw@127.0.0.1", "Remove user:password@"),
         ("axis://op@127.0.0.1", "SCOPE_CAMERA_PASSWORD"),
     ],

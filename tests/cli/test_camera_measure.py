@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
 from scope_ptz.camera.measuring import calibration
 from scope_ptz.camera.measuring.calibration import AxisResponse, Calibration, FieldOfView
+from scope_ptz.camera.measuring.profile import ProbeRecord
+from scope_ptz.camera.measuring.report import report_name, report_text
+from scope_ptz.virtual_camera.identity import FIRMWARE
 from tests.cli.conftest import SCENE, Scope
+from tests.cli.served_camera import ServedCamera
 
 CAMERA = f"sim:{SCENE}?width=160&height=90"
 
@@ -28,13 +33,37 @@ def test_probe_says_what_a_camera_can_do_and_stores_it(scope: Scope, tmp_path: P
     assert scope("camera", "probe", CAMERA, "--json").json["frame_width"] == 160
 
 
-def test_report_names_no_place(scope: Scope) -> None:
-    plain = scope("camera", "probe", CAMERA)
-    report = scope("camera", "probe", CAMERA, "--report")
-    listed, counted = (text.out.partition("Presets: ")[2].splitlines()[0] for text in (plain, report))
-    assert listed.partition(": ")[2]
-    assert counted.isdecimal()
-    assert "profiles" not in report.out
+def test_a_report_tells_what_and_neither_whose_nor_where(
+    scope: Scope, served_camera: ServedCamera, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for scheme in ("axis", "onvif"):
+        spec = served_camera.spec(scheme)
+        done = scope("camera", "probe", spec, "--report")
+        assert done.code == 0, done.err
+        (written,) = tmp_path.glob("camera-report-*.md")
+        text = written.read_text()
+        written.unlink()
+        assert "M5075-G" in text
+        assert f"| {FIRMWARE} | {scheme} |" in text
+        assert "once" in text
+        details = json.loads(text.partition("```json\n")[2].partition("```")[0])
+        assert details["presets"] == len(served_camera.device.presets()) > 0
+        names = [preset.name for preset in served_camera.device.presets()]
+        for secret in (*served_camera.secrets, *names, "127.0.0.1", str(served_camera.port), str(tmp_path)):
+            assert secret not in text, secret
+    assert scope("camera", "probe", spec, "--report", "--out", str(tmp_path / "none" / "x.md")).code != 0
+
+
+def test_identifiers_in_the_name_of_a_model_are_removed() -> None:
+    record = ProbeRecord(
+        probed_at="", model="CAM ACCC8E00A1B2 10.0.0.7:80 ac:cc:8e:00:a1:b2 op@yard", driver="onvif", pan_range_deg=(-1, 1),
+        tilt_range_deg=(-1, 1), zoom_range=(1, 2), pan_endless=False, zoom_table=((1, 60), (2, 30)), frame_width=1, frame_height=1,
+        presets=("Vault",), drives=True, edits_presets=True, focus=False, iris=False, assumed=(), snapshot_s=0.1,
+    )  # fmt: skip
+    for text in (report_text(record).lower(), report_name(record)):
+        assert "cam" in text
+        assert not any(part in text for part in ("accc8e", "10.0.0.7", "ac:cc", "op@yard", "vault"))
 
 
 @pytest.mark.parametrize("pan", [1.0, -1.0])

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
+import re
 import signal
+import ssl
 import subprocess
 import sys
 from pathlib import Path
@@ -14,10 +17,11 @@ import pytest
 
 from scope_ptz.cli.camera.serve import parse_faults
 from scope_ptz.errors import ConfigError, InputError
-from scope_ptz.factory.virtual_cameras import VirtualCameraOptions, make_accounts, make_devices
+from scope_ptz.factory.cameras.virtual import VirtualCameraOptions, make_accounts, make_devices
 from scope_ptz.settings import ScopeSettings
 from scope_ptz.virtual_camera.accounts import Role
 from tests.cli.conftest import SCENE, Scope
+from tests.support.programs import started
 
 
 @pytest.mark.parametrize(
@@ -32,7 +36,7 @@ from tests.cli.conftest import SCENE, Scope
         (["--scene", SCENE, "--fault", "drop=2"], "drop: "),
         (["--scene", SCENE, "--user", "root", "--no-accounts"], "not both"),
         (["--scene", SCENE, "--user", "root:king"], "There is no role 'king'"),
-        (["--scene", SCENE, "--user", "root", "--user", "root"], "a name of its own"),
+        (["--scene", SCENE, "--user", "root", "--user", "root"], "must have a different name"),
         (["--scene", SCENE, "--no-accounts", "--host", "0.0.0.0", "--port", "0"], "open to the network"),  # noqa: S104
         (["--scene", SCENE, "--host", "192.0.2.1", "--port", "0"], "cannot be used"),
     ],
@@ -88,14 +92,12 @@ def test_held_time_stands_still_and_motors_do_not(scenes: Path, monkeypatch: pyt
 def test_it_serves_until_ctrl_c(scenes: Path) -> None:
     command = [sys.executable, "-m", "scope_ptz.cli", "camera", "serve", "--scene", SCENE, "--viewpoint", "roof", "--port", "0"]
     environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes)}
-    with subprocess.Popen(
-        [*command, "--truth", "--json"], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
+    with started([*command, "--truth", "--json"], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdout is not None
-        started = json.loads(process.stdout.readline())
-        (camera,) = started["cameras"]
+        described = json.loads(process.stdout.readline())
+        (camera,) = described["cameras"]
         assert (camera["scene"], camera["viewpoint"]) == (SCENE, "roof")
-        auth = httpx2.DigestAuth("root", started["passwords"]["root"])
+        auth = httpx2.DigestAuth("root", described["passwords"]["root"])
         with httpx2.Client(base_url=camera["url"], auth=auth, trust_env=False, timeout=60) as session:
             assert session.get("/axis-cgi/com/ptz.cgi", params={"query": "position"}).text.startswith("pan=")
             picture = session.get("/axis-cgi/jpg/image.cgi")
@@ -106,10 +108,31 @@ def test_it_serves_until_ctrl_c(scenes: Path) -> None:
 
 
 @pytest.mark.full
+def test_the_fingerprint_of_its_certificate_is_printed(scenes: Path) -> None:
+    command = [sys.executable, "-m", "scope_ptz.cli", "camera", "serve", "--scene", SCENE, "--port", "0", "--https"]
+    environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes)}
+    with started(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
+        assert process.stdout is not None
+        lines = [process.stdout.readline()]
+        while "Ctrl-C" not in lines[-1]:
+            lines.append(process.stdout.readline())
+            assert process.poll() is None
+        text = "".join(lines)
+        port = int(re.search(r"^  ONVIF: +https://127\.0\.0\.1:(\d+)/onvif/", text, flags=re.MULTILINE)[1])  # type: ignore[index]
+        shown = hashlib.sha256(ssl.PEM_cert_to_DER_cert(ssl.get_server_certificate(("127.0.0.1", port)))).hexdigest()
+        (printed,) = re.findall(r"certificate \(SHA-256\): ([0-9A-F:]{95})$", text, flags=re.MULTILINE)
+        assert printed.replace(":", "").lower() == shown
+        assert "curl --insecure --digest" in text
+        process.send_signal(signal.SIGTERM)
+        rest = process.communicate(timeout=30)[0]
+    assert (process.returncode, rest) == (130, "scope: cancelled.\n")
+
+
+@pytest.mark.full
 def test_a_configured_password_is_never_printed(scenes: Path) -> None:
     command = [sys.executable, "-m", "scope_ptz.cli", "camera", "serve", "--scene", SCENE, "--port", "0"]
     environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes), "SCOPE_VIRTUAL_CAMERA_PASSWORD": "very-secret"}
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+    with started(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
         assert process.stdout is not None
         lines = [process.stdout.readline()]
         while "Ctrl-C" not in lines[-1]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from io import StringIO
 from pathlib import Path
@@ -11,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import SCENE, Done, Scope
+from tests.support.programs import started
 
 
 def say(scope: Scope, monkeypatch: pytest.MonkeyPatch, *lines: str) -> Done:
@@ -47,7 +47,7 @@ def test_lines_are_kept_in_a_private_history(scenes: Path, tmp_path: Path) -> No
     }  # fmt: skip
     person, terminal = pty.openpty()
     try:
-        with subprocess.Popen(
+        with started(
             [sys.executable, "-m", "scope_ptz.cli", "chat", "--scene", SCENE],
             env=environment, stdin=terminal, stdout=terminal, stderr=terminal,
         ) as process:  # fmt: skip

@@ -62,16 +62,19 @@ main()
 """
 
 
-@pytest.mark.parametrize("presses", [1, 2])
+PLACES = (
+    "scope_ptz.settings:load_settings",
+    "scope_ptz.simulator.pack:load_scene",
+    "scope_ptz.agent.store:slug",
+    "scope_ptz.agent.store:RunFolder.save_frame",
+    "scope_ptz.agent.filmstrip:draw_filmstrip",
+)
+
+
 @pytest.mark.parametrize(
-    "place",
-    [
-        "scope_ptz.settings:load_settings",
-        "scope_ptz.simulator.pack:load_scene",
-        "scope_ptz.agent.store:slug",
-        "scope_ptz.agent.store:RunFolder.save_look",
-        "scope_ptz.agent.filmstrip:draw_filmstrip",
-    ],
+    ("place", "presses"),
+    [(place, 1) for place in PLACES]
+    + [pytest.param(place, 2, marks=() if "save_frame" in place else pytest.mark.full) for place in PLACES],
 )
 def test_ctrl_c_at_any_time_leaves_no_incomplete_run_folder(
     environment: dict[str, str], tmp_path: Path, place: str, presses: int
@@ -121,8 +124,8 @@ def test_chat_without_standard_input_says_what_to_use_instead(environment: dict[
     "encoding",
     [
         {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
-        {"PYTHONIOENCODING": "ascii"},
-        {"PYTHONIOENCODING": "latin-1"},
+        pytest.param({"PYTHONIOENCODING": "ascii"}, marks=pytest.mark.full),
+        pytest.param({"PYTHONIOENCODING": "latin-1"}, marks=pytest.mark.full),
     ],
 )
 def test_output_is_readable_in_every_encoding(environment: dict[str, str], encoding: dict[str, str]) -> None:

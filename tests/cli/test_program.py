@@ -14,6 +14,7 @@ import pytest
 
 from scope_ptz.cli.starting import prepare_help
 from tests.cli.conftest import SCENE, Scope
+from tests.support.programs import started
 
 SCOPE = [sys.executable, "-m", "scope_ptz.cli"]
 
@@ -107,9 +108,7 @@ def test_ctrl_c_ends_a_run_cleanly(scenes: Path, tmp_path: Path) -> None:
         """Enable Ctrl-C in the child process: background processes ignore it, and their children inherit that."""
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
-    with subprocess.Popen(
-        command, env=environment, preexec_fn=hear, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
+    with started(command, env=environment, preexec_fn=hear, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         deadline = time.monotonic() + 30
         while not (list(tmp_path.glob("*/trace.jsonl")) and next(tmp_path.glob("*/trace.jsonl")).read_text().count("\n") >= 2):
             assert time.monotonic() < deadline, "the run did not begin"

@@ -153,7 +153,7 @@ async def outcome(caller: Caller, attempt: Callable[[], Awaitable[str]]) -> Fail
 
 async def test_the_breaker_opens_and_then_probes_once() -> None:
     clock = Clock()
-    caller, _ = make(retries=0, breaker=Breaker(threshold=3, pause_s=10.0, longest_pause_s=15.0, clock=clock))
+    caller, _ = make(retries=0, breaker=Breaker(threshold=3, pause_s=10.0, max_pause_s=15.0, clock=clock))
     asked: list[float] = []
 
     async def dead() -> str:

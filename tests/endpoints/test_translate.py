@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.endpoints.endpoint import Endpoint
-from scope_ptz.endpoints.failures import MAX_DETAIL_CHARS, FailureKind, ServerFailure, in_brief
+from scope_ptz.endpoints.failures import MAX_DETAIL_CHARS, FailureKind, ServerFailure, one_line_excerpt
 from scope_ptz.endpoints.translate import as_failure, error_body, retry_after_s, status_failure
 
 AT = Endpoint(url="http://127.0.0.1:8000/v1")
@@ -89,12 +89,12 @@ def test_errors_with_a_success_status(body: dict[str, Any], kind: FailureKind | 
 
 @pytest.mark.parametrize("text", ["Bearer abcdef123456", "key sk-proj-abc_DEF-12345 is wrong", "sk-abcdefgh"])
 def test_text_that_looks_like_a_key_is_hidden(text: str) -> None:
-    assert "***" in in_brief(text, "")
-    assert not any(part in in_brief(text, "") for part in ("abcdef", "abc_DEF"))
+    assert "***" in one_line_excerpt(text, "")
+    assert not any(part in one_line_excerpt(text, "") for part in ("abcdef", "abc_DEF"))
 
 
 def test_a_placeholder_key_does_not_hide_words() -> None:
-    assert in_brief("none of the models is loaded", "none") == "none of the models is loaded"
+    assert one_line_excerpt("none of the models is loaded", "none") == "none of the models is loaded"
 
 
 def test_a_bug_is_not_a_server_failure() -> None:

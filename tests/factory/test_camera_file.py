@@ -9,8 +9,8 @@ import pytest
 
 from scope_ptz.camera.guard.guarded import GuardedCamera
 from scope_ptz.errors import ConfigError, InputError
-from scope_ptz.factory.camera_file import CameraFile, load_camera_file, schema
 from scope_ptz.factory.cameras import camera_names, open_camera, parse_camera
+from scope_ptz.factory.cameras.site_file import CameraFile, load_camera_file, schema
 from scope_ptz.geometry import Pose
 
 FILE = """
@@ -73,12 +73,12 @@ def test_a_file_can_be_named_in_the_environment(tmp_path: Path, monkeypatch: pyt
 
 @pytest.mark.parametrize(("text", "message"), [
     ("cameras: [", "not valid YAML in line"),
-    ("- 1", "wrong at the top level"),
-    ("version: 7", "wrong at version"),
+    ("- 1", "invalid at the top level"),
+    ("version: 7", "invalid at version"),
     ("cameras: {Yard: {camera: 'sim:x'}}", "Yard"),
     ("cameras: {a: {}}", "cameras.a.camera"),
     ("cameras: {a: {camera: 'sim:x', colour: red}}", "cameras.a.colour"),
-    ("cameras: {a: {camera: 'sim:x', rules: {keep_out: [{name: n, pan_deg: [1, 1]}]}}}", "they differ"),
+    ("cameras: {a: {camera: 'sim:x', rules: {keep_out: [{name: n, pan_deg: [1, 1]}]}}}", "with two different angles"),
     ("cameras: {a: {camera: 'sim:x', fingerprint: '12:34'}}", "64 hexadecimal digits"),
 ])  # fmt: skip
 def test_a_wrong_file_is_refused_with_the_place(tmp_path: Path, text: str, message: str) -> None:
@@ -98,7 +98,7 @@ def test_a_password_in_the_file_is_refused_and_not_repeated(tmp_path: Path) -> N
 
 def test_a_named_spec_needs_a_scheme_and_no_password(site: Path) -> None:
     (site / "scope.yaml").write_text("cameras: {a: {camera: b}, b: {camera: a}, c: {camera: 'axis://op:hunter2@10.0.0.7'}}")
-    with pytest.raises(InputError, match="needs a spec with a scheme"):
+    with pytest.raises(InputError, match="must have a spec with a scheme"):
         parse_camera("a")
     with pytest.raises(InputError, match="Remove user:password@") as caught:
         parse_camera("c")

@@ -12,7 +12,7 @@ import pytest
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.cameras import parse_camera
-from scope_ptz.factory.passwords import find_credentials, store_password
+from scope_ptz.factory.cameras.passwords import find_credentials, store_password
 
 SPEC = CameraSpec("axis", "operator@10.0.0.7")
 

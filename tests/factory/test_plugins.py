@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import scope_ptz
+from scope_ptz.cli import main
+from tests.cli.conftest import Done
+
+SOURCES = Path(scope_ptz.__file__).parents[1]
 PLUGINS = Path(__file__).parents[1] / "plugins"
 EXAMPLES = ("scope-still-camera", "scope-nudge-planner", "scope-bright-perception")
 
@@ -30,12 +37,42 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return target
 
 
-def scope(site: Path, folder: Path, *arguments: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
+def separate_process(site: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Run a command in a separate process that can import the packages in ``site``."""
     paths = [str(site), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "SCOPE_RUNS_DIR": str(folder), "COLUMNS": "200"}
     command = [sys.executable, "-m", "scope_ptz.cli", *arguments]
-    return subprocess.run(command, env=environment, capture_output=True, text=True, input=stdin, cwd=folder, check=False)
+    return subprocess.run(command, env=environment, capture_output=True, text=True, cwd=folder, check=False, timeout=300)
+
+
+Scope = Callable[..., Done]
+
+
+@pytest.fixture
+def scope(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Iterator[Scope]:
+    """Run a command in this process, in which the packages in ``site`` are installed for the time of the test."""
+    monkeypatch.setenv("SCOPE_RUNS_DIR", str(tmp_path))
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.chdir(tmp_path)
+    before = set(sys.modules)
+
+    def run(site: Path, *arguments: str, stdin: str = "") -> Done:
+        if str(site) not in sys.path:
+            monkeypatch.syspath_prepend(site)
+        monkeypatch.setattr("sys.argv", ["scope", *arguments])
+        monkeypatch.setattr("sys.stdin", io.StringIO(stdin))
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as ended:
+            main()
+        code = ended.value.code
+        assert code is None or isinstance(code, int)
+        return Done(code or 0, *capsys.readouterr())
+
+    yield run
+    for name in set(sys.modules) - before:
+        path = getattr(sys.modules[name], "__file__", None) or ""
+        if not path.startswith((sys.prefix, sys.base_prefix, str(SOURCES))):
+            del sys.modules[name]  # a plug-in
 
 
 def write_package(site: Path, module: str, code: str, group: str, name: str, target: str | None = None) -> None:
@@ -47,22 +84,22 @@ def write_package(site: Path, module: str, code: str, group: str, name: str, tar
     (info / "entry_points.txt").write_text(f"[scope_ptz.{group}]\n{name} = {target or f'{module}:make'}\n")
 
 
-def test_plugins_are_listed(installed: Path, tmp_path: Path) -> None:
-    done = scope(installed, tmp_path, "models", "plugins", "--json")
-    listed = {(row["kind"], row["name"], row["package"], row["problem"]) for row in json.loads(done.stdout)}
+def test_plugins_are_listed(scope: Scope, installed: Path) -> None:
+    done = scope(installed, "models", "plugins", "--json")
+    listed = {(row["kind"], row["name"], row["package"], row["problem"]) for row in json.loads(done.out)}
     assert listed == {
         ("camera", "still", "scope-still-camera 1.0", ""),
         ("planner", "nudge", "scope-nudge-planner 1.0", ""),
         ("perception", "bright", "scope-bright-perception 1.0", ""),
     }
-    models = scope(installed, tmp_path, "models").stdout
+    models = scope(installed, "models").out
     assert "nudge (scope-nudge-planner 1.0)" in models
     assert "bright (scope-bright-perception 1.0)" in models
 
 
-def test_doctor_checks_plugins(installed: Path, tmp_path: Path) -> None:
-    done = scope(installed, tmp_path, "doctor", "--json")
-    found = {finding["what"]: finding for finding in json.loads(done.stdout)}
+def test_doctor_checks_plugins(scope: Scope, installed: Path) -> None:
+    done = scope(installed, "doctor", "--json")
+    found = {finding["what"]: finding for finding in json.loads(done.out)}
     assert found["camera still"]["verdict"] == "ok"
     assert found["camera still"]["detail"].endswith("still camera, 320 x 180")
     assert found["planner nudge"]["verdict"] == "ok"
@@ -71,7 +108,7 @@ def test_doctor_checks_plugins(installed: Path, tmp_path: Path) -> None:
 
 
 def test_ask_uses_all_three(installed: Path, tmp_path: Path) -> None:
-    done = scope(
+    done = separate_process(
         installed, tmp_path, "ask", "look for the lamp", "--camera", "still:lamp", "--planner", "nudge", "--planner-option",
         "pan_deg=20", "--perception", "bright", "--json",
     )  # fmt: skip
@@ -81,17 +118,15 @@ def test_ask_uses_all_three(installed: Path, tmp_path: Path) -> None:
     assert run["pose"]["pan_deg"] == 20.0
 
 
-def test_chat_uses_a_camera_of_a_plugin(installed: Path, tmp_path: Path) -> None:
-    done = scope(
-        installed, tmp_path, "chat", "--camera", "still:lamp", "--perception", "bright", stdin="pan right 10\n/pose\n/quit\n"
-    )
-    assert done.returncode == 0, done.stderr
-    assert "pan 10°" in done.stdout
+def test_chat_uses_a_camera_of_a_plugin(scope: Scope, installed: Path) -> None:
+    done = scope(installed, "chat", "--camera", "still:lamp", "--perception", "bright", stdin="pan right 10\n/pose\n/quit\n")
+    assert done.code == 0, done.err
+    assert "pan 10°" in done.out
 
 
 @pytest.mark.full
 def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(installed: Path, tmp_path: Path) -> None:
-    done = scope(
+    done = separate_process(
         installed,
         tmp_path,
         "bench",
@@ -112,16 +147,24 @@ def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(installed: Pa
     assert result["runs"] == 2
 
 
-def test_ground_truth_is_refused_for_a_camera_without_it(installed: Path, tmp_path: Path) -> None:
-    done = scope(installed, tmp_path, "ask", "pan right 10", "--camera", "still:lamp")
-    assert done.returncode == 2
-    assert "this camera has none. Name a vision model with --perception" in done.stderr
+def test_ground_truth_is_refused_for_a_camera_without_it(scope: Scope, installed: Path) -> None:
+    done = scope(installed, "ask", "pan right 10", "--camera", "still:lamp", "--perception", "ground-truth")
+    assert done.code == 2
+    assert "this camera has none. Name a vision model with --perception" in done.err
 
 
-def test_a_camera_that_does_not_open_ends_in_one_line(installed: Path, tmp_path: Path) -> None:
-    done = scope(installed, tmp_path, "ask", "pan right 10", "--camera", "still:candle", "--perception", "bright")
-    assert done.returncode == 1
-    assert done.stderr == "scope: There is no still camera 'candle'. Known: lamp.\n"
+def test_a_camera_without_ground_truth_moves_without_perception(scope: Scope, installed: Path) -> None:
+    done = scope(installed, "ask", "pan right 10", "--camera", "still:lamp")
+    assert done.code == 0, done.err
+    assert "perception none" in done.out
+    done = scope(installed, "ask", "how many cones are there?", "--camera", "still:lamp")
+    assert "Name a vision model with --perception" in " ".join(done.out.split())
+
+
+def test_a_camera_that_does_not_open_ends_in_one_line(scope: Scope, installed: Path) -> None:
+    done = scope(installed, "ask", "pan right 10", "--camera", "still:candle", "--perception", "bright")
+    assert done.code == 1
+    assert done.err == "scope: There is no still camera 'candle'. Known: lamp.\n"
 
 
 BROKEN = {
@@ -130,26 +173,26 @@ BROKEN = {
     "no factory": ("make = 3", "but that is not callable: it is of type int"),
     "wrong product": (
         "def make(spec):\n    return 'camera'",
-        "returned an object of type str; a Camera of scope_ptz.camera.base is needed",
+        "returned an object of type str; it must be a Camera of scope_ptz.camera.base",
     ),
     "crash": ("def make(spec):\n    raise RuntimeError('no\\nlight')", "failed: RuntimeError: no light"),
 }
 
 
 @pytest.mark.parametrize("case", BROKEN)
-def test_a_broken_plugin_gives_one_line_and_breaks_nothing_else(case: str, tmp_path: Path) -> None:
+def test_a_broken_plugin_gives_one_line_and_breaks_nothing_else(scope: Scope, case: str, tmp_path: Path) -> None:
     code, message = BROKEN[case]
     site = tmp_path / "site"
     site.mkdir()
     write_package(site, "someones_camera", f"{code}\n", "cameras", "odd")
-    done = scope(site, tmp_path, "ask", "pan right 5", "--camera", "odd:x")
-    assert done.returncode == 2
-    assert message in done.stderr
-    assert done.stderr.count("\n") == 1
-    assert scope(site, tmp_path, "models", "plugins").returncode == 0
+    done = scope(site, "ask", "pan right 5", "--camera", "odd:x")
+    assert done.code == 2
+    assert message in done.err
+    assert done.err.count("\n") == 1
+    assert scope(site, "models", "plugins").code == 0
 
 
-def test_doctor_reports_broken_plugins(tmp_path: Path) -> None:
+def test_doctor_reports_broken_plugins(scope: Scope, tmp_path: Path) -> None:
     site = tmp_path / "site"
     site.mkdir()
     write_package(site, "someones_camera", "import no_such_package\n", "cameras", "odd")
@@ -157,32 +200,32 @@ def test_doctor_reports_broken_plugins(tmp_path: Path) -> None:
     write_package(site, "someones_perception", "make = 1\n", "perception", "blurred")
     write_package(site, "someones_grammar", "make = print\n", "planners", "grammar")
     write_package(site, "someones_ocr", "make = print\n", "perception", "ocr")
-    done = scope(site, tmp_path, "doctor", "--json")
-    assert done.returncode == 1
-    found = {finding["what"]: finding for finding in json.loads(done.stdout)}
+    done = scope(site, "doctor", "--json")
+    assert done.code == 1
+    found = {finding["what"]: finding for finding in json.loads(done.out)}
     assert {found[name]["verdict"] for name in ("camera odd", "perception blurred", "planner grammar", "perception ocr")} == {
         "missing"
     }
     assert "ModuleNotFoundError" in found["camera odd"]["detail"]
-    assert "a Planner of scope_ptz.planner.base is needed" in found["planner strange"]["detail"]
+    assert "it must be a Planner of scope_ptz.planner.base" in found["planner strange"]["detail"]
     assert "its name is that of a built-in planner, which is used instead" in found["planner grammar"]["detail"]
     assert all("\n" not in finding["detail"] for finding in found.values())
 
 
-def test_a_plugin_cannot_replace_a_built_in_name(tmp_path: Path) -> None:
+def test_a_plugin_cannot_replace_a_built_in_name(scope: Scope, tmp_path: Path) -> None:
     site = tmp_path / "site"
     site.mkdir()
     write_package(site, "someones_grammar", "import no_such_package\n", "planners", "grammar")
     write_package(site, "someones_sim", "import no_such_package\n", "cameras", "sim")
-    done = scope(site, tmp_path, "ask", "pan right 5", "--camera", "sim:highway-works", "--planner", "grammar", "--json")
-    assert done.returncode == 0, done.stderr
+    done = scope(site, "ask", "pan right 5", "--camera", "sim:highway-works", "--planner", "grammar", "--json")
+    assert done.code == 0, done.err
 
 
-def test_two_packages_with_the_same_plugin_name(tmp_path: Path) -> None:
+def test_two_packages_with_the_same_plugin_name(scope: Scope, tmp_path: Path) -> None:
     site = tmp_path / "site"
     site.mkdir()
     write_package(site, "first_camera", "make = print\n", "cameras", "odd")
     write_package(site, "second_camera", "make = print\n", "cameras", "odd")
-    done = scope(site, tmp_path, "ask", "pan right 5", "--camera", "odd:x")
-    assert done.returncode == 2
-    assert "first_camera 1.0 and second_camera 1.0 both offer 'odd'" in done.stderr
+    done = scope(site, "ask", "pan right 5", "--camera", "odd:x")
+    assert done.code == 2
+    assert "Several packages provide 'odd': first_camera 1.0 and second_camera 1.0" in done.err

@@ -89,8 +89,11 @@ class Program:
         return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def run(self, *arguments: str) -> Done:
-        process = self.start(*arguments)
-        out, err = process.communicate()
+        with self.start(*arguments) as process:
+            try:
+                out, err = process.communicate()
+            finally:
+                process.kill()
         return Done(process.returncode, out, err)
 
     def unwritten(self) -> dict[tuple[str, int], str]:

@@ -99,6 +99,7 @@ def test_panorama_and_perspective_see_the_same_world(worker: BlenderWorker, tmp_
 def test_the_pack_looks_like_live_renders(worker: BlenderWorker, baked: Scene) -> None:
     poses = draw_poses(baked, 5, 4, 2, ["mast"])
     reports = verify(baked, worker, poses, silent, samples=8, width=320, height=180)
+    assert len(reports) == len(poses) > 0
     assert all(r.ssim > 0.85 for r in reports), reports
     assert all(r.box_iou is None or r.box_iou > 0.85 for r in reports), reports
 

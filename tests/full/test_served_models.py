@@ -17,6 +17,7 @@ from tests.support.misbehaving import Misbehaving, Request, Say, good
 
 pytestmark = [
     pytest.mark.full,
+    pytest.mark.timeout(1800),  # the first test trains and serves the models of all
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),
     pytest.mark.filterwarnings("ignore::FutureWarning"),
     pytest.mark.filterwarnings("ignore::UserWarning"),

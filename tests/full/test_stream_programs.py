@@ -15,7 +15,7 @@ import pytest
 from anyio import to_thread
 from numpy.typing import NDArray
 
-from scope_ptz.factory.virtual_cameras import VirtualCameraOptions, serve_virtual_cameras
+from scope_ptz.factory.cameras.virtual import VirtualCameraOptions, serve_virtual_cameras
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.pack import Scene

@@ -15,7 +15,7 @@ from scope_ptz.perception.models.coordinates import (
     RawThing,
     convention,
     fit,
-    located,
+    places_in_frame,
     smart_resize,
 )
 
@@ -93,7 +93,7 @@ def written(box: tuple[float, ...], name: str) -> tuple[float, ...]:
 @given(box=boxes)
 def test_every_convention_gives_back_the_box(name: str, box: tuple[float, float, float, float]) -> None:
     assume(box[2] - box[0] > 0.01 and box[3] - box[1] > 0.01)
-    (found,) = located([RawThing(written(box, name))], convention(name), SENT).boxes
+    (found,) = places_in_frame([RawThing(written(box, name))], convention(name), SENT).boxes
     assert (found.x_min, found.y_min, found.x_max, found.y_max) == pytest.approx(box, abs=1e-9)
 
 
@@ -107,7 +107,7 @@ raw_things = st.lists(
 @given(raw=raw_things)
 def test_any_numbers_become_valid_places_or_an_error(name: str, raw: list[tuple[float, ...]]) -> None:
     try:
-        found = located([RawThing(n) for n in raw], convention(name), SENT)
+        found = places_in_frame([RawThing(n) for n in raw], convention(name), SENT)
     except PerceptionError as error:
         assert error.kind == "malformed" and raw
         return
@@ -119,14 +119,14 @@ def test_any_numbers_become_valid_places_or_an_error(name: str, raw: list[tuple[
 
 
 def test_boxes_beyond_the_border_are_clipped_and_noted() -> None:
-    found = located([RawThing((-50, 100, 1500, 600))], convention("qwen2.5-vl"), SENT)
+    found = places_in_frame([RawThing((-50, 100, 1500, 600))], convention("qwen2.5-vl"), SENT)
     assert found.boxes[0].x_min == 0 and found.boxes[0].x_max == 1
     assert "1 cut at the border" in found.notes[0]
 
 
 def test_invalid_places_are_dropped_and_counted() -> None:
     things = [(10, 10, 500, 500), (math.nan, 0, 5, 5), (5, 5, 5, 90), (1200, 10, 1500, 90), (10, 10, 500, 500), (1, 2, 3)]
-    found = located([RawThing(t) for t in things], convention("thousand"), SENT)
+    found = places_in_frame([RawThing(t) for t in things], convention("thousand"), SENT)
     assert len(found.boxes) == 1
     for what in ("1 not finite", "1 without an area", "1 outside the picture", "1 repeated", "1 no place"):
         assert what in found.notes[0]
@@ -134,32 +134,34 @@ def test_invalid_places_are_dropped_and_counted() -> None:
 
 def test_an_object_without_a_place_makes_the_result_incomplete() -> None:
     cone, lost = RawThing((10, 10, 500, 500)), RawThing((math.nan, 0, 5, 5))
-    assert not located([cone, lost], convention("thousand"), SENT).complete
-    assert not located([cone, RawThing(())], convention("thousand"), SENT).complete
+    assert not places_in_frame([cone, lost], convention("thousand"), SENT).complete
+    assert not places_in_frame([cone, RawThing(())], convention("thousand"), SENT).complete
     # What lies outside or was named before is nothing more to count.
-    assert located([cone, cone, RawThing((1200, 10, 1500, 90))], convention("thousand"), SENT).complete
+    assert places_in_frame([cone, cone, RawThing((1200, 10, 1500, 90))], convention("thousand"), SENT).complete
 
 
 @pytest.mark.parametrize("numbers", [(1500, 10, 1900, 90), (math.nan,) * 4, (math.inf, 1), (5, 5, 5, 5), ()])
 def test_a_reply_without_any_valid_place_is_an_error(numbers: tuple[float, ...]) -> None:
     with pytest.raises(PerceptionError) as caught:
-        located([RawThing(numbers)], convention("thousand"), SENT)
+        places_in_frame([RawThing(numbers)], convention("thousand"), SENT)
     assert caught.value.kind == "malformed"
 
 
 def test_too_many_objects_are_truncated_and_incomplete() -> None:
-    found = located([RawThing((x, y)) for x in range(0, 1000, 40) for y in range(0, 1000, 50)], convention("thousand"), SENT)
+    found = places_in_frame(
+        [RawThing((x, y)) for x in range(0, 1000, 40) for y in range(0, 1000, 50)], convention("thousand"), SENT
+    )
     assert len(found.points) == MAX_THINGS and not found.complete
     assert "500 things" in found.notes[-1]
 
 
 def test_swapped_corners_are_corrected() -> None:
-    (box,) = located([RawThing((900, 800, 100, 200))], convention("thousand"), SENT).boxes
+    (box,) = places_in_frame([RawThing((900, 800, 100, 200))], convention("thousand"), SENT).boxes
     assert (box.x_min, box.y_min, box.x_max, box.y_max) == (0.1, 0.2, 0.9, 0.8)
 
 
 def test_named_numbers_need_no_order() -> None:
-    (box,) = located([RawThing((100, 200, 300, 400), named=True)], convention("gemini"), SENT).boxes
+    (box,) = places_in_frame([RawThing((100, 200, 300, 400), named=True)], convention("gemini"), SENT).boxes
     assert box.x_min == 0.1
 
 
@@ -168,16 +170,16 @@ def test_named_numbers_need_no_order() -> None:
     [((0.1, 0.2, 0.5, 0.6), 0.1), ((100, 200, 500, 600), 0.1), ((128.8, 72.8, 1280, 700), 0.1), ((0, 0, 1, 1), 0.0)],
 )
 def test_the_convention_of_a_reply_is_guessed_from_its_largest_number(box: tuple[float, ...], expected: float) -> None:
-    assert located([RawThing(box)], convention("generic"), SENT).boxes[0].x_min == pytest.approx(expected)
+    assert places_in_frame([RawThing(box)], convention("generic"), SENT).boxes[0].x_min == pytest.approx(expected)
 
 
 def test_numbers_beyond_the_picture_are_an_error() -> None:
-    with pytest.raises(PerceptionError, match="convention is not known"):
-        located([RawThing((10, 10, 5000, 600))], convention("generic"), SENT)
+    with pytest.raises(PerceptionError, match="convention is unknown"):
+        places_in_frame([RawThing((10, 10, 5000, 600))], convention("generic"), SENT)
 
 
 def test_invalid_scores_are_dropped() -> None:
-    found = located([RawThing((1, 1, 9, 9), score=s) for s in (7.0,)], convention("thousand"), SENT)
+    found = places_in_frame([RawThing((1, 1, 9, 9), score=s) for s in (7.0,)], convention("thousand"), SENT)
     assert found.boxes[0].score is None
 
 

@@ -48,6 +48,7 @@ def plain(node: Any) -> str:
     return tree(node.data, [plain(child) for child in node.children]) if hasattr(node, "children") else str(node)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("start", ["description", "question"])
 def test_the_readings_are_those_of_lark(start: str) -> None:
     lark, ours = grammars()

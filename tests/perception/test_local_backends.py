@@ -25,7 +25,7 @@ def found(score: float, *box: float, label: str = "thing") -> dict[str, Any]:
     return {"score": score, "label": label, "box": dict(zip(("xmin", "ymin", "xmax", "ymax"), box, strict=True))}
 
 
-def detector(image: Image, phrase: str) -> zero_shot.Found:
+def detector(image: Image, phrase: str) -> zero_shot.RawDetections:
     """A detector that finds the same object three times, once beyond the border and once with a low score."""
     if "unicorn" in phrase:
         return []
@@ -58,7 +58,7 @@ async def test_detections_are_suppressed_clipped_and_sorted() -> None:
 @pytest.mark.anyio
 @pytest.mark.parametrize("error", [RuntimeError("CUDA out of memory"), ValueError("bad"), IndexError("argmax")])
 async def test_a_failing_detector_is_an_error(error: Exception) -> None:
-    def broken(image: Image, phrase: str) -> zero_shot.Found:
+    def broken(image: Image, phrase: str) -> zero_shot.RawDetections:
         raise error
 
     with pytest.raises(PerceptionError, match="failed on a frame"):
@@ -129,7 +129,7 @@ async def test_any_exception_of_a_model_is_a_perception_error() -> None:
 
     for eyes in (local.LocalMoondreamPerception(load), local.LocalChatPerception(lambda image, prompt: 1 / 0, convention("unit"))):  # type: ignore[arg-type]
         for ask in (eyes.caption(pictures.frame()), eyes.query(pictures.frame(), "what?"), eyes.detect(pictures.frame(), "thing")):
-            with pytest.raises(PerceptionError, match="could not look"):
+            with pytest.raises(PerceptionError, match="failed"):
                 await ask
 
 
@@ -138,7 +138,7 @@ def make(**options: Any) -> Perception:
 
 
 def test_remote_code_runs_only_at_a_pinned_commit(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(local, "need", lambda *_: None)
+    monkeypatch.setattr(local, "require_packages", lambda *_: None)
     assert isinstance(make(), local.LocalChatPerception)
     with pytest.raises(ConfigError, match="trust_remote_code"):
         make(family="moondream")
@@ -149,4 +149,4 @@ def test_remote_code_runs_only_at_a_pinned_commit(monkeypatch: pytest.MonkeyPatc
 
 def test_missing_packages_are_reported_first() -> None:
     with pytest.raises(ConfigError, match=r"scope-ptz\[local\]"):
-        specs.need("local", "no_such_package_anywhere")
+        specs.require_packages("local", "no_such_package_anywhere")

@@ -26,6 +26,7 @@ def eyes() -> Perception:
 BOARD = pictures.board(("EXIT 14", 60, 90), ("Airport", 380, 90), ("SITE OFFICE", 60, 270))
 
 
+@pytest.mark.full
 @pytest.mark.anyio
 class TestOcr(PerceptionConformance):
     present = 'the text "EXIT 14"'

@@ -180,7 +180,7 @@ async def test_a_sign_that_is_not_found_is_noted_and_all_text_is_given() -> None
 async def test_a_skill_that_no_part_has_is_an_error() -> None:
     eyes = RouterPerception(detector=Stand("owl", FINDS))
     assert eyes.skills == FINDS
-    with pytest.raises(PerceptionError, match="No part of"):
+    with pytest.raises(PerceptionError, match="None of the backends"):
         await eyes.query(FRAME, "what colour is the door?")
 
 

@@ -187,7 +187,7 @@ async def test_the_content_of_a_moondream_request() -> None:
         async with opened(server.url, "moondream", options={"reasoning": True}) as eyes:
             await eyes.query(pictures.frame(), 'is the door "open"?')
             found = await eyes.detect(pictures.frame(), "door")
-        asked, located = server.requests
+        asked, places_in_frame = server.requests
     assert asked.path == "/v1/query" and asked.headers["x-moondream-auth"] == KEY
     assert {k: v for k, v in asked.data.items() if k != "image_url"} == {
         "question": 'is the door "open"?',
@@ -195,7 +195,7 @@ async def test_the_content_of_a_moondream_request() -> None:
         "stream": False,
     }
     assert sent_image(asked).shape == (360, 640, 3)
-    assert located.data["object"] == "door" and located.data["settings"]["max_objects"] >= 100
+    assert places_in_frame.data["object"] == "door" and places_in_frame.data["settings"]["max_objects"] >= 100
     assert found.attempts[0].kind is None and found.complete
 
 
@@ -277,7 +277,7 @@ async def test_a_model_without_places_is_an_error() -> None:
     with Misbehaving() as server:
         async with opened(server.url, "openai_vision", coordinates="none") as eyes:
             assert eyes.skills == {"caption", "query"}
-            with pytest.raises(PerceptionError, match="no places"):
+            with pytest.raises(PerceptionError, match="cannot locate objects"):
                 await eyes.detect(pictures.frame(), "thing")
             assert (await eyes.query(pictures.frame(), "is there a thing?")).text == "All done."
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.perception.models.text_requests import is_reading, reading_target, requested_texts, similarity, text_fits
+from scope_ptz.perception.models.text_requests import is_reading, reading_target, requested_texts, similarity, text_matches
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_texts_that_a_description_names(description: str, wanted: tuple[str, ...
     ],
 )
 def test_texts_match_despite_ocr_mistakes(wanted: str, line: str, fits: bool) -> None:
-    assert text_fits(wanted, line) is fits
+    assert text_matches(wanted, line) is fits
 
 
 def test_similarity_is_between_zero_and_one() -> None:

@@ -13,7 +13,7 @@ from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Finish
 from scope_ptz.planner.chat import ChatOptions, prompt_names
 from scope_ptz.planner.chat.dialect import Dialect
-from scope_ptz.planner.chat.families import family_of, likely_server, switch_for, temperature_for
+from scope_ptz.planner.chat.families import family_of, switch_for, temperature_for, usual_server
 from scope_ptz.planner.chat.interpret import MAX_CALLS, decide
 from scope_ptz.planner.chat.schemas import plain_schemas
 from scope_ptz.tools.registry import schemas
@@ -170,7 +170,7 @@ def test_reasoning_is_switched_as_each_family_requires() -> None:
     off = switch_for("Qwen/Qwen3-32B", "off", "vllm")
     assert (off.fields, off.words) == ({"chat_template_kwargs": {"enable_thinking": False}}, "/no_think")
     assert switch_for("Qwen/Qwen3.5-9B", "on", None).fields == {"chat_template_kwargs": {"enable_thinking": True}}
-    assert switch_for("qwen3.5:9b", "off", likely_server("http://localhost:11434/v1")).fields == {"reasoning_effort": "none"}
+    assert switch_for("qwen3.5:9b", "off", usual_server("http://localhost:11434/v1")).fields == {"reasoning_effort": "none"}
     assert switch_for("openai/gpt-oss-20b", "off", "vllm").fields == {"reasoning_effort": "low"}
     assert switch_for("ibm-granite/granite-3.3-8b-instruct", "on", "vllm").fields == {"chat_template_kwargs": {"thinking": True}}
     for model in ("Qwen/Qwen3-4B-Instruct-2507", "my-own-model"):

@@ -24,18 +24,21 @@ def lines(compiled: dict[Path, str]) -> list[str]:
 
 
 def test_the_compiled_rules_are_up_to_date(compiled: dict[Path, str]) -> None:
-    how = 'run: python -c "from scope_ptz.planner.grammar.parsing.rules import renew; renew()"'
+    how = 'run: python -c "from scope_ptz.planner.grammar.parsing.rules import write_stored_rules; write_stored_rules()"'
     assert {path.name for path in compiled} == {"language.rules", "language.symbols"}
     for path, text in compiled.items():
         assert path.read_text(encoding="utf-8") == text, how
 
 
 def test_the_compiled_phrases_are_up_to_date() -> None:
-    assert phrases.is_current(), 'run: python -c "from scope_ptz.planner.grammar.lexing.phrases import renew; renew()"'
+    assert phrases.is_current(), (
+        'run: python -c "from scope_ptz.planner.grammar.lexing.phrases import write_stored_phrases; write_stored_phrases()"'
+    )
     assert phrases.phrase_table().phrases() == phrases.expanded()
 
 
 def test_rules_survive_being_written(lines: list[str]) -> None:
+    assert lines
     for line in lines:
         assert str(Rule.from_line(line)) == line
 

@@ -13,7 +13,7 @@ from scope_ptz.planner.chat.prompts import Prompt, load_prompt, prompt_names
 from scope_ptz.planner.grammar import GrammarPlanner
 from scope_ptz.planner.plan import plan
 from scope_ptz.planner.profile import INSTRUCTION_EDITS, PROMPT_EDITS, InstructionRow, Sensitivity, load_rows, measure_sensitivity
-from scope_ptz.planner.profile.first_calls import PRESETS, FirstCall, is_inverted, is_right
+from scope_ptz.planner.profile.first_calls import PRESETS, FirstCall, is_expected_call, is_inverted
 from scope_ptz.planner.profile.prompt_sensitivity import Rate
 
 pytestmark = pytest.mark.anyio
@@ -44,7 +44,7 @@ async def measure(
 def test_the_grammar_plans_the_packaged_instructions_as_expected(row: InstructionRow) -> None:
     made = plan(row.instruction, PRESETS)
     assert [call.name for call in made.calls] == [call.name for call in row.calls]
-    assert is_right(row, FirstCall(name=made.calls[0].name, arguments=made.calls[0].arguments))
+    assert is_expected_call(row, FirstCall(name=made.calls[0].name, arguments=made.calls[0].arguments))
 
 
 def test_the_instructions_are_balanced_between_directions() -> None:
@@ -149,13 +149,13 @@ def test_inversion_and_rates() -> None:
 def test_expected_texts_may_be_lists_of_words() -> None:
     words = {"question": {"contains": ["gantry sign"]}, "view": "current"}
     row = InstructionRow(instruction="read it", kind="object", calls=(FirstCall(name="query_answer", arguments=words),))
-    assert is_right(row, FirstCall(name="query_answer", arguments={"question": "What does it say?"}))
-    assert not is_right(row, FirstCall(name="query_answer", arguments={"question": "What does it say?", "view": "full"}))
+    assert is_expected_call(row, FirstCall(name="query_answer", arguments={"question": "What does it say?"}))
+    assert not is_expected_call(row, FirstCall(name="query_answer", arguments={"question": "What does it say?", "view": "full"}))
     row = InstructionRow(
         instruction="go", kind="object", calls=(FirstCall(name="zoom_to_object", arguments={"description": {"contains": ["van"]}}),)
     )
-    assert is_right(row, FirstCall(name="zoom_to_object", arguments={"description": "the white van"}))
-    assert not is_right(row, FirstCall(name="zoom_to_object", arguments={"description": "the lorry"}))
+    assert is_expected_call(row, FirstCall(name="zoom_to_object", arguments={"description": "the white van"}))
+    assert not is_expected_call(row, FirstCall(name="zoom_to_object", arguments={"description": "the lorry"}))
     wrong = InstructionRow(instruction="go", kind="move", calls=(FirstCall(name="adjust_ptz", arguments={"speed": 1}),))
-    assert not is_right(wrong, FirstCall(name="adjust_ptz", arguments={"pan_deg": 1}))
+    assert not is_expected_call(wrong, FirstCall(name="adjust_ptz", arguments={"pan_deg": 1}))
     assert not is_inverted(wrong, [FirstCall(name="adjust_ptz", arguments={"pan_deg": 1})])

@@ -67,8 +67,8 @@ def test_the_papers_nineteen_pairs(registry: Registry) -> None:
 def test_current_models_for_small_machines(registry: Registry) -> None:
     current = [m for m in registry.models.values() if m.origin == "current"]
     assert len(current) >= 10
-    assert sum(m.least_memory()[1] <= 8 for m in current) >= 6
-    assert sum(m.least_memory()[1] <= 16 and "planner" in m.roles for m in current) >= 8
+    assert sum(m.min_memory_server()[1] <= 8 for m in current) >= 6
+    assert sum(m.min_memory_server()[1] <= 16 and "planner" in m.roles for m in current) >= 8
 
 
 def test_every_model_is_complete(registry: Registry) -> None:

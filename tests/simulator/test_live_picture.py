@@ -14,7 +14,10 @@ from scope_ptz.errors import PackError
 from scope_ptz.geometry import AXIS_M5075_G, Perspective
 from scope_ptz.simulator.actors import composited_actors
 from scope_ptz.simulator.drawing import actor_patch
-from scope_ptz.simulator.mapping.cover import Cover
+from scope_ptz.simulator.mapping.atlas_map import TILE_GAIN, panorama_density, suitable_scale
+from scope_ptz.simulator.mapping.cells import visible_tiles
+from scope_ptz.simulator.mapping.grid import Grid, step_px
+from scope_ptz.simulator.mapping.panorama import panorama_map
 from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.occlusion import outlined_depth_part, outlined_depth_view
 from scope_ptz.simulator.pack import Scene, load_scene
@@ -22,7 +25,7 @@ from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.simulator.reproject import colour_view, id_view, view_map
 from scope_ptz.simulator.sheets.memory import CAN_RELEASE, ReleasableArray
-from scope_ptz.simulator.sprites.choice import Aspect, bend
+from scope_ptz.simulator.sprites.choice import Aspect, warp_matrix
 from scope_ptz.simulator.views import RENDERING_VERSION, picture
 from tests.support.synthetic_pack import HEIGHT, WIDTH
 
@@ -84,18 +87,60 @@ def test_a_part_is_exactly_that_part_of_the_whole(
 def test_cells_that_count_as_covered_are_covered(pan: float, tilt: float, hfov_deg: float) -> None:
     view = _view(0.0, 0.0, 1.0, 640, 360)
     for showing in Tiles([Perspective(pan, tilt, hfov_deg, 300, 200)]).in_view(view):
-        assert showing.polygon is not None
-        cover = Cover(view.width, view.height)
-        cover.add(showing.polygon)
-        whole = np.zeros((view.height, view.width), np.uint8)
         mask = showing.mask()
         assert mask is not None
+        whole = np.zeros((view.height, view.width), np.uint8)
         whole[showing.place] = mask
-        for y in range(0, view.height, 8):
-            for x in range(0, view.width, 8):
-                cell = slice(y, y + 8), slice(x, x + 8)
-                if cover.gap(cell) is None:
+        for y in range(0, view.height, 40):
+            for x in range(0, view.width, 40):
+                cell = slice(y, y + 40), slice(x, x + 40)
+                visible, rest = visible_tiles([showing], cell)
+                if rest is None or any(tile.whole for tile in visible):
                     assert (whole[cell] == 255).all()
+                shown = np.zeros_like(whole)
+                for tile in visible:
+                    shown[tile.place] = 255
+                assert not (whole[cell] & ~shown[cell]).any()
+                uncovered = np.argwhere(whole[cell] == 0) + np.array([y, x])
+                if len(uncovered):
+                    assert rest is not None
+                    for axis in (0, 1):
+                        assert uncovered[:, axis].min() >= rest[axis].start and uncovered[:, axis].max() < rest[axis].stop
+
+
+@given(st.floats(-170, 170), st.floats(-40, 10), st.floats(12, 70))
+@settings(max_examples=25, deadline=None)
+def test_tiles_hidden_by_sharper_ones_change_nothing(analytic_scene: Scene, pan: float, tilt: float, hfov_deg: float) -> None:
+    """Maps of all tiles, drawn over each other without leaving anything out, are the same."""
+    viewpoint, view = analytic_scene.viewpoint("mast"), Perspective(pan, tilt, hfov_deg, 640, 360)
+    atlas, tiles = viewpoint.colour_atlas, viewpoint.tiles
+    found = view_map(viewpoint, atlas, view)
+    if view.density <= TILE_GAIN * panorama_density(atlas):
+        return
+    whole = slice(0, view.height), slice(0, view.width)
+    grid = Grid(view, step_px(view))
+    slot = atlas.need(0, suitable_scale(atlas, panorama_density(atlas), view.density))
+    expected = panorama_map(viewpoint.manifest.band, slot, grid, whole).copy()
+    for showing in reversed(tiles.in_view(view)):
+        slot = atlas.need(1 + showing.tile, suitable_scale(atlas, tiles.views[showing.tile].focal_px, view.density))
+        part = Grid(view, step_px(view), showing.place)
+        nodes = tiles.points(showing, view, part.x, part.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
+        mask = showing.mask()
+        assert mask is not None
+        inside = mask > 0
+        expected[showing.place][inside] = part.to_pixels(nodes)[inside]
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_a_camera_that_stands_still_shows_the_same_pictures(analytic_scene: Scene) -> None:
+    views = [_view(18.5, -3.0, 2.0), _view(18.5, -3.0, 2.0, 96, 54)]
+    still, fresh = Scene(analytic_scene.folder), Scene(analytic_scene.folder)
+    for frame in range(6):
+        for view in views:
+            fresh.release()
+            got = picture(still, "mast", view, 4.0 + 0.2 * frame)
+            np.testing.assert_array_equal(got, picture(fresh, "mast", view, 4.0 + 0.2 * frame))
+            got[...] = 0  # the caller may draw on its picture
 
 
 def test_a_tile_ends_without_an_edge(analytic_scene: Scene) -> None:
@@ -118,11 +163,11 @@ def test_a_sprite_from_above_is_turned_the_way_its_actor_goes(analytic_scene: Sc
     bicycle = actor.model_copy(update={"size_m": (0.6, 1.8, 1.9)})
     south = np.array([0.0, -1.0, 0.0])
     above, ahead = Aspect(np.array([-1.0, 0.2, -5.2]), south), Aspect(np.array([-0.5, 4.0, -5.2]), south)
-    drawn = bend(bicycle, above, ahead)
+    drawn = warp_matrix(bicycle, above, ahead)
     # From above, south is to the left; from further away it is down, and the upright rider takes part in the fit.
     turned = drawn @ np.array([-1.0, 0.0])
     assert turned[1] < -0.3
-    np.testing.assert_allclose(bend(bicycle, ahead, ahead), np.eye(2), atol=1e-9)
+    np.testing.assert_allclose(warp_matrix(bicycle, ahead, ahead), np.eye(2), atol=1e-9)
 
 
 def test_shares_of_sprites_add_up(analytic_scene: Scene) -> None:

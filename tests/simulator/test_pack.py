@@ -107,7 +107,7 @@ def test_a_layer_of_the_wrong_size(copy: Path) -> None:
     Image.fromarray(np.zeros((10, 20, 3), dtype=np.uint8)).save(path)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     _edit(copy / "mast" / "manifest.json", lambda m: m["base"].update(sha256=digest))
-    with pytest.raises(PackError, match=r"20x10 pixels, its manifest says 2304x"):
+    with pytest.raises(PackError, match=r"20x10 pixels, but its manifest states 2304x"):
         colour_view(Scene(copy).viewpoint("mast"), VIEW)
 
 
@@ -122,7 +122,7 @@ def test_a_path_out_of_the_folder(copy: Path, name: str) -> None:
 @pytest.mark.parametrize("name", ["../base.png", "/etc/passwd", "..", "C:\\x"])
 def test_a_name_that_is_not_a_file_name(copy: Path, name: str) -> None:
     _edit(copy / "mast" / "manifest.json", lambda m: m["base"].update(file=name))
-    with pytest.raises(PackError, match=r"manifest.json is not as it should be: base.file"):
+    with pytest.raises(PackError, match=r"manifest.json is invalid at base.file"):
         Scene(copy).viewpoint("mast")
 
 
@@ -137,16 +137,16 @@ def test_a_link_out_of_the_folder(copy: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda s: s.update(format=2), "format 2, this program reads up to 1. Install a newer scope-ptz"),
-        (lambda s: s.update(format="x"), "scene.json is not as it should be: format"),
-        (lambda s: s.update(extra=1), "scene.json is not as it should be: extra"),
-        (lambda s: s.pop("instances"), "scene.json is not as it should be: instances"),
-        (lambda s: s.update(name="other"), "must bear its scene's name"),
+        (lambda s: s.update(format=2), "format 2, but this program supports formats up to 1. Install a newer scope-ptz"),
+        (lambda s: s.update(format="x"), "scene.json is invalid at format"),
+        (lambda s: s.update(extra=1), "scene.json is invalid at extra"),
+        (lambda s: s.pop("instances"), "scene.json is invalid at instances"),
+        (lambda s: s.update(name="other"), "Rename the folder to the name of its scene"),
         (lambda s: s.update(home_preset="nowhere"), "the home preset is 'nowhere', which does not exist"),
         (lambda s: s["presets"][0].update(viewpoint="cellar"), "preset 'yard' names the viewpoint 'cellar'"),
         (lambda s: s["texts"][0].update(parent="ghost"), "text 'board-text' names the instance 'ghost'"),
         (lambda s: s["instances"][0].update(parent="ghost"), "instance 'ball-01' names the parent 'ghost'"),
-        (lambda s: s["instances"][0].update(number=2), "gives an id or a number to two things"),
+        (lambda s: s["instances"][0].update(number=2), "assigns an id or a number twice"),
         (lambda s: s["presets"][0].update(pan_deg=float("nan")), "presets.0.pan_deg"),
     ],
 )
@@ -160,13 +160,15 @@ def test_a_damaged_scene_file(copy: Path, change: Callable[[Any], None], message
 @pytest.mark.parametrize("content", ["", "{", "[]", "null", "\x00\xff"])
 def test_a_scene_file_with_other_content(copy: Path, content: str) -> None:
     _replace(copy / "scene.json", content.encode())
-    with pytest.raises(PackError, match=r"scene.json is (no valid JSON|not as it should be)"):
+    with pytest.raises(PackError, match=r"scene.json is (not valid JSON|invalid at the top level)"):
         Scene(copy)
 
 
 def test_a_viewpoint_of_another_version_of_the_scene(copy: Path) -> None:
     _edit(copy / "mast" / "manifest.json", lambda m: m.update(scene_version="2"))
-    with pytest.raises(PackError, match=r"baked for viewpoint 'mast' .* version 2, but lies in .* version 1. Bake it again"):
+    with pytest.raises(
+        PackError, match=r"baked for viewpoint 'mast' .* version 2, but the folder is that of .* version 1. Bake it again"
+    ):
         Scene(copy).viewpoint("mast")
 
 
@@ -174,7 +176,7 @@ def test_an_instance_that_the_scene_does_not_know(copy: Path) -> None:
     from scope_ptz.simulator.truth import view_truth
 
     _edit(copy / "scene.json", lambda s: s["instances"].pop(0))
-    with pytest.raises(PackError, match=r"shows instance 1, which scene\.json does not know"):
+    with pytest.raises(PackError, match=r"shows instance 1, which scene\.json does not contain"):
         view_truth(Scene(copy), "mast", VIEW, 0.0)
 
 

@@ -125,6 +125,7 @@ def test_the_same_pose_and_time_give_the_same_bytes(viewed: Scene) -> None:
     assert anyio.run(look, [-30.0, 10.0, 60.0]) == anyio.run(look, [60.0, -30.0, 10.0])
 
 
+@pytest.mark.full
 def test_the_demo_counts_two_four_seven() -> None:
     async def counts() -> list[int]:
         scene = load_scene("highway-works")

@@ -162,7 +162,7 @@ class MemoryStore:
     def __init__(self) -> None:
         self.frames: list[Frame] = []
 
-    def save_look(self, frame: Frame) -> str:
+    def save_frame(self, frame: Frame) -> str:
         self.frames.append(frame)
         return f"look-{len(self.frames)}.jpg"
 

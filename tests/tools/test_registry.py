@@ -20,7 +20,7 @@ from scope_ptz.tools.arguments import Arguments, Degrees
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.tools.results import PoseData, Result
-from scope_ptz.tools.schemas import shipped_schemas
+from scope_ptz.tools.schemas import stored_schemas
 from scope_ptz.tools.tool import Tool
 from tests.agent.scripted import ScriptedCamera, ScriptedPerception, ScriptedPlanner, answer, calls
 
@@ -111,5 +111,7 @@ def test_schemas_are_unchanged() -> None:
 
 
 def test_the_shipped_schemas_are_up_to_date() -> None:
-    assert shipped_schemas() == TOOLS.schemas(), 'run: python -c "from scope_ptz.tools.schemas import renew; renew()"'
-    assert json.dumps(shipped_schemas()) == json.dumps(TOOLS.schemas()), "the same, but in another order"
+    assert stored_schemas() == TOOLS.schemas(), (
+        'run: python -c "from scope_ptz.tools.schemas import write_stored_schemas; write_stored_schemas()"'
+    )
+    assert json.dumps(stored_schemas()) == json.dumps(TOOLS.schemas()), "the same, but in another order"

@@ -7,12 +7,13 @@ from typing import Any
 import anyio
 import pytest
 
+from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.perception.base import Detections
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
 from scope_ptz.tools.track_object import TrackResult
-from tests.support.analytic import AnalyticCamera, AnalyticEyes, MemoryStore, solid, thing_moving
+from tests.support.analytic import AnalyticCamera, AnalyticEyes, MemoryStore, StepClock, solid, thing_moving
 
 
 def track(camera: AnalyticCamera, eyes: AnalyticEyes, duration_s: float = 10) -> TrackResult:
@@ -53,6 +54,16 @@ def test_a_target_that_crosses_the_pan_stop_is_tracked_from_the_other_side() -> 
     result = track(camera, AnalyticEyes([thing_moving("van", 150, -5, (8, 0))]))
     assert result.held_share > 0.9
     assert camera.now.pan_deg == pytest.approx(-130, abs=8)
+
+
+def test_tracking_ends_with_an_error_while_scene_time_is_stopped() -> None:
+    class StoppedClock(StepClock):
+        async def sleep(self, seconds: float) -> None:
+            pass
+
+    camera = AnalyticCamera(start=Pose(0, -5, 1), clock=StoppedClock(held=True))
+    with pytest.raises(CameraError, match="Scene time is stopped"):
+        track(camera, AnalyticEyes([thing_moving("van", 5, -8, (8, 0))]))
 
 
 def test_no_target() -> None:

@@ -50,7 +50,7 @@ async def test_it_loads_everything_that_home_assistant_asks_for(served_device: V
         ptz = vapix.params.ptz_handler["0"]
         assert (ptz.limits["1"].min_tilt, ptz.limits["1"].max_pan, ptz.limits["1"].max_zoom) == (-60, 179, 9999)
         assert ptz.support["1"].absolute_pan is True
-        assert ptz.support["1"].absolute_focus is False
+        assert ptz.support["1"].absolute_focus is True
         assert ptz.various["1"].control_queueing is False
         assert ptz.image_source["0"].ptz_enabled is True
         await vapix.load_user_groups()

@@ -138,8 +138,9 @@ def test_a_position_that_is_read_can_be_sent_back(shared_unit: VapixUnit, pan: f
         ({"gotoserverpresetname": "nowhere"}, "no preset 'nowhere'"),
         ({"gotoserverpresetno": "99"}, "99"),
         ({"camera": "2", "pan": "1"}, "only camera 1"),
-        ({"focus": "100"}, "not supported"),
-        ({"autofocus": "off"}, "automatic focus"),
+        ({"brightness": "100"}, "not supported"),
+        ({"focus": "near"}, "focus: expected a number"),
+        ({"autofocus": "maybe"}, "autofocus: unknown value"),
         ({}, "no command"),
         ({"timestamp": "1"}, "no command"),
     ],
@@ -243,7 +244,7 @@ def test_limits_and_calibration_agree_with_the_camera(unit: VapixUnit) -> None:
     limits = dict(line.split("=") for line in send(unit, query="limits").body.splitlines())
     assert {name: float(value) for name, value in limits.items()} == {
         "MinPan": -179, "MaxPan": 179, "MinTilt": -60, "MaxTilt": 30, "MinZoom": 1, "MaxZoom": 9999, "MinFieldAngle": 140,
-        "MaxFieldAngle": 710,
+        "MaxFieldAngle": 710, "MinFocus": 1, "MaxFocus": 9999, "MinIris": 1, "MaxIris": 9999,
     }  # fmt: skip
     found = json.loads(send(unit, query="attributes", group="zoom", format="json").body)["Camera 1"]
     assert "speeds" not in found
@@ -254,6 +255,27 @@ def test_limits_and_calibration_agree_with_the_camera(unit: VapixUnit) -> None:
     assert speeds[-1] == {"value": "100", "speed": "100"}
     plain = send(unit, query="attributes").body
     assert "speeds=value=1 | speed=0.05," in plain
+
+
+def test_focus_and_iris_are_set_and_read_back(unit: VapixUnit, time: HandClock) -> None:
+    def position() -> dict[str, str]:
+        return dict(line.split("=") for line in send(unit, query="position").body.splitlines())
+
+    assert (position()["autofocus"], position()["autoiris"]) == ("on", "on")
+    before = int(position()["focus"])
+    assert send(unit, rfocus="-500", riris="1000").status == 204
+    time.now += 10
+    assert int(position()["focus"]) == pytest.approx(before - 500, abs=1)
+    assert int(position()["iris"]) == pytest.approx(6000, abs=1)
+    assert (position()["autofocus"], position()["autoiris"]) == ("off", "off")
+    send(unit, focus="9999", iris="-3")
+    time.now += 10
+    assert (position()["focus"], position()["iris"]) == ("9999", "1")
+    send(unit, autofocus="on", autoiris="on")
+    time.now += 10
+    assert int(position()["focus"]) == before
+    assert send(unit, autofocus="off", focus="near").body.startswith("Error")
+    assert position()["autofocus"] == "on"  # a request with a wrong argument changes nothing
 
 
 def test_presets_are_saved_renamed_listed_and_removed(unit: VapixUnit, time: HandClock) -> None:

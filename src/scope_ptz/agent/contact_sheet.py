@@ -6,17 +6,17 @@ from collections.abc import Sequence
 
 from PIL import Image
 
-from scope_ptz.agent.drawing import EDGE, INK, SURFACE, Canvas, cut, drawable
+from scope_ptz.agent.drawing import EDGE_COLOUR, PANEL_COLOUR, TEXT_COLOUR, Canvas, printable, shorten
 
 _WIDTH, _MARGIN, _GAP, _CAPTION, _TITLE, _COLUMNS = 1600, 32, 20, 44, 64, 3
 
 
 def contact_sheet(title: str, pictures: Sequence[tuple[str, Image.Image]]) -> Image.Image:
-    """Draw a contact sheet, three pictures a row.
+    """Draw a contact sheet with three pictures per row.
 
     Args:
-        title: the heading.
-        pictures: captions and images. All images have the same size, and there is at least one.
+        title: The heading.
+        pictures: Captions and images, at least one. All images must have the same size.
 
     Returns:
         The sheet, 1600 pixels wide.
@@ -29,7 +29,7 @@ def contact_sheet(title: str, pictures: Sequence[tuple[str, Image.Image]]) -> Im
     for number, (caption, image) in enumerate(pictures):
         row, column = divmod(number, _COLUMNS)
         x, y = _MARGIN + column * (width + _GAP), _TITLE + row * (height + _CAPTION + _GAP)
-        canvas.panel(x, y, width, height + _CAPTION, SURFACE, radius=12, edge=EDGE)
+        canvas.panel(x, y, width, height + _CAPTION, PANEL_COLOUR, radius=12, edge=EDGE_COLOUR)
         canvas.picture(image, x + 1, y + 1, width - 2, height - 1, radius=11)
-        canvas.text(x + 16, y + height + _CAPTION / 2, cut(drawable(caption), 18, width - 32), 18, INK, anchor="lm")
+        canvas.text(x + 16, y + height + _CAPTION / 2, shorten(printable(caption), 18, width - 32), 18, TEXT_COLOUR, anchor="lm")
     return canvas.finish()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from bisect import bisect_left
 from functools import lru_cache
 
 import cv2
@@ -12,10 +13,10 @@ from PIL import Image, ImageDraw, ImageFont
 SCALE = 2  # drawing pixels per picture pixel
 
 BACKGROUND = "#0E131A"
-SURFACE = "#18202B"
-EDGE = "#2A3645"
-INK = "#F2F5F9"
-FAINT = "#93A1B3"
+PANEL_COLOUR = "#18202B"
+EDGE_COLOUR = "#2A3645"
+TEXT_COLOUR = "#F2F5F9"
+SECONDARY_TEXT_COLOUR = "#93A1B3"
 CYAN = "#4CC3F7"
 GREEN = "#57D68D"
 AMBER = "#FFC94A"
@@ -25,12 +26,12 @@ _REPLACEMENTS = str.maketrans({"×": "x", "–": "-", "—": "-", "−": "-", "�
 _BOLD = 0.28  # picture pixels; stroke width that makes the built-in font bold at size 16
 
 
-def drawable(text: str) -> str:
+def printable(text: str) -> str:
     """Return the text on one line, limited to characters of the built-in font. Accents are dropped; other characters become "?"."""
-    return "".join(_drawable(c) for c in " ".join(text.translate(_REPLACEMENTS).split()))
+    return "".join(_printable(c) for c in " ".join(text.translate(_REPLACEMENTS).split()))
 
 
-def _drawable(character: str) -> str:
+def _printable(character: str) -> str:
     if (character.isascii() and character.isprintable()) or character in "°·…“”‘’›±":
         return character
     base = unicodedata.normalize("NFKD", character)[0]
@@ -48,18 +49,17 @@ def width_of(text: str, size: float) -> float:
     return _font(size).getlength(text) / SCALE
 
 
-def cut(text: str, size: float, width: float) -> str:
+def shorten(text: str, size: float, width: float) -> str:
     """Shorten a text to ``width`` picture pixels. A shortened text ends with an ellipsis."""
     if width_of(text, size) <= width:
         return text
-    while text and width_of(text + "…", size) > width:
-        text = text[:-1]
-    return text.rstrip(" ,.;:") + "…"
+    kept = bisect_left(range(len(text)), True, key=lambda end: width_of(f"{text[: end + 1]}…", size) > width)
+    return text[:kept].rstrip(" ,.;:") + "…"
 
 
 def wrap(text: str, size: float, width: float, max_lines: int) -> list[str]:
     """Wrap a text into at most ``max_lines`` lines of ``width`` picture pixels. The last line of a longer text is shortened."""
-    lines, words = [""], drawable(text).split()
+    lines, words = [""], printable(text).split()
     for word in words:
         longer = f"{lines[-1]} {word}".strip()
         if width_of(longer, size) <= width or not lines[-1]:
@@ -68,17 +68,17 @@ def wrap(text: str, size: float, width: float, max_lines: int) -> list[str]:
             lines.append(word)
     if len(lines) > max_lines:
         lines = [*lines[: max_lines - 1], " ".join(lines[max_lines - 1 :])]
-    return [cut(line, size, width) for line in lines]
+    return [shorten(line, size, width) for line in lines]
 
 
 def _resized(image: Image.Image, size: tuple[int, int]) -> Image.Image:
-    """Return an image at another size. OpenCV needs a fifth of Pillow's time for it."""
-    way = cv2.INTER_AREA if size[0] < image.width else cv2.INTER_CUBIC
-    return Image.fromarray(np.asarray(cv2.resize(np.asarray(image.convert("RGB")), size, interpolation=way)))
+    """Return an image at another size. OpenCV is used because it takes a fifth of Pillow's time."""
+    interpolation = cv2.INTER_AREA if size[0] < image.width else cv2.INTER_CUBIC
+    return Image.fromarray(np.asarray(cv2.resize(np.asarray(image.convert("RGB")), size, interpolation=interpolation)))
 
 
 class Canvas:
-    """A picture that is being drawn. All lengths are in picture pixels."""
+    """A picture to draw on. All lengths are in picture pixels."""
 
     def __init__(self, width: float, height: float) -> None:
         self.width, self.height = width, height
@@ -92,16 +92,18 @@ class Canvas:
         box = tuple(round(v * SCALE) for v in (x, y, x + width, y + height))
         self._draw.rounded_rectangle(box, round(radius * SCALE), fill=fill, outline=edge, width=SCALE)
 
-    def text(self, x: float, y: float, text: str, size: float, fill: str = INK, *, bold: bool = False, anchor: str = "ls") -> None:
+    def text(
+        self, x: float, y: float, text: str, size: float, fill: str = TEXT_COLOUR, *, bold: bool = False, anchor: str = "ls"
+    ) -> None:
         """Draw a line of text. ``anchor`` is Pillow's text anchor ("ls": left end of the baseline)."""
-        stroke = _BOLD * SCALE * size / 16 if bold else 0
+        stroke_width = _BOLD * SCALE * size / 16 if bold else 0
         self._draw.text(
             (x * SCALE, y * SCALE),
-            drawable(text),
+            printable(text),
             font=_font(size),
             fill=fill,
             anchor=anchor,
-            stroke_width=stroke,
+            stroke_width=stroke_width,
             stroke_fill=fill,
         )
 
@@ -114,29 +116,31 @@ class Canvas:
 
     def frame(self, x: float, y: float, width: float, height: float, colour: str) -> None:
         """Draw a thin box that is visible on light and dark backgrounds."""
-        for grow, thickness, fill in ((1.2, 4.2, "#0E131AB0"), (0.0, 2.0, colour)):
-            edges = (x - grow, y - grow, x + width + grow, y + height + grow)
+        for margin, thickness, fill in ((1.2, 4.2, "#0E131AB0"), (0.0, 2.0, colour)):
+            edges = (x - margin, y - margin, x + width + margin, y + height + margin)
             box = tuple(round(v * SCALE) for v in edges)
             self._draw.rounded_rectangle(box, round(3 * SCALE), outline=fill, width=round(thickness * SCALE))
 
-    def tag(self, x: float, y: float, text: str, size: float, *, fill: str, ink: str, pad: float = 7, anchor: str = "l") -> float:
+    def tag(
+        self, x: float, y: float, text: str, size: float, *, fill: str, text_colour: str, padding: float = 7, anchor: str = "l"
+    ) -> float:
         """Draw a text on a rounded background and return its width.
 
         Args:
-            x: position of the left end, right end or middle, depending on ``anchor``.
-            y: position of the vertical middle.
-            text: the text.
-            size: font size.
-            fill: background colour.
-            ink: text colour.
-            pad: space on each side of the text.
+            x: Position of the left end, right end or middle, depending on ``anchor``.
+            y: Position of the vertical middle.
+            text: The text.
+            size: Font size.
+            fill: Background colour.
+            text_colour: Colour of the text.
+            padding: Space on each side of the text.
             anchor: "l", "r" or "m".
         """
-        text = drawable(text)
-        width, height = max(width_of(text, size) + 2 * pad, size * 1.55), size * 1.55
+        text = printable(text)
+        width, height = max(width_of(text, size) + 2 * padding, size * 1.55), size * 1.55
         left = {"l": x, "r": x - width, "m": x - width / 2}[anchor]
         self.panel(left, y - height / 2, width, height, fill, radius=height / 2)
-        self.text(left + width / 2, y, text, size, ink, bold=True, anchor="mm")
+        self.text(left + width / 2, y, text, size, text_colour, bold=True, anchor="mm")
         return width
 
     def arrow(self, x: float, y: float, colour: str) -> float:

@@ -13,15 +13,15 @@ from scope_ptz.agent.drawing import (
     AMBER,
     BACKGROUND,
     CYAN,
-    EDGE,
-    FAINT,
+    EDGE_COLOUR,
     GREEN,
-    INK,
+    PANEL_COLOUR,
     RED,
-    SURFACE,
+    SECONDARY_TEXT_COLOUR,
+    TEXT_COLOUR,
     Canvas,
-    cut,
-    drawable,
+    printable,
+    shorten,
     width_of,
     wrap,
 )
@@ -29,12 +29,13 @@ from scope_ptz.agent.panels import Panel, panels_of
 from scope_ptz.agent.trace import Trace, picture_of
 from scope_ptz.errors import OutputError, TraceError
 
+# Lengths in picture pixels.
 WIDTH = 1600
 MARGIN = 32
 GAP = 20
 CAPTION = 60
 MAX_PANELS = 12
-COMPRESSION = 2  # of PNG: a third of the time of level 6 for a file that is 7% larger
+COMPRESSION = 2  # PNG compression level: takes a third of the time of level 6, and files are 7% larger
 MAX_NUMBERED_BOXES = 40  # with more boxes in a panel, the numbers would cover the picture
 
 _BOX_MARGIN = 2.0  # picture pixels between an object and its box, so that the box does not cover small objects
@@ -57,8 +58,8 @@ def write_filmstrip(trace: Trace) -> Path | None:
         The path, or None when the run has no pictures.
 
     Raises:
-        OutputError: the file cannot be written.
-        TraceError: a picture of the run is missing or damaged.
+        OutputError: The file cannot be written.
+        TraceError: A picture of the run is missing or damaged.
     """
     image = draw_filmstrip(trace)
     if image is None:
@@ -75,33 +76,33 @@ def draw_filmstrip(trace: Trace, files: Mapping[str, bytes] | None = None) -> Im
     """Draw the filmstrip of a run, ``WIDTH`` pixels wide.
 
     Args:
-        trace: the run.
-        files: encoded pictures by name, of a run that was kept in memory; None reads them from the run folder.
+        trace: The run.
+        files: Encoded pictures by name, for a run that is kept in memory; None to read them from the run folder.
 
     Returns:
         The picture, or None when the run has no pictures.
 
     Raises:
-        TraceError: a picture of the run is missing or damaged.
+        TraceError: A picture of the run is missing or damaged.
     """
     panels = [p for p in panels_of(trace) if p.file is not None]
     if not panels:
         return None
-    shown, left_out = _elide(panels)
+    shown, omitted = _omit_middle(panels)
     rows = _rows([_Tile(panel, open_picture(panel.file or "", trace.folder, files)) for panel in shown])
     heights = [_row_height(row) for row in rows]
-    head = _Banner("INSTRUCTION", CYAN, trace.started.instruction)
+    instruction_banner = _Banner("INSTRUCTION", CYAN, trace.started.instruction)
     label, colour = _HEADLINES[trace.ended.outcome] if trace.ended else ("INTERRUPTED", RED)
-    tail = _Banner(label, colour, trace.ended.text if trace.ended else "The program ended before the run did.")
-    total = MARGIN + head.height + GAP + sum(heights) + GAP * len(rows) + tail.height + 22 + MARGIN
+    outcome_banner = _Banner(label, colour, trace.ended.text if trace.ended else "The program stopped before the run ended.")
+    total = MARGIN + instruction_banner.height + GAP + sum(heights) + GAP * len(rows) + outcome_banner.height + 22 + MARGIN
     canvas = Canvas(WIDTH, total)
-    head.draw(canvas, MARGIN)
-    y = MARGIN + head.height + GAP
+    instruction_banner.draw(canvas, MARGIN)
+    y = MARGIN + instruction_banner.height + GAP
     for row, height in zip(rows, heights, strict=True):
         _draw_row(canvas, row, y)
         y += height + GAP
-    tail.draw(canvas, y)
-    _draw_footer(canvas, trace, left_out, y + tail.height + 26)
+    outcome_banner.draw(canvas, y)
+    _draw_footer(canvas, trace, omitted, y + outcome_banner.height + 26)
     return canvas.finish()
 
 
@@ -121,28 +122,28 @@ class _Banner:
     def __init__(self, label: str, colour: str, text: str) -> None:
         self._label, self._colour = label, colour
         width = WIDTH - 2 * MARGIN - 56
-        self._size = 30 if width_of(drawable(text), 30) <= 2 * width else 24
+        self._size = 30 if width_of(printable(text), 30) <= 2 * width else 24
         self._lines = wrap(text, self._size, width, 3)
         self.height = 52 + len(self._lines) * self._size * 1.3
 
     def draw(self, canvas: Canvas, y: float) -> None:
-        canvas.panel(MARGIN, y, WIDTH - 2 * MARGIN, self.height, SURFACE, radius=12, edge=EDGE)
+        canvas.panel(MARGIN, y, WIDTH - 2 * MARGIN, self.height, PANEL_COLOUR, radius=12, edge=EDGE_COLOUR)
         canvas.panel(MARGIN + 14, y + 16, 5, self.height - 32, self._colour, radius=2.5)
         canvas.text(MARGIN + 34, y + 32, self._label, 15, self._colour, bold=True)
         for number, line in enumerate(self._lines):
-            canvas.text(MARGIN + 34, y + 40 + (number + 0.85) * self._size * 1.3, line, self._size, INK, bold=True)
+            canvas.text(MARGIN + 34, y + 40 + (number + 0.85) * self._size * 1.3, line, self._size, TEXT_COLOUR, bold=True)
 
 
 def open_picture(name: str, folder: Path, files: Mapping[str, bytes] | None = None) -> Image.Image:
     """Open a picture of a run.
 
     Args:
-        name: name of the picture in the trace.
-        folder: the run folder.
-        files: encoded pictures by name, of a run that was kept in memory; None reads the run folder.
+        name: Name of the picture in the trace.
+        folder: The run folder.
+        files: Encoded pictures by name, for a run that is kept in memory; None to read them from the run folder.
 
     Raises:
-        TraceError: the picture is missing or damaged.
+        TraceError: The picture is missing or damaged.
     """
     path = picture_of(folder, name)
     try:
@@ -152,7 +153,7 @@ def open_picture(name: str, folder: Path, files: Mapping[str, bytes] | None = No
         raise TraceError(f"The picture {path} of the run is missing or damaged.") from error
 
 
-def _elide(panels: list[Panel]) -> tuple[list[Panel], int]:
+def _omit_middle(panels: list[Panel]) -> tuple[list[Panel], int]:
     """Return at most ``MAX_PANELS`` panels, and the number of omitted ones. In a longer run, the middle is omitted."""
     if len(panels) <= MAX_PANELS:
         return panels, 0
@@ -161,11 +162,11 @@ def _elide(panels: list[Panel]) -> tuple[list[Panel], int]:
 
 
 def _rows(tiles: list[_Tile]) -> list[list[_Tile]]:
-    """Arrange tiles in rows. Each panorama has a row of its own; the tiles between panoramas fill rows evenly."""
+    """Arrange tiles in rows. Each panorama has a separate row; the tiles between panoramas fill rows evenly."""
     rows: list[list[_Tile]] = []
     group: list[_Tile] = []
     for tile in [*tiles, None]:
-        if tile is not None and not tile.panel.whole:
+        if tile is not None and not tile.panel.is_panorama:
             group.append(tile)
             continue
         rows += _spread(group)
@@ -176,6 +177,7 @@ def _rows(tiles: list[_Tile]) -> list[list[_Tile]]:
 
 
 def _spread(group: list[_Tile]) -> list[list[_Tile]]:
+    """Distribute tiles over rows of two, three or four, as evenly as possible."""
     if not group:
         return []
     columns = 2 if len(group) in (2, 4) else 4 if len(group) in (7, 8) or len(group) > 9 else 3
@@ -209,16 +211,16 @@ def _draw_row(canvas: Canvas, row: list[_Tile], y: float) -> None:
 
 def _draw_tile(canvas: Canvas, tile: _Tile, x: float, y: float, width: float, height: float) -> None:
     panel = tile.panel
-    canvas.panel(x, y, width, height + CAPTION, SURFACE, radius=12, edge=EDGE)
+    canvas.panel(x, y, width, height + CAPTION, PANEL_COLOUR, radius=12, edge=EDGE_COLOUR)
     canvas.picture(tile.image, x + 1, y + 1, width - 2, height - 1, radius=11)
     _draw_boxes(canvas, panel, x, y, width, height)
     pose = panel.pose.as_dict()
     where = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · {pose['zoom']:.1f}x"
-    readout = "full scene" if panel.whole else where
-    canvas.tag(x + 12, y + height - 22, readout, 14, fill="#0E131AC8", ink=INK, pad=10)
+    readout = "full scene" if panel.is_panorama else where
+    canvas.tag(x + 12, y + height - 22, readout, 14, fill="#0E131AC8", text_colour=TEXT_COLOUR, padding=10)
     if panel.badge:
-        fill, ink = (AMBER, BACKGROUND) if panel.boxes else ("#0E131AC8", INK)
-        canvas.tag(x + width - 12, y + 28, panel.badge, 20, fill=fill, ink=ink, pad=13, anchor="r")
+        fill, text_colour = (AMBER, BACKGROUND) if panel.boxes else ("#0E131AC8", TEXT_COLOUR)
+        canvas.tag(x + width - 12, y + 28, panel.badge, 20, fill=fill, text_colour=text_colour, padding=13, anchor="r")
     _draw_caption(canvas, panel, x + 16, y + height + CAPTION / 2, width - 32)
 
 
@@ -231,32 +233,34 @@ def _draw_boxes(canvas: Canvas, panel: Panel, x: float, y: float, width: float, 
     # Boxes are numbered from left to right, independently of the order of the detections.
     for number, box in enumerate(sorted(panel.boxes, key=lambda b: b.centre[0]), 1):
         top = y + box.y_min * height - 11 - _BOX_MARGIN
-        at_y = top if top > y + 10 else y + box.y_max * height + 11 + _BOX_MARGIN
-        canvas.tag(x + box.centre[0] * width, at_y, str(number), 11, fill=AMBER, ink=BACKGROUND, pad=4, anchor="m")
+        label_y = top if top > y + 10 else y + box.y_max * height + 11 + _BOX_MARGIN
+        canvas.tag(x + box.centre[0] * width, label_y, str(number), 11, fill=AMBER, text_colour=BACKGROUND, padding=4, anchor="m")
 
 
 def _draw_caption(canvas: Canvas, panel: Panel, x: float, y: float, width: float) -> None:
-    """Draw a caption such as ``2  pan right 15° -> 4 cones``. If it does not fit on one line, the finding goes on a second one."""
-    chip = canvas.tag(x, y, str(panel.number), 17, fill=CYAN, ink=BACKGROUND, pad=7) + 12 if panel.number else 0.0
-    left, available, colour = x + chip, width - chip, RED if panel.failed else AMBER
-    action, finding = drawable(panel.action), drawable(panel.finding)
+    """Draw a caption such as ``2  pan right 15° -> 4 cones``, on a second line if necessary."""
+    number_width = (
+        canvas.tag(x, y, str(panel.number), 17, fill=CYAN, text_colour=BACKGROUND, padding=7) + 12 if panel.number else 0.0
+    )
+    left, available, colour = x + number_width, width - number_width, RED if panel.failed else AMBER
+    action, finding = printable(panel.action), printable(panel.finding)
     if width_of(action, 20) + 36 + width_of(finding, 20) <= available or not finding:
-        shown = cut(action, 20, available)
-        canvas.text(left, y, shown, 20, INK, anchor="lm")
+        shortened = shorten(action, 20, available)
+        canvas.text(left, y, shortened, 20, TEXT_COLOUR, anchor="lm")
         if finding:
-            at = left + width_of(shown, 20) + 12
-            at += canvas.arrow(at, y, FAINT) + 9
-            canvas.text(at, y, finding, 20, colour, bold=True, anchor="lm")
+            text_x = left + width_of(shortened, 20) + 12
+            text_x += canvas.arrow(text_x, y, SECONDARY_TEXT_COLOUR) + 9
+            canvas.text(text_x, y, finding, 20, colour, bold=True, anchor="lm")
         return
-    canvas.text(left, y - 13, cut(action, 18, available), 18, INK, anchor="lm")
-    at = left + canvas.arrow(left, y + 13, FAINT) + 8
-    canvas.text(at, y + 13, cut(finding, 18, available - 26), 18, colour, bold=True, anchor="lm")
+    canvas.text(left, y - 13, shorten(action, 18, available), 18, TEXT_COLOUR, anchor="lm")
+    text_x = left + canvas.arrow(left, y + 13, SECONDARY_TEXT_COLOUR) + 8
+    canvas.text(text_x, y + 13, shorten(finding, 18, available - 26), 18, colour, bold=True, anchor="lm")
 
 
-def _draw_footer(canvas: Canvas, trace: Trace, left_out: int, y: float) -> None:
+def _draw_footer(canvas: Canvas, trace: Trace, omitted: int, y: float) -> None:
     started = trace.started
     perception = started.labels.perception_note.rstrip(".") or f"Perception: {started.perception}"
-    canvas.text(MARGIN + 4, y, f"SCOPE · {started.camera} · Planner: {started.planner} · {perception}", 15, FAINT)
-    if left_out:
-        note = f"steps {MAX_PANELS // 2} to {MAX_PANELS // 2 + left_out - 1} are not shown"
-        canvas.text(WIDTH - MARGIN - 4, y, note, 15, FAINT, anchor="rs")
+    canvas.text(MARGIN + 4, y, f"SCOPE · {started.camera} · Planner: {started.planner} · {perception}", 15, SECONDARY_TEXT_COLOUR)
+    if omitted:
+        note = f"steps {MAX_PANELS // 2} to {MAX_PANELS // 2 + omitted - 1} are not shown"
+        canvas.text(WIDTH - MARGIN - 4, y, note, 15, SECONDARY_TEXT_COLOUR, anchor="rs")

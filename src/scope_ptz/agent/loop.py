@@ -14,7 +14,7 @@ import anyio
 
 from scope_ptz.agent.planner_views import newest_view
 from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
-from scope_ptz.agent.timing import Stopwatch, server_events, wasted
+from scope_ptz.agent.timing import Stopwatch, failed_usage, server_events
 from scope_ptz.agent.tool_calls import CallRunner, RunEnd, RunTool, error_text
 from scope_ptz.camera.base import Camera
 from scope_ptz.endpoints.failures import count_failures
@@ -62,17 +62,17 @@ class Agent:
         """Create an agent.
 
         Args:
-            planner: decides on the next step.
-            camera: carries out the moves and takes the frames.
-            perception: answers questions about frames.
-            images: stores the pictures of the run.
-            budgets: limits on steps, time and tokens; the defaults of ``Budgets`` when None.
-            labels: facts about the run that the loop cannot know, for the trace.
-            snapshots: whether to store the first view and the view after each move. Frames that perception reads are always stored.
-            tools: the tools that the planner can call.
-            run_tool: runs the calls in place of ``tools.run``. Pass a wrapper around it to observe the calls.
-            guarded: whether to end the run of a planner that repeats the same wrong call, and to cap the calls of a step. Replays
-                do neither, because a trace of an older version may contain such steps.
+            planner: Decides on the next step.
+            camera: Carries out the moves and takes the frames.
+            perception: Answers questions about frames.
+            images: Stores the pictures of the run.
+            budgets: Limits on steps, time and tokens; the defaults of ``Budgets`` when None.
+            labels: Facts about the run that are recorded in the trace but are unknown to the loop.
+            snapshots: Whether to store the first view and the view after each move. Frames that perception reads are always stored.
+            tools: The tools that the planner can call.
+            run_tool: Runs the calls instead of ``tools.run``, for example a wrapper that observes them.
+            guarded: Whether to end the run of a planner that repeats the same wrong call, and to limit the calls of a step. False
+                for replays, because traces of older versions may contain such steps.
         """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
         self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or RunLabels(), snapshots
@@ -84,24 +84,25 @@ class Agent:
         """Carry out an instruction.
 
         Args:
-            instruction: what the camera should do, in plain language.
-            conversation: earlier turns that the instruction may refer to.
-            listener: receives each record of the run as it is created.
+            instruction: What the camera should do, in plain language.
+            conversation: Earlier turns that the instruction may refer to.
+            listener: Receives each record of the run as it is created.
 
         Returns:
-            The finished run. If the planner or the camera fails during the run, the outcome says so; no exception is raised.
+            The finished run. If the planner or the camera fails during the run, the outcome records the failure; no exception is
+            raised.
 
         Raises:
-            InputError: the instruction is empty or too long, or a file cannot be written.
-            PackError: the scene's files are damaged.
-            CameraError: the camera fails before the first step.
+            InputError: The instruction is empty or too long, or a file cannot be written.
+            PackError: The scene's files are damaged.
+            CameraError: The camera fails before the first step.
         """
         # Undecodable bytes of a command line become "?", because neither files nor servers accept them.
         instruction = instruction.encode("utf-8", "replace").decode().strip()
         if not instruction:
-            raise InputError("The instruction is empty. Say what the camera should do.")
+            raise InputError("The instruction is empty. State what the camera should do.")
         if len(instruction) > MAX_INSTRUCTION_CHARS:
-            raise InputError(f"The instruction is longer than {MAX_INSTRUCTION_CHARS} characters.")
+            raise InputError(f"The instruction is longer than {MAX_INSTRUCTION_CHARS} characters. Shorten it.")
         return await _Episode(self, instruction, conversation, listener).run()
 
 
@@ -164,6 +165,7 @@ class _Episode:
                 perception=agent.perception.name,
                 camera=info.name,
                 simulated=info.simulated,
+                dry_run=info.dry_run,
                 frame_width=info.frame_width,
                 frame_height=info.frame_height,
                 scene=frame.origin.scene if frame.origin else None,
@@ -175,7 +177,7 @@ class _Episode:
                 budgets=agent.budgets,
                 labels=agent.labels,
                 conversation=self.conversation,
-                frame=agent.images.save_look(frame) if agent.snapshots else None,
+                frame=agent.images.save_frame(frame) if agent.snapshots else None,
             )
         )
         return Briefing(presets=presets, pose=self.start, limits=info.limits)
@@ -196,15 +198,15 @@ class _Episode:
                 return RunEnd("camera_error", str(error))
             except PlannerError as error:
                 self.calls.events.update(server_events(error))
-                self.usage += wasted(error.attempts)
+                self.usage += failed_usage(error.attempts)
                 return RunEnd("planner_error", str(error), kind=error.kind)
             except Exception as error:  # any failure of a planner is an outcome of the run
                 return RunEnd("planner_error", f"The planner failed: {error_text(error)}", traceback.format_exc())
             if isinstance(decision, Finish):
                 return RunEnd(decision.kind, decision.text)
-            spent = self.usage.input_tokens + self.usage.output_tokens
-            if budgets.tokens is not None and spent > budgets.tokens:
-                return RunEnd("budget", f"The token budget of {budgets.tokens} is spent ({spent}).")
+            used_tokens = self.usage.input_tokens + self.usage.output_tokens
+            if budgets.tokens is not None and used_tokens > budgets.tokens:
+                return RunEnd("budget", f"The token budget of {budgets.tokens} is spent ({used_tokens}).")
             failure = await self.calls.carry_out(self.steps, decision, self.history)
             if failure is not None:
                 return failure
@@ -213,24 +215,24 @@ class _Episode:
         return RunEnd("step_limit", f"No answer within {budgets.max_steps} steps.")
 
     async def _decide(self, state: State) -> Decision:
-        planner, shown = self.agent.planner, None
+        planner, view_name = self.agent.planner, None
         if planner.sees:
             frame = await self.camera.frame()
-            shown = self.agent.images.save_look(frame) if self.agent.snapshots else None
+            view_name = self.agent.images.save_frame(frame) if self.agent.snapshots else None
             state = state.model_copy(update={"view": await newest_view(frame)})
         before = self.watch.read()
         with self.watch.measure("planner"):
             decision = await planner.step(state)
         if not isinstance(decision, CallTools | Finish):
-            raise PlannerError(f"The planner answered with {type(decision).__name__}, which is not a decision.")
+            raise PlannerError(f"A planner must return CallTools or Finish; this one returned {type(decision).__name__}.")
         if self.agent.guarded:
-            decision = _capped(decision)
+            decision = _limit_calls(decision)
         self.usage += decision.usage
         if decision.served is not None:
             self.calls.events.update(count_failures(decision.served.attempts))
-            self.usage += wasted(decision.served.attempts)
-            self.watch.waited_for_first_token(decision.served.first_token_s or 0.0)
-        self.emit(Decided(step=self.steps, decision=decision, planner_s=(self.watch.read() - before).planner_s, view=shown))
+            self.usage += failed_usage(decision.served.attempts)
+            self.watch.add_first_token_wait(decision.served.first_token_s or 0.0)
+        self.emit(Decided(step=self.steps, decision=decision, planner_s=(self.watch.read() - before).planner_s, view=view_name))
         return decision
 
     async def _finish(self, end: RunEnd) -> Ended:
@@ -257,7 +259,7 @@ class _Episode:
         return ended
 
 
-def _capped(decision: Decision) -> Decision:
+def _limit_calls(decision: Decision) -> Decision:
     """Limit the calls of a decision to ``MAX_CALLS_PER_STEP``. The first excess call is kept as a bad call with a message."""
     if not isinstance(decision, CallTools) or len(decision.calls) <= MAX_CALLS_PER_STEP:
         return decision

@@ -22,13 +22,13 @@ class Panel:
     """One picture of a filmstrip with its caption.
 
     Attributes:
-        number: number of the panel; 0 for the view at the start.
-        action: what was done; the first half of the caption.
-        file: name of the picture in the run folder.
-        finding: the result; the second half of the caption.
-        badge: a count in words ("4 cones"), drawn in a corner.
-        whole: whether the picture is a panorama of the full scene.
-        failed: whether the finding is an error.
+        number: Number of the panel; 0 for the view at the start.
+        action: What was done; the first half of the caption.
+        file: Name of the picture in the run folder.
+        finding: The result; the second half of the caption.
+        badge: A count in words ("4 cones"), drawn in a corner.
+        is_panorama: Whether the picture is a panorama of the full scene.
+        failed: Whether the finding is an error.
     """
 
     number: int
@@ -38,12 +38,12 @@ class Panel:
     finding: str = ""
     boxes: tuple[Box, ...] = ()
     badge: str = ""
-    whole: bool = False
+    is_panorama: bool = False
     failed: bool = False
 
 
 def panels_of(trace: Trace) -> list[Panel]:
-    """Return the panels of a run in order. A run without steps has one panel, the view at the start."""
+    """Return the panels of a run in order. A run without steps has one panel, the view at the start of the run."""
     panels: list[Panel] = []
     mergeable = False
     for call in trace.calls:
@@ -51,7 +51,7 @@ def panels_of(trace: Trace) -> list[Panel]:
         if name == "get_presets" and call.outcome.error is None:
             continue
         panel = _panel(call)
-        reads_view = name not in _MOVES and call.outcome.error is None and not panel.whole and name != "zoom_to_object"
+        reads_view = name not in _MOVES and call.outcome.error is None and not panel.is_panorama and name != "zoom_to_object"
         if mergeable and reads_view:
             panels[-1] = replace(panel, number=panels[-1].number, action=_joined(panels[-1], panel))
         else:
@@ -68,11 +68,11 @@ def _joined(move: Panel, call: Panel) -> str:
 
 
 def _with_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
-    """Give steps without a picture, such as errors, the last view before them."""
+    """Return the panels, with the last earlier view in place of missing pictures, such as those of failed calls."""
     shown, last = [], first
     for panel in panels:
         shown.append(panel if panel.file else replace(panel, file=last))
-        last = last if panel.whole or not panel.file else panel.file
+        last = last if panel.is_panorama or not panel.file else panel.file
     return shown
 
 
@@ -90,14 +90,14 @@ def _panel(call: Called) -> Panel:
         finding=_finding(outcome.call.name, result),
         boxes=_boxes(result),
         badge=_count(result) if outcome.call.name == "count_objects" else "",
-        whole=result.get("view") == "full",
+        is_panorama=result.get("view") == "full",
     )
 
 
 def _boxes(result: dict[str, Any]) -> tuple[Box, ...]:
-    found = result.get("boxes") or ([result["box"]] if result.get("box") else [])
+    raw_boxes = result.get("boxes") or ([result["box"]] if result.get("box") else [])
     try:
-        return tuple(Box.model_validate(box) for box in found)
+        return tuple(Box.model_validate(box) for box in raw_boxes)
     except ValidationError:
         return ()
 
@@ -147,10 +147,10 @@ def action_of(outcome: ToolOutcome) -> str:
 
 def _turns(arguments: dict[str, Any]) -> list[str]:
     parts = []
-    for key, less, more in (("pan_deg", "pan left", "pan right"), ("tilt_deg", "tilt down", "tilt up")):
+    for key, negative, positive in (("pan_deg", "pan left", "pan right"), ("tilt_deg", "tilt down", "tilt up")):
         angle = arguments.get(key)
         if isinstance(angle, int | float) and angle:
-            parts.append(f"{more if angle > 0 else less} {abs(angle):g}°")
+            parts.append(f"{positive if angle > 0 else negative} {abs(angle):g}°")
     if arguments.get("zoom_factor") is not None:
         parts.append(f"zoom {_number(arguments['zoom_factor'])}x")
     if arguments.get("zoom_percent") is not None:
@@ -161,5 +161,5 @@ def _turns(arguments: dict[str, Any]) -> list[str]:
 
 
 def _number(value: Any) -> str:
-    """Format a number without trailing zeros. Other values of a wrong call are shown unchanged."""
+    """Format a number without trailing zeros. Values of other types, from invalid calls, are shown unchanged."""
     return f"{value:g}" if isinstance(value, int | float) else str(value)

@@ -35,15 +35,15 @@ class PictureStore:
         self._images = images
         self.last: tuple[str, Frame] | None = None
 
-    def save_look(self, frame: Frame) -> str:
-        return self._images.save_look(frame)
+    def save_frame(self, frame: Frame) -> str:
+        return self._images.save_frame(frame)
 
     def save_picture(self, frame: Frame) -> str:
         name = self._images.save_picture(frame)
         self.last = (name, frame)
         return name
 
-    async def shown(self) -> Picture | None:
+    async def last_picture(self) -> Picture | None:
         """Return the last picture of ``take_image`` for the planner; None if there is none."""
         if self.last is None:
             return None
@@ -57,10 +57,10 @@ class SharedFrameCamera(TimedCamera):
     def __init__(self, camera: Camera, watch: Stopwatch) -> None:
         super().__init__(camera, watch)
         self._lock = anyio.Lock()
-        self._taken: Frame | None = None
+        self._shared_frame: Frame | None = None
 
     async def frame(self) -> Frame:
         async with self._lock:
-            if self._taken is None:
-                self._taken = await super().frame()
-            return self._taken
+            if self._shared_frame is None:
+                self._shared_frame = await super().frame()
+            return self._shared_frame

@@ -13,13 +13,13 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import CallTools, Exchange, Finish, PastTurn, ToolOutcome, Usage
 
 FORMAT_VERSION = 1
-"""Version of the trace format. It is raised by changes that an older program could misread."""
+"""Version of the trace format. It increases when a change could make an older program misread traces."""
 
 Outcome = Literal["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error", "cancelled"]
 OUTCOMES: tuple[str, ...] = get_args(Outcome)
 
 CallFault = Literal["bad_call", "perception", "camera", "skipped", "cancelled"]
-"""Why a call failed.
+"""The reason why a call failed.
 
 - ``bad_call``: the name or the arguments were invalid.
 - ``perception``: a perception call failed.
@@ -62,9 +62,9 @@ class RunLabels(_Record):
     """Facts about a run that the loop cannot know and that its trace stores.
 
     Attributes:
-        perception_note: a sentence about the perception backend, shown with the answer.
-        seed: seed of the run's random choices.
-        home_viewpoint: the requested viewpoint of the camera, if it is not the scene's home.
+        perception_note: A sentence about the perception backend, shown with the answer.
+        seed: Seed of the run's random choices.
+        home_viewpoint: The requested viewpoint of the camera, if it is not the scene's home viewpoint.
     """
 
     perception_note: str = ""
@@ -76,11 +76,12 @@ class Started(_Record):
     """The header of a trace.
 
     Attributes:
-        planner_details: what determines the planner's decisions, such as the exact prompt.
-        scene: the scene of a simulated camera; otherwise None.
-        viewpoint: the viewpoint of a simulated camera; otherwise None.
-        rendering: version of the simulator's rendering; None for other cameras and in traces of version 0.1.0, which had the first.
-        frame: name of the picture that was taken before the first step.
+        planner_details: Settings that determine the planner's decisions, such as the exact prompt.
+        dry_run: Whether commands were reported instead of executed. False in traces of version 0.1.0.
+        scene: The scene of a simulated camera; otherwise None.
+        viewpoint: The viewpoint of a simulated camera; otherwise None.
+        rendering: Version of the simulator's rendering; None for other cameras and in traces of version 0.1.0.
+        frame: Name of the picture that was taken before the first step.
     """
 
     event: Literal["start"] = "start"
@@ -94,6 +95,7 @@ class Started(_Record):
     perception: str
     camera: str
     simulated: bool
+    dry_run: bool = False
     frame_width: int
     frame_height: int
     scene: str | None
@@ -109,7 +111,7 @@ class Started(_Record):
 
 
 class Decided(_Record):
-    """The planner's decision at a step. ``view`` names the picture that a planner with vision was shown."""
+    """The planner's decision at a step. ``view`` names the picture that a planner with vision received."""
 
     event: Literal["decision"] = "decision"
     step: int
@@ -122,9 +124,9 @@ class Called(_Record):
     """A tool call and its outcome.
 
     Attributes:
-        scene_time_s: scene time at the start of the call.
-        pose: pose of the camera after the call.
-        frame: name of the picture of the view after the call, stored when the pose changed.
+        scene_time_s: Scene time at the start of the call.
+        pose: Pose of the camera after the call.
+        frame: Name of the picture of the view after the call, stored when the pose changed.
     """
 
     event: Literal["call"] = "call"
@@ -148,10 +150,10 @@ class Ended(_Record):
     """The end of a run.
 
     Attributes:
-        text: the answer, the clarifying question, or the reason why there is no answer.
-        detail: a traceback or other details for debugging.
-        kind: failure kind of the planner's model server (``endpoints.FailureKind``, such as "refused"), if it failed.
-        server_events: number of failed requests to model servers by failure kind, including those that a retry recovered.
+        text: The answer, the clarifying question, or the reason why there is no answer.
+        detail: A traceback or other details for debugging.
+        kind: Failure kind of the planner's model server (``endpoints.FailureKind``, such as "refused"), if it failed.
+        server_events: Number of failed requests to model servers by failure kind, including those that a retry recovered.
     """
 
     event: Literal["end"] = "end"

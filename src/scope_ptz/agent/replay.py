@@ -25,7 +25,7 @@ REPEATABLE = ("answered", "clarification", "refused", "step_limit")
 """Outcomes that a replay must reach again. Other outcomes, such as an exhausted budget or a failure, have external causes."""
 
 _FILE_NAME_FIELDS = ("frames", "file")
-_TOLERANCE = 0.011  # results are rounded to hundredths or finer, so smaller differences are rounding
+_TOLERANCE = 0.011  # results are rounded to hundredths or finer, so smaller differences are rounding errors
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,14 +53,14 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
     """Repeat a recorded run.
 
     Args:
-        trace: the recorded run.
-        camera: a simulated camera at the recorded start pose and scene time.
+        trace: The recorded run.
+        camera: A simulated camera at the recorded start pose and scene time.
 
     Returns:
         The differences between the recorded and the repeated calls.
 
     Raises:
-        TraceError: the run was made with a real camera and cannot be repeated.
+        TraceError: The run was made with a real camera and cannot be repeated.
     """
     if not trace.started.simulated:
         raise TraceError("This run was made with a real camera, so it cannot be repeated.")
@@ -76,15 +76,15 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
         snapshots=False,
         guarded=False,
     )
-    made: list[Called] = []
+    repeated: list[Called] = []
 
     def listen(record: Started | Decided | Called | Ended) -> None:
         if isinstance(record, Called):
-            made.append(record)
+            repeated.append(record)
 
     run = await agent.run(trace.started.instruction, listener=listen)
-    pairs = [(recorded, made[i] if i < len(made) else None) for i, recorded in enumerate(calls)]
-    comparisons = tuple(CallComparison(recorded, _difference(recorded, again)) for recorded, again in pairs)
+    pairs = [(recorded, repeated[i] if i < len(repeated) else None) for i, recorded in enumerate(calls)]
+    comparisons = tuple(CallComparison(recorded, _difference(recorded, repeated_call)) for recorded, repeated_call in pairs)
     return Replay(comparisons, _outcome_difference(trace.ended, run.ended))
 
 
@@ -109,12 +109,12 @@ class _Script:
 
 def _complete_decisions(trace: Trace) -> list[Decision]:
     """Return the recorded decisions, without the calls that an interrupted step did not make."""
-    made = {(call.step, call.index) for call in trace.calls}
+    recorded = {(call.step, call.index) for call in trace.calls}
     decisions: list[Decision] = []
     for record in trace.decisions:
         decision = record.decision
         if isinstance(decision, CallTools):
-            calls = tuple(call for index, call in enumerate(decision.calls) if (record.step, index) in made)
+            calls = tuple(call for index, call in enumerate(decision.calls) if (record.step, index) in recorded)
             if not calls:
                 break
             decision = decision.model_copy(update={"calls": calls})
@@ -129,11 +129,11 @@ class _RecordedPlanner(Planner):
         self._script = script
 
     async def step(self, state: State) -> Decision:
-        done = len(state.history)
-        if done >= len(self._script.decisions):
+        steps = len(state.history)
+        if steps >= len(self._script.decisions):
             raise PlannerError(self._script.end)
-        await self._script.wait_until(self._script.times_s.get(done + 1, 0.0))
-        return self._script.decisions[done]
+        await self._script.wait_until(self._script.times_s.get(steps + 1, 0.0))
+        return self._script.decisions[steps]
 
 
 class _RecordedPerception(Perception):
@@ -157,10 +157,10 @@ class _RecordedPerception(Perception):
     def _next(self, frame: Frame, kind: PerceptionMethod, asked: str, as_type: type[_PerceptionResult]) -> _PerceptionResult:
         # Concurrent calls may arrive in a different order than recorded, but they all belong to one step.
         step = self._replies[0][0] if self._replies else 0
-        fitting = (i for i, (at, reply) in enumerate(self._replies) if at == step and (reply.kind, reply.asked) == (kind, asked))
-        index = next(fitting, None)
+        matches = (i for i, (at, reply) in enumerate(self._replies) if at == step and (reply.kind, reply.asked) == (kind, asked))
+        index = next(matches, None)
         if index is None:
-            raise PerceptionError(f"The recording holds no reply to {kind} '{asked}' at {frame.time_s:.2f} s.")
+            raise PerceptionError(f"The recording contains no reply to {kind} '{asked}' at {frame.time_s:.2f} s.")
         _, reply = self._replies[index]
         del self._replies[index]
         return reply.restore(as_type)
@@ -179,19 +179,19 @@ class _PacedCamera(TimedCamera):
         return await super().frame()
 
 
-def _difference(recorded: Called, again: Called | None) -> str:
+def _difference(recorded: Called, repeated_call: Called | None) -> str:
     """Describe how a call differs from its repetition; empty if they agree."""
-    if again is None:
+    if repeated_call is None:
         return "not reached"
-    before, now = recorded.outcome, again.outcome
+    before, now = recorded.outcome, repeated_call.outcome
     if before.error != now.error:
         return f"error was {before.error!r}, now {now.error!r}"
-    old, new = before.result or {}, now.result or {}
-    keys = [key for key in sorted(old.keys() | new.keys()) if key not in _FILE_NAME_FIELDS]
-    changed = [key for key in keys if not _same(old.get(key), new.get(key))]
+    recorded_result, replayed_result = before.result or {}, now.result or {}
+    keys = [key for key in sorted(recorded_result.keys() | replayed_result.keys()) if key not in _FILE_NAME_FIELDS]
+    changed = [key for key in keys if not _same(recorded_result.get(key), replayed_result.get(key))]
     # The message repeats the other fields, so it is not compared separately.
     named = [key for key in changed if key != "message"]
-    return "; ".join(f"{key} was {old.get(key)}, now {new.get(key)}" for key in named[:3])
+    return "; ".join(f"{key} was {recorded_result.get(key)}, now {replayed_result.get(key)}" for key in named[:3])
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -209,4 +209,4 @@ def _outcome_difference(before: Ended | None, now: Ended) -> str:
         return ""
     if (before.outcome, before.text) == (now.outcome, now.text):
         return ""
-    return f"it ended {before.outcome} ('{before.text}'), now {now.outcome} ('{now.text}')"
+    return f"the outcome was {before.outcome} ('{before.text}'), now {now.outcome} ('{now.text}')"

@@ -25,27 +25,27 @@ _MAX_SLUG_CHARS = 40  # longer names of run folders are truncated at a word
 def slug(text: str) -> str:
     """Return the first words of a text in lower case, joined by hyphens; "run" if there are none."""
     words = re.findall(r"[a-z0-9]+", text.lower())
-    kept = ""
+    result = ""
     for word in words:
-        if len(kept) + len(word) + 1 > _MAX_SLUG_CHARS:
+        if len(result) + len(word) + 1 > _MAX_SLUG_CHARS:
             break
-        kept = f"{kept}-{word}" if kept else word
-    return kept or "run"
+        result = f"{result}-{word}" if result else word
+    return result or "run"
 
 
 class Numbering:
-    """Names for pictures, numbered in the order in which they are stored."""
+    """A generator of picture names, numbered in the order in which pictures are stored."""
 
     def __init__(self) -> None:
-        self._looks = self._pictures = 0
+        self._frames = self._pictures = 0
 
-    def look(self, frame: Frame) -> str:
+    def frame(self, frame: Frame) -> str:
         """Return the name for the next frame that perception reads."""
-        self._looks += 1
-        return f"frames/{self._looks:03d}-{'view' if isinstance(frame.projection, Perspective) else 'full'}.jpg"
+        self._frames += 1
+        return f"frames/{self._frames:03d}-{'view' if isinstance(frame.projection, Perspective) else 'full'}.jpg"
 
     def picture(self) -> str:
-        """Return the name for the next picture that the user asked for."""
+        """Return the name for the next picture that the user requested."""
         self._pictures += 1
         return f"pictures/{self._pictures:03d}.png"
 
@@ -56,25 +56,25 @@ class NoImages:
     def __init__(self) -> None:
         self._names = Numbering()
 
-    def save_look(self, frame: Frame) -> str:
-        return self._names.look(frame)
+    def save_frame(self, frame: Frame) -> str:
+        return self._names.frame(frame)
 
     def save_picture(self, frame: Frame) -> str:  # noqa: ARG002 - the contract's signature
         return self._names.picture()
 
 
 class EncodedImages(ABC):
-    """An image store that encodes frames as JPEG and pictures that the user asked for as PNG."""
+    """An image store that encodes frames as JPEG, and pictures that the user requested as PNG."""
 
     def __init__(self) -> None:
         self._names = Numbering()
 
-    def save_look(self, frame: Frame) -> str:
+    def save_frame(self, frame: Frame) -> str:
         """Store a frame that perception reads and return its name. Raises ``OutputError``."""
-        return self._store(self._names.look(frame), frame, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+        return self._store(self._names.frame(frame), frame, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
 
     def save_picture(self, frame: Frame) -> str:
-        """Store a picture that the user asked for and return its name. Raises ``OutputError``."""
+        """Store a picture that the user requested and return its name. Raises ``OutputError``."""
         return self._store(self._names.picture(), frame, [])
 
     def _store(self, name: str, frame: Frame, options: list[int]) -> str:
@@ -114,13 +114,13 @@ class RunFolder(EncodedImages):
         """Create ``root/<UTC time>-<first words>-<random>``. Two runs never share a folder.
 
         Raises:
-            OutputError: the folder cannot be created.
+            OutputError: The folder cannot be created.
         """
-        stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
+        timestamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
         try:
             root.mkdir(parents=True, exist_ok=True)
             while True:
-                path = root / f"{stamp}-{slug(instruction)}-{secrets.token_hex(3)}"
+                path = root / f"{timestamp}-{slug(instruction)}-{secrets.token_hex(3)}"
                 try:
                     path.mkdir()
                 except FileExistsError:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Iterator
-from contextlib import asynccontextmanager, contextmanager
+from collections.abc import Awaitable, Callable, Iterable, Iterator
+from contextlib import contextmanager
 from time import perf_counter
 from typing import Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict
 
-from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo
+from scope_ptz.camera.base import Arrival, Camera, Frame, PresetInfo
+from scope_ptz.camera.guard.wrapper import CameraWrapper
+from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState
 from scope_ptz.endpoints.failures import Attempt, count_failures
 from scope_ptz.errors import PerceptionError, PlannerError, TraceError
 from scope_ptz.geometry import Pose
@@ -26,12 +28,12 @@ class Timings(BaseModel):
     """Wall-clock seconds by part of the system. Calls that overlap count once.
 
     Attributes:
-        planner_s: decisions of the planner.
-        perception_s: perception calls.
-        camera_s: moves, and frames of a real camera.
-        render_s: frames of a simulated camera.
-        total_s: the whole run. What the parts do not account for is time of the loop and the tools.
-        first_token_s: the part of ``planner_s`` before the first tokens arrived, if the planner's server streams.
+        planner_s: Time of the planner's decisions.
+        perception_s: Time of perception calls.
+        camera_s: Time of moves, and of frames of a real camera.
+        render_s: Time of frames of a simulated camera.
+        total_s: Time of the whole run, including the loop and the tools.
+        first_token_s: The part of ``planner_s`` before the first tokens arrived, if the planner's server streams.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -63,114 +65,112 @@ class Timings(BaseModel):
 
 
 class Stopwatch:
-    """Adds up wall time by part of the system. Overlapping calls of one part count once."""
+    """A stopwatch that adds up wall-clock time by part of the system. Overlapping calls of one part count once."""
 
     def __init__(self) -> None:
         self._began = perf_counter()
-        self._spent: dict[TimedPart, float] = {"planner": 0.0, "perception": 0.0, "camera": 0.0, "render": 0.0}
-        self._under_way: dict[TimedPart, int] = dict.fromkeys(self._spent, 0)
-        self._since: dict[TimedPart, float] = dict.fromkeys(self._spent, 0.0)
+        self._part_times_s: dict[TimedPart, float] = {"planner": 0.0, "perception": 0.0, "camera": 0.0, "render": 0.0}
+        self._active: dict[TimedPart, int] = dict.fromkeys(self._part_times_s, 0)
+        self._part_starts_s: dict[TimedPart, float] = dict.fromkeys(self._part_times_s, 0.0)
         self._first_tokens_s = 0.0
 
     @contextmanager
     def measure(self, part: TimedPart) -> Iterator[None]:
-        """Count the time inside the ``with`` block for a part."""
-        if not self._under_way[part]:
-            self._since[part] = perf_counter()
-        self._under_way[part] += 1
+        """Add the time inside the ``with`` block to a part."""
+        if not self._active[part]:
+            self._part_starts_s[part] = perf_counter()
+        self._active[part] += 1
         try:
             yield
         finally:
-            self._under_way[part] -= 1
-            if not self._under_way[part]:
-                self._spent[part] += perf_counter() - self._since[part]
+            self._active[part] -= 1
+            if not self._active[part]:
+                self._part_times_s[part] += perf_counter() - self._part_starts_s[part]
 
-    def waited_for_first_token(self, seconds: float) -> None:
-        """Count time that passed before the first token of a streamed reply."""
+    def add_first_token_wait(self, seconds: float) -> None:
+        """Add time that passed before the first token of a streamed reply."""
         self._first_tokens_s += seconds
 
     def read(self) -> Timings:
         """Return the time so far, including measurements in progress."""
         now = perf_counter()
-        spent = {
-            f"{part}_s": round(seconds + (now - self._since[part] if self._under_way[part] else 0.0), 6)
-            for part, seconds in self._spent.items()
+        stage_times = {
+            f"{part}_s": round(seconds + (now - self._part_starts_s[part] if self._active[part] else 0.0), 6)
+            for part, seconds in self._part_times_s.items()
         }
-        return Timings(**spent, total_s=round(now - self._began, 6), first_token_s=round(self._first_tokens_s, 6))
+        return Timings(**stage_times, total_s=round(now - self._began, 6), first_token_s=round(self._first_tokens_s, 6))
 
 
-class TimedCamera(Camera):
+class TimedCamera(CameraWrapper):
     """A camera whose calls are timed. Frames of a simulated camera count as rendering, everything else as camera time."""
 
     def __init__(self, camera: Camera, watch: Stopwatch) -> None:
-        self._camera, self._watch = camera, watch
-        self.clock = camera.clock
+        super().__init__(camera)
+        self._watch = watch
         self._frame_part: TimedPart = "render" if camera.info.simulated else "camera"
-
-    @property
-    def info(self) -> CameraInfo:
-        return self._camera.info
 
     async def pose(self) -> Pose:
         with self._watch.measure("camera"):
-            return await self._camera.pose()
+            return await super().pose()
 
     async def move(self, pose: Pose) -> Arrival:
         with self._watch.measure("camera"):
-            return await self._camera.move(pose)
+            return await super().move(pose)
 
     async def presets(self) -> list[PresetInfo]:
         with self._watch.measure("camera"):
-            return await self._camera.presets()
+            return await super().presets()
 
     async def go_to_preset(self, name: str) -> Arrival:
         with self._watch.measure("camera"):
-            return await self._camera.go_to_preset(name)
+            return await super().go_to_preset(name)
 
     async def go_home(self) -> Arrival:
         with self._watch.measure("camera"):
-            return await self._camera.go_home()
+            return await super().go_home()
 
     async def frame(self) -> Frame:
         with self._watch.measure(self._frame_part):
-            return await self._camera.frame()
+            return await super().frame()
 
     async def stop(self) -> None:
         with self._watch.measure("camera"):
-            await self._camera.stop()
+            await super().stop()
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         with self._watch.measure("camera"):
-            await self._camera.drive(pan_dps, tilt_dps, zoom_rate, timeout_s=timeout_s)
+            await super().drive(pan_dps, tilt_dps, zoom_rate, timeout_s=timeout_s)
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:
         with self._watch.measure("camera"):
-            return await self._camera.save_preset(name, description)
+            return await super().save_preset(name, description)
 
     async def remove_preset(self, name: str) -> None:
         with self._watch.measure("camera"):
-            await self._camera.remove_preset(name)
+            await super().remove_preset(name)
 
-    @asynccontextmanager
-    async def control(self, holder: str) -> AsyncIterator[None]:
-        async with self._camera.control(holder):
-            yield
+    async def lens(self) -> LensState:
+        with self._watch.measure("camera"):
+            return await super().lens()
 
-    @contextmanager
-    def hold_time(self) -> Iterator[None]:
-        with self._camera.hold_time():
-            yield
+    async def set_focus(self, action: FocusAction, *, step: float = DEFAULT_STEP) -> LensState:
+        with self._watch.measure("camera"):
+            return await super().set_focus(action, step=step)
+
+    async def set_iris(self, action: IrisAction, *, step: float = DEFAULT_STEP) -> LensState:
+        with self._watch.measure("camera"):
+            return await super().set_iris(action, step=step)
 
 
 class PerceptionReply(BaseModel):
     """A perception call and its reply. Either ``result`` or ``error`` is set.
 
     Attributes:
-        kind: the method that was called.
-        asked: the question or description; empty for captions.
-        frame_time_s: scene time of the frame.
-        wall_s: wall-clock seconds of the call.
-        server_events: number of failed requests to the model server by failure kind, including those that a retry recovered.
+        kind: The method that was called.
+        asked: The question or description; empty for captions.
+        frame_time_s: Scene time of the frame.
+        wall_s: Wall-clock seconds of the call.
+        server_events: Number of failed requests to the model server by failure kind, including those that a retry recovered.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -187,8 +187,8 @@ class PerceptionReply(BaseModel):
         """Return the typed result.
 
         Raises:
-            PerceptionError: the recorded call failed.
-            TraceError: the recorded result is damaged.
+            PerceptionError: The recorded call failed.
+            TraceError: The recorded result is damaged.
         """
         if self.error is not None or self.result is None:
             raise PerceptionError(self.error or "The recorded reply is empty.")
@@ -252,13 +252,15 @@ class TimedPerception(Perception):
         return observation
 
 
-def wasted(attempts: Iterable[object]) -> Usage:
-    """Return the tokens that failed requests used."""
-    spent = [a for a in attempts if isinstance(a, Attempt)]
-    return Usage(input_tokens=sum(a.input_tokens for a in spent), output_tokens=sum(a.output_tokens for a in spent))
+def failed_usage(attempts: Iterable[object]) -> Usage:
+    """Return the tokens that failed requests consumed."""
+    server_attempts = [a for a in attempts if isinstance(a, Attempt)]
+    return Usage(
+        input_tokens=sum(a.input_tokens for a in server_attempts), output_tokens=sum(a.output_tokens for a in server_attempts)
+    )
 
 
 def server_events(error: PerceptionError | PlannerError) -> dict[str, int]:
-    """Return the numbers of failed requests behind an error, by failure kind. Unusable replies count as failures."""
+    """Return the number of failed requests that led to an error, by failure kind. Unusable replies count as failures."""
     events = count_failures(a for a in error.attempts if isinstance(a, Attempt))
     return events if error.kind is None or error.kind in events else {**events, str(error.kind): 1}

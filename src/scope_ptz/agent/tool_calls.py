@@ -31,7 +31,7 @@ _NOT_DONE = "Not done, because the call before it failed."
 
 
 class RunEnd(NamedTuple):
-    """The end of a run. ``kind`` is the failure kind of the planner's model server, if it failed."""
+    """The reason why a run ends. ``kind`` is the failure kind of the planner's model server, if it failed."""
 
     outcome: Outcome
     text: str
@@ -40,7 +40,7 @@ class RunEnd(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class _Done:
+class _FinishedCall:
     """A finished or cancelled call. ``end`` is set if the call ends the run, ``raised`` if its error is raised to the caller."""
 
     outcome: ToolOutcome
@@ -84,53 +84,53 @@ class CallRunner:
         After a failed call the remaining calls are skipped, because they were planned for another state.
 
         Args:
-            step: number of the step, from 1.
-            decision: the calls to run.
-            history: the exchanges of the run; the step is appended, even if the run is cancelled between two calls.
+            step: Number of the step, from 1.
+            decision: The calls to run.
+            history: The exchanges of the run; the step is appended, even if the run is cancelled between two calls.
 
         Returns:
-            The end of the run when a call ended it; otherwise None.
+            The reason why the run ends, if a call ended it; otherwise None.
         """
-        done: dict[int, _Done] = {}
+        results: dict[int, _FinishedCall] = {}
         try:
             for batch in batches(decision.calls, self._tools):
-                await self._batch(step, decision.calls, batch, done)
-                failed = [done[index] for index in batch if done[index].outcome.error is not None]
+                await self._batch(step, decision.calls, batch, results)
+                failed = [results[index] for index in batch if results[index].outcome.error is not None]
                 if failed:
-                    self._skip(step, decision.calls, batch[-1] + 1, done)
+                    self._skip(step, decision.calls, batch[-1] + 1, results)
                     return next((d.end for d in failed if d.end is not None), None)
         finally:
-            outcomes = tuple(d.outcome for _, d in sorted(done.items()) if d.fault != "cancelled")
+            outcomes = tuple(d.outcome for _, d in sorted(results.items()) if d.fault != "cancelled")
             history.append(Exchange(outcomes=outcomes, thought=decision.thought))
-            self._count_repetition(done.values())
+            self._count_repetition(results.values())
         return None
 
-    def _count_repetition(self, done: Iterable[_Done]) -> None:
-        bad = next(((d.outcome.call.name, d.outcome.call.arguments) for d in done if d.fault == "bad_call"), None)
+    def _count_repetition(self, results: Iterable[_FinishedCall]) -> None:
+        bad = next(((d.outcome.call.name, d.outcome.call.arguments) for d in results if d.fault == "bad_call"), None)
         self.same_bad_call = 0 if bad is None else self.same_bad_call + 1 if bad == self._last_bad_call else 1
         self._last_bad_call = bad
 
-    async def _batch(self, step: int, calls: Sequence[ToolCall], batch: Sequence[int], done: dict[int, _Done]) -> None:
-        made: dict[int, _Done] = {}
+    async def _batch(self, step: int, calls: Sequence[ToolCall], batch: Sequence[int], results: dict[int, _FinishedCall]) -> None:
+        finished: dict[int, _FinishedCall] = {}
         try:
             if len(batch) == 1:
-                await self._make(calls[batch[0]], batch[0], self.camera, made)
+                await self._run_call(calls[batch[0]], batch[0], self.camera, finished)
             else:
                 camera = SharedFrameCamera(self._raw_camera, self._watch)
                 async with anyio.create_task_group() as group:
                     for index in batch:
-                        group.start_soon(self._make, calls[index], index, camera, made)
+                        group.start_soon(self._run_call, calls[index], index, camera, finished)
         finally:
-            for index, call in sorted(made.items()):
-                done[index] = call
+            for index, call in sorted(finished.items()):
+                results[index] = call
                 if call.raised is None:
                     self._record(step, index, call)
-        for call in made.values():
+        for call in finished.values():
             if call.raised is not None:
                 raise call.raised
 
-    async def _make(self, call: ToolCall, index: int, camera: TimedCamera, made: dict[int, _Done]) -> None:
-        """Run one call and store the result in ``made``. Only a cancellation is raised."""
+    async def _run_call(self, call: ToolCall, index: int, camera: TimedCamera, finished: dict[int, _FinishedCall]) -> None:
+        """Run one call and store the result in ``finished``. Only a cancellation is raised."""
         time_s, before, pose = camera.clock.now_s(), self._watch.read(), self.pose
         perception, images = TimedPerception(self._perception, self._watch), PictureStore(self._images)
         fault: CallFault | None = None
@@ -141,9 +141,9 @@ class CallRunner:
             result = await self._run(call, ToolContext(camera, perception, images))
             self.pose = await camera.pose()
             if self._snapshots and self.pose != pose and not getattr(result, "frames", ()):
-                frame = self._images.save_look(await camera.frame())
-            shown = await images.shown() if self._sees else None
-            outcome = ToolOutcome(call=call, result=result.model_dump(mode="json"), picture=shown)
+                frame = self._images.save_frame(await camera.frame())
+            last_picture = await images.last_picture() if self._sees else None
+            outcome = ToolOutcome(call=call, result=result.model_dump(mode="json"), picture=last_picture)
         except (ToolCallError, UnknownNameError) as error:
             outcome, fault = ToolOutcome(call=call, error=str(error)), "bad_call"
             self.bad_calls += 1
@@ -152,44 +152,44 @@ class CallRunner:
             self.perception_failures += 1
         except anyio.get_cancelled_exc_class():
             outcome = ToolOutcome(call=call, error="Broken off.")
-            made[index] = _Done(outcome, "cancelled", time_s, self._watch.read() - before, perception.drain())
+            finished[index] = _FinishedCall(outcome, "cancelled", time_s, self._watch.read() - before, perception.drain())
             raise
         except (PackError, OutputError) as error:
             outcome, raised = ToolOutcome(call=call, error=str(error)), error
         except CameraError as error:
             outcome, fault, end = ToolOutcome(call=call, error=str(error)), "camera", RunEnd("camera_error", str(error))
         except Exception as error:  # any other failure below the tools ends the run and is recorded
-            words = f"{call.name} broke down: {error_text(error)}"
-            outcome, fault = ToolOutcome(call=call, error=words), "camera"
-            end = RunEnd("camera_error", words, traceback.format_exc())
-        made[index] = _Done(outcome, fault, time_s, self._watch.read() - before, perception.drain(), frame, end, raised)
+            message = f"{call.name} failed: {error_text(error)}"
+            outcome, fault = ToolOutcome(call=call, error=message), "camera"
+            end = RunEnd("camera_error", message, traceback.format_exc())
+        finished[index] = _FinishedCall(outcome, fault, time_s, self._watch.read() - before, perception.drain(), frame, end, raised)
 
     async def _run(self, call: ToolCall, context: ToolContext) -> Result:
         if call.problem is not None:
             raise ToolCallError(call.problem)
         return await self._run_tool(context, call.name, call.arguments)
 
-    def _skip(self, step: int, calls: Sequence[ToolCall], first: int, done: dict[int, _Done]) -> None:
+    def _skip(self, step: int, calls: Sequence[ToolCall], first: int, results: dict[int, _FinishedCall]) -> None:
         now = self._watch.read()
         for index in range(first, len(calls)):
             outcome = ToolOutcome(call=calls[index], error=_NOT_DONE)
-            done[index] = _Done(outcome, "skipped", self.camera.clock.now_s(), now - now)
-            self._record(step, index, done[index])
+            results[index] = _FinishedCall(outcome, "skipped", self.camera.clock.now_s(), now - now)
+            self._record(step, index, results[index])
 
-    def _record(self, step: int, index: int, done: _Done) -> None:
-        for reply in done.replies:
+    def _record(self, step: int, index: int, call: _FinishedCall) -> None:
+        for reply in call.replies:
             self.events.update(reply.server_events)
         self._emit(
             Called(
                 step=step,
                 index=index,
-                outcome=done.outcome,
-                fault=done.fault,
-                scene_time_s=done.time_s,
+                outcome=call.outcome,
+                fault=call.fault,
+                scene_time_s=call.time_s,
                 pose=RecordedPose.of(self.pose),
-                timings=done.timings,
-                replies=done.replies,
-                frame=done.frame,
+                timings=call.timings,
+                replies=call.replies,
+                frame=call.frame,
             )
         )
 
@@ -197,7 +197,7 @@ class CallRunner:
 def batches(calls: Sequence[ToolCall], tools: ToolRegistry = TOOLS) -> Iterator[list[int]]:
     """Yield the indices of the calls in batches; the calls of one batch can run at the same time.
 
-    Consecutive calls that only read the current view share a batch. Every other call is a batch of its own.
+    Consecutive calls that only read the current view share a batch. Every other call is a separate batch.
     """
     together: list[int] = []
     for index, call in enumerate(calls):

@@ -1,4 +1,4 @@
-"""Trace files: one JSON record per line. Each line is flushed at once, so that a crash loses nothing that was recorded."""
+"""Trace files: one JSON record per line. Each line is flushed immediately, so that a crash loses no recorded line."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ class Trace:
     """A recorded run.
 
     Attributes:
-        folder: folder of the run's pictures; ``Path()`` for a run that was kept in memory.
-        ended: the end of the run; None if the program was killed before it.
+        folder: Folder of the run's pictures; ``Path()`` for a run that was kept in memory.
+        ended: The end of the run; None if the program was killed before the run ended.
     """
 
     folder: Path
@@ -62,10 +62,10 @@ class Trace:
 
 
 def picture_of(folder: Path, name: str) -> Path:
-    """Return the path of a picture that a trace names.
+    """Return the path of a picture that is named in a trace.
 
     Raises:
-        TraceError: the name points outside the folder of the run.
+        TraceError: The name points outside the folder of the run.
     """
     path = (folder / name).resolve()
     if not path.is_relative_to(folder.resolve()):
@@ -73,27 +73,41 @@ def picture_of(folder: Path, name: str) -> Path:
     return path
 
 
+def picture_names(trace: Trace) -> dict[str, int | None]:
+    """Return the pictures that a trace names, in order, each with the position of the call that took it."""
+    found: dict[str, int | None] = {} if trace.started.frame is None else {trace.started.frame: None}
+    for position, call in enumerate(trace.calls):
+        result = call.outcome.result or {}
+        names = [*(result.get("frames") or ()), result.get("file"), call.frame]
+        for name in names:
+            if isinstance(name, str) and name:
+                found.setdefault(name, position)
+    return found
+
+
 def read_trace(run: Path) -> Trace:
-    """Read a trace. An incomplete last line is ignored, because a killed program leaves one.
+    """Read a trace. An incomplete last line, which a killed program can leave behind, is ignored.
 
     Args:
-        run: a run folder, or the trace file itself.
+        run: A run folder, or the trace file itself.
 
     Returns:
         The recorded run.
 
     Raises:
-        TraceError: the file is missing, damaged, or not a trace.
+        TraceError: The file is missing, damaged, or not a trace.
     """
     path = run / FILE_NAME if run.is_dir() else run
     try:
         lines = path.read_bytes().decode("utf-8", errors="replace").split("\n")
     except OSError as error:
         raise TraceError(f"There is no trace at {path} ({error.strerror}).") from error
-    cut = lines.pop()  # the text after the last newline: empty, or an incomplete line
+    last_line = lines.pop()  # the text after the last newline: empty, or an incomplete line
     records = [_parse(line, number, path) for number, line in enumerate(lines, 1) if line.strip()]
     if not records or not isinstance(records[0], Started):
-        raise TraceError(f"{path} does not begin with a header{' (it was cut off)' if cut else ''}: it is not the trace of a run.")
+        raise TraceError(
+            f"{path} does not begin with a header{' (it was cut off)' if last_line else ''}, so it is not the trace of a run."
+        )
     if any(isinstance(record, Started) for record in records[1:]) or any(isinstance(r, Ended) for r in records[:-1]):
         raise TraceError(f"{path} contains more than one run, or continues after its end.")
     return trace_of(records, path.parent)
@@ -103,17 +117,17 @@ def trace_of(records: Sequence[Started | Decided | Called | Ended], folder: Path
     """Create a trace from the records of one run.
 
     Args:
-        records: the records in order. The first one is the header.
-        folder: folder of the pictures; ``Path()`` for a run that was kept in memory.
+        records: The records in order. The first one is the header.
+        folder: Folder of the pictures; ``Path()`` for a run that was kept in memory.
 
     Returns:
         The recorded run.
 
     Raises:
-        TraceError: the first record is not a header.
+        TraceError: The first record is not a header.
     """
     if not records or not isinstance(records[0], Started):
-        raise TraceError("These records do not begin with a header: they are not a run.")
+        raise TraceError("The first record of a run must be a header; these records do not begin with one.")
     return Trace(
         folder=folder,
         started=records[0],

@@ -47,7 +47,7 @@ _R = TypeVar("_R", bound=Result)
 
 
 class AsyncScope:
-    """A session for asynchronous code: a camera, a planner and perception that stay open for several runs.
+    """A session for asynchronous code: a camera, a planner and a perception backend that stay open for several runs.
 
     ``scope_ptz.open_async`` creates one. It has the same methods as ``Scope``, with the same arguments. Methods that wait for the
     camera or a model are coroutines.
@@ -230,11 +230,11 @@ class AsyncScope:
         return await self._run_tool(ImageResult, "take_image")
 
     async def count_objects(self, description: str, view: View = "current") -> CountResult:
-        """Count the objects that fit a description. See ``Scope.count_objects``."""
+        """Count the objects that match a description. See ``Scope.count_objects``."""
         return await self._run_tool(CountResult, "count_objects", description=description, view=view)
 
     async def query_answer(self, question: str, view: View = "current") -> AnswerResult:
-        """Answer a question about what the camera sees. See ``Scope.query_answer``."""
+        """Answer a question about the camera's view. See ``Scope.query_answer``."""
         return await self._run_tool(AnswerResult, "query_answer", question=question, view=view)
 
     async def zoom_to_object(self, description: str) -> ZoomResult:
@@ -280,7 +280,7 @@ class AsyncScope:
             if run is not None:
                 self._runs = (*self._runs, run)
         if run is None:
-            raise ScopeError("The run was cancelled before it began.")
+            raise ScopeError("The run was cancelled before it started.")
         listener(Event("ended", f"{run.outcome}: {run.answer}", run=run))
         return run
 
@@ -321,7 +321,9 @@ class AsyncScope:
         """Raise ``InputError`` if the session is not open, or if a run or tool call is in progress."""
         self._open_parts()
         if self._cancel_scope is not None:
-            raise InputError("A run or tool call is in progress in this session. Wait for it, call cancel(), or open another one.")
+            raise InputError(
+                "A run or tool call is in progress in this session. Wait for it, call cancel(), or open another session."
+            )
 
 
 def _send(stream: MemoryObjectSendStream[Event], event: Event) -> None:

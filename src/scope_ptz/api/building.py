@@ -7,13 +7,22 @@ from contextlib import AsyncExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from scope_ptz.api.no_perception import NoPerception
 from scope_ptz.api.options import SessionOptions, check_type
+from scope_ptz.builtin_names import SERVED_TRUTH
 from scope_ptz.camera.base import Camera
+from scope_ptz.camera.guard.dry_run import DryRunCamera
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import OpenCamera, open_camera
-from scope_ptz.factory.models import ResolvedPerception, make_perception, make_planner, perception_note, resolve_models
+from scope_ptz.factory.models import (
+    ResolvedPerception,
+    dry_run_note,
+    make_perception,
+    make_planner,
+    perception_note,
+    resolve_models,
+)
 from scope_ptz.perception.base import Perception
+from scope_ptz.perception.no_perception import NoPerception
 from scope_ptz.planner.base import Planner
 
 if TYPE_CHECKING:
@@ -29,7 +38,7 @@ class Parts:
         planner: the planner.
         perception: the perception backend.
         scene: the scene that provides the ground truth of the camera's frames; None if there is none.
-        note: a sentence that describes built-in perception, such as ground truth; empty for models.
+        note: a sentence that describes a built-in perception backend, such as ground truth; empty for models.
         release: closes the parts that were created for the session. Objects that the caller passed stay open.
     """
 
@@ -42,10 +51,10 @@ class Parts:
 
 
 async def build(options: SessionOptions) -> Parts:
-    """Open the camera and create the planner and perception.
+    """Open the camera, and create the planner and the perception backend.
 
     Raises:
-        InputError: an option is wrong.
+        InputError: an option is invalid.
         PackError: the files of a scene are damaged.
         CameraError: the camera failed or did not answer.
         BlenderError: Blender cannot be started, or cannot open the scene or the file.
@@ -61,6 +70,8 @@ async def build(options: SessionOptions) -> Parts:
             stack.push_async_callback(perception.close)
         scene = opened.scene if opened is not None else None
         note = "" if isinstance(perception, NoPerception) else perception_note(pair.perception)
+        if options.dry_run:
+            note = dry_run_note(note)
         return Parts(camera, planner, perception, scene, note, stack.pop_all().aclose)
 
 
@@ -73,27 +84,32 @@ async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camer
             preset=options.preset,
             time_s=options.time_s,
             realtime=options.realtime,
+            dry_run=(lambda _: None) if options.dry_run else None,
         )
         stack.push_async_callback(opened.aclose)
         return opened.camera, opened
-    given = [name for name in ("viewpoint", "time_s") if getattr(options, name) is not None]
-    if given:
-        raise InputError(f"camera= is a Camera object, which cannot be combined with {' and '.join(given)}. Remove the argument.")
+    conflicting = [name for name in ("viewpoint", "time_s") if getattr(options, name) is not None]
+    if conflicting:
+        raise InputError(
+            f"camera= is a Camera object, which cannot be combined with {' and '.join(conflicting)}. Remove the arguments."
+        )
+    camera = DryRunCamera(options.camera, lambda _: None) if options.dry_run else options.camera
     if options.preset is not None:
-        await options.camera.go_to_preset(options.preset)
-    return options.camera, None
+        await camera.go_to_preset(options.preset)
+    return camera, None
 
 
 def _perception(options: SessionOptions, resolved: ResolvedPerception, camera: Camera, opened: OpenCamera | None) -> Perception:
     scenes = opened.scenes if opened is not None else _scenes_by_name() if camera.info.simulated else None
-    if scenes is None and resolved.spec is None and resolved.instance is None:
+    served_truth = opened.served_truth if opened is not None else None
+    if scenes is None and resolved.spec is None and resolved.instance is None and resolved.name != SERVED_TRUTH:
         if options.perception is None:
-            return NoPerception()
+            return NoPerception("Pass perception= to scope_ptz.open with the name of a vision model or a Perception object.")
         raise InputError(
             f"The backend '{resolved.name}' reads the ground truth of a simulated scene, and the camera '{camera.info.name}' "
             "has none. Pass perception= with the name of a vision model or a Perception object."
         )
-    return make_perception(resolved, scenes, options.seed)
+    return make_perception(resolved, scenes, options.seed, served_truth=served_truth)
 
 
 def _scenes_by_name() -> Callable[[str], Scene]:

@@ -49,7 +49,7 @@ class EvaluationRequest:
 
 
 def run_evaluation(request: EvaluationRequest) -> Evaluation:
-    """Run or resume an evaluation, or read a complete one. This also works while an event loop is running, as in a notebook."""
+    """Run or resume an evaluation, or read a complete one. This works even inside a running event loop."""
     from scope_ptz.factory.evaluate import evaluate, require_engine
 
     require_engine()
@@ -107,16 +107,16 @@ def _options(request: EvaluationRequest) -> EvaluationOptions:
 
 def _borrowed(models: ModelOptions) -> ModelOptions:
     """Wrap the caller's objects, so that they stay open at the end of the evaluation."""
-    planner, perception = models.own_planner, models.own_perception
+    planner, perception = models.planner_instance, models.perception_instance
     return replace(
         models,
-        own_planner=None if planner is None else BorrowedPlanner(planner),
-        own_perception=None if perception is None else BorrowedPerception(perception),
+        planner_instance=None if planner is None else BorrowedPlanner(planner),
+        perception_instance=None if perception is None else BorrowedPerception(perception),
     )
 
 
 def _task_file(tasks: tuple[Task, ...], out: Path) -> str:
-    """Write tasks to a file next to the logs and return its path. A log names its task file, which is needed to resume it."""
+    """Write tasks to a file next to the logs and return its path. Resuming a log needs its task file."""
     from scope_ptz.bench.tasks.files import digest_of, dump_tasks
 
     path = out / "tasks" / f"{digest_of(tasks)[:16]}.jsonl"

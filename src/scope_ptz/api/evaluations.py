@@ -1,4 +1,4 @@
-"""Evaluations from Python: load tasks, run a planner and perception on them, and read the results."""
+"""Evaluations from Python: load tasks, run a planner and a perception backend on them, and read the results."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CATEGORIES: tuple[str, ...] = get_args(Category)
 class EvaluationResults:
     """The results of an evaluation: scores by category, and every trial. In a notebook, they are shown as a table.
 
-    ``evaluate`` and ``load_results`` return this class. A score is the share of correct trials among those that were scored.
+    ``evaluate`` and ``load_results`` return this class. A score is the fraction of correct trials among those that were scored.
     Trials that failed because of infrastructure are excluded, and so are those that await a judge.
 
     Example:
@@ -46,7 +46,7 @@ class EvaluationResults:
 
     @property
     def pair(self) -> str:
-        """Names of the planner and perception that were evaluated, as "PLANNER + PERCEPTION"."""
+        """Names of the planner and the perception backend that were evaluated, as "PLANNER + PERCEPTION"."""
         return self._evaluation.card.pair
 
     @property
@@ -72,7 +72,7 @@ class EvaluationResults:
 
     @property
     def micro(self) -> float | None:
-        """Share of correct trials among all scored ones; None if nothing was scored."""
+        """Fraction of correct trials among all scored ones; None if nothing was scored."""
         return score(self.trials)
 
     def to_pandas(self) -> pd.DataFrame:
@@ -183,7 +183,7 @@ def evaluate(
     perception_model: str | None = None,
     timeout_s: float | None = None,
 ) -> EvaluationResults:
-    """Run a planner and perception on benchmark tasks and score every run.
+    """Run a planner and a perception backend on benchmark tasks, and score every run.
 
     The log in ``out`` grows as runs end. Calling this again with the same arguments resumes an interrupted evaluation, and reads
     the results of a complete one.
@@ -193,7 +193,7 @@ def evaluate(
         perception: name of a backend or model, or a ``Perception`` object; the simulator's ground truth by default.
         tasks: a split, a task file, or tasks returned by ``load_tasks``.
         out: folder for the logs.
-        pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that does both.
+        pair: a pair as "PLANNER+PERCEPTION", or the name of one model that does both.
         agent: "module:Class" of an external agent, which replaces the planner and the agent loop.
         categories: only tasks of these categories; all by default.
         scenes: only tasks of these scenes; all by default.
@@ -201,9 +201,9 @@ def evaluate(
         epochs: number of runs of each task.
         seed: seed for every random choice.
         max_steps: planner steps after which a run ends.
-        time_budget_s: wall-clock seconds after which a run ends; no limit by default.
-        concurrency: number of concurrent runs; by default it depends on the models.
-        pictures: whether to render and log frames. Ground truth does not need them and is faster without them.
+        time_budget_s: seconds of wall-clock time after which a run ends; no limit by default.
+        concurrency: number of concurrent runs; the default depends on the models.
+        pictures: whether to render and log frames. Ground truth does not need frames and is faster without them.
         fresh: start a new evaluation even if there is a log of the same one.
         planner_url: address of the planner's model server.
         planner_model: the server's name for the planner.
@@ -265,7 +265,7 @@ def load_results(path: str | PathLike[str]) -> EvaluationResults:
 
 
 def score(trials: Sequence[Trial]) -> float | None:
-    """Return the share of correct trials among the scored ones; None if none is scored."""
+    """Return the fraction of correct trials among the scored ones; None if none is scored."""
     from scope_ptz.bench.judging.judgement_tally import without_verdict
 
     scored = [trial for trial in trials if trial.headline != "infrastructure" and not without_verdict(trial)]
@@ -292,5 +292,5 @@ def _row(trial: Trial) -> dict[str, Any]:
 
 def _names(option: str, names: Sequence[str]) -> tuple[str, ...]:
     if isinstance(names, str):
-        raise InputError(f"{option}= takes a list of names: write {option}=[{names!r}].")
+        raise InputError(f"{option}= must be a list of names: write {option}=[{names!r}].")
     return tuple(names)

@@ -10,7 +10,7 @@ from typing import TypeVar
 import anyio
 from anyio.from_thread import BlockingPortal
 
-EXIT_CHECK_INTERVAL_S = 0.5  # seconds between checks whether the main thread has ended
+EXIT_CHECK_INTERVAL_S = 0.5  # seconds between checks of whether the main thread has ended
 _T = TypeVar("_T")
 
 
@@ -25,7 +25,7 @@ class EventLoopThread:
         """Start the thread.
 
         Args:
-            at_exit: coroutine function that runs in the event loop before the thread ends.
+            at_exit: Coroutine function that runs in the event loop before the thread ends.
         """
         self._at_exit = at_exit
         self._ready: Future[BlockingPortal] = Future()
@@ -53,8 +53,8 @@ class EventLoopThread:
     def call(self, work: Callable[[], Awaitable[_T]]) -> _T:
         """Run a coroutine and return its result.
 
-        An exception in the waiting thread, such as KeyboardInterrupt, cancels the coroutine. It is raised again after the coroutine
-        has finished, so that a cancelled run has a complete trace.
+        An exception in the waiting thread, such as KeyboardInterrupt, cancels the coroutine. The exception is raised again after
+        the coroutine has finished, so that a cancelled run has a complete trace.
         """
         future, finished = self.start(work)
         try:
@@ -80,7 +80,7 @@ class EventLoopThread:
         return self._portal.start_task_soon(run), finished
 
     def call_function(self, function: Callable[[], None]) -> None:
-        """Run a function in the thread."""
+        """Run a function in the thread of the event loop."""
         self._portal.call(function)
 
     def stop(self) -> None:

@@ -28,7 +28,7 @@ def run_html(
         instruction: the instruction.
         answer: the final text of the run.
         outcome: the outcome, which determines the colour of the bar.
-        facts: short phrases about the planner, the perception and the duration.
+        facts: short phrases about the planner, the perception backend and the duration.
         filmstrip: the filmstrip, or a sentence that explains why there is none.
         calls: step, tool, arguments, result and seconds of each tool call.
     """
@@ -78,9 +78,9 @@ def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _cell(text: str, *, first: bool) -> str:
-    shown = text if len(text) <= MAX_CELL_CHARS else text[: MAX_CELL_CHARS - 1] + "…"
+    truncated = text if len(text) <= MAX_CELL_CHARS else text[: MAX_CELL_CHARS - 1] + "…"
     nowrap = ";white-space:nowrap" if first else ""
-    return f'<td style="{_CELL}{nowrap}">{escape(shown)}</td>'
+    return f'<td style="{_CELL}{nowrap}">{escape(truncated)}</td>'
 
 
 def _block(parts: Iterable[str]) -> str:

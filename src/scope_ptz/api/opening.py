@@ -12,6 +12,7 @@ from scope_ptz.agent.records import Budgets
 from scope_ptz.api.async_scope import AsyncScope
 from scope_ptz.api.options import ServedModels, SessionOptions, StrPath
 from scope_ptz.api.scope import Scope
+from scope_ptz.api.sessions import new_session
 from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.camera.base import Camera
 from scope_ptz.errors import InputError
@@ -30,6 +31,7 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
     time_s: float | None = None,
     seed: int = 0,
     realtime: bool = False,
+    dry_run: bool = False,
     runs_dir: StrPath | None = None,
     max_steps: int = 60,
     time_budget_s: float | None = None,
@@ -53,19 +55,22 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
     about what it sees raise ``PerceptionError``.
 
     Args:
-        camera: a scene ("highway-works"), any other camera spec ("blender:yard.blend"), or a ``Camera`` object.
+        camera: a scene ("highway-works"), any other camera spec ("blender:yard.blend"), a ``Camera`` object, or a camera on a
+            ``scope serve`` server ("http://host:8000/yard-gate"). With a server, the planner and perception run there, and ``pair``
+            and ``preset`` are the only other arguments. Its token comes from the environment variable SCOPE_TOKEN.
         planner: name of a planner or model ("grammar", "qwen3-4b"), or a ``Planner`` object.
         perception: name of a backend or model ("ground-truth", "noisy", "moondream3"), or a ``Perception`` object.
-        pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that does both.
+        pair: a pair as "PLANNER+PERCEPTION", or the name of one model that does both.
         viewpoint: the viewpoint in the scene at which the camera stands; that of the home preset by default.
         preset: the preset to start at. It determines the viewpoint, so pass only one of the two.
         time_s: scene time at the start, in seconds; the scene's own start time by default.
         seed: seed for every random choice.
         realtime: whether moves take as long as those of a real camera, and scene time follows the wall clock.
-        runs_dir: folder in which each run creates a folder with its trace and pictures; by default runs are kept in memory.
+        dry_run: plan and report moves, but make none: every frame shows the view at the start, and results of moves say so.
+        runs_dir: folder in which each run creates a folder with its trace and pictures; by default, runs stay in memory.
         max_steps: planner steps after which a run ends.
-        time_budget_s: wall-clock seconds after which a run ends; no limit by default.
-        token_budget: tokens used by the planner after which a run ends; no limit by default.
+        time_budget_s: seconds of wall-clock time after which a run ends; no limit by default.
+        token_budget: number of planner tokens after which a run ends; no limit by default.
         planner_url: address of the planner's model server.
         planner_model: the server's name for the planner.
         planner_key_file: file that contains the API key of the planner's server.
@@ -108,6 +113,7 @@ def open_async(
     time_s: float | None = None,
     seed: int = 0,
     realtime: bool = False,
+    dry_run: bool = False,
     runs_dir: StrPath | None = None,
     max_steps: int = 60,
     time_budget_s: float | None = None,
@@ -140,7 +146,7 @@ def open_async(
         >>> asyncio.run(main())
         2.0
     """
-    return AsyncScope(_session_options(**locals()))
+    return new_session(_session_options(**locals()))
 
 
 def _session_options(
@@ -153,6 +159,7 @@ def _session_options(
     time_s: float | None,
     seed: int,
     realtime: bool,
+    dry_run: bool,
     runs_dir: StrPath | None,
     max_steps: int,
     time_budget_s: float | None,
@@ -176,6 +183,7 @@ def _session_options(
         time_s=time_s,
         seed=seed,
         realtime=realtime,
+        dry_run=dry_run,
         runs_dir=None if runs_dir is None else Path(runs_dir),
         budgets=budgets,
     )

@@ -48,8 +48,8 @@ class ServedModels:
         """
         check_type("planner", planner, Planner)
         check_type("perception", perception, Perception)
-        own = [role for role, given in (("planner", planner), ("perception", perception)) if not isinstance(given, str | None)]
-        for role in own:
+        objects = [role for role, value in (("planner", planner), ("perception", perception)) if not isinstance(value, str | None)]
+        for role in objects:
             options = (f"{role}_url", f"{role}_model", f"{role}_key_file", f"{role}_options")
             extra = [name for name in (*options, "pair") if getattr(self, name)]
             extra += [name for name in ("reader", "detector") if role == "perception" and getattr(self, name)]
@@ -70,8 +70,8 @@ class ServedModels:
             reader=self.reader,
             detector=self.detector,
             timeout_s=self.timeout_s,
-            own_planner=planner if isinstance(planner, Planner) else None,
-            own_perception=perception if isinstance(perception, Perception) else None,
+            planner_instance=planner if isinstance(planner, Planner) else None,
+            perception_instance=perception if isinstance(perception, Perception) else None,
         )
 
 
@@ -88,6 +88,7 @@ class SessionOptions:
     time_s: float | None = None
     seed: int = 0
     realtime: bool = False
+    dry_run: bool = False
     runs_dir: Path | None = None
     budgets: Budgets = field(default_factory=Budgets)
 
@@ -98,7 +99,7 @@ def check_type(option: str, given: object, contract: type) -> None:
         expected = (
             "an instance of the class, not the class itself" if isinstance(given, type) else f"a scope_ptz.{contract.__name__}"
         )
-        raise InputError(f"{option}= takes a name or {expected}, got {given!r}.")
+        raise InputError(f"{option}= must be a name or {expected}; got {given!r}.")
 
 
 def _path(given: StrPath | None) -> Path | None:

@@ -32,9 +32,9 @@ class CallResult:
         arguments: the arguments that the planner passed.
         result: the result of the tool as JSON data; None if the call failed.
         error: the reason why the call failed; None if it succeeded.
-        fault: the type of failure: "bad_call", "perception", "camera", "skipped" or "cancelled"; None if the call succeeded.
+        fault: kind of failure: "bad_call", "perception", "camera", "skipped" or "cancelled"; None if the call succeeded.
         pose: pose of the camera after the call.
-        duration_s: duration of the call in wall-clock seconds.
+        duration_s: duration of the call in seconds of wall-clock time.
 
     Example:
         >>> import scope_ptz
@@ -171,12 +171,12 @@ class Run:
 
     @property
     def note(self) -> str:
-        """A sentence that describes built-in perception, such as ground truth; empty for models."""
+        """A sentence that describes a built-in perception backend, such as ground truth; empty for models."""
         return self._trace.started.labels.perception_note
 
     @property
     def timings(self) -> Timings:
-        """Wall-clock seconds by component: ``planner_s``, ``perception_s``, ``camera_s``, ``render_s``, ``total_s``."""
+        """Seconds of wall-clock time by component: ``planner_s``, ``perception_s``, ``camera_s``, ``render_s``, ``total_s``."""
         return self._ended.timings
 
     @property
@@ -186,7 +186,7 @@ class Run:
 
     @property
     def folder(self) -> Path | None:
-        """The run folder, which contains the trace and the pictures; None if the run was kept in memory."""
+        """The run folder, which contains the trace and the pictures; None if the run was stored in memory."""
         return self._trace.folder if self._files is None else None
 
     @cached_property
@@ -198,10 +198,10 @@ class Run:
         """
         from scope_ptz.agent.filmstrip import draw_filmstrip
 
-        drawn = draw_filmstrip(self._trace, self._files)
-        if drawn is None:
+        strip = draw_filmstrip(self._trace, self._files)
+        if strip is None:
             raise TraceError("This run has no pictures, so there is no filmstrip.")
-        return drawn
+        return strip
 
     @property
     def pictures(self) -> tuple[str, ...]:

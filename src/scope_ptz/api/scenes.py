@@ -89,7 +89,7 @@ class SceneInfo:
         more = f" and {len(objects) - MAX_CATEGORIES} more categories" if len(objects) > MAX_CATEGORIES else ""
         rows = [("open with", f'scope_ptz.open("{self.name}")')]
         for viewpoint in self.viewpoints:
-            presets = ", ".join(name for name, stands_at in self.presets.items() if stands_at == viewpoint)
+            presets = ", ".join(name for name, preset_viewpoint in self.presets.items() if preset_viewpoint == viewpoint)
             rows.append((f"presets at {viewpoint}", presets or "none"))
         return card_html(self.title, [*rows, ("objects", listed + more)], self.contact_sheet)
 

@@ -8,10 +8,11 @@ from functools import partial
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
-from scope_ptz.api.async_scope import AsyncScope, View
+from scope_ptz.api.async_scope import View
 from scope_ptz.api.event_loop import EventLoopThread
 from scope_ptz.api.options import SessionOptions
 from scope_ptz.api.run import Event, Run
+from scope_ptz.api.sessions import new_session
 from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.errors import InputError
 from scope_ptz.geometry import Pose
@@ -35,7 +36,7 @@ _T = TypeVar("_T")
 
 
 class Scope:
-    """A session: a camera, a planner and perception that stay open for several runs. ``scope_ptz.open`` creates one.
+    """A session: a camera, a planner and a perception backend that stay open for several runs. ``scope_ptz.open`` creates one.
 
     ``ask`` and ``stream`` pass an instruction to the planner, together with the earlier instructions of the session and their
     answers. The nine tools are also methods of the session, which move the camera and call perception without the planner.
@@ -56,7 +57,7 @@ class Scope:
     """
 
     def __init__(self, options: SessionOptions) -> None:
-        self._session = AsyncScope(options)
+        self._session = new_session(options)
         self._loop = EventLoopThread(self._session.close)
         self._closed = False
         try:
@@ -248,7 +249,7 @@ class Scope:
             zoom: magnification; 1 is the widest view. Unchanged by default.
 
         Returns:
-            The pose reached. It is the nearest pose within the camera's limits.
+            The pose reached, which is the nearest pose within the camera's limits.
 
         Raises:
             InputError: a number is not finite, the zoom is not positive, or the session is closed or busy.
@@ -369,7 +370,7 @@ class Scope:
         return self._call(partial(self._session.count_objects, description, view))
 
     def query_answer(self, question: str, view: View = "current") -> AnswerResult:
-        """Answer a question about what the camera sees: existence, colour, text, position, state.
+        """Answer a question about the camera's view, for example about existence, colour, text, position or state.
 
         Args:
             question: the question in plain language.
@@ -393,7 +394,7 @@ class Scope:
             description: what to zoom in on, for example "the white van".
 
         Returns:
-            The result: ``found`` tells whether the object was found, and ``fill`` how much of the frame it fills.
+            The result: ``found`` states whether the object was found, and ``fill`` is the fraction of the frame that it fills.
 
         Raises:
             PerceptionError: perception failed.
@@ -411,7 +412,7 @@ class Scope:
             duration_s: duration in seconds of scene time, at most 600.
 
         Returns:
-            The result: the camera's ``path``, and in ``held_share`` the share of the time during which the object was seen.
+            The result: the camera's ``path``, and in ``held_share`` the fraction of the time during which the object was seen.
 
         Raises:
             PerceptionError: perception failed.

@@ -1,4 +1,4 @@
-"""A planner and a perception backend for a person: commands are typed, and the person says what a picture shows."""
+"""A planner and a perception backend for human baselines: a person types commands and describes pictures."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from scope_ptz.errors import InputError, PerceptionError
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall
 
-HELP = """  pan 20  pan -20  tilt -5  zoom 2  zoom in  zoom out   turn and zoom; several in one line are one move
+HELP = """  pan 20  pan -20  tilt -5  zoom 2  zoom in  zoom out   turn and zoom; several of these in one line are one move
   preset NAME   home   presets   picture                go to a preset or home, list presets, take a picture
-  count WHAT    count all WHAT                          count in this view, or all around
-  ask QUESTION  ask all QUESTION                        ask about this view, or all around
-  zoomto WHAT   track WHAT SECONDS                      frame something, follow something
-  answer TEXT   question TEXT   refuse TEXT             end the task with an answer, a clarification question, or a refusal
+  count WHAT    count all WHAT                          count in the current view, or in the full scene
+  ask QUESTION  ask all QUESTION                        ask about the current view, or about the full scene
+  zoomto WHAT   track WHAT SECONDS                      zoom in on something, track something
+  answer TEXT   question TEXT   refuse TEXT             end the task with an answer, a clarifying question, or a refusal
   call TOOL {"argument": value}                         call a tool with JSON arguments
   skip          quit                                    leave this task for later; end the session"""
 
 Ask = Callable[[str], str]
-"""Asks the person for a line. Raises ``EOFError`` at the end of the input."""
+"""Shows a prompt to the person and returns the typed line. Raises ``EOFError`` at the end of the input."""
 T = TypeVar("T")
 _FINAL_REPLIES = {"answer": "answered", "question": "clarification", "refuse": "refused"}
 
 
 class TaskLeftError(Exception):
-    """The person leaves the task unfinished. If ``ends_session`` is true, the session ends."""
+    """The person left the task unfinished. If ``ends_session`` is true, the person also ended the session."""
 
     def __init__(self, *, ends_session: bool) -> None:
         super().__init__()
@@ -40,28 +40,31 @@ class TaskLeftError(Exception):
 
 
 def parse(line: str) -> ToolCall | Finish | None:
-    """Parse a typed line into a call or a final reply; return None if it asks for help.
+    """Parse a typed line into a call or a final reply; return None if it is a request for help.
 
-    Raises ``TaskLeftError``, or ``InputError`` when the line is wrong.
+    Raises:
+        TaskLeftError: The line is ``skip`` or ``quit``.
+        InputError: The line is not a valid command.
     """
     verb, _, rest = line.strip().partition(" ")
     verb, rest = verb.lower(), rest.strip()
     if verb in _FINAL_REPLIES:
         if not rest:
-            raise InputError(f"'{verb}' needs a text after it.")
+            raise InputError(f"'{verb}' must be followed by a text.")
         return Finish(kind=_FINAL_REPLIES[verb], text=rest)  # type: ignore[arg-type]
     if verb in ("skip", "quit"):
         raise TaskLeftError(ends_session=verb == "quit")
     if verb in ("help", "?", ""):
         return None
-    name, arguments = _call(verb, rest)
+    name, arguments = _tool_call(verb, rest)
     return ToolCall(id="", name=name, arguments=arguments)
 
 
-def _call(verb: str, rest: str) -> tuple[str, dict[str, Any]]:
-    simple = {"home": "go_home", "presets": "get_presets", "picture": "take_image"}
-    if verb in simple and not rest:
-        return simple[verb], {}
+def _tool_call(verb: str, rest: str) -> tuple[str, dict[str, Any]]:
+    """Return the tool and the arguments of a command."""
+    without_arguments = {"home": "go_home", "presets": "get_presets", "picture": "take_image"}
+    if verb in without_arguments and not rest:
+        return without_arguments[verb], {}
     if verb in ("pan", "tilt", "zoom"):
         return "adjust_ptz", _turn_arguments(f"{verb} {rest}".split())
     if verb == "preset" and rest:
@@ -74,11 +77,11 @@ def _call(verb: str, rest: str) -> tuple[str, dict[str, Any]]:
     if verb == "zoomto" and rest:
         return "zoom_to_object", {"description": rest}
     if verb == "track":
-        what, _, seconds = rest.rpartition(" ")
-        return "track_object", {"description": what.strip(), "duration_s": _number(seconds)}
+        description, _, seconds = rest.rpartition(" ")
+        return "track_object", {"description": description.strip(), "duration_s": _number(seconds)}
     if verb == "call":
-        name, _, given = rest.partition(" ")
-        return name, _json(given or "{}")
+        name, _, arguments = rest.partition(" ")
+        return name, _json_object(arguments or "{}")
     raise InputError(f"'{verb}' is not a command, or its argument is missing. Type help for a list of commands.")
 
 
@@ -93,7 +96,7 @@ def _turn_arguments(words: list[str]) -> dict[str, Any]:
         elif axis in ("pan", "tilt", "zoom"):
             arguments["zoom_factor" if axis == "zoom" else f"{axis}_deg"] = _number(amount)
         else:
-            raise InputError(f"'{axis}' is not pan, tilt or zoom.")
+            raise InputError(f"Each amount must follow pan, tilt or zoom; got '{axis}'.")
     return arguments
 
 
@@ -101,10 +104,10 @@ def _number(text: str) -> float:
     try:
         return float(text.rstrip("°sx%"))
     except ValueError as error:
-        raise InputError(f"'{text}' is not a number.") from error
+        raise InputError(f"A number is required; got '{text}'.") from error
 
 
-def _json(text: str) -> dict[str, Any]:
+def _json_object(text: str) -> dict[str, Any]:
     try:
         content = json.loads(text)
     except ValueError as error:
@@ -115,9 +118,10 @@ def _json(text: str) -> dict[str, Any]:
 
 
 class HumanPlanner(Planner):
-    """A planner that shows the view and the last results to a person, and returns the calls that the person types.
+    """A planner that shows the view and the latest results to a person, and returns the calls that the person types.
 
-    ``left`` is set if the person left the task.
+    Attributes:
+        left: The error with which the person left the task; None if the person did not leave it.
     """
 
     sees = True
@@ -133,8 +137,8 @@ class HumanPlanner(Planner):
             self._tell(f"  {outcome.error or (outcome.result or {}).get('message', 'done')}")
         frame = await self._camera.frame()
         pose = frame.pose.as_dict()
-        where = f"pan {pose['pan_deg']:g}°, tilt {pose['tilt_deg']:g}°, zoom {pose['zoom']:g}x"
-        self._tell(f"  view ({where}): {self._viewer.show(frame)}")
+        pose_text = f"pan {pose['pan_deg']:g}°, tilt {pose['tilt_deg']:g}°, zoom {pose['zoom']:g}x"
+        self._tell(f"  view ({pose_text}): {self._viewer.show(frame)}")
         while True:
             try:
                 command = parse(await to_thread.run_sync(self._ask, "› "))
@@ -154,51 +158,55 @@ class HumanPlanner(Planner):
 
 
 class HumanPerception(Perception):
-    """A perception that asks a person. If ``counts`` is true, the next detection needs only a number and no boxes."""
+    """A perception backend that asks a person.
+
+    Attributes:
+        counts: Whether the next detection is for counting, so that the person enters a number and no boxes.
+    """
 
     def __init__(self, name: str, viewer: Viewer, ask: Ask, tell: Callable[[str], None]) -> None:
         self.name, self._viewer, self._ask, self._tell = name, viewer, ask, tell
         self.counts = False
-        self._last = ""
+        self._last_box = ""
 
     async def caption(self, frame: Frame) -> Caption:
-        began = time.perf_counter()
+        start_s = time.perf_counter()
         text = await self._answer(frame, "What does the picture show?")
-        return Caption(text=text, source=self.name, raw=text, latency_s=time.perf_counter() - began)
+        return Caption(text=text, source=self.name, raw=text, latency_s=time.perf_counter() - start_s)
 
     async def query(self, frame: Frame, question: str) -> Answer:
-        began = time.perf_counter()
+        start_s = time.perf_counter()
         text = await self._answer(frame, f"{question} (? if you cannot tell)")
         known = text != "?"
         answer = text if known else "I cannot tell."
-        return Answer(text=answer, known=known, source=self.name, raw=text, latency_s=time.perf_counter() - began)
+        return Answer(text=answer, known=known, source=self.name, raw=text, latency_s=time.perf_counter() - start_s)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        began = time.perf_counter()
+        start_s = time.perf_counter()
         if self.counts:
-            number = await self._ask_until(frame, f"How many: {description}?", _whole_number)
+            number = await self._ask_until_valid(frame, f"How many: {description}?", _whole_number)
             boxes = (Box(x_min=0, y_min=0, x_max=1, y_max=1, label="counted, place not asked"),) * number
         else:
-            boxes = await self._places(frame, description)
-        return Detections(boxes=boxes, source=self.name, raw=str(len(boxes)), latency_s=time.perf_counter() - began)
+            boxes = await self._ask_box(frame, description)
+        return Detections(boxes=boxes, source=self.name, raw=str(len(boxes)), latency_s=time.perf_counter() - start_s)
 
     async def point(self, frame: Frame, description: str) -> Points:
         boxes = (await self.detect(frame, description)).boxes
         return Points(points=tuple(Point(x=b.centre[0], y=b.centre[1]) for b in boxes), source=self.name)
 
-    async def _places(self, frame: Frame, description: str) -> tuple[Box, ...]:
-        ask = f"Where is: {description}? left top right bottom, in % of the picture; 'none'; Enter: same as before"
-        box = await self._ask_until(frame, ask, self._box, grid=True)
+    async def _ask_box(self, frame: Frame, description: str) -> tuple[Box, ...]:
+        question = f"Where is: {description}? left top right bottom, in % of the picture; 'none'; Enter: same as before"
+        box = await self._ask_until_valid(frame, question, self._parse_box, grid=True)
         return () if box is None else (box,)
 
-    def _box(self, text: str) -> Box | None:
-        text = text or self._last
-        self._last = text
+    def _parse_box(self, text: str) -> Box | None:
+        text = text or self._last_box
+        self._last_box = text
         if text.lower() == "none":
             return None
         sides = [_number(part) / 100 for part in text.replace(",", " ").split()]
         if len(sides) != 4 or not (0 <= sides[0] < sides[2] <= 1 and 0 <= sides[1] < sides[3] <= 1):
-            raise InputError("Enter four numbers from 0 to 100 (left, top, right, bottom), or none.")
+            raise InputError("Enter four numbers from 0 to 100 (left, top, right, bottom), or 'none'.")
         return Box(x_min=sides[0], y_min=sides[1], x_max=sides[2], y_max=sides[3])
 
     async def _answer(self, frame: Frame, question: str) -> str:
@@ -207,13 +215,14 @@ class HumanPerception(Perception):
                 raise InputError("Type what you see.")
             return text
 
-        return await self._ask_until(frame, question, not_empty)
+        return await self._ask_until_valid(frame, question, not_empty)
 
-    async def _ask_until(self, frame: Frame, question: str, read: Callable[[str], T], *, grid: bool = False) -> T:
+    async def _ask_until_valid(self, frame: Frame, question: str, parse: Callable[[str], T], *, grid: bool = False) -> T:
+        """Show a frame and ask a question until the reply can be parsed."""
         self._tell(f"  picture: {self._viewer.show(frame, grid=grid)}")
         while True:
             try:
-                return read((await to_thread.run_sync(self._ask, f"  {question} ")).strip())
+                return parse((await to_thread.run_sync(self._ask, f"  {question} ")).strip())
             except InputError as error:
                 self._tell(f"  {error}")
             except EOFError as error:

@@ -1,4 +1,4 @@
-"""The human baseline: runs by people, scored by the same checks and stored in the same records as runs of models."""
+"""The human baseline: runs by people, which have the same checks and the same records as runs of models."""
 
 from __future__ import annotations
 
@@ -23,12 +23,14 @@ from scope_ptz.simulator.models import SceneFile
 from scope_ptz.version import __version__
 
 RESULT = "evaluation.json"
+"""File name of the result of a session."""
 DIGEST_CHARS = 16
+"""Length of the digest of the tasks, in hexadecimal characters."""
 
 
 def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
-    """Return the run card of a person, who is both planner and perception."""
-    who = ModelCard(name=by, provider="person")
+    """Return the run card of a session of a person, who is both planner and perception."""
+    person = ModelCard(name=by, provider="person")
     return RunCard(
         run_id=f"human-{by}",
         started=started,
@@ -37,8 +39,8 @@ def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max
         dataset=tasks[0].dataset,
         dataset_digest=digest_of(tasks)[:DIGEST_CHARS],
         split=split,
-        planner=who,
-        perception=who,
+        planner=person,
+        perception=person,
         max_steps=max_steps,
         contended=False,
     )
@@ -69,7 +71,7 @@ def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Tria
 
 @dataclass(frozen=True, slots=True)
 class StoredHumanRun:
-    """A run by a person, with its trace and the pictures in its folder."""
+    """A run by a person: its trace, and the pictures in its folder."""
 
     trace: Trace
 
@@ -77,7 +79,7 @@ class StoredHumanRun:
         """Return a picture by its name in the trace; None if it does not exist.
 
         Raises:
-            TraceError: The name leads outside the folder.
+            TraceError: The name is that of a path outside the folder.
         """
         path = picture_of(self.trace.folder, name)
         try:
@@ -87,34 +89,34 @@ class StoredHumanRun:
 
 
 def open_run(result: Path, sample: str) -> StoredHumanRun:
-    """Open a run by its name (``Trial.sample``), from its folder next to the result.
+    """Open a run by its name (``Trial.sample``). Its folder is in the folder of the result.
 
     Raises:
-        TraceError: The run cannot be read, or its name leads outside the folder.
+        TraceError: The run cannot be read, or its name is that of a path outside the folder.
     """
     folder = result.parent / sample
     if sample in {"", ".", ".."} or Path(sample).name != sample:
-        raise TraceError(f"{result} names a run outside its own folder: {sample}.")
+        raise TraceError(f"{result} is damaged: it names the run '{sample}', which is outside its folder.")
     return StoredHumanRun(read_trace(folder))
 
 
 def write_result(evaluation: Evaluation, folder: Path) -> Path:
-    """Write the result of a session atomically, so that an interruption keeps the previous one.
+    """Write the result of a session atomically, so that an interruption does not damage the previous result.
 
     Raises:
         OutputError: The file cannot be written.
     """
-    path, fresh = folder / RESULT, folder / f"{RESULT}.new"
+    path, new_file = folder / RESULT, folder / f"{RESULT}.new"
     try:
-        fresh.write_text(evaluation.model_dump_json(indent=1) + "\n", "utf-8")
-        fresh.replace(path)
+        new_file.write_text(evaluation.model_dump_json(indent=1) + "\n", "utf-8")
+        new_file.replace(path)
     except OSError as error:
         raise OutputError(f"The result {path} cannot be written: {error.strerror}.") from error
     return path
 
 
 def read_result(path: Path) -> Evaluation:
-    """Read a result of ``scope bench human``.
+    """Read a result that ``scope bench human`` wrote.
 
     Raises:
         InputError: The file cannot be read or is not a result.
@@ -124,7 +126,6 @@ def read_result(path: Path) -> Evaluation:
     except OSError as error:
         raise InputError(f"The result {path} cannot be read: {error.strerror}.") from error
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        raise InputError(
-            f"{path} is not a result of scope bench human: {'.'.join(map(str, first['loc']))}: {first['msg']}."
-        ) from error
+        first_error = error.errors(include_url=False)[0]
+        field = ".".join(map(str, first_error["loc"]))
+        raise InputError(f"{path} is not a result of 'scope bench human': {field}: {first_error['msg']}.") from error

@@ -1,7 +1,7 @@
 """Run programs of tool calls with the real tools and the simulated camera, in memory.
 
-The caller chooses the perception backend and the image store. Frames are blank, which is enough for backends that use the ground
-truth.
+The caller provides the perception backend and the image store. Frames are blank, which is sufficient for backends that use the
+ground truth.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ MakeToolContext = Callable[[Camera], ToolContext]
 
 
 class BlankCamera(SimulatedCamera):
-    """A simulated camera with blank frames, which saves the time of rendering. The frames contain their origin."""
+    """A simulated camera with blank frames, so that no time is spent on rendering. The frames contain their origin."""
 
     def __init__(self, scene: Scene, *, clock: SceneClock, width: int, height: int) -> None:
         super().__init__(scene, clock=clock, width=width, height=height)
         self._scene_name = scene.name
-        self._blank = np.broadcast_to(np.uint8(0), (height, width, 3))  # takes no memory
+        self._blank = np.broadcast_to(np.uint8(0), (height, width, 3))  # uses one byte of memory
 
     async def frame(self) -> Frame:
         pose, time_s = await self.pose(), self.clock.now_s()
@@ -54,13 +54,13 @@ class ProgramRunner:
         self.scene, self.make_context, self.geometry = scene, make_context, geometry
 
     async def run(self, task: Task, program: Sequence[ProgramCall], text: str, outcome: str = "answered") -> Episode:
-        """Run a program from the start of a task. After a failed call the program continues.
+        """Run a program from the start of a task. The program continues after a failed call.
 
         Args:
-            task: The task, which defines preset and scene time at the start.
+            task: The task, which defines the preset and the scene time at the start.
             program: The calls in order.
-            text: The final answer of the run.
-            outcome: How the run ends.
+            text: The final answer to record for the run.
+            outcome: The outcome to record for the run.
         """
         clock = SceneClock(task.time_s)
         camera = BlankCamera(self.scene, clock=clock, width=self.geometry.width, height=self.geometry.height)
@@ -74,10 +74,10 @@ class ProgramRunner:
             result, error, fault = None, None, None
             try:
                 result = (await run_tool(context, step.tool, dict(step.arguments))).model_dump(mode="json")
-            except (ToolCallError, UnknownNameError) as wrong:
-                error, fault = str(wrong), "bad_call"
-            except PerceptionError as failed:
-                error, fault = str(failed), "perception"
+            except (ToolCallError, UnknownNameError) as exception:
+                error, fault = str(exception), "bad_call"
+            except PerceptionError as exception:
+                error, fault = str(exception), "perception"
             after = CameraPosition(camera.viewpoint, await camera.pose())
             call = EpisodeCall(step.tool, step.arguments, before, after, result, error, fault, time_s)
             calls.append(with_observations(call, self.geometry))

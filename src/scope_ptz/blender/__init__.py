@@ -1,1 +1,1 @@
-"""Blender as the main program uses it: its environment, the client of the worker process, and the baking of viewpoint packs."""
+"""Blender, as used by the main program: its environment, the client of the worker process, and the baking of viewpoint packs."""

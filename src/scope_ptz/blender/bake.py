@@ -32,7 +32,7 @@ from scope_ptz.simulator.models import Extent, SceneActor, SceneFile, SceneViewp
 from scope_ptz.simulator.pack import Scene
 
 CHECKS, CHECK_SEED = 2, 1
-"""Number of live renders per viewpoint at the end of a bake, at the widest zoom and as many zoomed in; and their seed."""
+"""Number of live renders per viewpoint and zoom level (widest and zoomed in) at the end of a bake, and their seed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class BakedViewpoint:
 
 
 @dataclass(frozen=True, slots=True)
-class Baked:
+class BakeResult:
     """The result of a bake: the packs of a scene, and their comparison with live renders."""
 
     packs: tuple[BakedViewpoint, ...]
@@ -62,7 +62,7 @@ def bake(
     cache_dir: Path,
     viewpoints: Sequence[str] | None = None,
     progress: Progress,
-) -> Baked:
+) -> BakeResult:
     """Bake a scene into a folder.
 
     At the end, every file is checked against its checksum and some views are compared with live renders.
@@ -72,7 +72,7 @@ def bake(
         out_dir: The scene's folder, which must have the scene's name.
         quality: The quality settings.
         command: The command that starts the worker.
-        cache_dir: The folder for unfinished parts.
+        cache_dir: The folder for the cached parts of unfinished bakes.
         viewpoints: Names of the viewpoints to bake; None bakes all.
         progress: Called after every step.
 
@@ -92,21 +92,21 @@ def bake(
         if out_dir.name != scene.name:
             raise BlenderError(f"The folder must have the name of the scene: bake to '{out_dir.with_name(scene.name)}'.")
         known = {v.name: v for v in scene.viewpoints}
-        wanted = list(known) if viewpoints is None else list(viewpoints)
-        for name in wanted:
+        names = list(known) if viewpoints is None else list(viewpoints)
+        for name in names:
             if name not in known:
                 raise UnknownNameError("viewpoint", name, known)
         out_dir.mkdir(parents=True, exist_ok=True)
         baker = _Baker(worker, cache, scene, description, quality)
-        baked = [baker.bake_viewpoint(known[name], out_dir / name) for name in wanted]
-        (out_dir / "scene.json").write_text(scene.model_dump_json(indent=1) + "\n")
+        baked = [baker.bake_viewpoint(known[name], out_dir / name) for name in names]
+        (out_dir / "scene.json").write_text(scene.model_dump_json(indent=1, exclude={"captured"}) + "\n")
         packs = Scene(out_dir)
-        for name in wanted:
+        for name in names:
             packs.viewpoint(name).check_files()
-        poses = draw_poses(packs, CHECK_SEED, CHECKS * len(wanted), CHECKS * len(wanted), wanted)
+        poses = draw_poses(packs, CHECK_SEED, CHECKS * len(names), CHECKS * len(names), names)
         width = quality.check_width
         reports = verify(packs, worker, poses, progress, samples=quality.check_samples, width=width, height=width * 9 // 16)
-    return Baked(tuple(baked), tuple(reports))
+    return BakeResult(tuple(baked), tuple(reports))
 
 
 def scene_file(description: dict[str, Any], version: str) -> SceneFile:
@@ -115,13 +115,13 @@ def scene_file(description: dict[str, Any], version: str) -> SceneFile:
     Raises:
         BlenderError: The description is not a valid scene.
     """
-    own = {k: v for k, v in description.items() if k in SceneFile.model_fields}
+    fields = {k: v for k, v in description.items() if k in SceneFile.model_fields}
     try:
-        return SceneFile.model_validate({"version": version, **own})
+        return SceneFile.model_validate({"version": version, **fields})
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise BlenderError(f"The scene as built cannot be described: {where}: {first['msg']}.") from error
+        raise BlenderError(f"The built scene is invalid at {where}: {first['msg']}. Correct the scene's code.") from error
 
 
 class _Baker:
@@ -136,24 +136,27 @@ class _Baker:
         self._band = reachable_band(Limits(), AXIS_M5075_G)
 
     def bake_viewpoint(self, viewpoint: SceneViewpoint, folder: Path) -> BakedViewpoint:
-        q, name = self._quality, viewpoint.name
-        wide = Panorama.of(q.ids_width, self._band)
+        quality, name = self._quality, viewpoint.name
+        wide = Panorama.of(quality.ids_width, self._band)
         ids, _ = self._truth(name, "ids", panorama_request(wide.projection))
-        coarse = Panorama.of(q.depth_width, self._band)
+        coarse = Panorama.of(quality.depth_width, self._band)
         _, metres = self._truth(name, "depth", panorama_request(coarse.projection))
         silhouettes = self._extents(viewpoint)
-        panorama = Panorama.of(q.base_width, self._band)
-        base = render_base(self._worker, self._cache, name, panorama, q.base_samples)
-        wanted = targets(self._scene, viewpoint, ids, wide.projection)
-        views = [cell.view(q.tile_density_px_per_deg) for cell in in_rows(most_useful(cover(wanted), wanted, q.max_cells))]
+        panorama = Panorama.of(quality.base_width, self._band)
+        base = render_base(self._worker, self._cache, name, panorama, quality.base_samples)
+        tile_targets = targets(self._scene, viewpoint, ids, wide.projection)
+        views = [
+            cell.view(quality.tile_density_px_per_deg)
+            for cell in in_rows(most_useful(cover(tile_targets), tile_targets, quality.max_cells))
+        ]
         tiles = self._tiles(name, "tiles", views)
-        if q.wider_tiles:
-            busy = busiest(ids, wide.projection, q.wider_tiles)
-            tiles += self._tiles(name, "wider tiles", [cell.view(WIDER_DENSITY_PX_PER_DEG) for cell in busy])
+        if quality.wider_tiles:
+            busiest_cells = busiest(ids, wide.projection, quality.wider_tiles)
+            tiles += self._tiles(name, "wider tiles", [cell.view(WIDER_DENSITY_PX_PER_DEG) for cell in busiest_cells])
         actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
         rendered = Rendered(panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes)
-        manifest = write_pack(folder, self._scene, viewpoint, rendered, q, PACK_BYTES, self._cache.steps(f"{name}/pack", 3))
-        uncovered = tuple(t.name for t in wanted if not covers(views, t))
+        manifest = write_pack(folder, self._scene, viewpoint, rendered, quality, PACK_BYTES, self._cache.steps(f"{name}/pack", 3))
+        uncovered = tuple(t.name for t in tile_targets if not covers(views, t))
         return BakedViewpoint(folder, weight_bytes(folder), len(manifest.tiles), uncovered)
 
     def _truth(self, viewpoint: str, part: str, projection: dict[str, Any]) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
@@ -179,13 +182,13 @@ class _Baker:
             self._worker.request("meshes", {"out": str(path)})
 
         def measure(path: Path) -> None:
-            found = extents(meshes, viewpoint, self._cache.follow(f"{viewpoint.name}/extents"))
-            path.write_text(json.dumps([e.model_dump() for e in found]))
+            silhouettes = extents(meshes, viewpoint, self._cache.follow(f"{viewpoint.name}/extents"))
+            path.write_text(json.dumps([e.model_dump() for e in silhouettes]))
 
         meshes = self._cache.part("meshes", ".npz", {}, dump)
         place = viewpoint.model_dump(mode="json")
-        done = self._cache.part(f"{viewpoint.name}/extents", ".json", place, measure)
-        return [Extent.model_validate(e) for e in json.loads(done.read_text())]
+        file = self._cache.part(f"{viewpoint.name}/extents", ".json", place, measure)
+        return [Extent.model_validate(e) for e in json.loads(file.read_text())]
 
     def _tiles(self, viewpoint: str, part: str, views: list[Perspective]) -> list[RenderedTile]:
         step = self._cache.steps(f"{viewpoint}/{part}", len(views))
@@ -198,8 +201,8 @@ class _Baker:
         return tiles
 
     def _actor(self, viewpoint: SceneViewpoint, actor: SceneActor) -> RenderedActor | None:
-        q, stride_m = self._quality, self._strides[actor.id]
-        limit = q.max_sprites * 3 // 2 if stride_m else q.max_sprites
+        quality, stride_m = self._quality, self._strides[actor.id]
+        limit = quality.max_sprites * 3 // 2 if stride_m else quality.max_sprites
         frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, limit)
         if not frames:
             return None

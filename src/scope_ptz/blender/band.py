@@ -16,7 +16,7 @@ ASPECTS = (16 / 9, 4 / 3)
 
 MARGIN_DEG = 0.8  # added to the band at the top and the bottom
 POLE_DEG = 7.0
-"""A band that ends within this angle of a pole is extended to it."""
+"""A band that ends within this angle of a pole is extended to the pole."""
 
 
 def reachable_band(limits: Limits, optics: Optics) -> Band:

@@ -16,7 +16,7 @@ from typing import IO, Any
 
 from scope_ptz.errors import BlenderError
 
-MARK = "@scope "  # begins the lines of the worker's output that are replies
+MARK = "@scope "  # prefix of the lines of the worker's output that are replies
 START_TIMEOUT_S = 120.0
 QUIT_TIMEOUT_S = 10.0
 Progress = Callable[[int, int], None]
@@ -103,7 +103,7 @@ class BlenderWorker:
                     if progress is not None:
                         progress(*reply["progress"])
                 elif "error" in reply:
-                    raise BlenderError(f"Blender could not do '{op}': {reply['error']}")
+                    raise BlenderError(f"The Blender worker could not execute '{op}': {reply['error']}")
                 else:
                     return reply["result"]
 
@@ -135,7 +135,7 @@ class BlenderWorker:
 
     def _crashed(self, op: str) -> BlenderError:
         self._kill()
-        return BlenderError(f"Blender ended during '{op}'. {self._tail()}")
+        return BlenderError(f"Blender exited during '{op}'. {self._tail()}")
 
     def _kill(self) -> None:
         process, self._process = self._process, None

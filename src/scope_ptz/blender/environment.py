@@ -17,7 +17,7 @@ from scope_ptz.errors import BlenderError
 BPY_VERSION = "5.0.1"
 REQUIREMENTS = (f"bpy=={BPY_VERSION}", "numpy>=1.26,<2", "OpenEXR>=3.3,<4")
 PYTHON_VERSION = "3.11"
-READY = "ready"  # a file that marks a complete environment
+READY = "ready"  # name of the file that marks a complete environment
 
 
 def worker_command(cache_dir: Path, blender_python: Path | None = None) -> list[str]:
@@ -85,7 +85,7 @@ def _python311() -> str:
 
 
 def _run(command: list[str]) -> None:
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        tail = "\n".join((done.stderr or done.stdout).strip().splitlines()[-8:])
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        tail = "\n".join((result.stderr or result.stdout).strip().splitlines()[-8:])
         raise BlenderError(f"Blender's environment could not be created: `{' '.join(command)}` failed.\n{tail}")

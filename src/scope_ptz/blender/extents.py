@@ -20,10 +20,10 @@ Ints = NDArray[np.int64]
 
 RASTER_PX = 512  # side of the raster on which silhouettes are drawn
 WIDE_DEG = 60.0
-"""Silhouettes that extend further than this from their middle are drawn on the six faces of a cube."""
+"""Silhouettes that extend further than this from their centre are drawn on the six faces of a cube."""
 
 NEAR_M = 1e-3  # distance of the plane at which triangles are clipped
-FRACTION_BITS = 4  # of the fixed-point coordinates of OpenCV
+FRACTION_BITS = 4  # fractional bits of OpenCV's fixed-point coordinates
 HULL_POINTS = 24  # maximum number of points of an outline
 
 
@@ -97,7 +97,9 @@ def _narrow_solid_angle(body: Body, axes: Floats) -> float:
     local = body.vertices @ axes.T
     flat = local[:, :2] / local[:, 2:]
     used = flat[np.unique(body.triangles)]
-    lengthwise = np.linalg.eigh(np.cov(used.T))[1]  # a leaning pole is drawn upright, which uses more of the raster
+    lengthwise = np.linalg.eigh(np.cov(used.T))[
+        1
+    ]  # align the longest axis with the raster, so that a leaning pole covers more of it
     flat, used = flat @ lengthwise, used @ lengthwise
     low, high = used.min(axis=0), used.max(axis=0)
     coarse, fine = (_drawn_solid_angle(flat[body.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
@@ -105,9 +107,9 @@ def _narrow_solid_angle(body: Body, axes: Floats) -> float:
 
 
 def _without_outline(coarse: float, fine: float) -> float:
-    """Correct an area for the way in which OpenCV fills polygons.
+    """Correct a solid angle for the way in which OpenCV fills polygons.
 
-    OpenCV fills every pixel that an outline touches, so areas are too large. The excess halves with pixels of half the size.
+    OpenCV fills every pixel that an outline touches, so areas are too large. Halving the pixel size halves the excess.
     """
     return max(2 * fine - coarse, 0.3 * fine)
 
@@ -195,5 +197,5 @@ def _nearest_m(body: Body) -> float:
 def _edge_distance(a: Floats, b: Floats) -> float:
     along = b - a
     length2 = np.maximum(np.einsum("ij,ij->i", along, along), 1e-18)
-    share = np.clip(-np.einsum("ij,ij->i", a, along) / length2, 0.0, 1.0)
-    return float(np.linalg.norm(a + along * share[:, None], axis=1).min())
+    fraction = np.clip(-np.einsum("ij,ij->i", a, along) / length2, 0.0, 1.0)
+    return float(np.linalg.norm(a + along * fraction[:, None], axis=1).min())

@@ -10,7 +10,7 @@ from scope_ptz.geometry import Limits, Optics
 from scope_ptz.simulator.models import SceneFile, ScenePreset, SceneViewpoint
 
 ZOOM_RANGE = 5.0
-"""Minimum zoom range of the camera."""
+"""Minimum ratio of the highest to the lowest zoom."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,9 +18,9 @@ class FileCameras:
     """The cameras of a .blend file, as one pan-tilt-zoom camera.
 
     Attributes:
-        scene: The cameras as viewpoints, each with one preset. The active camera is home. The scene has no instances.
-        optics: Zoom 1 is the widest field of view among the cameras.
-        limits: Pan is endless, tilt ranges from straight down to straight up, and zoom includes every camera's field of view.
+        scene: The cameras as viewpoints, each with one preset; the active camera has the home preset. There are no instances.
+        optics: The optics. Zoom 1 is the widest field of view among the cameras.
+        limits: The limits. Pan is endless, tilt ranges from -90 to 90 degrees, and zoom includes every camera's field of view.
     """
 
     scene: SceneFile

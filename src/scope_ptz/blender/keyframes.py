@@ -1,4 +1,4 @@
-"""Keyframes of actors: the places on an actor's path at which it is rendered, and the view of each render."""
+"""Keyframes of actors: the positions on an actor's path at which it is rendered, and the view of each render."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.simulator.models import Band, SceneActor, SceneViewpoint
 
 TURN_STEP_DEG, DISTANCE_STEP = 2.5, 1.06
-"""Maximum change between two keyframes: of the angle from which the actor is seen, and of its distance as a factor."""
+"""Maximum changes between two keyframes: the viewing angle in degrees, and the factor between the distances."""
 
-GAIT_PHASES = 8  # pictures of a walker at each place
+GAIT_PHASES = 8  # pictures of a walker at each position
 MIN_SIDE_PX = 6.0  # actors that stay smaller at the closest zoom are not rendered
 MAX_SIDE_PX = 420  # maximum side of a picture
 SAMPLES = 1200  # points along a path
-MARGIN = 1.06  # factor on the size of a view
+MARGIN = 1.06  # factor by which a view is larger than the actor
 
 Floats = NDArray[np.float64]
 
@@ -32,8 +32,8 @@ class Keyframe:
     """A picture of an actor to render: its time on the path, its gait phase, and the view.
 
     Attributes:
-        also_s: Further times at which the picture is listed. A view uses the picture nearest in time. These times, at corners of
-            the path, prevent it from using a picture from beyond the corner, where the actor faces another way.
+        also_s: Further path times for which the pack lists the picture. They are at corners of the path. A view uses the picture
+            that is nearest in time; without these times, this could be a picture with the heading after the corner.
     """
 
     time_s: float
@@ -55,9 +55,9 @@ class Keyframe:
 def keyframes(
     actor: SceneActor, stride_m: float | None, viewpoint: SceneViewpoint, band: Band, sun: Floats | None, limit: int
 ) -> list[Keyframe]:
-    """Return the keyframes of an actor as seen from a viewpoint. Walkers get a keyframe for every gait phase at each place.
+    """Return the keyframes of an actor as seen from a viewpoint. Walkers get a keyframe for every gait phase at each position.
 
-    Each leg of the path has at least one place, even if that exceeds ``limit`` keyframes.
+    Each leg of the path has at least one position, even if that exceeds ``limit`` keyframes.
     """
     places = _Places.along(actor, viewpoint)
     per_place = GAIT_PHASES if stride_m else 1
@@ -95,23 +95,23 @@ class _Places:
         step = np.diff(way[:, 1:], axis=0)[leg]
         bearings = np.degrees(np.arctan2(step[:, 0], step[:, 1]))
         offset = positions - np.array(viewpoint.position_m)
-        seen, elevations = pan_tilt_deg(offset)
-        return cls(times, positions, bearings, bearings - seen, elevations, np.linalg.norm(offset, axis=1), leg)
+        bearings_from_viewpoint, elevations = pan_tilt_deg(offset)
+        return cls(times, positions, bearings, bearings - bearings_from_viewpoint, elevations, np.linalg.norm(offset, axis=1), leg)
 
     def distinct(self, coarseness: float) -> dict[int, list[int]]:
-        """Return the indices of samples that differ visibly from the one before, at least one for each leg of the path.
+        """Return the indices of samples that differ visibly from the previous one, at least one for each leg of the path.
 
-        The first and the last one of a leg have the index of the leg's start and end as value.
+        The values for the first and the last sample of a leg contain the index of the leg's start and end.
         """
         chosen: dict[int, list[int]] = {}
         for leg in np.unique(self.legs):
             first, last = (int(k) for k in np.flatnonzero(self.legs == leg)[[0, -1]])
-            own = self._distinct_between(first, last, coarseness)
-            if len(own) == 1:
-                own = [(first + last) // 2]
-            chosen |= {k: [] for k in own}
-            chosen[own[0]].append(first)
-            chosen[own[-1]].append(last)
+            distinct_in_leg = self._distinct_between(first, last, coarseness)
+            if len(distinct_in_leg) == 1:
+                distinct_in_leg = [(first + last) // 2]
+            chosen |= {k: [] for k in distinct_in_leg}
+            chosen[distinct_in_leg[0]].append(first)
+            chosen[distinct_in_leg[-1]].append(last)
         return chosen
 
     def _distinct_between(self, first: int, end: int, coarseness: float) -> list[int]:
@@ -146,7 +146,7 @@ def _corners(actor: SceneActor, places: _Places, k: int, sun: Floats | None) -> 
 
 
 def _view(corners: Floats, viewpoint: SceneViewpoint, band: Band) -> Perspective | None:
-    """Return the tightest view of points; None if it leaves the band, is too small to be useful, or is too close to the camera."""
+    """Return the smallest view of points; None if it leaves the band or is too small, or if the camera is too close."""
     offset = corners - np.array(viewpoint.position_m)
     aim = offset.mean(axis=0)
     for _ in range(3):

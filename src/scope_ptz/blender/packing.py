@@ -1,4 +1,4 @@
-"""Writes a viewpoint's rendered parts as a pack, within its size limit."""
+"""Write a viewpoint's rendered parts as a pack, within its size limit."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ SPRITE_CODING = 62
 MAX_BASE_CODING = 94
 MIN_BASE_CODING, MIN_TILE_CODING = 74, 48
 CODING_STEP = 4
-"""Encoder qualities of sprites, base and tiles, and the step in which they are reduced."""
+"""Encoder qualities of sprites, the base panorama and tiles, and the step by which they are reduced."""
 
-MANIFEST_BYTES = 400_000  # reserved for the manifest
+MANIFEST_BYTES = 400_000  # bytes reserved for the manifest
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ def write_pack(
     tile_ids = [_numbers(fresh, f"tiles/{k:02d}-ids{NUMBERS}", t.ids) for k, t in enumerate(rendered.tiles)]
     actors = [_actor(fresh, a) for a in rendered.actors]
     step()
-    base, tile_colours = _fitting_colour(fresh, rendered, quality, limit_bytes - MANIFEST_BYTES)
+    base, tile_colours = _colour_within_limit(fresh, rendered, quality, limit_bytes - MANIFEST_BYTES)
     step()
     manifest = Manifest(
         scene=scene.name,
@@ -109,7 +109,7 @@ def write_pack(
         extents=rendered.extents,
         actors=actors,
     )
-    (fresh / "manifest.json").write_text(manifest.model_dump_json() + "\n")
+    (fresh / "manifest.json").write_text(manifest.model_dump_json(exclude={"seen"}) + "\n")
     size = weight_bytes(fresh)
     if size > limit_bytes:
         raise BlenderError(f"The pack of '{viewpoint.name}' is {size / 1e6:.2f} MB even at the lowest quality. Bake fewer tiles.")
@@ -126,10 +126,10 @@ def weight_bytes(folder: Path) -> int:
     return sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
 
 
-def _fitting_colour(folder: Path, rendered: Rendered, quality: Quality, limit_bytes: int) -> tuple[Layer, list[Layer]]:
-    """Encode base and tiles at the best quality that fits into ``limit_bytes``.
+def _colour_within_limit(folder: Path, rendered: Rendered, quality: Quality, limit_bytes: int) -> tuple[Layer, list[Layer]]:
+    """Encode the base panorama and the tiles at the best quality that fits into ``limit_bytes``.
 
-    Spare space goes to the base. If there is too little space, the quality of the tiles is reduced first.
+    Spare space is used for the base. If there is too little space, the quality of the tiles is reduced first.
     """
     space = limit_bytes - weight_bytes(folder)
     encoded = (-1, -1)

@@ -1,4 +1,4 @@
-"""Panoramas that the worker renders in strips. They are joined, and smoothed where the projection stretches them."""
+"""Panoramas that the worker renders in strips. The strips are joined, and smoothed where the projection stretches them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Picture = NDArray[np.uint8]
 def render_base(worker: BlenderWorker, cache: PartCache, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
     """Render the base panorama of shape ``(H, W, 3)``, RGB.
 
-    Each strip is cached separately, so an interrupted bake loses at most one.
+    Each strip is cached separately, so an interrupted bake loses at most one strip.
     """
     strips = panorama.strips(STRIP_ROWS, OVERLAP_ROWS)
     step = cache.steps(f"{viewpoint}/base", len(strips))
@@ -50,7 +50,7 @@ def render_base(worker: BlenderWorker, cache: PartCache, viewpoint: str, panoram
 
 
 def _is_plain(strip: Strip) -> bool:
-    """Return whether a strip needs fewer samples: the sky has no noise, and the ground below is smoothed later."""
+    """Return whether a strip needs fewer samples: the sky has no noise, and the ground near the nadir is smoothed later."""
     return strip.bottom_tilt_deg > SKY_TILT_DEG or strip.top_tilt_deg < NADIR_TILT_DEG
 
 
@@ -84,7 +84,7 @@ def _widened(picture: Picture, width: int) -> Picture:
 
 
 def smoothed(picture: Picture, panorama: Panorama) -> Picture:
-    """Blur each row horizontally to the level of detail at the equator, which no view exceeds."""
+    """Blur each row horizontally to the level of detail at the equator, which is the highest that a view can show."""
     result = picture.copy()
     for row in range(panorama.height):
         tilt = panorama.tilt_of_row(row + 0.5)

@@ -17,7 +17,7 @@ def ssim(a: Picture, b: Picture, mask: Mask | None = None) -> float:
     """Return the mean structural similarity of two ``(H, W, 3)`` RGB pictures in grey, over the pixels of ``mask`` if given.
 
     Wang et al., "Image quality assessment: from error visibility to structural similarity", 2004, with a uniform 7x7 window and
-    sample covariance. The border, where the window does not fit, is left out.
+    sample covariance. The border, where the window does not fit, is excluded.
     """
     x, y = _grey(a), _grey(b)
     size = (WINDOW_PX, WINDOW_PX)

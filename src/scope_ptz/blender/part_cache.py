@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 
 class Progress(Protocol):
-    """Called after every step with the part, the steps done, the total, and the seconds so far."""
+    """A function that is called after every step with the part, the finished steps, all steps, and the elapsed seconds."""
 
     def __call__(self, part: str, done: int, total: int, seconds: float) -> None: ...
 

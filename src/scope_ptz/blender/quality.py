@@ -13,7 +13,7 @@ NEAR_M, FAR_M = 0.3, 20000.0
 """Range of the depth encoding in metres."""
 
 WIDER_DENSITY_PX_PER_DEG = 34.0
-"""Density of the wider tiles: enough for views at 1.7x, and half of what a view at 3.5x needs."""
+"""Density of the wider tiles: sufficient for views at 1.7x, and half of the density that a view at 3.5x needs."""
 
 DEPTH_STEP = 48
 """Depth codes are rounded to multiples of this, which is 0.8% of the distance and precise enough for occlusion."""

@@ -14,7 +14,7 @@ from scope_ptz.simulator.layers import read_colour, read_ids, write_colour, writ
 
 INDEX = "references.json"
 QUALITY = 97
-"""Encoding quality of the pictures. It is high, because compression losses would look like differences of the pack."""
+"""Encoding quality of the pictures. It is high, because compression losses would count as differences of the pack."""
 
 Reference = tuple[str, Pose, NDArray[np.uint8], NDArray[np.uint16]]
 """Viewpoint, pose, picture of shape ``(H, W, 3)`` and instance numbers ``(H, W)``."""

@@ -15,10 +15,10 @@ from scope_ptz.simulator.models import Sprite
 
 MAX_SHEET_WIDTH = 4096
 SHADOW_GAMMA = 0.5
-"""Gamma of shadows, which are rendered in linear light but drawn over display values."""
+"""Gamma applied to shadows, because they are rendered in linear light but drawn over display values."""
 
 FAINT = 0.04
-"""Shadows weaker than this are removed, so that the dimming around a body does not extend to the border of its picture."""
+"""Shadows weaker than this are removed, so that the faint shade around a body does not extend to the border of its picture."""
 
 FEATHER_SHARE = 0.06
 """Share of a sprite's size over which the shadow fades towards the border of its picture."""
@@ -85,7 +85,7 @@ def _feather(shape: tuple[int, ...]) -> NDArray[np.float32]:
 
 
 def _lay_out(sizes: list[tuple[int, int]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
-    """Arrange rectangles in rows, in the given order. Return the left and top of each, and the size of the sheet."""
+    """Arrange rectangles in rows, in the given order. Return the left and top of each rectangle, and the size of the sheet."""
     places: list[tuple[int, int]] = []
     x = y = shelf = right = 0
     for width, height in sizes:

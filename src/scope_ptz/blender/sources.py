@@ -1,4 +1,4 @@
-"""The source files that a scene is built from. A bake depends only on these."""
+"""The source files from which a scene is built. A bake depends only on these files."""
 
 from __future__ import annotations
 
@@ -20,20 +20,22 @@ def studio_folder() -> Path:
     """
     spec = importlib.util.find_spec(PACKAGE)
     if spec is None or not spec.submodule_search_locations:
-        raise BlenderError("scope-studio is not installed. Building and rendering scenes needs it: install it next to scope-ptz.")
+        raise BlenderError(
+            "scope-studio is not installed. Building and rendering scenes needs it: install it together with scope-ptz."
+        )
     return Path(next(iter(spec.submodule_search_locations)))
 
 
 def scene_key(source: str) -> str:
     """Return a key for the current version of a scene's code: the scene's name and a digest.
 
-    The digest covers the scene's own module and every module of ``scope_studio`` that it imports, directly or indirectly.
+    The digest covers the scene's module and every module of ``scope_studio`` that it imports, directly or indirectly.
     """
-    own = scene_file(source)
+    scene_module = scene_file(source)
     digest = sha256()
-    for path in [own, *sorted(_imported_modules(own))]:
+    for path in [scene_module, *sorted(_imported_modules(scene_module))]:
         digest.update(path.read_bytes())
-    name = own.parent.name if own.name == "__init__.py" else own.stem
+    name = scene_module.parent.name if scene_module.name == "__init__.py" else scene_module.stem
     return f"{name.replace('_', '-')}-{digest.hexdigest()[:12]}"
 
 

@@ -1,4 +1,4 @@
-"""The choice of tiles: the parts of the sphere that get sharper pictures."""
+"""Selection of tiles: the parts of the sphere that get sharper pictures."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SMALL_SIDE_PX = 60.0
 """An instance is a target only if its longer side is shorter than this at the widest zoom."""
 
 MIN_TELE_SIDE_PX, MIN_TELE_AREA_PX = 12.0, 70.0
-"""An instance is a target only if its shorter side and its area reach this at the closest zoom, so that it can be counted."""
+"""An instance is a target only if its shorter side and its area are at least these at the closest zoom. It can then be counted."""
 
 SMALL_CAPS_PX = 20.0
 """A text is a target only if its capitals are lower than this at the widest zoom."""
@@ -64,7 +64,7 @@ class Cell:
     span_tilt_deg: float
 
     def view(self, density_px_per_deg: float) -> Perspective:
-        """Return the smallest upright view that shows the cell with its overlap at this density in the middle."""
+        """Return the smallest view that contains the cell with its overlap and has this density at its centre."""
         edge = np.linspace(-0.5, 0.5, 17)
         pans, tilts = np.meshgrid(edge * (self.span_pan_deg + 2 * OVERLAP_DEG), edge * (self.span_tilt_deg + 2 * OVERLAP_DEG))
         axes = Perspective(self.pan_deg, self.tilt_deg, 90.0, 2, 2)
@@ -80,7 +80,7 @@ def targets(scene: SceneFile, viewpoint: SceneViewpoint, ids: NDArray[np.uint16]
 
     Args:
         scene: The scene.
-        viewpoint: Where the camera stands.
+        viewpoint: The position of the camera.
         ids: Instance numbers of the panorama.
         projection: The panorama's projection.
     """
@@ -144,7 +144,7 @@ def cover(targets: Sequence[Target]) -> list[Cell]:
 
 
 def busiest(ids: NDArray[np.uint16], projection: Equirectangular, limit: int) -> list[Cell]:
-    """Return the ``limit`` wide grid cells that contain the longest outlines of instances.
+    """Return the wide grid cells that contain the longest outlines of instances, at most ``limit``.
 
     Args:
         ids: Instance numbers of the panorama.
@@ -159,8 +159,8 @@ def busiest(ids: NDArray[np.uint16], projection: Equirectangular, limit: int) ->
         cells = _cells(everywhere, float(shift), WIDER_PAN_DEG, WIDER_TILT_DEG)
         found = [(_outline_length(outlines, cell), k) for k, cell in enumerate(cells)]
         chosen = sorted(found, reverse=True)[:limit]
-        if (total := sum(share for share, _ in chosen)) > best_total:
-            best, best_total = [cells[k] for k in sorted(k for share, k in chosen if share > 0)], total
+        if (total := sum(length for length, _ in chosen)) > best_total:
+            best, best_total = [cells[k] for k in sorted(k for length, k in chosen if length > 0)], total
     return best
 
 
@@ -175,15 +175,15 @@ def _inside(view: Perspective, target: Target) -> Mask:
 
 
 def most_useful(cells: Sequence[Cell], targets: Sequence[Target], limit: int) -> list[Cell]:
-    """Return the ``limit`` cells that show parts of the most targets, in their previous order."""
+    """Return the ``limit`` cells that show parts of the most targets, in their original order."""
     views = [cell.view(1.0) for cell in cells]
     shown = [sum(bool(_inside(view, target).any()) for target in targets) for view in views]
-    kept = sorted(sorted(range(len(cells)), key=lambda k: (-int(shown[k]), k))[:limit])
-    return [cells[k] for k in kept]
+    selected = sorted(sorted(range(len(cells)), key=lambda k: (-int(shown[k]), k))[:limit])
+    return [cells[k] for k in selected]
 
 
 def in_rows(cells: Sequence[Cell]) -> list[Cell]:
-    """Join neighbouring cells of a row, so that fewer renders must be started.
+    """Join neighbouring cells of a row to reduce the number of renders.
 
     Rows far from the horizon are not joined, because a long cell there would fill little of its picture.
     """
@@ -250,7 +250,7 @@ def _cells(needed: Mask, shift_deg: float, span_pan_deg: float, span_tilt_deg: f
 
 
 def _best_starts(columns: Mask, span_deg: float) -> list[float]:
-    """Return the left edges of the grid columns to render, in degrees from pan -180, for the offset that needs the fewest."""
+    """Return the left edges of the columns to render, in degrees from pan -180, for the offset with the fewest columns."""
     places = np.flatnonzero(columns) * GRID_DEG
     best: list[float] = []
     for offset in np.arange(0.0, span_deg, GRID_DEG):

@@ -17,25 +17,27 @@ WIDE_IOU_MEAN, TELE_IOU_MEAN = 0.97, 0.93
 """Minimum mean IoU of the boxes of instances over 400 pixels, at the widest zoom and zoomed in."""
 
 
-def shortcomings(reports: Sequence[PoseReport]) -> list[str]:
+def missed_tolerances(reports: Sequence[PoseReport]) -> list[str]:
     """Return a sentence for each tolerance that is not met."""
     wide = [r for r in reports if r.pose.zoom == 1.0]
     tiled = [r for r in reports if r.pose.zoom > 1.0 and r.tile_share > 0]
-    found = []
+    shortfalls = []
     if wide and (average := mean(r.ssim for r in wide)) < WIDE_SSIM_MEAN:
-        found.append(f"mean SSIM at 1x is {average:.3f}, {WIDE_SSIM_MEAN:g} is required")
-    found += [f"{_where(r)}: SSIM {r.ssim:.3f}, {WIDE_SSIM_MIN:g} is required" for r in wide if r.ssim < WIDE_SSIM_MIN]
-    found += [f"{_where(r)}: SSIM {r.ssim:.3f}, {TILE_SSIM_MIN:g} is required in tiles" for r in tiled if r.ssim < TILE_SSIM_MIN]
-    found += [
+        shortfalls.append(f"mean SSIM at 1x is {average:.3f}, {WIDE_SSIM_MEAN:g} is required")
+    shortfalls += [f"{_where(r)}: SSIM {r.ssim:.3f}, {WIDE_SSIM_MIN:g} is required" for r in wide if r.ssim < WIDE_SSIM_MIN]
+    shortfalls += [
+        f"{_where(r)}: SSIM {r.ssim:.3f}, {TILE_SSIM_MIN:g} is required in tiles" for r in tiled if r.ssim < TILE_SSIM_MIN
+    ]
+    shortfalls += [
         f"{_where(r)}: {r.sharpness_ratio:.2f} of the live sharpness, {TILE_SHARPNESS_MIN:g} is required in tiles"
         for r in tiled
         if r.sharpness_ratio < TILE_SHARPNESS_MIN
     ]
-    for name, group, least in (("1x", wide, WIDE_IOU_MEAN), ("2x to 5x", tiled, TELE_IOU_MEAN)):
+    for name, group, required in (("1x", wide, WIDE_IOU_MEAN), ("2x to 5x", tiled, TELE_IOU_MEAN)):
         ious = [r.box_iou for r in group if r.box_iou is not None]
-        if ious and mean(ious) < least:
-            found.append(f"mean box IoU at {name} is {mean(ious):.3f}, {least:g} is required")
-    return found
+        if ious and mean(ious) < required:
+            shortfalls.append(f"mean box IoU at {name} is {mean(ious):.3f}, {required:g} is required")
+    return shortfalls
 
 
 def _where(report: PoseReport) -> str:

@@ -1,4 +1,4 @@
-"""Comparison of packs with live Blender renders of the same poses, which are drawn at random by a seed."""
+"""Comparison of packs with live Blender renders of the same poses. The poses are drawn at random from a seed."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
 
 LIVE_SEED = 7
-"""Seed of the live renders. It differs from the seed of bakes, because equal noise would increase the similarity."""
+"""Seed of the live renders. It differs from the seed of bakes, because identical noise would increase the similarity."""
 
 MIN_BOX_PIXELS = 400  # boxes of smaller instances are not compared
 
 FOLIAGE = ("tree", "bush", "hedge", "planter", "flower bed", "hanging basket")
-"""Categories of plants, where re-projection is hardest."""
+"""Categories of plants, which are the hardest to re-project."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoseReport:
     """The comparison of one pose: SSIM, sharpness relative to the live render, and mean IoU of boxes (None without boxes).
 
-    ``tile_share`` is the share of the view that is covered by tiles that are dense enough for it. If it is above 0 and the zoom
+    ``tile_share`` is the fraction of the view that is covered by sufficiently dense tiles. If it is above 0 and the zoom
     above 1, similarity and sharpness refer to that part.
     """
 
@@ -49,7 +49,7 @@ class PoseReport:
 
 
 def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None) -> list[tuple[str, Pose]]:
-    """Draw ``wide`` poses at the widest zoom, and ``zoomed`` ones on tiles at 2x to 5x, for all viewpoints in turn.
+    """Draw ``wide`` poses at the widest zoom, and ``zoomed`` poses on tiles at 2x to 5x, for all viewpoints in turn.
 
     Half of the poses are at places that are hard to re-project: a sign, foliage, or the ground far below. The others are spread
     over all pans and tilts at the widest zoom, and on random tiles when zoomed in.
@@ -59,8 +59,8 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
     poses = []
     for k in range(wide):
         name = names[k % len(names)]
-        share = (k + rng.random()) / wide
-        pan, tilt = rng.uniform(-179, 179), limits.min_tilt_deg + share * (limits.max_tilt_deg - limits.min_tilt_deg)
+        fraction = (k + rng.random()) / wide
+        pan, tilt = rng.uniform(-179, 179), limits.min_tilt_deg + fraction * (limits.max_tilt_deg - limits.min_tilt_deg)
         if hard := _hard_place(scene, name, k // len(names), rng, limits):
             pan, tilt = hard
         poses.append((name, limits.clamp(Pose(limits.aim_pan_deg(pan), tilt, 1.0))[0]))
@@ -79,7 +79,10 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
 
 
 def _hard_place(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: Limits) -> tuple[float, float] | None:
-    """Return pan and tilt of foliage, a sign or the ground, in turn; None in every second turn, or if there is none."""
+    """Return pan and tilt of foliage, a sign or the ground, depending on ``turn``.
+
+    Return None if ``turn`` is odd, or if there is no such place.
+    """
     place = next(v for v in scene.file.viewpoints if v.name == viewpoint)
     kind = turn // 2 % 3
     if turn % 2:
@@ -103,11 +106,11 @@ def compare(scene: Scene, viewpoint: str, pose: Pose, colour: NDArray[np.uint8],
     """Compare the pack's view of a pose with a live render: a picture ``(H, W, 3)`` and instance numbers ``(H, W)``."""
     height, width = ids.shape
     view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
-    here = scene.viewpoint(viewpoint)
-    tiled = _in_tiles(here.manifest.tiles, view)
+    opened = scene.viewpoint(viewpoint)
+    tiled = _in_tiles(opened.manifest.tiles, view)
     mask = tiled if tiled.any() and pose.zoom > 1.0 else None
-    stored = colour_view(here, view)
-    ious = list(box_ious(id_view(here, view), ids, MIN_BOX_PIXELS).values())
+    stored = colour_view(opened, view)
+    ious = list(box_ious(id_view(opened, view), ids, MIN_BOX_PIXELS).values())
     return PoseReport(
         viewpoint=viewpoint,
         pose=pose,

@@ -6,125 +6,21 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import AsyncGenerator, AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from scope_ptz.camera.capabilities import NO_CAPABILITIES, Capabilities, check_drive, check_preset_name
-from scope_ptz.camera.clocks import Clock
+from scope_ptz.camera.capabilities import check_drive, check_preset_name
+from scope_ptz.camera.clocks import Clock, elapsed_s
+from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
+from scope_ptz.camera.values import Arrival as Arrival
+from scope_ptz.camera.values import CameraInfo as CameraInfo
+from scope_ptz.camera.values import Frame as Frame
+from scope_ptz.camera.values import FrameOrigin as FrameOrigin
+from scope_ptz.camera.values import PresetInfo as PresetInfo
 from scope_ptz.errors import CameraError, InputError, UnknownNameError
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from scope_ptz.camera.control import ControlLock
-    from scope_ptz.geometry import Axis, Limits, Optics, Pose, Projection
-
-
-@dataclass(frozen=True, slots=True)
-class CameraInfo:
-    """What is known about a camera before it moves.
-
-    Attributes:
-        name: The camera's name, as traces show it.
-        limits: Limits of pan, tilt and zoom.
-        optics: Field of view by zoom.
-        frame_width: Width of a frame in pixels.
-        frame_height: Height of a frame in pixels.
-        simulated: Whether the pictures are computed.
-        capabilities: What else the camera can do.
-        rendering: Version of the simulator's rendering; None for other cameras.
-        assumed: What the driver only assumes until somebody measures it, such as "field of view".
-    """
-
-    name: str
-    limits: Limits
-    optics: Optics
-    frame_width: int
-    frame_height: int
-    simulated: bool
-    capabilities: Capabilities = NO_CAPABILITIES
-    rendering: int | None = None
-    assumed: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class FrameOrigin:
-    """Where a simulated frame comes from.
-
-    Only the simulator and ground-truth perception read it; frames of real cameras have none.
-    """
-
-    scene: str
-    viewpoint: str
-    pose: Pose
-    time_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class Frame:
-    """A picture with the geometry that maps any of its pixels to a direction.
-
-    Attributes:
-        image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
-        pose: The camera's pose at exposure; for a stitched panorama the pose at the start of the sweep.
-        hfov_deg: Horizontal field of view in degrees.
-        time_s: Time of exposure on the camera's clock, in seconds.
-        projection: The mapping between pixels and directions.
-        origin: Where a simulated frame comes from, None for real cameras.
-    """
-
-    image: NDArray[np.uint8]
-    pose: Pose
-    hfov_deg: float
-    time_s: float
-    projection: Projection
-    origin: FrameOrigin | None = None
-
-    def __post_init__(self) -> None:
-        if self.image.ndim != 3 or self.image.shape[2] != 3 or self.image.dtype != "uint8":
-            raise ValueError(f"a frame needs an (H, W, 3) uint8 image, got {self.image.shape} {self.image.dtype}")
-        self.image.flags.writeable = False
-
-    @property
-    def width(self) -> int:
-        return int(self.image.shape[1])
-
-    @property
-    def height(self) -> int:
-        return int(self.image.shape[0])
-
-    def _repr_html_(self) -> str:
-        """Return the frame as a notebook shows it: the picture, with pose and field of view below."""
-        from scope_ptz.camera.notebook import figure_html
-
-        pose = self.pose.as_dict()
-        where = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · zoom {pose['zoom']:.1f}x"
-        place = f"{self.origin.scene} / {self.origin.viewpoint} · " if self.origin else ""
-        return figure_html(self.image, f"{place}{where} · {self.hfov_deg:.0f}° wide · {self.time_s:.1f} s")
-
-
-@dataclass(frozen=True, slots=True)
-class PresetInfo:
-    """A named pose. ``description`` may be empty."""
-
-    name: str
-    description: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Arrival:
-    """Where a move ended.
-
-    Attributes:
-        pose: The pose reached.
-        clamped: The axes that a limit stopped.
-        limited_by: What held the camera back, as a noun phrase, if it was not a limit of the device.
-    """
-
-    pose: Pose
-    clamped: tuple[Axis, ...] = field(default=())
-    limited_by: str = ""
+    from scope_ptz.geometry import Pose
 
 
 class Camera(ABC):
@@ -149,7 +45,7 @@ class Camera(ABC):
     async def move(self, pose: Pose) -> Arrival:
         """Go to an absolute pose within the limits and return when the picture has settled.
 
-        ``pose.pan_deg`` is clamped without being wrapped first: 190 stops at 179 and never turns the long way.
+        ``pose.pan_deg`` is clamped without being wrapped first: 190 stops at 179 and never turns the long way round.
         """
 
     @abstractmethod
@@ -158,7 +54,7 @@ class Camera(ABC):
 
     @abstractmethod
     async def go_to_preset(self, name: str) -> Arrival:
-        """Go to a preset. In a simulated scene this may change the optical centre.
+        """Go to a preset. In a simulated scene, this may change the optical centre.
 
         Raises:
             UnknownNameError: There is no such preset.
@@ -174,13 +70,13 @@ class Camera(ABC):
 
     @abstractmethod
     async def stop(self) -> None:
-        """Stop any motion at once."""
+        """Stop any motion immediately."""
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
-        """Move at constant velocities until the next command. The call returns at once.
+        """Move at constant velocities until the next command. The call returns immediately.
 
-        The camera stops by itself after ``timeout_s`` without another command, so a lost controller cannot leave it moving.
-        Velocities above the top speed are reduced to it, and an axis stands still at its limit.
+        The camera stops on its own after ``timeout_s`` without another command, so a lost controller cannot leave it moving.
+        Velocities above the top speed are reduced to it, and an axis stops at its limit.
 
         Args:
             pan_dps: Degrees per second to the right.
@@ -195,17 +91,66 @@ class Camera(ABC):
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
         raise CameraError(f"{self.info.name} cannot be driven at a velocity; move it to a pose.")
 
+    async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
+        """Turn so that a point of the current picture comes to its middle, and zoom by a factor: click to centre, area zoom.
+
+        Args:
+            x: The point from 0 (left border) to 1 (right border).
+            y: The point from 0 (top) to 1 (bottom).
+            zoom_factor: Factor of the focal length; 2.0 shows half of the picture's width.
+
+        Raises:
+            InputError: The point is not within the picture, or the factor is not above 0.
+        """
+        return await self.move(self.info.towards(await self.pose(), x, y, zoom_factor))
+
+    async def lens(self) -> LensState:
+        """Return the focus and iris settings that the lens reports.
+
+        Raises:
+            CameraError: Neither the focus nor the iris can be set.
+        """
+        raise CameraError(f"The focus and the iris of {self.info.name} cannot be set.")
+
+    async def set_focus(self, action: FocusAction, *, step: float = DEFAULT_STEP) -> LensState:
+        """Set the focus and return when it has settled.
+
+        Args:
+            action: What to do; ``info.capabilities.focus`` lists what the camera offers.
+            step: Length of a step as a share of the range, for "near" and "far".
+
+        Raises:
+            InputError: The action is unknown, or the step is not above 0 and at most 1.
+            CameraError: The camera does not offer the action.
+        """
+        check_focus(self.info.name, action, self.info.capabilities.focus, step)
+        raise CameraError(f"The driver of {self.info.name} cannot set the focus.")
+
+    async def set_iris(self, action: IrisAction, *, step: float = DEFAULT_STEP) -> LensState:
+        """Set the iris.
+
+        Args:
+            action: What to do; ``info.capabilities.iris`` lists what the camera offers.
+            step: Length of a step as a share of the range, for "open" and "close".
+
+        Raises:
+            InputError: The action is unknown, or the step is not above 0 and at most 1.
+            CameraError: The camera does not offer the action.
+        """
+        check_iris(self.info.name, action, self.info.capabilities.iris, step)
+        raise CameraError(f"The driver of {self.info.name} cannot set the iris.")
+
     async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
         """Yield frames as they are taken, at most ``rate_hz`` per second. A slow consumer gets the newest frame, never a queue.
 
-        Use it with ``contextlib.aclosing``, so that a stream is released when its consumer leaves.
+        Use it with ``contextlib.aclosing``, so that the stream is released when the consumer stops early.
         """
         if not (math.isfinite(rate_hz) and rate_hz > 0):
-            raise InputError(f"The frame rate must be above 0 frames per second, got {rate_hz}.")
+            raise InputError(f"The frame rate must be above 0 frames per second; got {rate_hz}.")
         while True:
-            due_s = self.clock.now_s() + 1.0 / rate_hz
+            due_s = elapsed_s(self.clock) + 1.0 / rate_hz
             yield await self.frame()
-            await self.clock.sleep(due_s - self.clock.now_s())
+            await self.clock.sleep(due_s - elapsed_s(self.clock))
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:  # noqa: ARG002 - part of the contract
         """Save the current pose as a preset. A preset of the same name is replaced.
@@ -229,14 +174,17 @@ class Camera(ABC):
         raise CameraError(f"{self.info.name} cannot remove presets.")
 
     control_lock: ControlLock | None = None
-    """The lock of ``control``. Whoever opens a camera that others can reach sets one that holds between processes."""
+    """The lock of ``control``.
+
+    For a camera that other programs can reach, the code that opens it sets a lock that works across processes.
+    """
 
     @asynccontextmanager
     async def control(self, holder: str) -> AsyncIterator[None]:
-        """Return a context in which ``holder`` has control of the camera and nobody else can take it.
+        """Return a context in which ``holder`` has exclusive control of the camera.
 
         Raises:
-            ControlHeldError: Somebody else has control. The message says who.
+            ControlHeldError: Someone else has control. The message names them.
         """
         from scope_ptz.camera.control import ControlLock
 
@@ -250,11 +198,11 @@ class Camera(ABC):
             lock.release()
 
     async def close(self) -> None:
-        """Release what the camera holds. The default holds nothing."""
+        """Release the camera's resources. By default, there are none."""
 
     @contextmanager
     def hold_time(self) -> Iterator[None]:
-        """Return a context in which nothing in a simulated world moves, so that a sweep sees one instant.
+        """Return a context that holds the time of a simulated world, so that a sweep sees a single instant.
 
         Real time cannot be held.
         """

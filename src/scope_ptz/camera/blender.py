@@ -26,19 +26,19 @@ from scope_ptz.simulator.models import SceneFile
 class BlenderCamera(Camera):
     """A pan-tilt-zoom camera in a scene that a worker has loaded. Moves to a pose take no time.
 
-    Moving actors stand where they are at the clock's time. The caller closes the worker.
+    Moving actors are at their positions at the clock's time. The caller closes the worker.
 
     Args:
         worker: The running worker, with the scene loaded.
         scene: The scene's viewpoints and presets.
-        viewpoint: Where the camera stands; the default is the viewpoint of the home preset.
+        viewpoint: The viewpoint of the camera; by default, that of the home preset.
         samples: Cycles samples for each pixel. Packs are baked with 16.
         clock: The scene's clock.
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
         optics: Fields of view by zoom; the default is the simulated camera's, an AXIS M5075-G.
         limits: Limits of motion; the default is the simulated camera's.
-        has_truth: Whether frames say where they come from, so that the ground truth of a pack applies to them.
+        has_truth: Whether frames state their origin, so that the ground truth of a pack applies to them.
     """
 
     clock: SceneClock
@@ -82,6 +82,11 @@ class BlenderCamera(Camera):
     def viewpoint(self) -> str:
         """Name of the current optical centre."""
         return self._viewpoint
+
+    @property
+    def scene_presets(self) -> ScenePresets:
+        """The presets with their viewpoints and poses."""
+        return self._presets
 
     async def pose(self) -> Pose:
         return self._motion.pose(self.clock.elapsed_s())
@@ -128,7 +133,7 @@ class BlenderCamera(Camera):
         """Render a view, or return the last picture if nothing has changed since."""
         key = (viewpoint, view, time_s)
         if self._last is None or self._last[0] != key:
-            # A render takes seconds. A cancelled one is abandoned, and closing the worker ends it.
+            # A render takes seconds. A cancelled render is abandoned, and ends when the worker is closed.
             self._last = key, await to_thread.run_sync(self._render, viewpoint, view, time_s, abandon_on_cancel=True)
         return self._last[1]
 

@@ -1,17 +1,18 @@
-"""What a camera can do beyond moving to a pose and taking a picture, and checks of the arguments for it."""
+"""Optional capabilities of a camera, beyond moving to a pose and taking a picture, and checks of their arguments."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
 
+from scope_ptz.camera.lens import FocusAction, IrisAction
 from scope_ptz.errors import InputError
 
 MAX_PRESET_NAME = 31
 """The longest preset name in characters, which is the limit of AXIS cameras."""
 
 MAX_DRIVE_TIMEOUT_S = 10.0
-"""The longest time that a camera moves without another command."""
+"""The longest time, in seconds, that a camera moves without another command."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,19 +26,19 @@ class Velocity:
 
 @dataclass(frozen=True, slots=True)
 class Capabilities:
-    """What a camera can do beyond moving to a pose and taking a picture.
+    """The capabilities of a camera beyond moving to a pose and taking a picture.
 
     Attributes:
         top_speed: The highest velocity of ``drive``; an axis with 0 cannot be driven.
         edits_presets: Whether presets can be saved and removed.
-        focus: Whether focus can be set.
-        iris: Whether the iris can be set.
+        focus: The actions of ``set_focus``; empty if the focus cannot be set.
+        iris: The actions of ``set_iris``; empty if the iris cannot be set.
     """
 
     top_speed: Velocity = field(default_factory=Velocity)
     edits_presets: bool = False
-    focus: bool = False
-    iris: bool = False
+    focus: tuple[FocusAction, ...] = ()
+    iris: tuple[IrisAction, ...] = ()
 
     @property
     def drives(self) -> bool:
@@ -46,7 +47,7 @@ class Capabilities:
 
 
 NO_CAPABILITIES = Capabilities()
-"""A camera that moves to poses and takes pictures, and nothing else."""
+"""The capabilities of a camera that only moves to poses and takes pictures."""
 
 
 def check_drive(pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
@@ -57,9 +58,9 @@ def check_drive(pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: fl
     """
     for name, value in (("pan_dps", pan_dps), ("tilt_dps", tilt_dps), ("zoom_rate", zoom_rate)):
         if not math.isfinite(value):
-            raise InputError(f"{name} must be a finite number, got {value}.")
+            raise InputError(f"{name} must be a finite number; got {value}.")
     if not 0 < timeout_s <= MAX_DRIVE_TIMEOUT_S:
-        raise InputError(f"timeout_s must be above 0 and at most {MAX_DRIVE_TIMEOUT_S:g} seconds, got {timeout_s}.")
+        raise InputError(f"timeout_s must be above 0 and at most {MAX_DRIVE_TIMEOUT_S:g} seconds; got {timeout_s}.")
 
 
 def check_preset_name(name: str) -> None:
@@ -70,5 +71,5 @@ def check_preset_name(name: str) -> None:
     """
     if not name.strip() or name != name.strip() or not name.isprintable() or len(name) > MAX_PRESET_NAME:
         raise InputError(
-            f"A preset name must have 1 to {MAX_PRESET_NAME} printable characters, no spaces at either end, got {name[:60]!r}."
+            f"A preset name must have 1 to {MAX_PRESET_NAME} printable characters, without spaces at either end; got {name[:60]!r}."
         )

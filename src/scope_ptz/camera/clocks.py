@@ -12,8 +12,13 @@ class Clock(Protocol):
     def now_s(self) -> float: ...
 
     async def sleep(self, seconds: float) -> None:
-        """Wait for this much time of the camera's world."""
+        """Wait for a duration of the camera's world, in seconds."""
         ...
+
+
+def elapsed_s(clock: Clock) -> float:
+    """Return seconds that pass at their own pace, also while scene time is stopped or has another speed."""
+    return float(getattr(clock, "elapsed_s", clock.now_s)())
 
 
 class WallClock:
@@ -23,11 +28,11 @@ class WallClock:
         self._started_s = monotonic()
 
     def now_s(self) -> float:
-        """Return the seconds since the clock was made."""
+        """Return the seconds since the clock was created."""
         return monotonic() - self._started_s
 
     async def sleep(self, seconds: float) -> None:
-        """Wait."""
+        """Wait for a number of seconds."""
         import anyio
 
         await anyio.sleep(max(0.0, seconds))

@@ -1,6 +1,6 @@
 """The conformance suite of the ``Camera`` contract.
 
-With pytest, subclass it and make the camera; every ``test_`` method is a test::
+With pytest, subclass ``CameraConformance`` and create the camera; every ``test_`` method is a test::
 
     @pytest.mark.anyio
     class TestMyCamera(CameraConformance):
@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Awaitable
 from contextlib import AbstractAsyncContextManager, aclosing
 
 import anyio
@@ -23,12 +22,14 @@ import anyio.lowlevel
 import numpy as np
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo
+from scope_ptz.camera.conformance_checks import expect, expect_error, middle, poses, turn
+from scope_ptz.camera.conformance_lens import LensConformance
 from scope_ptz.camera.control import ControlHeldError
 from scope_ptz.errors import CameraError, InputError, UnknownNameError
-from scope_ptz.geometry import Perspective, Pose, wrap_pan_deg
+from scope_ptz.geometry import Perspective, Pose
 
 
-class CameraConformance(ABC):
+class CameraConformance(LensConformance, ABC):
     """Checks of the ``Camera`` contract. Widen the tolerances for real motors and encoders."""
 
     angle_tolerance_deg: float = 0.05
@@ -38,9 +39,9 @@ class CameraConformance(ABC):
     same_picture_mean_difference: float = 2.0
     """Allowed mean difference (of 255) between two pictures of one pose, for noise and moving things."""
     driving_s: float = 0.5
-    """How long the camera is driven, in seconds of its clock."""
+    """Duration of drives in seconds of the camera's clock."""
     stopping_s: float = 0.5
-    """Allowed time from the end of a drive to a standstill."""
+    """Allowed time from the end of a drive until the camera is stationary."""
 
     @abstractmethod
     def camera(self) -> AbstractAsyncContextManager[Camera]:
@@ -52,7 +53,7 @@ class CameraConformance(ABC):
         for name in sorted(n for n in dir(self) if n.startswith("test_")):
             try:
                 await getattr(self, name)()
-            except Exception as error:  # a check that breaks in any way has failed
+            except Exception as error:  # any exception in a check is a failure
                 failed[name] = f"{type(error).__name__}: {error}"
         return failed
 
@@ -60,85 +61,86 @@ class CameraConformance(ABC):
         async with self.camera() as camera:
             info = camera.info
             limits = info.limits
-            _expect(bool(info.name), "the camera has no name")
-            _expect(limits.min_pan_deg < limits.max_pan_deg, "pan limits are not in order")
-            _expect(limits.min_tilt_deg < limits.max_tilt_deg, "tilt limits are not in order")
-            _expect(0 < limits.min_zoom <= limits.max_zoom, "zoom limits are not in order")
-            _expect(info.frame_width > 0 and info.frame_height > 0, "frames have no size")
-            _expect(info.optics.min_zoom <= limits.min_zoom + 1e-6, "the zoom table does not reach the widest zoom")
-            _expect(info.optics.max_zoom >= limits.max_zoom - 1e-6, "the zoom table does not reach the closest zoom")
+            expect(bool(info.name), "the camera has no name")
+            expect(limits.min_pan_deg < limits.max_pan_deg, "pan limits are not in order")
+            expect(limits.min_tilt_deg < limits.max_tilt_deg, "tilt limits are not in order")
+            expect(0 < limits.min_zoom <= limits.max_zoom, "zoom limits are not in order")
+            expect(info.frame_width > 0 and info.frame_height > 0, "frames have no size")
+            expect(info.optics.min_zoom <= limits.min_zoom + 1e-6, "the zoom table does not reach the widest zoom")
+            expect(info.optics.max_zoom >= limits.max_zoom - 1e-6, "the zoom table does not reach the closest zoom")
 
     async def test_starts_within_limits(self) -> None:
         async with self.camera() as camera:
             pose = await camera.pose()
             _, clamped = camera.info.limits.clamp(pose)
-            _expect(not clamped, f"it starts at {pose}, beyond its own limits")
+            expect(not clamped, f"it starts at {pose}, beyond its own limits")
 
     async def test_move_arrives_and_stays(self) -> None:
         async with self.camera() as camera:
-            for target in _poses(camera.info):
+            for target in poses(camera.info):
                 arrival = await camera.move(target)
                 self._expect_at(arrival.pose, target, camera.info)
-                _expect(arrival.clamped == (), f"{target} is within the limits, yet {arrival.clamped} was called clamped")
+                expect(arrival.clamped == (), f"{target} is within the limits, yet {arrival.clamped} was reported as clamped")
                 self._expect_at(await camera.pose(), arrival.pose, camera.info)
 
     async def test_positive_is_right_and_up(self) -> None:
         async with self.camera() as camera:
-            start = _middle(camera.info)
+            start = middle(camera.info)
             arrival = await camera.move(start)
             moved = await camera.move(arrival.pose.turned(pan_deg=6.0, tilt_deg=4.0))
-            _expect(_turn(moved.pose, arrival.pose) > 5.0, "a positive pan did not turn right")
-            _expect(moved.pose.tilt_deg - arrival.pose.tilt_deg > 3.0, "a positive tilt did not turn up")
+            expect(turn(moved.pose, arrival.pose) > 5.0, "a positive pan did not turn right")
+            expect(moved.pose.tilt_deg - arrival.pose.tilt_deg > 3.0, "a positive tilt did not turn up")
 
     async def test_clamps_and_says_so(self) -> None:
         async with self.camera() as camera:
             limits = camera.info.limits
-            middle = _middle(camera.info)
-            await camera.move(middle)
+            centre = middle(camera.info)
+            await camera.move(centre)
             for target, axis in (
-                (Pose(middle.pan_deg, limits.max_tilt_deg + 20, middle.zoom), "tilt"),
-                (Pose(middle.pan_deg, limits.min_tilt_deg - 500, middle.zoom), "tilt"),
-                (Pose(middle.pan_deg, middle.tilt_deg, limits.max_zoom * 3), "zoom"),
-                (Pose(middle.pan_deg, middle.tilt_deg, limits.min_zoom / 3), "zoom"),
+                (Pose(centre.pan_deg, limits.max_tilt_deg + 20, centre.zoom), "tilt"),
+                (Pose(centre.pan_deg, limits.min_tilt_deg - 500, centre.zoom), "tilt"),
+                (Pose(centre.pan_deg, centre.tilt_deg, limits.max_zoom * 3), "zoom"),
+                (Pose(centre.pan_deg, centre.tilt_deg, limits.min_zoom / 3), "zoom"),
             ):
                 arrival = await camera.move(target)
-                _expect(arrival.clamped == (axis,), f"{target}: clamped should be {(axis,)}, is {arrival.clamped}")
+                expect(arrival.clamped == (axis,), f"{target}: clamped should be {(axis,)}, is {arrival.clamped}")
                 self._expect_at(arrival.pose, limits.clamp(target)[0], camera.info)
 
     async def test_pan_stops_or_wraps(self) -> None:
         async with self.camera() as camera:
             limits = camera.info.limits
-            middle = _middle(camera.info)
+            centre = middle(camera.info)
             for beyond in (limits.max_pan_deg + 15, limits.min_pan_deg - 15):
-                target = Pose(beyond, middle.tilt_deg, middle.zoom)
+                target = Pose(beyond, centre.tilt_deg, centre.zoom)
                 arrival = await camera.move(target)
                 expected, clamped = limits.clamp(target)
                 self._expect_at(arrival.pose, expected, camera.info)
-                _expect(arrival.clamped == clamped, f"pan {beyond}: clamped should be {clamped}, is {arrival.clamped}")
+                expect(arrival.clamped == clamped, f"pan {beyond}: clamped should be {clamped}, is {arrival.clamped}")
 
     async def test_frame_carries_its_geometry(self) -> None:
         async with self.camera() as camera:
             info = camera.info
-            for target in _poses(info):
+            for target in poses(info):
                 arrival = await camera.move(target)
                 frame = await camera.frame()
-                _expect(
-                    (frame.width, frame.height) == (info.frame_width, info.frame_height), "the frame's size is not as announced"
-                )
-                _expect(not frame.image.flags.writeable, "a frame's image must be read-only")
+                expect((frame.width, frame.height) == (info.frame_width, info.frame_height), "the frame's size is not as announced")
+                expect(not frame.image.flags.writeable, "a frame's image must be read-only")
                 self._expect_at(frame.pose, arrival.pose, info)
                 field = info.optics.hfov_deg(frame.pose.zoom)
-                _expect(abs(frame.hfov_deg / field - 1) <= self.field_tolerance, f"field of view {frame.hfov_deg}, table {field}")
+                expect(abs(frame.hfov_deg / field - 1) <= self.field_tolerance, f"field of view {frame.hfov_deg}, table {field}")
                 view = frame.projection
-                _expect(isinstance(view, Perspective), "a camera's frame is a perspective view")
-                _expect((view.width, view.height) == (frame.width, frame.height), "the projection has another size than the image")
+                expect(isinstance(view, Perspective), "a camera's frame must be a perspective view")
+                expect(
+                    (view.width, view.height) == (frame.width, frame.height),
+                    "the size of the projection differs from that of the image",
+                )
                 towards = view.directions((0.5, 0.5))
                 aim = Perspective(frame.pose.pan_deg, frame.pose.tilt_deg, 30.0, 10, 10).directions((0.5, 0.5))
-                _expect(float(towards @ aim) > math.cos(math.radians(0.1)), "the middle of the frame is not where the pose points")
+                expect(float(towards @ aim) > math.cos(math.radians(0.1)), "the middle of the frame is not where the pose points")
 
     async def test_one_pose_gives_one_picture(self) -> None:
         async with self.camera() as camera:
-            there, elsewhere, *_ = _poses(camera.info)
+            there, elsewhere, *_ = poses(camera.info)
             with camera.hold_time():
                 await camera.move(there)
                 first = await camera.frame()
@@ -148,18 +150,18 @@ class CameraConformance(ABC):
                 again = await camera.frame()
             same = float(np.abs(first.image.astype(float) - again.image).mean())
             differs = float(np.abs(first.image.astype(float) - other.image).mean())
-            _expect(same <= self.same_picture_mean_difference, f"back at {there} the picture differs by {same:.2f} of 255")
-            _expect(differs > same, "a move does not change the picture")
+            expect(same <= self.same_picture_mean_difference, f"back at {there} the picture differs by {same:.2f} of 255")
+            expect(differs > same, "a move does not change the picture")
 
     async def test_presets_are_stable_and_reachable(self) -> None:
         async with self.camera() as camera:
             presets = await camera.presets()
             names = [p.name for p in presets]
-            _expect(len(set(names)) == len(names), f"two presets share a name: {names}")
-            _expect(presets == await camera.presets(), "the list of presets changes by itself")
+            expect(len(set(names)) == len(names), f"two presets share a name: {names}")
+            expect(presets == await camera.presets(), "the list of presets changes although no preset was edited")
             for name in names:
                 first = await camera.go_to_preset(name)
-                await camera.move(_middle(camera.info))
+                await camera.move(middle(camera.info))
                 again = await camera.go_to_preset(name)
                 self._expect_at(again.pose, first.pose, camera.info)
                 self._expect_at(await camera.pose(), first.pose, camera.info)
@@ -178,7 +180,7 @@ class CameraConformance(ABC):
     async def test_home_does_not_depend_on_history(self) -> None:
         async with self.camera() as camera:
             home = await camera.go_home()
-            for target in _poses(camera.info):
+            for target in poses(camera.info):
                 await camera.move(target)
                 back = await camera.go_home()
                 self._expect_at(back.pose, home.pose, camera.info)
@@ -187,13 +189,13 @@ class CameraConformance(ABC):
         async with self.camera() as camera:
             home = await camera.go_home()
         async with self.camera() as camera:
-            await camera.move(_poses(camera.info)[1])
+            await camera.move(poses(camera.info)[1])
             self._expect_at((await camera.go_home()).pose, home.pose, camera.info)
 
     async def test_stop_ends_a_move(self) -> None:
         async with self.camera() as camera:
-            start = (await camera.move(_poses(camera.info)[0])).pose
-            target = _poses(camera.info)[1]
+            start = (await camera.move(poses(camera.info)[0])).pose
+            target = poses(camera.info)[1]
             arrivals: list[Arrival] = []
 
             async def go() -> None:
@@ -206,15 +208,15 @@ class CameraConformance(ABC):
             stopped = await camera.pose()
             self._expect_at(arrivals[0].pose, stopped, camera.info)
             low, high = sorted((start.pan_deg, target.pan_deg))
-            _expect(low - 1 <= stopped.pan_deg <= high + 1, f"stopped at {stopped}, not between {start} and {target}")
+            expect(low - 1 <= stopped.pan_deg <= high + 1, f"stopped at {stopped}, not between {start} and {target}")
             self._expect_at(await camera.pose(), stopped, camera.info)
 
     async def test_drive_moves_until_stopped(self) -> None:
         async with self.camera() as camera:
-            start = (await camera.move(_middle(camera.info))).pose
+            start = (await camera.move(middle(camera.info))).pose
             top = camera.info.capabilities.top_speed
             if not camera.info.capabilities.drives:
-                await _expect_error(CameraError, camera.drive(5.0))
+                await expect_error(CameraError, camera.drive(5.0))
                 self._expect_at(await camera.pose(), start, camera.info)
                 return
             await camera.drive(-top.pan_dps / 4, top.tilt_dps / 8, timeout_s=5.0)
@@ -222,9 +224,9 @@ class CameraConformance(ABC):
             await camera.stop()
             stopped = await camera.pose()
             if top.pan_dps:
-                _expect(_turn(stopped, start) < -1.0, f"driven left from {start}, it is at {stopped}")
+                expect(turn(stopped, start) < -1.0, f"driven left from {start}, it is at {stopped}")
             if top.tilt_dps:
-                _expect(stopped.tilt_deg > start.tilt_deg + 0.5, f"driven up from {start}, it is at {stopped}")
+                expect(stopped.tilt_deg > start.tilt_deg + 0.5, f"driven up from {start}, it is at {stopped}")
             await camera.clock.sleep(self.driving_s)
             self._expect_at(await camera.pose(), stopped, camera.info)
 
@@ -233,11 +235,11 @@ class CameraConformance(ABC):
             top = camera.info.capabilities.top_speed
             if not top.pan_dps:
                 return
-            start = (await camera.move(_middle(camera.info))).pose
+            start = (await camera.move(middle(camera.info))).pose
             await camera.drive(top.pan_dps / 4, timeout_s=self.driving_s / 2)
             await camera.clock.sleep(self.driving_s / 2 + self.stopping_s)
             ended = await camera.pose()
-            _expect(_turn(ended, start) > 0.5, f"driven right from {start}, it is at {ended}")
+            expect(turn(ended, start) > 0.5, f"driven right from {start}, it is at {ended}")
             await camera.clock.sleep(self.driving_s)
             self._expect_at(await camera.pose(), ended, camera.info)
 
@@ -246,28 +248,28 @@ class CameraConformance(ABC):
             top, limits = camera.info.capabilities.top_speed, camera.info.limits
             if not top.zoom_rate:
                 return
-            start = (await camera.move(_middle(camera.info))).pose
+            start = (await camera.move(middle(camera.info))).pose
             await camera.drive(zoom_rate=top.zoom_rate * 100, timeout_s=10.0)
             await camera.clock.sleep(math.log2(limits.max_zoom / start.zoom) / top.zoom_rate + self.stopping_s)
             closest = await camera.pose()
             await camera.stop()
-            _expect(closest.zoom > 1.2 * start.zoom, f"driven to zoom in from {start}, it is at {closest}")
-            _expect(closest.zoom <= limits.max_zoom * (1 + self.zoom_tolerance), f"it is at {closest}, beyond its zoom limit")
+            expect(closest.zoom > 1.2 * start.zoom, f"driven to zoom in from {start}, it is at {closest}")
+            expect(closest.zoom <= limits.max_zoom * (1 + self.zoom_tolerance), f"it is at {closest}, beyond its zoom limit")
             self._expect_at(closest, Pose(start.pan_deg, start.tilt_deg, closest.zoom), camera.info)
 
     async def test_drive_refuses_wrong_numbers(self) -> None:
         async with self.camera() as camera:
             before = await camera.pose()
-            await _expect_error(InputError, camera.drive(math.nan))
-            await _expect_error(InputError, camera.drive(0.0, math.inf))
+            await expect_error(InputError, camera.drive(math.nan))
+            await expect_error(InputError, camera.drive(0.0, math.inf))
             for timeout_s in (0.0, -1.0, math.nan, 1e9):
-                await _expect_error(InputError, camera.drive(5.0, timeout_s=timeout_s))
+                await expect_error(InputError, camera.drive(5.0, timeout_s=timeout_s))
             self._expect_at(await camera.pose(), before, camera.info)
 
     async def test_frames_follow_the_camera(self) -> None:
         async with self.camera() as camera:
-            first = (await camera.move(_poses(camera.info)[0])).pose
-            second, seen = _poses(camera.info)[1], []
+            first = (await camera.move(poses(camera.info)[0])).pose
+            second, seen = poses(camera.info)[1], []
             async with aclosing(camera.frames()) as stream:
                 async for frame in stream:
                     seen.append(frame)
@@ -275,47 +277,50 @@ class CameraConformance(ABC):
                         await camera.move(second)
                     if len(seen) > 3 and self._is_at(frame.pose, second, camera.info):
                         break
-                    _expect(len(seen) < 500, f"the stream does not show {second} after a move there")
+                    expect(len(seen) < 500, f"the stream does not show {second} after a move there")
             self._expect_at(seen[0].pose, first, camera.info)
             times = [frame.time_s for frame in seen]
-            _expect(times == sorted(times), "the frames of a stream go back in time")
+            expect(times == sorted(times), "the frames of a stream go back in time")
             info = camera.info
-            _expect(all((f.width, f.height) == (info.frame_width, info.frame_height) for f in seen), "a frame has another size")
-            _expect(bool(np.any(seen[0].image != seen[-1].image)), "the stream shows one picture for two poses")
+            expect(
+                all((f.width, f.height) == (info.frame_width, info.frame_height) for f in seen),
+                "the size of a frame differs from that in info",
+            )
+            expect(bool(np.any(seen[0].image != seen[-1].image)), "the stream shows one picture for two poses")
 
     async def test_frames_refuse_a_wrong_rate(self) -> None:
         async with self.camera() as camera:
             for rate_hz in (0.0, -5.0, math.nan):
-                await _expect_error(InputError, anext(camera.frames(rate_hz=rate_hz)))
+                await expect_error(InputError, anext(camera.frames(rate_hz=rate_hz)))
 
     async def test_presets_can_be_saved_and_removed(self) -> None:
         async with self.camera() as camera:
             before = await camera.presets()
             if not camera.info.capabilities.edits_presets:
-                await _expect_error(CameraError, camera.save_preset("check-of-presets"))
+                await expect_error(CameraError, camera.save_preset("check-of-presets"))
                 return
-            spot = (await camera.move(_poses(camera.info)[1])).pose
+            spot = (await camera.move(poses(camera.info)[1])).pose
             await camera.save_preset("check-of-presets")
             try:
                 listed = [preset.name for preset in await camera.presets()]
-                _expect(sorted(listed) == sorted([*(p.name for p in before), "check-of-presets"]), f"after saving: {listed}")
-                await camera.move(_middle(camera.info))
+                expect(sorted(listed) == sorted([*(p.name for p in before), "check-of-presets"]), f"after saving: {listed}")
+                await camera.move(middle(camera.info))
                 self._expect_at((await camera.go_to_preset("check-of-presets")).pose, spot, camera.info)
-                other = (await camera.move(_middle(camera.info))).pose
+                other = (await camera.move(middle(camera.info))).pose
                 await camera.save_preset("check-of-presets")
                 await camera.move(spot)
                 self._expect_at((await camera.go_to_preset("check-of-presets")).pose, other, camera.info)
             finally:
                 await camera.remove_preset("check-of-presets")
-            _expect(await camera.presets() == before, "saving and removing a preset changes the others")
-            await _expect_error(UnknownNameError, camera.remove_preset("check-of-presets"))
+            expect(await camera.presets() == before, "saving and removing a preset changes the others")
+            await expect_error(UnknownNameError, camera.remove_preset("check-of-presets"))
 
     async def test_wrong_preset_names_are_refused(self) -> None:
         async with self.camera() as camera:
             before = await camera.presets()
             for name in ("", "  ", " spaced ", "x" * 300, "two\nlines", "bell\a"):
-                await _expect_error(InputError, camera.save_preset(name))
-            _expect(await camera.presets() == before, "a refused preset changes the list")
+                await expect_error(InputError, camera.save_preset(name))
+            expect(await camera.presets() == before, "a refused preset changes the list")
 
     async def test_one_controller_at_a_time(self) -> None:
         async with self.camera() as camera:
@@ -324,7 +329,7 @@ class CameraConformance(ABC):
                     async with camera.control("second operator"):
                         raise AssertionError("two controllers at the same time")
                 except ControlHeldError as error:
-                    _expect("first operator" in str(error), f"the error does not say who has control: {error}")
+                    expect("first operator" in str(error), f"the error does not name the program that has control: {error}")
             async with camera.control("second operator"):
                 pass
 
@@ -332,54 +337,17 @@ class CameraConformance(ABC):
         async with self.camera() as camera:
             before = camera.clock.now_s()
             await camera.clock.sleep(0.05)
-            _expect(camera.clock.now_s() > before, "sleeping on the camera's clock does not let its time go by")
+            expect(camera.clock.now_s() > before, "sleeping on the camera's clock does not advance its time")
             first, second = await camera.frame(), await camera.frame()
-            _expect(second.time_s >= first.time_s, "frames go back in time")
+            expect(second.time_s >= first.time_s, "frames go back in time")
 
     def _expect_at(self, pose: Pose, expected: Pose, info: CameraInfo) -> None:
-        _expect(self._is_at(pose, expected, info), f"the camera is at {pose}, it should be at {expected}")
+        expect(self._is_at(pose, expected, info), f"the camera is at {pose}, it should be at {expected}")
 
     def _is_at(self, pose: Pose, expected: Pose, info: CameraInfo) -> bool:
-        pan_off = abs(_turn(pose, expected)) if info.limits.pan_endless else abs(pose.pan_deg - expected.pan_deg)
+        pan_off = abs(turn(pose, expected)) if info.limits.pan_endless else abs(pose.pan_deg - expected.pan_deg)
         return (
             pan_off <= self.angle_tolerance_deg
             and abs(pose.tilt_deg - expected.tilt_deg) <= self.angle_tolerance_deg
             and abs(pose.zoom - expected.zoom) <= self.zoom_tolerance * expected.zoom
         )
-
-
-def _poses(info: CameraInfo) -> list[Pose]:
-    """Return four poses well within the limits and far from each other."""
-    limits = info.limits
-    shares = ((0.5, 0.6, 0.0), (0.8, 0.4, 0.7), (0.2, 0.8, 0.3), (0.55, 0.2, 1.0))
-    return [
-        Pose(
-            limits.min_pan_deg + pan * (limits.max_pan_deg - limits.min_pan_deg),
-            limits.min_tilt_deg + tilt * (limits.max_tilt_deg - limits.min_tilt_deg),
-            limits.min_zoom + zoom * (limits.max_zoom - limits.min_zoom),
-        )
-        for pan, tilt, zoom in shares
-    ]
-
-
-def _middle(info: CameraInfo) -> Pose:
-    limits = info.limits
-    pan, tilt = (limits.min_pan_deg + limits.max_pan_deg) / 2, (limits.min_tilt_deg + limits.max_tilt_deg) / 2
-    return Pose(pan, tilt, math.sqrt(limits.min_zoom * limits.max_zoom))
-
-
-def _turn(pose: Pose, since: Pose) -> float:
-    return wrap_pan_deg(pose.pan_deg - since.pan_deg)
-
-
-async def _expect_error(kind: type[Exception], doing: Awaitable[object]) -> None:
-    try:
-        await doing
-    except kind:
-        return
-    raise AssertionError(f"no {kind.__name__}")
-
-
-def _expect(condition: bool, otherwise: str) -> None:
-    if not condition:
-        raise AssertionError(otherwise)

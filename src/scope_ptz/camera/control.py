@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 def user_name() -> str:
-    """Return the name of the user that runs this process. An account without a name, as in some containers, is a number."""
+    """Return the name of the user that runs this process.
+
+    For an account without a name, as in some containers, it is the user number.
+    """
     try:
         return getpass.getuser()
     except (OSError, KeyError, ImportError):
@@ -28,10 +31,10 @@ def user_name() -> str:
 
 @dataclass(frozen=True, slots=True)
 class Holder:
-    """Who controls a camera.
+    """The controller of a camera.
 
     Attributes:
-        name: What the controller calls itself, such as "console: anna".
+        name: Name of the controller, such as "console: anna".
         process: User, process number and machine.
         since: When control was taken, as an ISO 8601 time in UTC.
     """
@@ -45,15 +48,15 @@ class Holder:
 
 
 class ControlHeldError(CameraError):
-    """Somebody else controls the camera.
+    """Someone else controls the camera.
 
     Attributes:
-        holder: Who it is; None if the holder left no name.
+        holder: The controller; None if its name is unknown.
     """
 
     def __init__(self, camera: str, holder: Holder | None) -> None:
         self.holder = holder
-        who = str(holder) if holder else "somebody who left no name"
+        who = str(holder) if holder else "someone whose name is unknown"
         super().__init__(f"{camera} is controlled by {who}. Wait until control is released, or ask them to release it.")
 
 
@@ -62,9 +65,9 @@ class ControlLock:
 
     Args:
         camera: The camera's name, for messages.
-        key: What identifies the device, such as its address and channel. Locks with the same key and folder exclude each other
+        key: Identifies the device, such as its address and channel. Locks with the same key and folder exclude each other
             between processes; None excludes only users of this object.
-        folder: Where lock files are kept. It is needed with a key.
+        folder: The folder of the lock files. It is required with a key.
     """
 
     def __init__(self, camera: str, key: str | None = None, folder: Path | None = None) -> None:
@@ -77,14 +80,14 @@ class ControlLock:
 
     @property
     def holder(self) -> Holder | None:
-        """Who controls the camera through this object."""
+        """The controller that holds the camera through this object."""
         return self._holder
 
     def acquire(self, name: str) -> None:
         """Take control.
 
         Raises:
-            ControlHeldError: Somebody else has control. The message says who.
+            ControlHeldError: Someone else has control. The message names them.
             OutputError: The lock file cannot be written.
         """
         if self._holder is not None:
@@ -96,7 +99,7 @@ class ControlLock:
         self._holder = holder
 
     def release(self) -> None:
-        """Give control back. Releasing twice is allowed."""
+        """Release control. Calling it again has no effect."""
         self._holder = None
         if self._file is not None:
             self._file.release()
@@ -120,7 +123,7 @@ class ControlLock:
 
 
 def _read_holder(note: Path) -> Holder | None:
-    """Return who wrote a note; None if there is none yet or it is damaged."""
+    """Return the controller that a lock file names; None if the file is empty or damaged."""
     try:
         found = json.loads(note.read_text(encoding="utf-8"))
         return Holder(str(found["name"]), str(found["process"]), str(found["since"]))

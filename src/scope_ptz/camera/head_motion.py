@@ -1,4 +1,4 @@
-"""Where a motorised head is at any time: at rest, on its way to a pose, or driven at a velocity."""
+"""Compute the pose of a motorised head at any time: at rest, moving to a pose, or driven at a velocity."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from scope_ptz.camera.capabilities import Velocity
 from scope_ptz.camera.motion import Head
 from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
 
-_MAX_OCTAVES = 30.0  # far beyond any lens; a zoom that is driven for minutes would leave the range of numbers otherwise
+_MAX_OCTAVES = 30.0  # far beyond any lens; without it, a zoom that is driven for minutes would overflow
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +33,8 @@ class HeadMotion:
 
     Args:
         head: The motors.
-        limits: The limits of motion. A driven axis stands still at its limit.
-        pose: Where the head is at first.
+        limits: The limits of motion. A driven axis stops at its limit.
+        pose: The initial pose of the head.
     """
 
     def __init__(self, head: Head, limits: Limits, pose: Pose) -> None:
@@ -42,12 +42,12 @@ class HeadMotion:
         # One attribute, so that another thread that reads a pose never sees half of a command.
         self._current: tuple[_Move | _Driving, float] = _Move(head, pose, pose), 0.0
         self.commands = 0
-        """Number of commands so far. It tells whether another command has replaced one."""
+        """Number of commands so far. It shows whether another command has replaced an earlier one."""
 
     def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0, zoom_share: float | None = None) -> None:
         """Start towards a pose within the limits, from where the head is, at a share of its top speeds.
 
-        ``zoom_share`` is the share for zoom where it differs from that for pan and tilt.
+        ``zoom_share`` is the share for zoom if it differs from the share for pan and tilt.
         """
         head = self._head if speed_share == 1.0 else self._head.at_speed(speed_share)
         if zoom_share is not None:
@@ -76,7 +76,7 @@ class HeadMotion:
             self._replace(_Move(command.head, here, Pose(aim.pan_deg, aim.tilt_deg, here.zoom if zoom else end.zoom)), now_s)
 
     def halt(self, pose: Pose, now_s: float) -> None:
-        """Be at a pose at once."""
+        """Jump to a pose immediately."""
         self._replace(_Move(self._head, pose, pose), now_s)
 
     def pose(self, now_s: float) -> Pose:

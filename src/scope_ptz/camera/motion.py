@@ -55,7 +55,7 @@ class Motor:
         return distance, speed
 
     def braking_s(self, speed: float) -> float:
-        """Return the time to stand still."""
+        """Return the time until the motor has stopped."""
         return abs(speed) / self.acceleration
 
     def _ramp(self, speed: float, target: float, time_s: float) -> tuple[float, float]:
@@ -77,12 +77,12 @@ class Head:
     settle_s: float
 
     def at_speed(self, share: float) -> Head:
-        """Return the head with top speeds reduced to a share (0 to 1] of its own."""
+        """Return a head whose top speeds are reduced to a share (0 to 1] of the original ones."""
         pan, tilt, zoom = (replace(motor, speed=motor.speed * share) for motor in (self.pan, self.tilt, self.zoom))
         return Head(pan, tilt, zoom, self.settle_s)
 
     def duration_s(self, start: Pose, end: Pose) -> float:
-        """Return the time until all axes stand still and the picture has settled; 0 if nothing moves."""
+        """Return the time until all axes have stopped and the picture has settled; 0 if nothing moves."""
         pan, tilt, octaves = _distances(start, end)
         moving = max(self.pan.duration_s(pan), self.tilt.duration_s(tilt), self.zoom.duration_s(octaves))
         return moving + self.settle_s if moving > 0 else 0.0

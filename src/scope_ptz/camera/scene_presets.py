@@ -76,7 +76,7 @@ class ScenePresets:
         check_preset_name(name)
         if name == self.home.name:
             raise CameraError(f"The preset '{name}' is home and cannot be replaced. Choose another name.")
-        # The names in scene files are kebab-case. Operators may choose any, so the name is not validated again.
+        # Names in scene files are kebab-case. Operators may choose any name, so it is not validated again.
         self._presets[name] = ScenePreset.model_construct(
             name=name, viewpoint=viewpoint, description=description, pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom
         )

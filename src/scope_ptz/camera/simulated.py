@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from anyio import to_thread
+from anyio import CapacityLimiter, to_thread
+from anyio.lowlevel import RunVar
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, FrameOrigin, PresetInfo
 from scope_ptz.camera.capabilities import Capabilities, Velocity, check_drive
 from scope_ptz.camera.head_motion import HeadMotion
 from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Head, top_speed
 from scope_ptz.camera.scene_presets import ScenePresets, preset_pose
-from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
+from scope_ptz.geometry import Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene
@@ -20,17 +22,31 @@ from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.simulator.views import RENDERING_VERSION, picture
 
 TICK_S = 0.05
-"""Interval at which a moving camera checks for a new command."""
+"""Interval, in seconds, at which a moving camera checks for a new command."""
 
 CUT_S = 0.5
-"""Time of a switch to another optical centre, like a switch between two cameras of an installation."""
+"""Time, in seconds, of a switch to another optical centre, like a switch between two cameras of an installation."""
+
+
+_RENDERING: RunVar[CapacityLimiter] = RunVar("scope_ptz_rendering")
+
+
+def _rendering() -> CapacityLimiter:
+    """Return the limit on pictures that are rendered at the same time: with more, all would be late."""
+    try:
+        return _RENDERING.get()
+    except LookupError:
+        limiter = CapacityLimiter(2 * (os.cpu_count() or 1))
+        _RENDERING.set(limiter)
+        return limiter
 
 
 class SimulatedCamera(Camera):
-    """An AXIS M5075-G in a scene. Many cameras can share one scene.
+    """An AXIS M5075-G in a scene, or the camera that a scene was captured from. Many cameras can share one scene.
 
-    Moves take the time of a real head on the given clock: at once in evaluation, where only scene time passes, and in real time for
-    a person who watches.
+    Moves take as long on the given clock as those of a real head. In evaluations, only scene time passes; in interactive use, they
+    also take
+    real time.
 
     Args:
         scene: The scene.
@@ -59,9 +75,9 @@ class SimulatedCamera(Camera):
         # Only the name: opening a viewpoint would release the layers of another one, and a camera that only moves needs none.
         self._viewpoint = self._presets.home.viewpoint
         self._info = CameraInfo(
-            name=f"simulated AXIS M5075-G in {scene.file.title}",
-            limits=Limits(),
-            optics=AXIS_M5075_G,
+            name=f"{_device_name(scene)} in {scene.file.title}",
+            limits=scene.file.limits,
+            optics=scene.file.optics,
             frame_width=width,
             frame_height=height,
             simulated=True,
@@ -78,6 +94,11 @@ class SimulatedCamera(Camera):
     def viewpoint(self) -> str:
         """Name of the current optical centre."""
         return self._viewpoint
+
+    @property
+    def scene_presets(self) -> ScenePresets:
+        """The presets with their viewpoints and poses."""
+        return self._presets
 
     def prefetch(self) -> Prefetch:
         """Read the current viewpoint in the background, so that no later frame from there has to wait for a file."""
@@ -114,12 +135,12 @@ class SimulatedCamera(Camera):
         pose, time_s, viewpoint = self._pose_now(), self.clock.now_s(), self._viewpoint
         hfov_deg = self._info.optics.hfov_deg(pose.zoom)
         view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, self._info.frame_width, self._info.frame_height)
-        image = await to_thread.run_sync(picture, self._scene, viewpoint, view, time_s)
+        image = await to_thread.run_sync(picture, self._scene, viewpoint, view, time_s, limiter=_rendering())
         origin = FrameOrigin(self._scene.name, viewpoint, pose, time_s)
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
     async def stop(self) -> None:
-        """Stop any motion at once: a simulated head needs no way to brake."""
+        """Stop any motion immediately: a simulated head needs no braking distance."""
         self._motion.halt(self._pose_now(), self.clock.elapsed_s())
 
     @contextmanager
@@ -157,3 +178,8 @@ class SimulatedCamera(Camera):
             if motion.commands == command:
                 await self.stop()
             raise
+
+
+def _device_name(scene: Scene) -> str:
+    captured = scene.file.captured
+    return "simulated AXIS M5075-G" if captured is None else f"twin of {captured.camera}"

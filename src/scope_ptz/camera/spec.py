@@ -1,4 +1,4 @@
-"""A camera named in text, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
+"""A camera spec: a camera in text form, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class CameraSpec:
     """A parsed camera spec. Camera factories, those of plug-ins included, receive one.
 
     Attributes:
-        scheme: The kind of camera, in lower case: ``sim``, ``blender``, or the name of a plug-in.
+        scheme: The camera type, in lower case: ``sim``, ``blender``, or the name of a plug-in.
         address: What follows the scheme, without leading slashes and without options.
         options: ``NAME=VALUE`` pairs after a question mark: ``blender:yard.blend?samples=4``.
         name: The name of the camera in ``scope.yaml``; empty if it is not named there.

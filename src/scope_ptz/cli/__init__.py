@@ -11,7 +11,7 @@ def main() -> None:
     from scope_ptz.cli.exit import guarded_streams, readable_arguments
     from scope_ptz.cli.starting import collector_paused, prepare_help
 
-    # The command line uses no plug-ins of pydantic, and looking for them reads the metadata of every installed package.
+    # Disable pydantic's plug-ins: the command line uses none, and searching for them reads the metadata of every installed package.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     with guarded_streams():
         with collector_paused():

@@ -16,6 +16,8 @@ from scope_ptz.cli.camera import CameraGroup
 from scope_ptz.cli.exit import EXIT_CODES
 from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
 from scope_ptz.cli.parameters import LeanGroup
+from scope_ptz.cli.runs import HELP as RUNS_HELP
+from scope_ptz.cli.runs import RunsGroup
 from scope_ptz.cli.starting import collector_paused
 
 _HELP = {"help_option_names": ["-h", "--help"]}
@@ -33,16 +35,20 @@ scene_app = typer.Typer(cls=LeanGroup, help="Scenes: list, show, view, build, ba
 models_app = typer.Typer(
     cls=LeanGroup, help="Models: list them, show one, print how to serve it, list pairs.", invoke_without_command=True
 )
+token_app = typer.Typer(cls=LeanGroup, help="Tokens for `scope serve`: add, list and remove them.", no_args_is_help=True)
 app.add_typer(scene_app, name="scene", rich_help_panel="Set up")
 app.add_typer(models_app, name="models", rich_help_panel="Set up")
+app.add_typer(token_app, name="token", rich_help_panel="Set up")
 app.add_typer(
     typer.Typer(cls=CameraGroup, help=CAMERA_HELP, no_args_is_help=True), name="camera", rich_help_panel="Talk to a camera"
 )
+app.add_typer(typer.Typer(cls=RunsGroup, help=RUNS_HELP, no_args_is_help=True), name="runs", rich_help_panel="Talk to a camera")
 app.add_typer(typer.Typer(cls=BenchGroup, help=BENCH_HELP, no_args_is_help=True), name="bench", rich_help_panel="Measure")
 
 Instruction = Annotated[str, typer.Argument(help="What the camera should do, in plain words.")]
 SceneName = Annotated[str, typer.Argument(help="Name of the scene; see `scope scene list`.")]
 SceneSource = Annotated[str, typer.Argument(help="Name of a built-in scene, or a Python file with `build(stage)`.")]
+TokensFile = Annotated[Path | None, typer.Option("--tokens", help="File with the tokens (default: SCOPE_TOKENS).")]
 ModelName = Annotated[str, typer.Argument(metavar="NAME", help="Name of the model; see `scope models`.")]
 
 
@@ -68,14 +74,14 @@ def ask(
     instruction: Instruction,
     session: SessionFlags,
     models: PairFlags,
-    hints: Annotated[bool, typer.Option("--next-steps", help="Print commands to try next.")] = False,
+    next_steps: Annotated[bool, typer.Option("--next-steps", help="Print commands to try next.")] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Carry out one instruction and save the run: its trace, frames and a filmstrip."""
     with collector_paused():
         from scope_ptz.cli.ask import ask as run
 
-    return run(instruction, session, models.options(), as_json=as_json, next_steps=hints)
+    return run(instruction, session, models.options(), as_json=as_json, next_steps=next_steps)
 
 
 @app.command(rich_help_panel="Talk to a camera")
@@ -97,7 +103,7 @@ def plan(
     ] = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Show the tool calls that the planner would make, without moving the camera."""
+    """Show the tool calls that the built-in planner would make, without moving a camera."""
     with collector_paused():
         from scope_ptz.cli.plan import plan as run
 
@@ -121,9 +127,106 @@ def replay(
 def tools(as_json: Annotated[bool, typer.Option("--json", help="Print on one line instead of indented.")] = False) -> None:
     """Print the schemas of the nine tools in the OpenAI function format."""
     from scope_ptz.cli.exit import put_json
-    from scope_ptz.tools.schemas import shipped_schemas
+    from scope_ptz.tools.schemas import stored_schemas
 
-    put_json(shipped_schemas(), indent=None if as_json else 2)
+    put_json(stored_schemas(), indent=None if as_json else 2)
+
+
+@app.command(rich_help_panel="Talk to a camera")
+@command
+def serve(
+    cameras: Annotated[
+        list[str] | None, typer.Option("--camera", help="Camera in scope.yaml, or scene, to serve (default: all; repeatable).")
+    ] = None,
+    pair: Annotated[
+        list[str] | None, typer.Option("--pair", help="Pair of models to offer, the default first; see `scope models pairs`.")
+    ] = None,
+    host: Annotated[
+        str, typer.Option("--host", help="Address to listen on. Addresses other than loopback need tokens.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 for any free one.")] = 8000,
+    name: Annotated[
+        list[str] | None, typer.Option("--name", help="Additional host name of the server, such as that of a proxy (repeatable).")
+    ] = None,
+    tokens: TokensFile = None,
+    runs_dir: Annotated[Path | None, typer.Option("--runs-dir", help="Folder for the runs (default: SCOPE_RUNS_DIR).")] = None,
+    idle_after: Annotated[
+        float | None, typer.Option("--idle-after", min=1.0, help="Return an unused camera to a preset after N seconds.")
+    ] = None,
+    idle_preset: Annotated[str, typer.Option("--idle-preset", help="Preset to which unused cameras return (default: home).")] = "",
+    as_json: JsonOption = False,
+) -> None:
+    """Serve cameras to programs through an HTTP API until Ctrl-C."""
+    from scope_ptz.cli.serve import run_server
+
+    run_server(cameras or [], pair or [], host, port, name or [], tokens, runs_dir, idle_after, idle_preset, as_json=as_json)
+
+
+@app.command(rich_help_panel="Talk to a camera")
+@command
+def console(
+    cameras: Annotated[
+        list[str] | None, typer.Option("--camera", help="Camera in scope.yaml, or scene, to serve (default: all; repeatable).")
+    ] = None,
+    pair: Annotated[
+        list[str] | None, typer.Option("--pair", help="Pair of models to offer, the default first; see `scope models pairs`.")
+    ] = None,
+    host: Annotated[
+        str, typer.Option("--host", help="Address to listen on. Addresses other than loopback need tokens.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 for any free one.")] = 8000,
+    name: Annotated[
+        list[str] | None, typer.Option("--name", help="Additional host name of the server, such as that of a proxy (repeatable).")
+    ] = None,
+    tokens: TokensFile = None,
+    runs_dir: Annotated[Path | None, typer.Option("--runs-dir", help="Folder for the runs (default: SCOPE_RUNS_DIR).")] = None,
+    idle_after: Annotated[
+        float | None, typer.Option("--idle-after", min=1.0, help="Return an unused camera to a preset after N seconds.")
+    ] = None,
+    idle_preset: Annotated[str, typer.Option("--idle-preset", help="Preset to which unused cameras return (default: home).")] = "",
+    as_json: JsonOption = False,
+) -> None:
+    """Serve the operator's page to browsers, together with the HTTP API, until Ctrl-C."""
+    from scope_ptz.cli.serve import run_server
+
+    run_server(
+        cameras or [], pair or [], host, port, name or [], tokens, runs_dir, idle_after, idle_preset, page=True, as_json=as_json
+    )
+
+
+# Tokens ----------------------------------------------------------------------------------------------------------------
+@token_app.command("add")
+@command
+def token_add(
+    name: Annotated[str, typer.Argument(help="Name of the person or program that uses the token.")],
+    role: Annotated[str, typer.Option("--role", help="viewer (watch) or operator (command).")] = "viewer",
+    tokens: TokensFile = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Create a token and print it. Only its hash is stored."""
+    from scope_ptz.cli.serve import add_token
+
+    add_token(name, role, tokens, as_json=as_json)
+
+
+@token_app.command("list")
+@command
+def token_list(tokens: TokensFile = None, as_json: JsonOption = False) -> None:
+    """List the names and roles of tokens."""
+    from scope_ptz.cli.serve import list_tokens
+
+    list_tokens(tokens, as_json=as_json)
+
+
+@token_app.command("remove")
+@command
+def token_remove(
+    name: Annotated[str, typer.Argument(help="Name of the person or program that uses the token.")], tokens: TokensFile = None
+) -> None:
+    """Remove a token. A running server refuses it from the next request on."""
+    from scope_ptz.cli.serve import remove_token
+
+    remove_token(name, tokens)
 
 
 # Models and servers ----------------------------------------------------------------------------------------------------
@@ -139,7 +242,7 @@ def profile(
         Path | None, typer.Option("--instructions", help='File of {"instruction", "calls"} lines (default: the packaged 60).')
     ] = None,
     limit: Annotated[int | None, typer.Option("--limit", min=1, help="Use at most N instructions, sampled evenly.")] = None,
-    frames: Annotated[int, typer.Option("--frames", min=1, help="Number of frames to show to perception.")] = 6,
+    frames: Annotated[int, typer.Option("--frames", min=1, help="Number of frames to send to the perception backend.")] = 6,
     scene: Annotated[str, typer.Option("--scene", help="Scene to take the frames from.")] = DEFAULT_SCENE,
     prompts: Annotated[
         bool, typer.Option("--prompts", help="Also measure how small edits of prompt and instruction change the tool choice.")
@@ -185,7 +288,7 @@ def models_list(
 @models_app.command("show")
 @command
 def models_show(name: ModelName, as_json: JsonOption = False) -> None:
-    """Print what is known about a model, with the command for each server that runs it."""
+    """Print the details of a model, with the command for each server that can run it."""
     from scope_ptz.cli.models import show_model
 
     show_model(name, as_json=as_json)
@@ -208,7 +311,7 @@ def models_serve(
 @models_app.command("plugins")
 @command
 def models_plugins(as_json: JsonOption = False) -> None:
-    """List the cameras, planners and perception that installed plug-ins add."""
+    """List the cameras, planners and perception backends that installed plug-ins add."""
     from scope_ptz.cli.models import list_plugins
 
     list_plugins(as_json=as_json)
@@ -241,7 +344,7 @@ def scene_show(
     contact_sheet: Annotated[
         Path | None, typer.Option("--contact-sheet", help="PNG file for the picture of all presets (default: in the cache).")
     ] = None,
-    opened: Annotated[
+    open_picture: Annotated[
         bool | None, typer.Option("--open/--no-open", help="Open the picture (default: open it if there is a desktop).")
     ] = None,
     as_markdown: Annotated[bool, typer.Option("--markdown", help="Print only the card, as a Markdown page.")] = False,
@@ -252,7 +355,7 @@ def scene_show(
     if as_markdown:
         print_markdown(name, contact_sheet)
     else:
-        show_scene(name, contact_sheet, opened=opened, everything=everything)
+        show_scene(name, contact_sheet, open_sheet=open_picture, everything=everything)
 
 
 @scene_app.command("view")
@@ -262,12 +365,14 @@ def scene_view(
     out: OutputFile,
     name: Annotated[str | None, typer.Argument(help="Name of the scene, unless --camera or --scene is given.")] = None,
     pan: Annotated[
-        float | None, typer.Option("--pan", help="Pan in degrees, positive is right (default: as at the start).")
+        float | None, typer.Option("--pan", help="Pan in degrees, positive is right (default: that of the start pose).")
     ] = None,
     tilt: Annotated[
-        float | None, typer.Option("--tilt", help="Tilt in degrees, positive is up (default: as at the start).")
+        float | None, typer.Option("--tilt", help="Tilt in degrees, positive is up (default: that of the start pose).")
     ] = None,
-    zoom: Annotated[float | None, typer.Option("--zoom", help="Magnification, 1 is widest (default: as at the start).")] = None,
+    zoom: Annotated[
+        float | None, typer.Option("--zoom", help="Magnification, 1 is widest (default: that of the start pose).")
+    ] = None,
 ) -> None:
     """Save the camera's view at a pose as a picture file."""
     from scope_ptz.cli.scenes import view_scene
@@ -306,9 +411,11 @@ def scene_bake(
 def scene_verify(
     name: SceneName,
     seed: SeedOption = 1,
-    wide: Annotated[int, typer.Option("--wide", min=0, help="Number of poses at the widest zoom, over all tilts.")] = 8,
-    zoomed: Annotated[int, typer.Option("--zoomed", min=0, help="Number of poses at 2x to 5x, where the pack has tiles.")] = 8,
-    keep: Annotated[Path | None, typer.Option("--keep", help="Folder to save the live renders in.")] = None,
+    wide: Annotated[int, typer.Option("--wide", min=0, help="Number of random poses at the widest zoom, at any tilt.")] = 8,
+    zoomed: Annotated[
+        int, typer.Option("--zoomed", min=0, help="Number of random poses at 2x to 5x, where the pack has tiles.")
+    ] = 8,
+    keep: Annotated[Path | None, typer.Option("--keep", help="Folder in which to save the live renders.")] = None,
 ) -> int:
     """Compare a scene's packs with live Blender renders of the same poses."""
     from scope_ptz.cli.bake import verify_scene

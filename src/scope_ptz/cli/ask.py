@@ -18,13 +18,13 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Listener, RunLabels, RunResult, Started
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
-from scope_ptz.cli.display import LiveView, show_end
+from scope_ptz.cli.display import LiveView, show_end, show_planned
 from scope_ptz.cli.exit import CANCELLED, exit_code, interrupts_handled_by, put, put_json, run_until_interrupted
 from scope_ptz.cli.options import SessionFlags
 from scope_ptz.cli.starting import collector_paused
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import OpenCamera
-from scope_ptz.factory.models import ModelOptions, make_perception, make_planner, perception_note, resolve_models
+from scope_ptz.factory.models import ModelOptions, dry_run_note, make_perception, make_planner, perception_note, resolve_models
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.settings import load_settings
@@ -38,12 +38,14 @@ Next:
 
 
 class Session:
-    """The camera, perception and planner of one or several runs."""
+    """The camera, perception backend and planner of one or several runs."""
 
     def __init__(self, flags: SessionFlags, opened: OpenCamera, perception: Perception, planner: Planner, note: str) -> None:
         self.flags, self.perception, self.planner, self.note = flags, perception, planner, note
         self.opened, self.camera = opened, opened.camera
         self.runs_dir = flags.runs_dir or load_settings().runs_dir
+        self.planned: list[str] = []
+        """The commands that a dry run has reported since this list was last cleared."""
 
     @classmethod
     async def open(cls, flags: SessionFlags, models: ModelOptions, *, realtime: bool) -> Session:
@@ -56,13 +58,20 @@ class Session:
         """
         choice = await resolve_models(models)
         planner = make_planner(choice.planner)
-        opened = await flags.open(realtime=realtime)
+        planned: list[str] = []
+        opened = await flags.open(realtime=realtime, dry_run=planned.append if flags.dry_run else None)
         try:
-            perception = make_perception(choice.perception, opened.scenes, flags.seed)
+            if opened.scenes is None and models.perception is None and models.pair is None and choice.perception.spec is None:
+                perception, note = _no_perception(), ""
+            else:
+                perception = make_perception(choice.perception, opened.scenes, flags.seed, served_truth=opened.served_truth)
+                note = perception_note(choice.perception)
         except BaseException:
             await opened.aclose()
             raise
-        return cls(flags, opened, perception, planner, perception_note(choice.perception))
+        session = cls(flags, opened, perception, planner, dry_run_note(note) if flags.dry_run else note)
+        session.planned = planned
+        return session
 
     async def run(
         self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()
@@ -74,11 +83,11 @@ class Session:
         agent = Agent(self.planner, self.camera, self.perception, folder, budgets=budgets, labels=labels)
         with TraceWriter(folder.trace) as trace:
 
-            def both(record: Started | Decided | Called | Ended) -> None:
+            def write_and_show(record: Started | Decided | Called | Ended) -> None:
                 trace(record)
                 listener(record)
 
-            return await agent.run(instruction, conversation=conversation, listener=both)
+            return await agent.run(instruction, conversation=conversation, listener=write_and_show)
 
     async def close(self) -> None:
         """Close the camera and the connections to model servers."""
@@ -92,12 +101,14 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
     if not instruction.strip():
         raise InputError("The instruction is empty. Say what the camera should do.")
     folder: RunFolder | None = None
+    planned: list[str] = []
 
     async def work() -> None:
-        nonlocal folder
-        with collector_paused():  # what a planner, a camera and perception need is imported when they are made
+        nonlocal folder, planned
+        with collector_paused():  # opening a session imports the modules of its planner, camera and perception backend
             session = await Session.open(flags, models, realtime=flags.in_real_time(as_json=as_json))
         try:
+            planned = session.planned
             await checkpoint()
             folder = RunFolder.create(session.runs_dir, instruction)
             view: Listener = (lambda _: None) if as_json else LiveView(Console(highlight=False))
@@ -114,18 +125,18 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
     if folder is None or not folder.trace.is_file():
         raise KeyboardInterrupt
     with interrupts_handled_by(signal.SIG_IGN):
-        code = _report(folder, as_json=as_json)
+        code = _report(folder, planned if flags.dry_run else None, as_json=as_json)
     if next_steps and not as_json and code == 0:
         put(_NEXT_STEPS.format(program=_program()))
     return code
 
 
 def _program() -> str:
-    """Return how this program can be started again from a shell."""
+    """Return the shell command that starts this program."""
     if shutil.which("scope"):
         return "scope"
-    started = Path(sys.argv[0])
-    return shlex.quote(sys.argv[0]) if started.name != "__main__.py" else f"{shlex.quote(sys.executable)} -m scope_ptz.cli"
+    script = Path(sys.argv[0])
+    return shlex.quote(sys.argv[0]) if script.name != "__main__.py" else f"{shlex.quote(sys.executable)} -m scope_ptz.cli"
 
 
 def make_filmstrip(trace: Trace) -> Path | None:
@@ -135,16 +146,19 @@ def make_filmstrip(trace: Trace) -> Path | None:
     return write_filmstrip(trace)
 
 
-def _report(folder: RunFolder, *, as_json: bool) -> int:
+def _report(folder: RunFolder, planned: list[str] | None, *, as_json: bool) -> int:
     trace = read_trace(folder.path)
     if trace.ended is None:
         return CANCELLED
     filmstrip = make_filmstrip(trace)
     if as_json:
-        put_json(summary(trace.calls, trace.ended, folder.path))
+        dry_run = {} if planned is None else {"dry_run": True, "planned": planned, "note": trace.started.labels.perception_note}
+        put_json({**summary(trace.calls, trace.ended, folder.path), **dry_run})
     else:
         console = Console(highlight=False)
-        note = trace.started.labels.perception_note if filmstrip else ""
+        if planned is not None:
+            show_planned(console, planned)
+        note = trace.started.labels.perception_note if filmstrip or planned is not None else ""
         show_end(console, trace.ended, note, folder.path, filmstrip)
     return exit_code(trace.ended.outcome)
 
@@ -167,3 +181,10 @@ def summary(calls: tuple[Called, ...], ended: Ended, folder: Path) -> dict[str, 
         "timings": ended.timings.model_dump(),
         "run_dir": str(folder),
     }
+
+
+def _no_perception() -> Perception:
+    """Return a placeholder for a camera without ground truth and without a model: the camera moves, and looking is an error."""
+    from scope_ptz.perception.no_perception import NoPerception
+
+    return NoPerception("Name a vision model with --perception; `scope models --role perception` lists them.")

@@ -17,7 +17,7 @@ from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.environment import is_ready, worker_command
 from scope_ptz.blender.quality import named_quality
 from scope_ptz.blender.sources import scene_names
-from scope_ptz.blender.tolerances import shortcomings
+from scope_ptz.blender.tolerances import missed_tolerances
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
 from scope_ptz.cli.exit import FAILED
 from scope_ptz.errors import OutputError, UnknownNameError
@@ -28,26 +28,26 @@ from scope_ptz.settings import ScopeSettings, load_settings
 def build_scene(source: str, out: Path | None) -> None:
     """Build a scene from its code in Blender and save it as a .blend file."""
     settings, console = load_settings(), Console(highlight=False)
-    _check(source)
+    _check_scene_name(source)
     target = (out or Path(f"{Path(source).stem}.blend")).absolute()
     _make_folder(target.parent)
-    began = time.monotonic()
+    started_s = time.monotonic()
     with BlenderWorker(_command(settings, console), settings.cache_dir / "build.log") as worker:
         worker.request("load_scene", {"source": source})
         facts: dict[str, Any] = worker.request("describe")
         worker.request("save", {"path": str(target)})
     counts = f"{len(facts['instances'])} objects, {len(facts['texts'])} texts, {len(facts['viewpoints'])} viewpoints"
-    console.print(Text(f"Wrote {target}: {counts}, {time.monotonic() - began:.0f} s"), soft_wrap=True)
+    console.print(Text(f"Wrote {target}: {counts}, {time.monotonic() - started_s:.0f} s"), soft_wrap=True)
 
 
 def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str]) -> int:
     """Bake a scene's packs and compare them with live renders. An interrupted bake is resumed.
 
     Returns:
-        The exit code: 1 if a pack differs too much from its scene. Drafts always give 0.
+        The exit code: 1 if a pack differs too much from its scene, but always 0 for drafts.
     """
     settings, console = load_settings(), Console(highlight=False)
-    _check(source)
+    _check_scene_name(source)
     level = named_quality(quality)
     folder = (out or Path("scenes") / Path(source).stem.replace("_", "-")).absolute()
     _make_folder(folder.parent)
@@ -67,15 +67,15 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
         console.print(Text(line), soft_wrap=True)
         if pack.uncovered:
             console.print(Text(f"  not covered by a tile: {', '.join(pack.uncovered)}", style="yellow"))
-    short = _show_comparison(console, baked.reports)
+    shortfalls = _show_comparison(console, baked.reports)
     console.print(Text(f"To see it: SCOPE_SCENES_DIR={folder.parent} scope scene show {folder.name}", style="dim"), soft_wrap=True)
-    return FAILED if short and level.judged else 0
+    return FAILED if shortfalls and level.judged else 0
 
 
 def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None) -> int:
     """Compare the packs of a scene with live renders of random poses, and return 1 if they differ too much."""
     settings, console = load_settings(), Console(highlight=False)
-    _check(name)
+    _check_scene_name(name)
     scene = open_scene(name)
     command = _command(settings, console)
     with _Bars(console) as bars, BlenderWorker(command, settings.cache_dir / "verify.log") as worker:
@@ -87,21 +87,25 @@ def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None
 def _show_comparison(console: Console, reports: Sequence[PoseReport]) -> list[str]:
     """Print the comparison of each pose, and return a sentence for each missed tolerance."""
     table = Table("viewpoint", "pan", "tilt", "zoom", "SSIM", "sharpness", "box IoU", "in tiles")
-    for r in reports:
+    for report in reports:
         figures = (
-            f"{r.pose.pan_deg:.1f}",
-            f"{r.pose.tilt_deg:.1f}",
-            f"{r.pose.zoom:.2f}",
-            f"{r.ssim:.3f}",
-            f"{r.sharpness_ratio:.2f}",
+            f"{report.pose.pan_deg:.1f}",
+            f"{report.pose.tilt_deg:.1f}",
+            f"{report.pose.zoom:.2f}",
+            f"{report.ssim:.3f}",
+            f"{report.sharpness_ratio:.2f}",
         )
-        table.add_row(r.viewpoint, *figures, "-" if r.box_iou is None else f"{r.box_iou:.3f}", f"{r.tile_share:.0%}")
+        table.add_row(
+            report.viewpoint, *figures, "-" if report.box_iou is None else f"{report.box_iou:.3f}", f"{report.tile_share:.0%}"
+        )
     console.print(table)
-    short = shortcomings(reports)
-    for line in short:
+    shortfalls = missed_tolerances(reports)
+    for line in shortfalls:
         console.print(Text(f"  {line}", style="red"), soft_wrap=True)
-    console.print(Text("The differences are too large." if short else "All tolerances are met.", style="red" if short else "green"))
-    return short
+    console.print(
+        Text("The differences are too large." if shortfalls else "All tolerances are met.", style="red" if shortfalls else "green")
+    )
+    return shortfalls
 
 
 class _Bars:
@@ -127,7 +131,7 @@ class _Bars:
         self._progress.update(self._tasks[part], completed=done, total=total)
 
 
-def _check(source: str) -> None:
+def _check_scene_name(source: str) -> None:
     """Raise ``UnknownNameError`` for an unknown scene before Blender starts."""
     if source.endswith(".py") and Path(source).is_file():
         return
@@ -137,10 +141,10 @@ def _check(source: str) -> None:
 
 
 def _command(settings: ScopeSettings, console: Console) -> list[str]:
-    chosen = settings.blender_python or settings.blender
-    if chosen is None and not is_ready(settings.cache_dir):
+    program = settings.blender_python or settings.blender
+    if program is None and not is_ready(settings.cache_dir):
         console.print("Downloading Blender's Python module (about 400 MB); this happens once.", style="yellow")
-    return worker_command(settings.cache_dir, chosen)
+    return worker_command(settings.cache_dir, program)
 
 
 def _make_folder(folder: Path) -> None:

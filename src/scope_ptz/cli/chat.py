@@ -18,7 +18,7 @@ from rich.text import Text
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import read_trace
 from scope_ptz.cli.ask import Session, make_filmstrip
-from scope_ptz.cli.display import LiveView, show_end
+from scope_ptz.cli.display import LiveView, show_end, show_planned
 from scope_ptz.cli.exit import has_input, print_error
 from scope_ptz.cli.options import SessionFlags
 from scope_ptz.cli.texts import plain
@@ -31,7 +31,7 @@ _PROMPT = "› "
 _WELCOME = "Type what the camera should do. /help lists the commands, /quit ends the chat."
 _HELP = """\
 /pose   print where the camera points
-/save   save a picture of what the camera sees
+/save   save a picture of the current view
 /help   print this list
 /quit   end the chat (so does Ctrl-D)
 Ctrl-C cancels a run. Everything else is an instruction, for example: pan right 20 and count the cars"""
@@ -40,8 +40,8 @@ Ctrl-C cancels a run. Everything else is an instruction, for example: pan right 
 def chat(flags: SessionFlags, models: ModelOptions) -> int:
     """Carry out instructions until /quit or the end of the input, and return the exit code.
 
-    The main thread reads lines, and another thread carries them out, so that Ctrl-C always reaches the main thread. During a run it
-    cancels the run; at the prompt it ends the program.
+    The main thread reads lines, and another thread executes them, so that Ctrl-C always reaches the main thread.
+    During a run, Ctrl-C cancels the run. At the prompt, it ends the program.
     """
     if not has_input():
         raise InputError("The standard input is closed, so a chat is not possible. Use `scope ask` for one instruction.")
@@ -123,11 +123,14 @@ class _Chat:
 
     async def _instruct(self, instruction: str) -> None:
         folder = RunFolder.create(self.session.runs_dir, instruction)
+        self.session.planned.clear()
         try:
             run = await self.session.run(instruction, folder, LiveView(self.console), self.turns)
         finally:
             folder.discard_if_not_started()
         self.turns = (*self.turns, run.past_turn())
+        if self.session.flags.dry_run:
+            show_planned(self.console, self.session.planned)
         if not run.exchanges and run.ended.outcome in ("clarification", "refused"):
             show_end(self.console, run.ended)
             return
@@ -137,7 +140,7 @@ class _Chat:
 
 @contextmanager
 def _line_editing() -> Iterator[None]:
-    """Add line editing and a history that is kept between chats to the prompt, if there is a terminal and ``readline``."""
+    """Enable line editing and a history that persists between chats, if there is a terminal and ``readline``."""
     try:
         import readline
     except ImportError:  # on Windows, the console itself supports line editing

@@ -15,6 +15,7 @@ from scope_ptz.agent.timing import Timings
 from scope_ptz.cli.texts import arguments_text, plain, seconds, shortened
 from scope_ptz.planner.base import CallTools, ToolCall
 
+MAX_PLANNED = 12  # maximum number of dry-run commands to print
 MAX_MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
 _OUTCOME_WORDS = {
     "answered": ("Answer", "bold green"),
@@ -101,6 +102,22 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
     console.print(Text(f"Run folder: {folder}", style="dim"), soft_wrap=True)
     if filmstrip is not None:
         console.print(Text(f"Filmstrip:  {filmstrip}", style="dim"), soft_wrap=True)
+
+
+def show_planned(console: Console, planned: list[str]) -> None:
+    """Print the commands that a dry run held back. A long list, as of a sweep, is shortened to the first commands and the last one.
+
+    Args:
+        console: Where to print.
+        planned: A sentence for each command.
+    """
+    console.print()
+    console.print(Text("Dry run: the camera has not moved." + (" Planned commands:" if planned else ""), style="yellow"))
+    shown = planned if len(planned) <= MAX_PLANNED else planned[: MAX_PLANNED - 1]
+    for sentence in shown:
+        console.print(Text(f"  {plain(sentence)}"))
+    if len(shown) < len(planned):
+        console.print(Text(f"  ... and {len(planned) - len(shown) - 1} more, ending with: {plain(planned[-1])}"))
 
 
 def timings_text(timings: Timings) -> str:

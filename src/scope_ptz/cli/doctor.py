@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 Verdict = Literal["ok", "optional", "missing"]
 _OK, _PARTLY, _BAD = ("ok", "green"), ("--", "yellow"), ("!!", "bold red")
 _MARKS: dict[str, tuple[str, str]] = {"ok": _OK, "optional": _PARTLY, "missing": _BAD, "partly": _PARTLY, "failed": _BAD}
-_THING, _PRESET = "traffic cone", "highway"  # the default scene shows this object at this preset
+_EXAMPLE_OBJECT, _EXAMPLE_PRESET = "traffic cone", "highway"  # the default scene shows this object at this preset
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,8 @@ class Finding:
 
     Attributes:
         what: What was checked.
-        verdict: ``optional`` if it is absent but only some commands need it, ``missing`` if it is absent or broken and needed.
+        verdict: ``optional`` for an absent part that only some commands need; ``missing`` for a required part that is absent or
+            broken.
         detail: What was found.
         remedy: How to fix it, if necessary.
     """
@@ -72,9 +73,12 @@ def check_installation(*, as_json: bool) -> int:
 def examine(settings: ScopeSettings) -> Iterator[Finding]:
     """Check Python, packages, scenes, run folders, Blender and plug-ins, and yield the findings."""
     yield Finding("scope-ptz", "ok", f"{__version__} in {Path(__file__).parents[1]}")
-    enough = sys.version_info >= (3, 11)
+    is_supported = sys.version_info >= (3, 11)
     yield Finding(
-        "Python", "ok" if enough else "missing", platform.python_version(), "" if enough else "Install Python 3.11 or later."
+        "Python",
+        "ok" if is_supported else "missing",
+        platform.python_version(),
+        "" if is_supported else "Install Python 3.11 or later.",
     )
     yield _packages()
     yield from _scenes(settings)
@@ -84,7 +88,7 @@ def examine(settings: ScopeSettings) -> Iterator[Finding]:
 
 
 def _plugins() -> Iterator[Finding]:
-    """Load each installed plug-in and try it."""
+    """Load and test each installed plug-in."""
     from scope_ptz.factory.plugin_checks import check_plugin
     from scope_ptz.factory.plugins import list_plugins
 
@@ -145,11 +149,11 @@ def _runs_dir(path: Path) -> Finding:
 def _blender(settings: ScopeSettings) -> Finding:
     from scope_ptz.blender.environment import BPY_VERSION, environment_python, is_ready
 
-    chosen = settings.blender_python or settings.blender
-    if chosen is not None:
-        there = chosen.exists()
-        remedy = "" if there else "Correct SCOPE_BLENDER_PYTHON or SCOPE_BLENDER."
-        return Finding("Blender", "ok" if there else "missing", f"{chosen}{'' if there else ' does not exist'}", remedy)
+    configured = settings.blender_python or settings.blender
+    if configured is not None:
+        exists = configured.exists()
+        remedy = "" if exists else "Correct SCOPE_BLENDER_PYTHON or SCOPE_BLENDER."
+        return Finding("Blender", "ok" if exists else "missing", f"{configured}{'' if exists else ' does not exist'}", remedy)
     if is_ready(settings.cache_dir):
         return Finding("Blender", "ok", f"bpy {BPY_VERSION} in {environment_python(settings.cache_dir).parents[1]}")
     return Finding(
@@ -160,7 +164,7 @@ def _blender(settings: ScopeSettings) -> Finding:
 
 def check_servers(options: ModelOptions, *, as_json: bool) -> int:
     """Check the model servers, print each result, and return 1 if any check failed."""
-    found: list[tuple[str, ServerCheck]] = []
+    results: list[tuple[str, ServerCheck]] = []
     console = Console(highlight=False)
 
     async def work() -> None:
@@ -168,14 +172,14 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
         if choice.planner.endpoint is None and choice.perception.spec is None:
             raise InputError("There is no server to check. Give one with --planner-url, or with --perception and --perception-url.")
         async for server, check in _server_checks(choice.planner, choice.perception):
-            found.append((server, check))
+            results.append((server, check))
             if not as_json:
                 _show_check(console, server, check)
 
     run_async(work)
     if as_json:
-        put_json([{"server": server, **check.model_dump()} for server, check in found])
-    return FAILED if any(check.verdict == "failed" for _, check in found) else 0
+        put_json([{"server": server, **check.model_dump()} for server, check in results])
+    return FAILED if any(check.verdict == "failed" for _, check in results) else 0
 
 
 async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerception) -> AsyncIterator[tuple[str, ServerCheck]]:
@@ -197,8 +201,8 @@ async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerceptio
 
         backend = make_perception(perception, None, 0)
         try:
-            async with await open_camera(f"sim:{DEFAULT_SCENE}", preset=_PRESET) as opened:
-                async for check in check_perception(backend, await opened.camera.frame(), thing=_THING):
+            async with await open_camera(f"sim:{DEFAULT_SCENE}", preset=_EXAMPLE_PRESET) as opened:
+                async for check in check_perception(backend, await opened.camera.frame(), thing=_EXAMPLE_OBJECT):
                     yield f"perception {perception.name}", check
         finally:
             await backend.close()

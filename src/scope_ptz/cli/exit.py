@@ -1,13 +1,13 @@
 """Exit codes, error messages, and robust standard streams.
 
-A command ends with one clear line on stderr and an exit code; bad input never shows a traceback.
+A command that fails prints one line on stderr. Bad input never shows a traceback. The exit codes are:
 
 0    done
 1    failed: step limit, budget, planner, camera, Blender, full disk, or a replay with differences
 2    wrong input or configuration, or a missing or damaged pack or trace
 3    the planner needs clarification
 4    the planner refused the instruction
-130  cancelled (Ctrl-C)
+130  cancelled (Ctrl-C, or the signals TERM and HUP)
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ from typing import Any, TextIO, cast
 from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, TraceError
 
 FAILED, BAD_INPUT, UNCLEAR, REFUSED, CANCELLED = 1, 2, 3, 4, 130
+_ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+"""Signals that ask a program to end. Windows has no HUP."""
+
 _FORCE_EXIT_PRESSES = 3  # this many presses of Ctrl-C end the program without clean-up
 EXIT_CODES = "Exit codes: 0 done, 1 failed, 2 wrong input or a damaged file, 3 clarification needed, 4 refused, 130 cancelled."
 
@@ -64,7 +67,7 @@ def _show_warnings() -> None:
     logger = logging.getLogger("scope_ptz")
     if not any(isinstance(handler, _LogLines) for handler in logger.handlers):
         logger.addHandler(_LogLines(logging.WARNING))
-        # A level of its own: libraries such as the evaluation engine set that of the root.
+        # Set the level of this logger, because libraries such as the evaluation engine change the root logger's level.
         logger.setLevel(logging.WARNING)
         logger.propagate = False
 
@@ -74,7 +77,7 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
     """Convert SCOPE's errors and Ctrl-C to a message on stderr and an exit code.
 
     Args:
-        as_json: Print the error as a JSON object on stdout, too.
+        as_json: Also print the error as a JSON object on stdout.
     """
     _show_warnings()
     try:
@@ -92,9 +95,10 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
 
 
 def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
-    """Run a coroutine function, and cancel it at the first Ctrl-C.
+    """Run a coroutine function, and cancel it at the first Ctrl-C. The signals TERM and HUP do the same.
 
-    The function can then record how it ended. A second Ctrl-C is ignored, and a third one ends the program at once.
+    The function can then stop the camera and record how it ended. A second Ctrl-C is ignored, and a third one ends the program
+    immediately.
 
     Returns:
         Whether it was cancelled.
@@ -134,16 +138,20 @@ def run_async(work: Callable[[], Awaitable[None]]) -> None:
 
 @contextmanager
 def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
-    """Replace the Ctrl-C handler within the block. Outside the main thread, or if Ctrl-C is ignored, nothing changes."""
+    """Replace the handlers of Ctrl-C and of the signals TERM and HUP within the block.
+
+    A signal that is ignored stays so, as HUP under ``nohup``. Outside the main thread nothing changes.
+    """
     main = threading.current_thread() is threading.main_thread()
-    if not main or signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, None):
-        yield
-        return
-    before = signal.signal(signal.SIGINT, handler)
+    found = {number: signal.getsignal(number) for number in _ENDING if main}
+    before = {number: current for number, current in found.items() if current not in (signal.SIG_IGN, None)}
     try:
+        for number in before:
+            signal.signal(number, handler)
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, current in before.items():
+            signal.signal(number, current)
 
 
 @contextmanager
@@ -154,9 +162,9 @@ def guarded_streams() -> Iterator[None]:
     not change the exit code. If output cannot be written for another reason, such as a full disk, the exit code is 1.
     """
     _open_closed_descriptors()
-    before = sys.stdin, sys.stdout, sys.stderr
+    previous = sys.stdin, sys.stdout, sys.stderr
     stdin = sys.stdin if sys.stdin is not None else open(os.devnull, encoding="utf-8")  # noqa: SIM115, PTH123
-    stdout, stderr = (_Output(stream or open(os.devnull, "w", encoding="utf-8")) for stream in before[1:])  # noqa: SIM115, PTH123
+    stdout, stderr = (_Output(stream or open(os.devnull, "w", encoding="utf-8")) for stream in previous[1:])  # noqa: SIM115, PTH123
     _set_error_handlers(stdin, stdout, stderr)
     sys.stdin, sys.stdout, sys.stderr = stdin, cast(TextIO, stdout), cast(TextIO, stderr)
     try:
@@ -170,7 +178,7 @@ def guarded_streams() -> Iterator[None]:
         if stdout.failure is not None:
             print_error(f"the output cannot be written: {stdout.failure.strerror or stdout.failure}.")
         stderr.flush()
-        sys.stdin, sys.stdout, sys.stderr = before
+        sys.stdin, sys.stdout, sys.stderr = previous
         if stdout.failure is not None and sys.exc_info()[0] in (None, SystemExit):
             sys.exit(FAILED)
 
@@ -205,9 +213,9 @@ class _Output:
         if not isinstance(error, BrokenPipeError) and self.failure is None:
             self.failure = error
         with suppress(OSError, ValueError):
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, self._stream.fileno())
-            os.close(nowhere)
+            null_device = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(null_device, self._stream.fileno())
+            os.close(null_device)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)

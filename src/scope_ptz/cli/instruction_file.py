@@ -21,7 +21,7 @@ class InstructionLine(BaseModel):
 
 
 def read_instructions(source: Path) -> Iterator[tuple[int, InstructionLine | InputError]]:
-    """Yield the number of each line that is not empty, with its content or with what is wrong with it.
+    """Yield the number of each non-empty line, with its parsed content or an error.
 
     Args:
         source: The file; "-" is the standard input.

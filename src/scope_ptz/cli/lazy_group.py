@@ -9,12 +9,12 @@ from typer.core import TyperGroup
 
 
 class LazyGroup(TyperGroup):
-    """A group whose commands are those of a Typer app in another module. Subclasses name it."""
+    """A group whose commands are those of a Typer app in another module. Subclasses set ``module`` and ``attribute``."""
 
     module = ""
-    """The module to import."""
+    """Name of the module to import."""
     attribute = ""
-    """The Typer app in that module."""
+    """Name of the Typer app in that module."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         self._load()

@@ -17,7 +17,7 @@ from scope_ptz.settings import load_settings
 
 MEMORY_NOTE = (
     f"Memory in GB, computed, not measured: parameters x bytes + cache for {WINDOW} tokens + {RUNTIME_GB:g} GB. "
-    "'from': the same with the smallest weights that a server offers, mostly 4-bit."
+    "'from': the memory with the smallest weights that a server offers, mostly 4-bit."
 )
 _WIDE, _PIPE = 120, 180  # minimum terminal width for the wide table, and the width for a file or a pipe
 _THINKING = {"none": "no", "optional": "when asked", "default": "unless switched off", "always": "always"}
@@ -33,14 +33,14 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
 
     Args:
         role: List only models for this role.
-        memory_gb: List only models that fit into this many GB. A line below the table names those that fit with smaller weights.
+        memory_gb: List only models that fit into this many GB. A line below the table names models that fit with smaller weights.
         as_json: Print JSON instead of a table.
     """
-    known, only = registry(), _role(role)
-    suitable = [m for m in known.models.values() if only is None or only in m.roles]
-    chosen = [m for m in suitable if memory_gb is None or m.memory_for() <= memory_gb]
+    known_models, requested_role = registry(), _checked_role(role)
+    suitable = [m for m in known_models.models.values() if requested_role is None or requested_role in m.roles]
+    listed = [m for m in suitable if memory_gb is None or m.memory_for() <= memory_gb]
     if as_json:
-        put_json([describe(known, model) for model in chosen], indent=2)
+        put_json([describe(known_models, model) for model in listed], indent=2)
         return
     console = _console()
     wide = console.width >= _WIDE
@@ -57,22 +57,22 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
         *(("thinks", "licence") if wide else ()),
     ):
         table.add_column(column, no_wrap=True)
-    for m in chosen:
-        roles, (_, least) = "+".join(sorted(m.roles, reverse=True)), m.least_memory()
-        more = (_THINKING[m.thinking], m.licence) if wide else ()
+    for model in listed:
+        roles, (_, min_memory_gb) = "+".join(sorted(model.roles, reverse=True)), model.min_memory_server()
+        more = (_THINKING[model.thinking], model.licence) if wide else ()
         table.add_row(
-            m.name, roles, f"{m.size_b:g}B", f"{m.active_b:g}B", m.precision, f"{m.memory_for():.1f}", f"{least:.1f}",
-            f"{m.context:,}" if m.context else "-", *more,
-            style="bold" if m.origin == "paper" else "",
+            model.name, roles, f"{model.size_b:g}B", f"{model.active_b:g}B", model.precision, f"{model.memory_for():.1f}",
+            f"{min_memory_gb:.1f}", f"{model.context:,}" if model.context else "-", *more,
+            style="bold" if model.origin == "paper" else "",
         )  # fmt: skip
     console.print(table)
     if memory_gb is not None:
-        smaller = [m for m in suitable if m not in chosen and m.least_memory()[1] <= memory_gb]
+        smaller = [m for m in suitable if m not in listed and m.min_memory_server()[1] <= memory_gb]
         if smaller:
-            names = ", ".join(f"{m.name} ({m.least_memory()[1]:.1f} GB)" for m in smaller)
+            names = ", ".join(f"{m.name} ({m.min_memory_server()[1]:.1f} GB)" for m in smaller)
             console.print(Text(f"With smaller weights, {memory_gb:g} GB is enough for: {names}."), soft_wrap=True)
     console.print(Text(MEMORY_NOTE, style="dim"), soft_wrap=True)
-    _name_plugins(console, only)
+    _name_plugins(console, requested_role)
     if console.is_terminal:
         console.print(Text("Bold: models of the paper. More: `scope models show NAME`, `scope models pairs`.", style="dim"))
 
@@ -86,7 +86,7 @@ def list_plugins(*, as_json: bool) -> None:
         put_json(rows, indent=2)
         return
     if not rows:
-        put("No plug-ins are installed. docs/how-to/plugins.md shows how a package adds a camera, a planner or perception.")
+        put("No plug-ins are installed. docs/how-to/plugins.md shows how to add cameras, planners and perception backends.")
         return
     table = Table("kind", "name", "package", "factory", "problem", box=None)
     for row in rows:
@@ -195,7 +195,7 @@ def describe(known: Registry, model: Model) -> dict[str, Any]:
         }
         for server, serving in model.serve.items()
     }
-    return {**data, "memory_gb": model.memory_for(), "least_memory_gb": model.least_memory()[1], "serve": servings}
+    return {**data, "memory_gb": model.memory_for(), "least_memory_gb": model.min_memory_server()[1], "serve": servings}
 
 
 def _console() -> Console:
@@ -204,7 +204,7 @@ def _console() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=_PIPE)
 
 
-def _role(role: str | None) -> Role | None:
+def _checked_role(role: str | None) -> Role | None:
     match role:
         case None | "planner" | "perception":
             return role

@@ -1,7 +1,7 @@
 """Options that several commands share, and the decorator that adds them to a command.
 
-A group of options is a frozen dataclass whose fields carry a ``typer.Option``. A command includes a group by annotating one
-parameter with it, and ``command`` expands the group into the flat signature that Typer reads::
+A group of options is a frozen dataclass whose fields are annotated with a ``typer.Option``. A command includes a group by
+annotating one parameter with it, and ``command`` expands the group into the flat signature that Typer reads::
 
     @app.command()
     @command
@@ -39,14 +39,14 @@ OutputFile = Annotated[Path, typer.Option("--out", "-o", help="File to write.")]
 
 @dataclass(frozen=True, kw_only=True)
 class StartFlags:
-    """Options for the camera and its start."""
+    """Options that select the camera, its start pose and its start time."""
 
     camera: Annotated[
         str | None,
         typer.Option(
             "--camera",
             metavar="SPEC",
-            help="Camera: sim:SCENE, blender:SCENE, blender:FILE.blend, or a plug-in's (default: sim:highway-works).",
+            help="Camera: sim:SCENE, blender:SCENE, blender:FILE.blend, or a plug-in's camera (default: sim:highway-works).",
             rich_help_panel=CAMERA_PANEL,
         ),
     ] = None
@@ -65,15 +65,16 @@ class StartFlags:
     at: Annotated[
         float | None,
         typer.Option(
-            "--at", min=0.0, help="Scene time to start at, in seconds (default: the scene's).", rich_help_panel=CAMERA_PANEL
+            "--at", min=0.0, help="Scene time to start at, in seconds (default: set by the scene).", rich_help_panel=CAMERA_PANEL
         ),
     ] = None
 
-    async def open(self, *, realtime: bool = False) -> OpenCamera:
-        """Open the camera at its start.
+    async def open(self, *, realtime: bool = False, dry_run: Callable[[str], None] | None = None) -> OpenCamera:
+        """Open the camera at the selected viewpoint, preset and time.
 
         Args:
             realtime: Whether moves take as long as with a real camera.
+            dry_run: If given, commands are not executed; it is called with a sentence for each of them.
         """
         from scope_ptz.builtin_names import DEFAULT_SCENE
         from scope_ptz.factory.cameras import open_camera
@@ -81,21 +82,31 @@ class StartFlags:
         if self.camera is not None and self.scene is not None:
             raise InputError("Give --camera or --scene, not both: --scene NAME is short for --camera sim:NAME.")
         spec = self.camera or f"sim:{DEFAULT_SCENE if self.scene is None else self.scene}"
-        return await open_camera(spec, viewpoint=self.viewpoint, preset=self.preset, time_s=self.at, realtime=realtime)
+        return await open_camera(
+            spec, viewpoint=self.viewpoint, preset=self.preset, time_s=self.at, realtime=realtime, dry_run=dry_run
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
 class SessionFlags(StartFlags):
-    """Options for the camera, its start, and the runs."""
+    """Options for the camera, its start pose and time, and the limits of runs."""
 
     realtime: Annotated[
         bool | None,
         typer.Option(
             "--realtime/--fast",
-            help="Move in real time or at once (default: real time on a terminal).",
+            help="Move in real time or instantly (default: real time on a terminal).",
             rich_help_panel=CAMERA_PANEL,
         ),
     ] = None
+    dry_run: Annotated[
+        bool,
+        typer.Option(
+            "--dry-run",
+            help="Report the moves without moving the camera. Every frame shows the start view.",
+            rich_help_panel=CAMERA_PANEL,
+        ),
+    ] = False
     runs_dir: Annotated[
         Path | None,
         typer.Option("--runs-dir", help="Folder for run folders (default: SCOPE_RUNS_DIR, or runs).", rich_help_panel=RUN_PANEL),
@@ -106,7 +117,10 @@ class SessionFlags(StartFlags):
     time_budget: Annotated[
         float | None,
         typer.Option(
-            "--time-budget", min=0.001, help="Maximum seconds of wall time (default: no limit).", rich_help_panel=RUN_PANEL
+            "--time-budget",
+            min=0.001,
+            help="Maximum wall-clock time of a run in seconds (default: no limit).",
+            rich_help_panel=RUN_PANEL,
         ),
     ] = None
     seed: Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)] = 0
@@ -132,7 +146,7 @@ class ModelFlags:
         str | None,
         typer.Option(
             "--perception",
-            help="Perception: ground-truth (default), noisy, a model, a backend, or a plug-in.",
+            help="Perception: ground-truth (default), noisy, simulation-only-truth, a model, a backend, or a plug-in.",
             rich_help_panel=MODEL_PANEL,
         ),
     ] = None
@@ -216,10 +230,10 @@ class ModelFlags:
     ] = None
 
     def options(self, pair: str | None = None) -> ModelOptions:
-        """Return these flags as the options that ``factory.resolve_models`` takes.
+        """Return these flags as the options that ``factory.resolve_models`` accepts.
 
         Args:
-            pair: A pair by name, for commands that take it as an argument.
+            pair: Name of a pair, for commands that take it as an argument.
         """
         from scope_ptz.factory.models import ModelOptions
 
@@ -247,7 +261,7 @@ class _PairFlag:
         str | None,
         typer.Option(
             "--pair",
-            help="Planner and perception at once: PLANNER+PERCEPTION, or one model that does both; see `scope models pairs`.",
+            help="Planner and perception together: PLANNER+PERCEPTION, or one model that does both; see `scope models pairs`.",
             rich_help_panel=MODEL_PANEL,
         ),
     ] = None
@@ -258,7 +272,7 @@ class PairFlags(ModelFlags, _PairFlag):
     """The options of ``ModelFlags`` and ``--pair``, which comes first in the help."""
 
     def options(self, pair: str | None = None) -> ModelOptions:
-        """Return these flags as the options that ``factory.resolve_models`` takes."""
+        """Return these flags as the options that ``factory.resolve_models`` accepts."""
         return super().options(pair or self.pair)
 
 

@@ -1,7 +1,7 @@
-"""Groups of commands whose parameters are converted only where there is something to convert.
+"""Command groups that skip unnecessary conversions of parameter values.
 
-Typer validates every parameter with pydantic, also one that was not given. Importing pydantic and building the validators takes
-longer than all else that ``scope tools`` does.
+Typer validates every parameter with pydantic, even one that was not given. Importing pydantic and building the validators takes
+longer than everything else that ``scope tools`` does.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typer.core import TyperGroup
 
 
 class LeanGroup(TyperGroup):
-    """A group of commands that leaves out conversions without effect, in its own parameters and in those of its commands."""
+    """A command group that skips unnecessary conversions of parameter values, including those of its commands."""
 
     def get_params(self, ctx: Any) -> Any:
         return _lean(super().get_params(ctx))
@@ -33,7 +33,7 @@ def _lean(parameters: list[Any]) -> list[Any]:
 
 
 class _Conversion:
-    """Converts the value of a parameter, unless it is None, a text that stays a text, or a number that is the default."""
+    """Converts the value of a parameter, but skips None, strings of text parameters, and numeric defaults."""
 
     def __init__(self, parameter: Any) -> None:
         self._parameter, self._convert = parameter, parameter.process_value

@@ -1,4 +1,4 @@
-"""``scope profile``: measure a pair on the user's own servers, and compare it with the paper's real-time criterion."""
+"""``scope profile``: measure a pair on the user's own servers, and test it against the paper's real-time criterion."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ if TYPE_CHECKING:
     from scope_ptz.camera.base import Frame
 
 REAL_TIME_S = 0.5  # the paper's criterion: a control loop of about 2 Hz, so at most 500 ms per inference
-_EXTRA_PAN_DEG = 7.0  # additional pan for each further frame of a preset, if there are more frames than presets
+_EXTRA_PAN_DEG = 7.0  # difference in pan between frames of the same preset, if there are more frames than presets
 
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """What to measure, and how much.
+    """The instructions and frames with which a pair is measured.
 
     Attributes:
         instructions: A file to use instead of the packaged instructions.
@@ -59,7 +59,10 @@ class Extent:
 
 
 class Side(BaseModel):
-    """The measurements of a planner or perception. ``meets_real_time`` is None if all requests, or all of one skill, failed."""
+    """The measurements of a planner or a perception backend.
+
+    ``meets_real_time`` is None if all requests, or all requests of one skill, failed.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -165,7 +168,7 @@ def _against_criterion(median_s: float | None) -> dict[str, Any]:
 
 
 async def _frames(scene_name: str, count: int) -> list[Frame]:
-    """Return frames of a scene's presets. If more are requested, further ones are taken next to the presets, so that all differ."""
+    """Return frames of a scene's presets. If ``count`` exceeds the number of presets, further frames have a shifted pan."""
     from scope_ptz.geometry import Pose
 
     async with await open_camera(f"sim:{scene_name}") as opened:
@@ -187,10 +190,10 @@ async def _sensitivity(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]
     assert choice.endpoint is not None  # noqa: S101 - called only with a server
     endpoint, options = choice.endpoint, choice.options or ChatOptions()
 
-    def make(prompt: Prompt) -> ChatPlanner:
+    def planner_with(prompt: Prompt) -> ChatPlanner:
         return ChatPlanner(endpoint, options, prompt=prompt)
 
-    return await measure_sensitivity(make, load_prompt(options.prompt), rows=rows)
+    return await measure_sensitivity(planner_with, load_prompt(options.prompt), rows=rows)
 
 
 def _verdict(sides: list[bool | None]) -> str:

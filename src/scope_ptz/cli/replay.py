@@ -11,6 +11,7 @@ from scope_ptz.agent.records import Started
 from scope_ptz.agent.replay import Replay
 from scope_ptz.agent.replay import replay as repeat
 from scope_ptz.agent.trace import Trace, read_trace
+from scope_ptz.camera.guard.dry_run import DryRunCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.cli.ask import summary
 from scope_ptz.cli.display import LiveView, show_end
@@ -20,7 +21,7 @@ from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.simulator.clock import SceneClock
 
-_LEAD_S = 30.0  # the clock starts this long before the run, so that there is time to reach the first pose
+_LEAD_S = 30.0  # seconds before the run at which the clock starts, to leave time for reaching the first pose
 _NO_CALLS = "the trace contains no calls, so there is nothing to repeat"
 
 
@@ -28,23 +29,23 @@ def replay(run: Path, *, as_json: bool) -> int:
     """Show and repeat a run, and return the exit code: 0 only if calls were repeated and gave the same results."""
     trace = read_trace(run)
     reason = "" if trace.calls else _NO_CALLS
-    found: Replay | None = None
+    result: Replay | None = None
 
     async def work() -> None:
-        nonlocal found
-        found = await _repeat(trace)
+        nonlocal result
+        result = await _repeat(trace)
 
     try:
         run_async(work)
     except (InputError, PackError) as error:
         reason = str(error)
     if as_json:
-        put_json(_as_json(trace, found, reason))
+        put_json(_as_json(trace, result, reason))
     else:
-        _show(trace, found, reason)
-    if found is None or (found.equal and not trace.calls):
+        _show(trace, result, reason)
+    if result is None or (result.equal and not trace.calls):
         return BAD_INPUT
-    return 0 if found.equal else FAILED
+    return 0 if result.equal else FAILED
 
 
 async def _repeat(trace: Trace) -> Replay:
@@ -59,26 +60,30 @@ async def _repeat(trace: Trace) -> Replay:
         height=started.frame_height,
     )
     await _move_to_start(camera, started)
-    return await repeat(trace, camera)
+    return await repeat(trace, DryRunCamera(camera, _ignore) if started.dry_run else camera)
+
+
+def _ignore(report: str) -> None:
+    """Ignore a command that the dry run reports: the results of calls show it."""
 
 
 async def _move_to_start(camera: SimulatedCamera, started: Started) -> None:
     """Move a new camera to the recorded start pose, at the recorded scene time."""
     if camera.viewpoint != started.viewpoint:
         presets = open_scene(started.scene or "").file.presets
-        there = next((p.name for p in presets if p.viewpoint == started.viewpoint), None)
-        if there is None:
+        preset = next((p.name for p in presets if p.viewpoint == started.viewpoint), None)
+        if preset is None:
             raise UnknownNameError("viewpoint", str(started.viewpoint), {p.viewpoint for p in presets})
-        await camera.go_to_preset(there)
+        await camera.go_to_preset(preset)
     await camera.move(started.pose.pose())
     await camera.clock.sleep(max(0.0, started.scene_time_s - camera.clock.now_s()))
 
 
-def _show(trace: Trace, found: Replay | None, reason: str) -> None:
+def _show(trace: Trace, result: Replay | None, reason: str) -> None:
     console = Console(highlight=False)
     view = LiveView(console)
     view(trace.started)
-    differences = {(c.recorded.step, c.recorded.index): c.difference for c in found.comparisons} if found else {}
+    differences = {(c.recorded.step, c.recorded.index): c.difference for c in result.comparisons} if result else {}
     for call in trace.calls:
         view(call)
         if difference := differences.get((call.step, call.index)):
@@ -88,30 +93,30 @@ def _show(trace: Trace, found: Replay | None, reason: str) -> None:
     else:
         show_end(console, trace.ended, trace.started.labels.perception_note, trace.folder, None)
     console.print()
-    style = "bold green" if found and found.equal and not reason else "bold yellow"
-    console.print(Text(_verdict(found, reason), style=style))
+    style = "bold green" if result and result.equal and not reason else "bold yellow"
+    console.print(Text(_verdict(result, reason), style=style))
 
 
-def _verdict(found: Replay | None, reason: str) -> str:
-    if found is None:
+def _verdict(result: Replay | None, reason: str) -> str:
+    if result is None:
         return f"Shown from the trace only, not repeated: {plain(reason)}"
-    count = len(found.comparisons)
-    if not found.equal:
-        differing = sum(1 for c in found.comparisons if c.difference)
-        tail = f"; {plain(found.outcome_difference)}" if found.outcome_difference else ""
-        return f"Repeated without models: {differing} of {count} calls gave other results{tail}."
+    count = len(result.comparisons)
+    if not result.equal:
+        differing = sum(1 for c in result.comparisons if c.difference)
+        tail = f"; {plain(result.outcome_difference)}" if result.outcome_difference else ""
+        return f"Repeated without models: {differing} of {count} calls gave different results{tail}."
     if reason:
         return f"Shown from the trace only: {plain(reason)}."
     return f"Repeated without models: all {count} calls gave the same results."
 
 
-def _as_json(trace: Trace, found: Replay | None, reason: str) -> dict[str, object]:
+def _as_json(trace: Trace, result: Replay | None, reason: str) -> dict[str, object]:
     recorded = summary(trace.calls, trace.ended, trace.folder) if trace.ended else None
     return {
         "recorded": recorded,
-        "repeated": found is not None,
-        "equal": found.equal if found else None,
-        "differences": [c.difference for c in found.comparisons] if found else [],
-        "outcome_difference": found.outcome_difference if found else "",
+        "repeated": result is not None,
+        "equal": result.equal if result else None,
+        "differences": [c.difference for c in result.comparisons] if result else [],
+        "outcome_difference": result.outcome_difference if result else "",
         "reason": reason,
     }

@@ -22,11 +22,11 @@ from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.scenes import open_scene, scene_search
 from scope_ptz.geometry import Pose
 from scope_ptz.settings import has_desktop, load_settings
-from scope_ptz.simulator.card import card, folder_bytes, markdown, megabytes
+from scope_ptz.simulator.card import capture_summary, card, folder_bytes, markdown, megabytes
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene, find_scenes
 
-MAX_NAMED = 16  # names in a list of the short card; the others are only counted
+MAX_NAMED = 16  # maximum number of names in each list of the short card; the rest is only counted
 
 
 def list_scenes(*, as_json: bool) -> int:
@@ -74,18 +74,19 @@ def print_markdown(name: str, sheet: Path | None) -> None:
     put(markdown(open_scene(name), None if sheet is None else str(sheet)).rstrip("\n"))
 
 
-def show_scene(name: str, sheet: Path | None, *, opened: bool | None, everything: bool) -> None:
+def show_scene(name: str, sheet: Path | None, *, open_sheet: bool | None, everything: bool) -> None:
     """Print a scene's card, and draw a contact sheet of its presets.
 
     Args:
         name: The scene.
         sheet: PNG file for the contact sheet; None writes it to the cache folder.
-        opened: Whether to open the sheet in a picture viewer; None opens it if there is a terminal and a desktop.
+        open_sheet: Whether to open the sheet in a picture viewer; None opens it if there is a terminal and a desktop.
         everything: Whether to print the whole card instead of one that fits on a screen.
     """
     scene = open_scene(name)
     file, console = scene.file, Console(highlight=False)
-    console.print(Text.assemble((file.title, "bold"), (f"  ({file.name} {file.version}, Blender {file.blender_version})", "dim")))
+    made = f"Blender {file.blender_version}" if file.captured is None else "captured"
+    console.print(Text.assemble((file.title, "bold"), (f"  ({file.name} {file.version}, {made})", "dim")))
     if everything:
         _print_card(console, scene)
     else:
@@ -95,7 +96,7 @@ def show_scene(name: str, sheet: Path | None, *, opened: bool | None, everything
     console.print(Text(f"\nContact sheet: {path}"), soft_wrap=True)
     if not everything:
         console.print(Text(f"`scope scene show {name} --all` prints everything.", style="dim"))
-    if sys.stdout.isatty() and has_desktop() if opened is None else opened:
+    if sys.stdout.isatty() and has_desktop() if open_sheet is None else open_sheet:
         typer.launch(str(path))
 
 
@@ -123,13 +124,16 @@ def _print_short_card(console: Console, scene: Scene) -> None:
                 home = " (home)" if preset.name == file.home_preset else ""
                 line = f"{_pose(preset)}{home}  {preset.description}"
                 _print_line(console, Text.assemble("  ", (f"{preset.name:{width}}", "bold"), "  ", line))
+    if file.captured is not None:
+        console.print(Text.assemble(("Captured", "bold cyan"), " " + plain(capture_summary(file.captured))))
+        return
     categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
     counts = [f"{count} {category}" for category, count in categories.most_common()]
     texts = [f"“{text}”" for text in dict.fromkeys(" ".join(t.text.split()) for t in file.texts)]
     for title, items in (
         (f"Objects ({len(file.instances) + len(file.actors)})", counts),
         (f"Texts ({len(file.texts)})", texts),
-        ("Moving", [actor.name for actor in file.actors]),
+        ("Moving objects", [actor.name for actor in file.actors]),
         ("Deliberately absent", list(file.absent)),
     ):
         more = f", and {len(items) - MAX_NAMED} more" if len(items) > MAX_NAMED else ""
@@ -171,7 +175,7 @@ def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, fl
     """Save the view of a camera as a picture file.
 
     Args:
-        flags: The camera and where it starts.
+        flags: The camera and its start.
         name: The scene of a simulated camera, if ``flags`` has neither scene nor camera.
         pose: Pan and tilt in degrees, and zoom; None keeps the value at the start.
         out: The picture file.
@@ -184,16 +188,16 @@ def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, fl
 
     async def work() -> None:
         async with await start.open() as opened:
-            here = await opened.camera.pose()
-            pan, tilt, zoom = (given if given is not None else now for given, now in zip(pose, _parts(here), strict=True))
+            current = await opened.camera.pose()
+            pan, tilt, zoom = (given if given is not None else now for given, now in zip(pose, _parts(current), strict=True))
             try:
                 arrival = await opened.camera.move(Pose(pan, tilt, zoom))
             except ValueError as error:
                 raise InputError(f"The pose is not possible: {error}.") from error
             _save(Image.fromarray((await opened.camera.frame()).image), out)
         reached = arrival.pose.as_dict()
-        cut = f" (stopped by the {' and '.join(arrival.clamped)} limit)" if arrival.clamped else ""
-        put(f"Wrote {out}: pan {reached['pan_deg']:g}, tilt {reached['tilt_deg']:g}, zoom {reached['zoom']:g}x{cut}")
+        note = f" (stopped by the {' and '.join(arrival.clamped)} limit)" if arrival.clamped else ""
+        put(f"Wrote {out}: pan {reached['pan_deg']:g}, tilt {reached['tilt_deg']:g}, zoom {reached['zoom']:g}x{note}")
 
     run_async(work)
 

@@ -1,4 +1,4 @@
-"""Starting sooner: without the garbage collector, and without what help pages do not need."""
+"""Faster start-up: pause the garbage collector during imports, and defer imports that help pages do not need."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from types import ModuleType
 from typing import Any
 
 _HELP_OPTIONS = {"-h", "--help"}
-_LATE = {"rich.markdown": "Markdown", "rich.traceback": "Traceback"}
+_DEFERRED = {"rich.markdown": "Markdown", "rich.traceback": "Traceback"}
 
 
 @contextmanager
 def collector_paused() -> Iterator[None]:
     """Pause the garbage collector while modules are imported.
 
-    Imports make many objects and no garbage, so that looking for garbage among them only takes time: a tenth of ``scope ask``.
+    Imports create many objects and hardly any garbage. Garbage collection during imports would take a tenth of the time of
+    ``scope ask``.
     """
     if not gc.isenabled():
         yield
@@ -31,24 +32,24 @@ def collector_paused() -> Iterator[None]:
 
 
 def prepare_help(arguments: list[str]) -> None:
-    """Import what draws help pages, if help is requested.
+    """Import the modules that draw help pages, if help is requested.
 
-    Typer also imports Rich's Markdown and tracebacks, which help pages do not use and which take half of the time of
-    ``scope --help``. They are imported on first use.
+    Typer also imports Rich's modules for Markdown and tracebacks. Help pages do not use them, but importing them takes half of
+    the time of ``scope --help``. Therefore, they are imported on first use.
     """
     if arguments and _HELP_OPTIONS.isdisjoint(arguments):
         return
-    late = {module: _late_module(module, name) for module, name in _LATE.items() if module not in sys.modules}
-    sys.modules.update(late)
+    deferred = {module: _deferred_module(module, name) for module, name in _DEFERRED.items() if module not in sys.modules}
+    sys.modules.update(deferred)
     try:
         import_module("typer.rich_utils")
     finally:
-        for module in late:
+        for module in deferred:
             del sys.modules[module]
 
 
-def _late_module(module: str, name: str) -> ModuleType:
-    """Return a module whose only class imports the real module when an object is made."""
+def _deferred_module(module: str, name: str) -> ModuleType:
+    """Return a module whose only class imports the real module when it is instantiated."""
 
     def make(cls: type, *args: Any, **kwargs: Any) -> Any:  # noqa: ARG001 - the signature of __new__
         return getattr(import_module(module), name)(*args, **kwargs)

@@ -1,4 +1,4 @@
-"""Values as short texts that are safe to print."""
+"""Format values as short texts that are safe to print."""
 
 from __future__ import annotations
 

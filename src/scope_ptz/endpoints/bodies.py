@@ -8,13 +8,12 @@ from collections.abc import AsyncGenerator
 from typing import TYPE_CHECKING, Any
 
 from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
-from scope_ptz.endpoints.failures import FailureKind, ServerFailure, in_brief, scrub
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure, one_line_excerpt, scrub
 from scope_ptz.endpoints.translate import error_body
 
 if TYPE_CHECKING:
     from httpx2 import Response
 
-K = FailureKind
 
 _MAX_QUOTED_BYTES = 80
 """Bytes of an unreadable body that the error message quotes."""
@@ -37,13 +36,13 @@ def is_json(media_type: str) -> bool:
 def wrong_type(media_type: str, endpoint: Endpoint, status: int) -> ServerFailure:
     """Return the failure for a reply of the wrong content type."""
     return ServerFailure(
-        K.WRONG_CONTENT_TYPE, where=endpoint.url, status=status, detail=f"content type {media_type or 'missing'}"[:100]
+        FailureKind.WRONG_CONTENT_TYPE, where=endpoint.url, status=status, detail=f"content type {media_type or 'missing'}"[:100]
     )
 
 
 def too_large(endpoint: Endpoint, status: int) -> ServerFailure:
     """Return the failure for a reply above ``MAX_BODY_BYTES``."""
-    return ServerFailure(K.TOO_LARGE, where=endpoint.url, status=status, detail=f"over {MAX_BODY_BYTES // 2**20} MB")
+    return ServerFailure(FailureKind.TOO_LARGE, where=endpoint.url, status=status, detail=f"over {MAX_BODY_BYTES // 2**20} MB")
 
 
 async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes, None]:
@@ -65,7 +64,7 @@ async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes
         if not received:
             raise
         detail = f"no data for {endpoint.timeouts.first_byte_s:g} s in the middle of the reply"
-        raise ServerFailure(K.CUT_OFF, where=endpoint.url, status=response.status_code, detail=detail) from None
+        raise ServerFailure(FailureKind.CUT_OFF, where=endpoint.url, status=response.status_code, detail=detail) from None
 
 
 async def read_object(response: Response, endpoint: Endpoint) -> dict[str, Any]:
@@ -88,20 +87,22 @@ def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
         ServerFailure: The body is empty, not a JSON object, or an error message.
     """
     if not body.strip():
-        raise ServerFailure(K.EMPTY, where=endpoint.url, status=status, detail="an empty body")
+        raise ServerFailure(FailureKind.EMPTY, where=endpoint.url, status=status, detail="an empty body")
     try:
         # Not strict, because some servers leave raw line breaks in strings.
         data: Any = json.loads(scrub(body.decode("utf-8"), endpoint.secret), strict=False)
     except (ValueError, RecursionError) as error:
-        detail = f"{_json_error(error)} in '{in_brief(body[:_MAX_QUOTED_BYTES].decode(errors='replace'), endpoint.secret)}'"
-        raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=detail) from None
+        detail = f"{_json_error(error)} in '{one_line_excerpt(body[:_MAX_QUOTED_BYTES].decode(errors='replace'), endpoint.secret)}'"
+        raise ServerFailure(FailureKind.MALFORMED, where=endpoint.url, status=status, detail=detail) from None
     if not isinstance(data, dict):
-        raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=f"a JSON {type(data).__name__}, not an object")
-    whole: dict[str, Any] = _safe(data) if _UNSAFE_ESCAPE.search(body) else data
-    failure = error_body(whole, endpoint, status)
+        raise ServerFailure(
+            FailureKind.MALFORMED, where=endpoint.url, status=status, detail=f"a JSON {type(data).__name__} instead of an object"
+        )
+    content: dict[str, Any] = _safe(data) if _UNSAFE_ESCAPE.search(body) else data
+    failure = error_body(content, endpoint, status)
     if failure is not None:
         raise failure
-    return whole
+    return content
 
 
 def _json_error(error: Exception) -> str:

@@ -1,4 +1,4 @@
-"""A circuit breaker: after several failures, calls to an unavailable server fail at once instead of waiting for a timeout."""
+"""A circuit breaker: after several failures, calls to an unavailable server fail immediately instead of waiting for a timeout."""
 
 from __future__ import annotations
 
@@ -7,16 +7,25 @@ from time import monotonic
 
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
-K = FailureKind
-UNAVAILABLE = frozenset({K.REFUSED, K.DNS, K.TLS, K.CONNECT_TIMEOUT, K.FIRST_BYTE_TIMEOUT, K.TOTAL_TIMEOUT, K.CUT_OFF})
+UNAVAILABLE = frozenset(
+    {
+        FailureKind.REFUSED,
+        FailureKind.DNS,
+        FailureKind.TLS,
+        FailureKind.CONNECT_TIMEOUT,
+        FailureKind.FIRST_BYTE_TIMEOUT,
+        FailureKind.TOTAL_TIMEOUT,
+        FailureKind.CUT_OFF,
+    }
+)
 UNAVAILABLE_STATUS = frozenset({502, 503, 504})
-"""Failures and status codes which show that the server, or the connection to it, is not working."""
+"""Failures and status codes that show that the server, or the connection to it, is not working."""
 
 
 class Breaker:
     """A circuit breaker. After ``threshold`` consecutive failures of an unavailable server it is open, and no request may be sent.
 
-    After ``pause_s`` seconds it permits one request. If that request fails too, the pause doubles, up to ``longest_pause_s``.
+    After ``pause_s`` seconds it permits one request. If that request fails too, the pause doubles, up to ``max_pause_s``.
     """
 
     def __init__(
@@ -24,10 +33,10 @@ class Breaker:
         *,
         threshold: int = 3,
         pause_s: float = 10.0,
-        longest_pause_s: float = 60.0,
+        max_pause_s: float = 60.0,
         clock: Callable[[], float] = monotonic,
     ) -> None:
-        self.threshold, self.pause_s, self.longest_pause_s, self.clock = threshold, pause_s, longest_pause_s, clock
+        self.threshold, self.pause_s, self.max_pause_s, self.clock = threshold, pause_s, max_pause_s, clock
         self._failures = 0
         self._open_until: float | None = None
         self._pause_s = pause_s
@@ -42,7 +51,7 @@ class Breaker:
     def wait_s(self) -> float | None:
         """Return the seconds until a request may be sent, or None if one may be sent now.
 
-        If one may be sent, the caller must report its outcome with one of the methods below.
+        If one may be sent, the caller must report its outcome with ``succeeded``, ``failed`` or ``abandoned``.
         """
         if self._open_until is None:
             return None
@@ -57,14 +66,14 @@ class Breaker:
         self._failures, self._open_until, self._pause_s, self._probing, self._last = 0, None, self.pause_s, False, None
 
     def failed(self, failure: ServerFailure) -> None:
-        """Report a failed request. A failure which shows that the server is running counts as a success."""
+        """Report a failed request. A failure that shows that the server is running counts as a success."""
         if failure.kind not in UNAVAILABLE and failure.status not in UNAVAILABLE_STATUS:
             self.succeeded()
             return
         self._last = failure
         self._failures += 1
         if self._probing:
-            self._pause_s = min(2 * self._pause_s, self.longest_pause_s)
+            self._pause_s = min(2 * self._pause_s, self.max_pause_s)
         if self._probing or self._failures >= self.threshold:
             self._open_until = self.clock() + self._pause_s
         self._probing = False

@@ -24,10 +24,10 @@ async def served_models(endpoint: Endpoint) -> tuple[str, ...]:
 
 
 async def find_api(endpoint: Endpoint) -> tuple[Endpoint, tuple[str, ...]]:
-    """Return the endpoint and the models that it lists. If only the address with ``/v1`` has a list, return that endpoint.
+    """Return the endpoint and the models that it lists. If the list exists only under ``/v1``, return that endpoint instead.
 
     Raises:
-        ServerFailure: Neither address has a list.
+        ServerFailure: Neither address has a list of models.
     """
     try:
         return endpoint, await served_models(endpoint)
@@ -46,14 +46,14 @@ async def _entries(endpoint: Endpoint) -> list[dict[str, Any]]:
 
     quick = endpoint.model_copy(update={"timeouts": QUICK_TIMEOUTS, "retries": 0})
 
-    async def ask() -> dict[str, Any]:
+    async def fetch() -> dict[str, Any]:
         async with make_client(quick) as client, client.stream("GET", f"{quick.url}/models") as response:
             if response.is_success:
                 return await read_object(response, quick)
             await response.aread()
             raise status_failure(response.status_code, response.headers, response.text, quick)
 
-    listing, _ = await Caller(quick).call(ask)
+    listing, _ = await Caller(quick).call(fetch)
     data = listing.get("data", listing.get("models"))
     if not isinstance(data, list):
         raise ServerFailure(FailureKind.MALFORMED, where=quick.url, detail="no list of models")

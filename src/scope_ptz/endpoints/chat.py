@@ -12,7 +12,7 @@ from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_objec
 from scope_ptz.endpoints.chat_replies import ChatReply, RawToolCall, ReplyAssembler
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.events import DONE, Events
-from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, in_brief
+from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, one_line_excerpt
 from scope_ptz.endpoints.retries import Caller
 
 if TYPE_CHECKING:
@@ -21,9 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["ChatClient", "ChatReply", "RawToolCall"]
 
-K = FailureKind
 EVENT_STREAM = "text/event-stream"
-UNKNOWN_FIELD = 422  # the status with which strict servers reject unknown request fields
+UNKNOWN_FIELD_STATUS = 422  # the status with which strict servers reject unknown request fields
 DRAIN_S = 0.1
 """Time limit for draining a finished stream, so that its connection can be reused."""
 
@@ -35,7 +34,7 @@ class ChatClient:
         self.endpoint = endpoint
         self.caller = caller or Caller(endpoint)
         self._openai: AsyncOpenAI | None = None
-        self._counts_tokens = True
+        self._usage_supported = True
 
     async def complete(
         self,
@@ -65,40 +64,42 @@ class ChatClient:
         body.update(extra or {})
         self._client()  # created before the clock starts, because importing the library takes most of a second
         began = perf_counter()
-        reply, attempts = await (self._streamed(body | {"stream": True}) if stream else self._called(body))
+        reply, attempts = await (self._post_streamed(body | {"stream": True}) if stream else self._post(body))
         return reply.model_copy(update={"attempts": attempts, "seconds": perf_counter() - began})
 
-    async def _called(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
+    async def _post(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
         # The body is serialised once for all attempts. The library's own serialiser is several times slower with pictures.
         content, streaming = to_json(body, inf_nan_mode="null"), bool(body.get("stream"))
         return await self.caller.call(lambda: self._exchange(content, streaming))
 
-    async def _streamed(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """Stream a reply that ends with the token counts, which servers send only on request.
+    async def _post_streamed(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
+        """Stream a reply, and request token counts at its end.
 
-        If the server rejects the request field for that, the request is repeated without it, and later requests omit it.
+        If the server rejects ``stream_options``, repeat the request without it, and omit it from later requests.
         """
-        if not self._counts_tokens:
-            return await self._called(body)
+        if not self._usage_supported:
+            return await self._post(body)
         try:
-            return await self._called(body | {"stream_options": {"include_usage": True}})
+            return await self._post(body | {"stream_options": {"include_usage": True}})
         except ServerFailure as failure:
-            if failure.kind is not K.BAD_REQUEST or not (failure.status == UNKNOWN_FIELD or "stream_options" in failure.detail):
+            if failure.kind is not FailureKind.BAD_REQUEST or not (
+                failure.status == UNKNOWN_FIELD_STATUS or "stream_options" in failure.detail
+            ):
                 raise
-            refused = failure.history
+            rejected = failure.history
         try:
-            reply, attempts = await self._called(body)
+            reply, attempts = await self._post(body)
         except ServerFailure as failure:
-            raise failure.with_history((*refused, *failure.history)) from None
-        self._counts_tokens = False
-        return reply, (*refused, *attempts)
+            raise failure.with_history((*rejected, *failure.history)) from None
+        self._usage_supported = False
+        return reply, (*rejected, *attempts)
 
     async def _exchange(self, content: bytes, streaming: bool) -> ChatReply:
         import httpx2
         from openai import AsyncStream
 
         began = perf_counter()
-        # The library does not read the response, so that the size of the body can be limited.
+        # With stream=True the library does not read the body, so this client can limit its size.
         answer = await self._client().post(
             "/chat/completions", cast_to=httpx2.Response, content=content, stream=True, stream_cls=AsyncStream[Any]
         )
@@ -116,11 +117,11 @@ class ChatClient:
             await response.aclose()
 
     async def _read_stream(self, response: Response, began: float) -> ChatReply:
-        assembler, first_token_s, done = ReplyAssembler(self.endpoint), None, False
+        assembler, first_token_s, is_done = ReplyAssembler(self.endpoint), None, False
         head, events = b"", Events()
         pieces = chunks(response, self.endpoint)
 
-        def take(stream: list[bytes]) -> bool:
+        def add(stream: list[bytes]) -> bool:
             nonlocal first_token_s
             for data in stream:
                 if data == DONE:
@@ -133,17 +134,17 @@ class ChatClient:
         try:
             async for piece in pieces:
                 head = head or piece
-                done = take(events.feed(piece))
-                if done:
+                is_done = add(events.feed(piece))
+                if is_done:
                     break
-            if done:
+            if is_done:
                 with anyio.move_on_after(DRAIN_S):
                     async for _ in pieces:
                         pass
         finally:
             await pieces.aclose()
-        done = done or take(events.end())
-        if not done and assembler.finish_reason is None:
+        is_done = is_done or add(events.end())
+        if not is_done and assembler.finish_reason is None:
             raise self._unfinished_stream(assembler, head, response.status_code)
         return assembler.reply().model_copy(update={"first_token_s": first_token_s})
 
@@ -156,12 +157,14 @@ class ChatClient:
             status: The HTTP status.
         """
         where = self.endpoint.url
-        if assembler.pieces:
-            return ServerFailure(K.CUT_OFF, where=where, status=status, detail="the stream ended before the answer did")
+        if assembler.chunk_count:
+            return ServerFailure(
+                FailureKind.CUT_OFF, where=where, status=status, detail="the stream ended before the reply was complete"
+            )
         if not head.strip():
-            return ServerFailure(K.EMPTY, where=where, status=status, detail="an empty body")
-        detail = f"not an event stream: {in_brief(head[:200].decode(errors='replace'), self.endpoint.secret)}"
-        return ServerFailure(K.MALFORMED, where=where, status=status, detail=detail)
+            return ServerFailure(FailureKind.EMPTY, where=where, status=status, detail="an empty body")
+        detail = f"not an event stream: {one_line_excerpt(head[:200].decode(errors='replace'), self.endpoint.secret)}"
+        return ServerFailure(FailureKind.MALFORMED, where=where, status=status, detail=detail)
 
     def _client(self) -> AsyncOpenAI:
         if self._openai is None:
@@ -169,7 +172,7 @@ class ChatClient:
 
             from scope_ptz.endpoints.transport import make_client
 
-            # The transport adds the key, and removes everything that comes from OPENAI_... variables.
+            # The transport adds the key, and removes all headers that come from OPENAI_... variables.
             client = make_client(self.endpoint)
             self._openai = AsyncOpenAI(
                 api_key="unused", base_url=self.endpoint.url, max_retries=0, http_client=client, timeout=client.timeout

@@ -1,6 +1,6 @@
 """Assemble a ``ChatReply`` from an OpenAI-style completion, whole or streamed.
 
-Variations of the format are tolerated; an empty reply is a failure.
+Common deviations from the format are accepted. An empty reply raises ``ServerFailure``.
 """
 
 from __future__ import annotations
@@ -14,11 +14,9 @@ from scope_ptz.endpoints.bodies import safe_text
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, scrub
 
-K = FailureKind
-
 
 class RawToolCall(BaseModel):
-    """A tool call as the server returned it. ``arguments_text`` should be JSON, but may be any text."""
+    """A tool call as the server returned it. ``arguments_text`` may be invalid JSON."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -58,7 +56,7 @@ class ReplyAssembler:
         self.finish_reason: str | None = None
         self.model = ""
         self.has_choice = False
-        self.pieces = 0
+        self.chunk_count = 0
         self._text: list[str] = []
         self._reasoning: list[str] = []
         self._calls: list[dict[str, str]] = []
@@ -67,7 +65,7 @@ class ReplyAssembler:
 
     def add(self, data: dict[str, Any]) -> bool:
         """Add a completion or a chunk. Return whether it contained text, reasoning or tool calls."""
-        self.pieces += 1
+        self.chunk_count += 1
         self.model = self.model or _text_of(data.get("model"))
         self._usage = _object_of(data.get("usage")) or self._usage
         choices = data.get("choices")
@@ -90,7 +88,7 @@ class ReplyAssembler:
         calls = message.get("tool_calls") or []
         if not isinstance(calls, list):
             raise self._malformed("'tool_calls' is not a list")
-        if not calls and message.get("function_call"):  # the interface that preceded tool calls
+        if not calls and message.get("function_call"):  # the older interface for function calls
             calls = [{"index": 0, "function": message["function_call"]}]
         self._text.append(text)
         self._reasoning.append(reasoning)
@@ -110,8 +108,8 @@ class ReplyAssembler:
         if function is None:
             raise self._malformed("a tool call is not an object")
         index, call_id, name = call.get("index"), _text_of(call.get("id")), _text_of(function.get("name"))
-        given = function.get("arguments")
-        arguments = given if isinstance(given, str) else "" if given is None else json.dumps(given)
+        raw_arguments = function.get("arguments")
+        arguments = raw_arguments if isinstance(raw_arguments, str) else "" if raw_arguments is None else json.dumps(raw_arguments)
         slot = None if whole else self._slot(index, call_id, name, arguments)
         if slot is None:
             slot = len(self._calls)
@@ -133,8 +131,8 @@ class ReplyAssembler:
         if slot is None or not name:
             return slot
         stored = self._calls[slot]
-        another = (stored["id"] and call_id and stored["id"] != call_id) or (stored["name"] and stored["name"] != name)
-        return None if another or (arguments and _is_object(stored["arguments"])) else slot
+        is_new_call = (stored["id"] and call_id and stored["id"] != call_id) or (stored["name"] and stored["name"] != name)
+        return None if is_new_call or (arguments and _is_object(stored["arguments"])) else slot
 
     def reply(self) -> ChatReply:
         """Return the complete reply.
@@ -146,7 +144,9 @@ class ReplyAssembler:
         tokens_in, tokens_out = (_count_of(self._usage.get(name)) for name in ("prompt_tokens", "completion_tokens"))
         if not (text.strip() or reasoning.strip() or self._calls):
             detail = "a message without content" if self.has_choice else "no choices"
-            raise ServerFailure(K.EMPTY, where=self.endpoint.url, status=200, detail=detail, tokens=(tokens_in, tokens_out))
+            raise ServerFailure(
+                FailureKind.EMPTY, where=self.endpoint.url, status=200, detail=detail, tokens=(tokens_in, tokens_out)
+            )
         calls = tuple(
             RawToolCall(id=call["id"], name=self._clean(call["name"]), arguments_text=self._clean(call["arguments"]))
             for call in self._calls
@@ -166,7 +166,7 @@ class ReplyAssembler:
         return safe_text(scrub(text, self.endpoint.secret))
 
     def _malformed(self, detail: str) -> ServerFailure:
-        return ServerFailure(K.MALFORMED, where=self.endpoint.url, status=200, detail=detail)
+        return ServerFailure(FailureKind.MALFORMED, where=self.endpoint.url, status=200, detail=detail)
 
 
 def _text_of(value: Any) -> str:

@@ -16,10 +16,10 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.errors import ScopeError
 
 Verdict = Literal["ok", "partly", "failed"]
-UNREACHABLE = frozenset(
+FATAL_FAILURES = frozenset(
     {FailureKind.REFUSED, FailureKind.DNS, FailureKind.TLS, FailureKind.CONNECT_TIMEOUT, FailureKind.UNAUTHORISED}
 )
-"""Failures after which further checks are pointless."""
+"""Failures after which no further check can succeed."""
 _GREETING = [
     {"role": "system", "content": "You answer in one short sentence."},
     {"role": "user", "content": "Say hello."},
@@ -49,7 +49,7 @@ class ServerCheck(BaseModel):
 Finding = tuple[Verdict, str]
 
 
-async def checked(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerCheck:
+async def run_check(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerCheck:
     """Run one check. A ``ScopeError`` makes it a failed check; other errors are raised."""
     began, kind = perf_counter(), ""
     try:
@@ -61,34 +61,34 @@ async def checked(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerC
 
 async def check_chat(endpoint: Endpoint) -> AsyncIterator[ServerCheck]:
     """Check a chat server. The checks end early if the server is unreachable or rejects the key."""
-    patient = endpoint.model_copy(update={"retries": 1})
-    client = ChatClient(patient)
+    single_retry = endpoint.model_copy(update={"retries": 1})
+    client = ChatClient(single_retry)
     try:
-        yield await checked("list of models", lambda: _listing(patient))
-        reached = await checked("an answer", lambda: _answers(client, stream=False))
-        yield reached
-        if reached.kind in UNREACHABLE:
+        yield await run_check("list of models", lambda: _check_listing(single_retry))
+        answer = await run_check("an answer", lambda: _check_answer(client, stream=False))
+        yield answer
+        if answer.kind in FATAL_FAILURES:
             return
-        yield await checked("an answer, streamed", lambda: _answers(client, stream=True))
-        yield await checked("two requests at once", lambda: _two_at_once(client))
-        yield await checked(UNKNOWN_MODEL_CHECK, lambda: _refuses_unknown_model(patient))
+        yield await run_check("an answer, streamed", lambda: _check_answer(client, stream=True))
+        yield await run_check("two requests at once", lambda: _check_concurrency(client))
+        yield await run_check(UNKNOWN_MODEL_CHECK, lambda: _check_unknown_model(single_retry))
     finally:
         await client.close()
 
 
-async def _listing(endpoint: Endpoint) -> Finding:
+async def _check_listing(endpoint: Endpoint) -> Finding:
     try:
         served = await served_models(endpoint)
     except ServerFailure as failure:
-        if failure.kind in UNREACHABLE:
+        if failure.kind in FATAL_FAILURES:
             raise
         return "partly", f"{failure} The model's name must be given as an option."
     if endpoint.model in served:
-        return "ok", f"{len(served)}, '{endpoint.model}' among them"
-    return "partly", f"'{endpoint.model}' is not among them: {', '.join(served[:10]) or 'none'}"
+        return "ok", f"{len(served)} listed, including '{endpoint.model}'"
+    return "partly", f"'{endpoint.model}' is not listed; the server lists {', '.join(served[:10]) or 'none'}"
 
 
-async def _answers(client: ChatClient, *, stream: bool) -> Finding:
+async def _check_answer(client: ChatClient, *, stream: bool) -> Finding:
     reply = await client.complete(_GREETING, stream=stream)
     figures = f"{reply.output_tokens} tokens in {reply.seconds:.2f} s"
     if not (reply.text or reply.reasoning):
@@ -101,7 +101,7 @@ async def _answers(client: ChatClient, *, stream: bool) -> Finding:
     return "ok", figures + first
 
 
-async def _two_at_once(client: ChatClient) -> Finding:
+async def _check_concurrency(client: ChatClient) -> Finding:
     failures: list[ServerFailure] = []
 
     async def ask() -> None:
@@ -118,14 +118,14 @@ async def _two_at_once(client: ChatClient) -> Finding:
     return "ok", "both were answered"
 
 
-async def _refuses_unknown_model(endpoint: Endpoint) -> Finding:
+async def _check_unknown_model(endpoint: Endpoint) -> Finding:
     client = ChatClient(endpoint.model_copy(update={"model": _NO_MODEL}))
     try:
         reply = await client.complete(_GREETING)
     except ServerFailure as failure:
         if failure.kind in (FailureKind.NOT_FOUND, FailureKind.BAD_REQUEST):
             return "ok", f"refused: {failure.kind.value}"
-        return "partly", f"the error does not say that the model is unknown: {failure}"
+        return "partly", f"the error does not state that the model is unknown: {failure}"
     finally:
         await client.close()
-    return "partly", f"'{reply.model or 'some model'}' answers to any model name; check that it is the right model"
+    return "partly", f"'{reply.model or 'a model'}' answered to an unknown model name; check that it is the right model"

@@ -11,7 +11,7 @@ from scope_ptz.errors import ConfigError
 
 MAX_KEY_CHARS = 8192
 MAX_BODY_BYTES = 8 * 1024 * 1024
-"""Larger replies are rejected."""
+"""Maximum size of the body of a reply. Larger replies are rejected."""
 
 
 class Timeouts(BaseModel):
@@ -19,7 +19,7 @@ class Timeouts(BaseModel):
 
     Attributes:
         connect_s: Limit for connecting.
-        first_byte_s: Limit for the wait until the reply begins, and between two pieces of it.
+        first_byte_s: Limit for the wait until the reply begins, and for each pause within the reply.
         total_s: Limit for a call with all its retries.
     """
 
@@ -65,12 +65,12 @@ class Endpoint(BaseModel):
     @field_validator("url")
     @classmethod
     def _url(cls, url: str) -> str:
-        return checked_url(url)
+        return validate_url(url)
 
     @field_validator("key")
     @classmethod
     def _key(cls, key: SecretStr | None) -> SecretStr | None:
-        return checked_key(key.get_secret_value()) if key is not None else None
+        return validate_key(key.get_secret_value()) if key is not None else None
 
     @property
     def secret(self) -> str:
@@ -87,11 +87,11 @@ class Endpoint(BaseModel):
         return self.host == "localhost" or self.host.startswith("127.") or self.host == "::1"
 
 
-def checked_url(url: str) -> str:
+def validate_url(url: str) -> str:
     """Validate an HTTP or HTTPS address, and return it without a trailing slash.
 
     Raises:
-        ConfigError: It is not such an address, or it contains a user, password, query or fragment.
+        ConfigError: The text is not an HTTP or HTTPS address, or it contains a user, password, query or fragment.
     """
     url = url.strip()
     parts = _split(url)
@@ -103,7 +103,9 @@ def checked_url(url: str) -> str:
             f"The address of {parts.hostname} contains a password or user name. Use the variable for the key instead."
         )
     if parts.query or parts.fragment:
-        raise ConfigError(f"The address {_without_secrets(url)} contains a query or fragment. Remove the part from ? or # on.")
+        raise ConfigError(
+            f"The address {_without_secrets(url)} contains a query or fragment. Remove everything from ? or # onwards."
+        )
     if any(character.isspace() or not character.isprintable() for character in url):
         raise ConfigError("The address of a model server contains a space or an unprintable character. Remove it.")
     return url.rstrip("/")
@@ -120,12 +122,12 @@ def _split(url: str) -> SplitResult | None:
 
 def _without_secrets(url: str) -> str:
     """Return an address without user, password, query and fragment, so that it is safe to show."""
-    bare = url.split("?", 1)[0].split("#", 1)[0]
-    scheme, separator, rest = bare.rpartition("://")
+    address = url.split("?", 1)[0].split("#", 1)[0]
+    scheme, separator, rest = address.rpartition("://")
     return (scheme + separator + rest.rpartition("@")[2])[:200]
 
 
-def checked_key(key: str) -> SecretStr | None:
+def validate_key(key: str) -> SecretStr | None:
     """Validate a key for use in a header, and return it; None if it is blank.
 
     Raises:
@@ -150,7 +152,7 @@ def key_from_file(path: Path) -> SecretStr | None:
     """
     try:
         with path.open(encoding="utf-8") as file:
-            return checked_key(file.read(MAX_KEY_CHARS + 2))
+            return validate_key(file.read(MAX_KEY_CHARS + 2))
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not text"
         raise ConfigError(f"The key file {path} cannot be read: {reason}.") from None

@@ -9,41 +9,41 @@ DONE = b"[DONE]"
 
 
 class Events:
-    """Parses the data of events from bytes that arrive in arbitrary pieces.
+    """A parser that returns the data of events from bytes that arrive in arbitrary pieces.
 
-    As in the standard, line ends are LF, CR or CRLF, comments and other fields are skipped, the data lines of an event are joined,
-    and a byte order mark is ignored. In addition, the blank line after an event or the last line end may be missing.
+    As the standard requires, line ends are LF, CR or CRLF, comments and other fields are skipped, the data lines of an event are
+    joined, and a byte order mark is ignored. In addition, the blank line after an event or the last line end may be missing.
     """
 
     def __init__(self) -> None:
-        self._rest = b""
+        self._incomplete = b""
         self._data: list[bytes] = []
-        self._begun = False
+        self._start_read = False
 
     def feed(self, piece: bytes) -> list[bytes]:
         """Return the events that a piece completes."""
-        text = self._rest + piece
-        if not self._begun:
+        text = self._incomplete + piece
+        if not self._start_read:
             if codecs.BOM_UTF8.startswith(text):
-                self._rest = text  # a part of the byte order mark, or only the mark
+                self._incomplete = text  # a part of the byte order mark, or only the mark
                 return []
-            text, self._begun = text.removeprefix(codecs.BOM_UTF8), True
+            text, self._start_read = text.removeprefix(codecs.BOM_UTF8), True
         # A carriage return at the end may be the first half of CRLF.
-        held = text.endswith(b"\r")
-        lines = (text[:-1] if held else text).replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
-        self._rest = lines.pop() + (b"\r" if held else b"")
+        ends_with_cr = text.endswith(b"\r")
+        lines = (text[:-1] if ends_with_cr else text).replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
+        self._incomplete = lines.pop() + (b"\r" if ends_with_cr else b"")
         return [event for line in lines for event in self._line(line)]
 
     def end(self) -> list[bytes]:
         """Return the remaining events at the end of the stream."""
-        rest, self._rest = self._rest.strip(b"\r").removeprefix(codecs.BOM_UTF8), b""
-        return [*self._line(rest), *self._line(b"")]
+        last_line, self._incomplete = self._incomplete.strip(b"\r").removeprefix(codecs.BOM_UTF8), b""
+        return [*self._line(last_line), *self._line(b"")]
 
     def _line(self, line: bytes) -> list[bytes]:
         if line.startswith(b"data:"):
-            before = self._pop_event() if self._data and _is_complete(b"\n".join(self._data)) else []
+            complete = self._pop_event() if self._data and _is_complete(b"\n".join(self._data)) else []
             self._data.append(line[5:].strip())
-            return before
+            return complete
         return [] if line else self._pop_event()
 
     def _pop_event(self) -> list[bytes]:
@@ -52,7 +52,7 @@ class Events:
 
 
 def _is_complete(data: bytes) -> bool:
-    """Return whether data is complete. Called only if one data line follows another, which is rare."""
+    """Return whether data is a complete JSON document or the end marker."""
     if data == DONE:
         return True
     try:

@@ -40,31 +40,35 @@ class FailureKind(StrEnum):
     CIRCUIT_OPEN = "circuit-open"
 
 
-K = FailureKind
-
 _MESSAGES: dict[FailureKind, tuple[str, str]] = {
-    K.REFUSED: ("cannot be reached", "Start it, or check the address."),
-    K.DNS: ("has an unknown host name", "Check the address."),
-    K.TLS: ("has no certificate that this machine trusts", "Check the address and the certificate."),
-    K.CONNECT_TIMEOUT: ("did not accept the connection in time", "Check the address and the network."),
-    K.FIRST_BYTE_TIMEOUT: (
+    FailureKind.REFUSED: ("cannot be reached", "Start it, or check the address."),
+    FailureKind.DNS: ("has an unknown host name", "Check the address."),
+    FailureKind.TLS: ("has no certificate that this machine trusts", "Check the address and the certificate."),
+    FailureKind.CONNECT_TIMEOUT: ("did not accept the connection in time", "Check the address and the network."),
+    FailureKind.FIRST_BYTE_TIMEOUT: (
         "sent nothing for too long",
         "It may be busy or loading. Allow more time, or use a smaller model.",
     ),
-    K.TOTAL_TIMEOUT: ("did not finish in time", "Allow more time, or use a smaller model."),
-    K.UNAUTHORISED: ("refused the key", "Set the key of this server, and check its permissions."),
-    K.NOT_FOUND: ("does not know this path or model", "Check the address (most servers need /v1 at the end) and the model's name."),
-    K.RATE_LIMITED: ("limits the rate of requests", "Wait, or ask for a higher limit."),
-    K.BAD_REQUEST: ("refused the request", "Check the model's name and what the server supports."),
-    K.CONTEXT_OVERFLOW: ("reports that the conversation exceeds the model's context", "Serve the model with a longer context."),
-    K.SERVER_ERROR: ("had an internal error", "Check its log."),
-    K.ERROR_BODY: ("sent an error message", "Check its log."),
-    K.CUT_OFF: ("did not complete its reply", "Check its log; it may have crashed."),
-    K.EMPTY: ("sent an empty reply", "Check that the model is the right one for this use."),
-    K.WRONG_CONTENT_TYPE: ("sent a reply of the wrong content type", "Check that the address is that of a model server."),
-    K.MALFORMED: ("sent an unreadable reply", "Check that the address is that of a model server."),
-    K.TOO_LARGE: ("sent a reply that is too large", "Check that the address is that of a model server."),
-    K.CIRCUIT_OPEN: ("failed repeatedly, so no request is sent for a while", "Start it, or check the address."),
+    FailureKind.TOTAL_TIMEOUT: ("did not finish in time", "Allow more time, or use a smaller model."),
+    FailureKind.UNAUTHORISED: ("refused the key", "Set the key of this server, and check its permissions."),
+    FailureKind.NOT_FOUND: (
+        "does not know this path or model",
+        "Check the address (most servers need /v1 at the end) and the model's name.",
+    ),
+    FailureKind.RATE_LIMITED: ("limits the rate of requests", "Wait, or ask for a higher limit."),
+    FailureKind.BAD_REQUEST: ("refused the request", "Check the model's name and what the server supports."),
+    FailureKind.CONTEXT_OVERFLOW: (
+        "reports that the conversation exceeds the model's context",
+        "Serve the model with a longer context.",
+    ),
+    FailureKind.SERVER_ERROR: ("had an internal error", "Check its log."),
+    FailureKind.ERROR_BODY: ("sent an error message", "Check its log."),
+    FailureKind.CUT_OFF: ("did not complete its reply", "Check its log; it may have crashed."),
+    FailureKind.EMPTY: ("sent an empty reply", "Check that the model is the right one for this use."),
+    FailureKind.WRONG_CONTENT_TYPE: ("sent a reply of the wrong content type", "Check that the address is that of a model server."),
+    FailureKind.MALFORMED: ("sent an unreadable reply", "Check that the address is that of a model server."),
+    FailureKind.TOO_LARGE: ("sent a reply that is too large", "Check that the address is that of a model server."),
+    FailureKind.CIRCUIT_OPEN: ("failed repeatedly, so no request is sent for a while", "Start it, or check the address."),
 }
 
 
@@ -72,10 +76,10 @@ class Attempt(BaseModel):
     """One request to a model server. A call may need several requests.
 
     Attributes:
-        kind: How it failed; None if it succeeded.
+        kind: The kind of the failure; None if the request succeeded.
         waited_s: The pause before the request, in seconds.
-        input_tokens: Input tokens of a reply that was unusable; usable replies carry their own counts.
-        output_tokens: Output tokens of a reply that was unusable.
+        input_tokens: Input tokens of an unusable reply; usable replies contain their token counts.
+        output_tokens: Output tokens of an unusable reply.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -88,7 +92,7 @@ class Attempt(BaseModel):
     output_tokens: int = 0
 
 
-class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this package
+class ServerFailure(ScopeError):  # noqa: N818 - the name matches FailureKind
     """A model server gave no usable reply.
 
     Attributes:
@@ -111,12 +115,12 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
     ) -> None:
         self.kind, self.where, self.status, self.retry_after_s, self.detail = kind, where, status, retry_after_s, detail
         self.history, self.tokens = history, tokens
-        what, remedy = _MESSAGES[kind]
+        problem, remedy = _MESSAGES[kind]
         facts = [f"HTTP {status}"] if status is not None and status != 200 else []
         facts += [f"{len(history)} attempts"] if len(history) > 1 else []
         aside = f" ({', '.join(facts)})" if facts else ""
         message = f": {detail.rstrip('. ')}" if detail else ""
-        super().__init__(f"The model server at {where} {what}{aside}{message}. {remedy}")
+        super().__init__(f"The model server at {where} {problem}{aside}{message}. {remedy}")
 
     @property
     def attempts(self) -> int:
@@ -124,7 +128,7 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
         return len(self.history)
 
     def with_history(self, history: Iterable[Attempt]) -> ServerFailure:
-        """Return the same failure with another history."""
+        """Return a copy of the failure with a different history."""
         return ServerFailure(
             self.kind,
             where=self.where,
@@ -137,7 +141,7 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
 
 
 def count_failures(attempts: Iterable[Attempt]) -> dict[str, int]:
-    """Return how often each kind of failure occurred, including failures before a successful retry."""
+    """Count the failures of each kind, including failures before a successful retry."""
     return dict(Counter(attempt.kind.value for attempt in attempts if attempt.kind is not None))
 
 
@@ -148,11 +152,11 @@ def scrub(text: str, secret: str) -> str:
     return text
 
 
-_BEARER = re.compile(r"\b(Bearer\s+|sk-)[\w.~+/=-]{6,}", re.IGNORECASE)
+_API_KEY = re.compile(r"\b(Bearer\s+|sk-)[\w.~+/=-]{6,}", re.IGNORECASE)
 
 
-def in_brief(text: str, secret: str) -> str:
+def one_line_excerpt(text: str, secret: str) -> str:
     """Return a server's message on one line, truncated, without anything that looks like a key."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text[:4000]).split())
-    line = _BEARER.sub(r"\1***", scrub(line, secret))
+    line = _API_KEY.sub(r"\1***", scrub(line, secret))
     return line if len(line) <= MAX_DETAIL_CHARS else line[: MAX_DETAIL_CHARS - 1] + "…"

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class JsonClient:
-    """Posts JSON and returns JSON objects. ``key_header`` is the name of the request header for the key."""
+    """A client that posts JSON and returns JSON objects. ``key_header`` is the name of the request header for the key."""
 
     def __init__(self, endpoint: Endpoint, *, key_header: str = "Authorization", caller: Caller | None = None) -> None:
         self.endpoint, self.key_header = endpoint, key_header

@@ -14,33 +14,32 @@ from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
 from scope_ptz.endpoints.translate import as_failure
 
-K = FailureKind
 T = TypeVar("T")
 
-RETRIED = frozenset(
+RETRYABLE = frozenset(
     {
-        K.REFUSED,
-        K.DNS,
-        K.CONNECT_TIMEOUT,
-        K.FIRST_BYTE_TIMEOUT,
-        K.RATE_LIMITED,
-        K.SERVER_ERROR,
-        K.ERROR_BODY,
-        K.CUT_OFF,
-        K.EMPTY,
-        K.MALFORMED,
+        FailureKind.REFUSED,
+        FailureKind.DNS,
+        FailureKind.CONNECT_TIMEOUT,
+        FailureKind.FIRST_BYTE_TIMEOUT,
+        FailureKind.RATE_LIMITED,
+        FailureKind.SERVER_ERROR,
+        FailureKind.ERROR_BODY,
+        FailureKind.CUT_OFF,
+        FailureKind.EMPTY,
+        FailureKind.MALFORMED,
     }
 )
-"""Failures that a retry may fix. A wrong key, path, request or content type fails again."""
+"""Failures after which a call is retried. A wrong key, path, request or content type would only fail again."""
 
 FIRST_PAUSE_S = 0.5
-LONGEST_PAUSE_S = 8.0
-LONGEST_RETRY_AFTER_S = 30.0
-"""If a server asks for a longer pause, the call fails."""
+MAX_PAUSE_S = 8.0
+MAX_RETRY_AFTER_S = 30.0
+"""If a server requests a longer pause, the call fails."""
 
 
 class Caller:
-    """Makes calls to one endpoint. All calls to the endpoint, including concurrent ones, should share one caller."""
+    """Retries calls to one endpoint. All calls to the endpoint, including concurrent ones, should share one caller."""
 
     def __init__(
         self,
@@ -59,21 +58,21 @@ class Caller:
         Raises:
             ServerFailure: No attempt succeeded; ``history`` lists the attempts.
         """
-        tried: list[Attempt] = []
+        attempts_made: list[Attempt] = []
         deadline = perf_counter() + self.endpoint.timeouts.total_s
         waited_s = 0.0
         while True:
-            result = await self._try(attempt, deadline, waited_s, tried)
+            result = await self._try(attempt, deadline, waited_s, attempts_made)
             if not isinstance(result, ServerFailure):
-                return result, tuple(tried)
-            pause_s = self._pause_s(result, len(tried))
-            if pause_s is None or perf_counter() + pause_s + self._needed_s(result) >= deadline:
-                raise result.with_history(tried)
+                return result, tuple(attempts_made)
+            pause_s = self._pause_s(result, len(attempts_made))
+            if pause_s is None or perf_counter() + pause_s + self._retry_time_s(result) >= deadline:
+                raise result.with_history(attempts_made)
             await self.sleep(pause_s)
             waited_s = pause_s
 
     async def _try(
-        self, attempt: Callable[[], Awaitable[T]], deadline: float, waited_s: float, tried: list[Attempt]
+        self, attempt: Callable[[], Awaitable[T]], deadline: float, waited_s: float, attempts_made: list[Attempt]
     ) -> T | ServerFailure:
         """Make and record one attempt.
 
@@ -81,7 +80,7 @@ class Caller:
         """
         open_for_s = self.breaker.wait_s()
         if open_for_s is not None:
-            tried.append(Attempt(kind=K.CIRCUIT_OPEN, waited_s=waited_s))
+            attempts_made.append(Attempt(kind=FailureKind.CIRCUIT_OPEN, waited_s=waited_s))
             return self._circuit_open(open_for_s)
         began = perf_counter()
         failure: ServerFailure | None = None
@@ -97,11 +96,11 @@ class Caller:
                 else:
                     self.breaker.succeeded()
                     reported = True
-                    tried.append(Attempt(seconds=perf_counter() - began, waited_s=waited_s))
+                    attempts_made.append(Attempt(seconds=perf_counter() - began, waited_s=waited_s))
                     return result
             if limit.cancelled_caught:
                 detail = f"the limit is {self.endpoint.timeouts.total_s:g} s"
-                failure = ServerFailure(K.TOTAL_TIMEOUT, where=self.endpoint.url, detail=detail)
+                failure = ServerFailure(FailureKind.TOTAL_TIMEOUT, where=self.endpoint.url, detail=detail)
             assert failure is not None  # noqa: S101 - the scope ends with a result, a failure or its deadline
             self.breaker.failed(failure)
             reported = True
@@ -109,7 +108,7 @@ class Caller:
             if not reported:
                 self.breaker.abandoned()
         tokens_in, tokens_out = failure.tokens
-        tried.append(
+        attempts_made.append(
             Attempt(
                 kind=failure.kind,
                 status=failure.status,
@@ -123,21 +122,21 @@ class Caller:
 
     def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
         """Return the pause before the next attempt; None if there is no further attempt."""
-        if failure.kind not in RETRIED or attempts > self.endpoint.retries:
+        if failure.kind not in RETRYABLE or attempts > self.endpoint.retries:
             return None
-        jitter_s = self.rng.uniform(0.0, min(LONGEST_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))
-        asked_s = failure.retry_after_s
-        if asked_s is None:
+        jitter_s = self.rng.uniform(0.0, min(MAX_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))
+        requested_s = failure.retry_after_s
+        if requested_s is None:
             return jitter_s
-        return asked_s + 0.1 * jitter_s if asked_s <= LONGEST_RETRY_AFTER_S else None
+        return requested_s + 0.1 * jitter_s if requested_s <= MAX_RETRY_AFTER_S else None
 
-    def _needed_s(self, failure: ServerFailure) -> float:
+    def _retry_time_s(self, failure: ServerFailure) -> float:
         """Return the seconds that another attempt needs. A server that sent nothing may again need the full timeout."""
-        return self.endpoint.timeouts.first_byte_s if failure.kind is K.FIRST_BYTE_TIMEOUT else 0.0
+        return self.endpoint.timeouts.first_byte_s if failure.kind is FailureKind.FIRST_BYTE_TIMEOUT else 0.0
 
-    def _circuit_open(self, for_s: float) -> ServerFailure:
+    def _circuit_open(self, wait_s: float) -> ServerFailure:
         last = self.breaker.last
         reason = f"last failure: {last.kind.value}; " if last is not None else ""
         return ServerFailure(
-            K.CIRCUIT_OPEN, where=self.endpoint.url, detail=f"{reason}the next request is possible in {for_s:.0f} s"
+            FailureKind.CIRCUIT_OPEN, where=self.endpoint.url, detail=f"{reason}the next request is possible in {wait_s:.0f} s"
         )

@@ -1,7 +1,4 @@
-"""Read the setup that a model server reports, such as version, context, precision and memory.
-
-Each server program reports it under different paths.
-"""
+"""Read the configuration that a model server reports, such as version, context length, precision and memory."""
 
 from __future__ import annotations
 
@@ -20,8 +17,8 @@ if TYPE_CHECKING:
     from httpx2 import AsyncClient
 
 PATHS = ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/metrics", "/v1/stats")
-"""Most servers report models and version. The other paths belong to llama.cpp (props), Ollama (ps), SGLang (server info), vLLM
-(metrics) and Moondream Station (stats).
+"""Paths under which servers report their configuration. Most servers have the first two. The others belong to llama.cpp (props),
+Ollama (ps), SGLang (server info), vLLM (metrics) and Moondream Station (stats).
 """
 _FIELDS = re.compile(
     r"^(id|owned_by|root|max_model_len|version|build_info|model_path|n_ctx|size|size_vram|context_length|parameter_size"
@@ -35,18 +32,18 @@ _MAX_FACTS = 40  # further fields are ignored
 
 
 async def serving_facts(endpoint: Endpoint) -> dict[str, str]:
-    """Return what the server reports about itself, by path and field. Paths that fail are left out."""
+    """Return the server's configuration by path and field. Paths that fail are omitted."""
     from scope_ptz.endpoints.transport import make_client
 
-    quick = endpoint.model_copy(update={"timeouts": QUICK_TIMEOUTS})
-    root = quick.url.removesuffix("/v1")
+    quick_endpoint = endpoint.model_copy(update={"timeouts": QUICK_TIMEOUTS})
+    root = quick_endpoint.url.removesuffix("/v1")
     facts: dict[str, str] = {}
-    async with make_client(quick) as client:
+    async with make_client(quick_endpoint) as client:
         for path in PATHS:
-            text = await _get(client, root + path, quick)
+            text = await _get(client, root + path, quick_endpoint)
             for name, value in _facts(path, text):
                 if len(facts) < _MAX_FACTS:
-                    facts[f"{path} {name}"] = safe_text(scrub(value, quick.secret))[:_MAX_VALUE_CHARS]
+                    facts[f"{path} {name}"] = safe_text(scrub(value, quick_endpoint.secret))[:_MAX_VALUE_CHARS]
     return facts
 
 
@@ -69,26 +66,26 @@ def _facts(path: str, text: str) -> Iterator[tuple[str, str]]:
         content = json.loads(text)
     except (ValueError, RecursionError):
         return
-    yield from _walk(content, depth=0)
+    yield from _nested_fields(content, depth=0)
 
 
 def _labels(labels: str) -> Iterator[tuple[str, str]]:
     yield from ((name, value) for name, value in _LABEL.findall(labels) if _FIELDS.match(name))
 
 
-def _walk(content: Any, depth: int) -> Iterator[tuple[str, str]]:
+def _nested_fields(content: Any, depth: int) -> Iterator[tuple[str, str]]:
     """Yield the fields of interest in nested JSON, to a limited depth."""
     if depth > 4:
         return
     if isinstance(content, Mapping):
         for name, value in content.items():
             if isinstance(value, Mapping | list):
-                yield from _walk(value, depth + 1)
+                yield from _nested_fields(value, depth + 1)
             elif value is not None and _FIELDS.match(str(name)):
                 yield str(name), str(value)
     elif isinstance(content, list):
         for value in content[:5]:
-            yield from _walk(value, depth + 1)
+            yield from _nested_fields(value, depth + 1)
 
 
 def memory_gb(facts: Mapping[str, str]) -> float | None:

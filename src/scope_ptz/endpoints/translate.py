@@ -13,9 +13,7 @@ from email.utils import parsedate_to_datetime
 from typing import Any
 
 from scope_ptz.endpoints.endpoint import Endpoint
-from scope_ptz.endpoints.failures import FailureKind, ServerFailure, in_brief
-
-K = FailureKind
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure, one_line_excerpt
 
 _OVERFLOW = re.compile(
     r"context[ _-]?(length|size|window|overflow)|maximum (context|sequence|model|input)[ _-]?len|max_model_len"
@@ -43,24 +41,24 @@ def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None
     for link in chain:
         if isinstance(link, httpx2.TransportError | httpx2.DecodingError | httpx2.InvalidURL):
             kind, detail = _transport_kind(link, chain, endpoint)
-            return ServerFailure(kind, where=endpoint.url, detail=in_brief(detail, endpoint.secret))
+            return ServerFailure(kind, where=endpoint.url, detail=one_line_excerpt(detail, endpoint.secret))
     if openai is not None and isinstance(error, openai.APIConnectionError):
-        return ServerFailure(K.REFUSED, where=endpoint.url)
+        return ServerFailure(FailureKind.REFUSED, where=endpoint.url)
     return None
 
 
 def _chain(error: BaseException) -> Iterator[BaseException]:
     """Yield an exception, its causes and contexts, and the members of exception groups."""
-    waiting, seen = [error], set[int]()
-    while waiting:
-        link = waiting.pop(0)
-        if id(link) in seen:
+    pending, visited = [error], set[int]()
+    while pending:
+        link = pending.pop(0)
+        if id(link) in visited:
             continue
-        seen.add(id(link))
+        visited.add(id(link))
         yield link
         if isinstance(link, BaseExceptionGroup):
-            waiting.extend(link.exceptions)
-        waiting.extend(cause for cause in (link.__cause__, link.__context__) if cause is not None)
+            pending.extend(link.exceptions)
+        pending.extend(cause for cause in (link.__cause__, link.__context__) if cause is not None)
 
 
 def _transport_kind(error: Exception, chain: list[BaseException], endpoint: Endpoint) -> tuple[FailureKind, str]:
@@ -68,23 +66,23 @@ def _transport_kind(error: Exception, chain: list[BaseException], endpoint: Endp
 
     timeouts = endpoint.timeouts
     if isinstance(error, httpx2.ConnectTimeout | httpx2.PoolTimeout):
-        return K.CONNECT_TIMEOUT, f"the limit is {timeouts.connect_s:g} s"
+        return FailureKind.CONNECT_TIMEOUT, f"the limit is {timeouts.connect_s:g} s"
     if isinstance(error, httpx2.TimeoutException):
-        return K.FIRST_BYTE_TIMEOUT, f"the limit is {timeouts.first_byte_s:g} s"
+        return FailureKind.FIRST_BYTE_TIMEOUT, f"the limit is {timeouts.first_byte_s:g} s"
     if isinstance(error, httpx2.ConnectError | httpx2.ProxyError):
         if any(isinstance(link, socket.gaierror) for link in chain):
-            return K.DNS, endpoint.host
+            return FailureKind.DNS, endpoint.host
         if any(isinstance(link, ssl.SSLError) for link in chain):
-            return K.TLS, str(next(link for link in chain if isinstance(link, ssl.SSLError)))
-        return K.REFUSED, "" if any(isinstance(link, ConnectionRefusedError) for link in chain) else str(error)
+            return FailureKind.TLS, str(next(link for link in chain if isinstance(link, ssl.SSLError)))
+        return FailureKind.REFUSED, "" if any(isinstance(link, ConnectionRefusedError) for link in chain) else str(error)
     if isinstance(error, httpx2.RemoteProtocolError):
         cut_off = re.search(r"disconnect|closed|incomplete|without sending", str(error), re.IGNORECASE)
-        return (K.CUT_OFF if cut_off else K.MALFORMED), str(error)
+        return (FailureKind.CUT_OFF if cut_off else FailureKind.MALFORMED), str(error)
     if isinstance(error, httpx2.NetworkError):
-        return K.CUT_OFF, "the connection was lost"
+        return FailureKind.CUT_OFF, "the connection was lost"
     if isinstance(error, httpx2.DecodingError):
-        return K.MALFORMED, str(error)
-    return K.BAD_REQUEST, type(error).__name__
+        return FailureKind.MALFORMED, str(error)
+    return FailureKind.BAD_REQUEST, type(error).__name__
 
 
 def _body_text(response: Any) -> str:
@@ -98,20 +96,20 @@ def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint:
     """Return the failure for a reply with an error status or a redirect."""
     parsed = _ErrorBody(body)
     if 300 <= status < 400:
-        kind, parsed.message = K.NOT_FOUND, f"it redirects to {headers.get('location', 'an unknown address')}"
+        kind, parsed.message = FailureKind.NOT_FOUND, f"it redirects to {headers.get('location', 'an unknown address')}"
     elif status in (400, 413, 422, 500) and parsed.overflow:
-        kind = K.CONTEXT_OVERFLOW
+        kind = FailureKind.CONTEXT_OVERFLOW
     elif status in (401, 402, 403, 407) or (status == 429 and parsed.no_credit):
-        kind = K.UNAUTHORISED
+        kind = FailureKind.UNAUTHORISED
     elif status == 429:
-        kind = K.RATE_LIMITED
+        kind = FailureKind.RATE_LIMITED
     elif status == 404:
-        kind = K.NOT_FOUND
+        kind = FailureKind.NOT_FOUND
     elif status >= 500 or status in (408, 409, 425):
-        kind = K.SERVER_ERROR
+        kind = FailureKind.SERVER_ERROR
     else:
-        kind = K.BAD_REQUEST
-    detail = in_brief(parsed.message, endpoint.secret)
+        kind = FailureKind.BAD_REQUEST
+    detail = one_line_excerpt(parsed.message, endpoint.secret)
     return ServerFailure(kind, where=endpoint.url, status=status, retry_after_s=retry_after_s(headers), detail=detail)
 
 
@@ -121,14 +119,14 @@ def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> S
         return None
     parsed = _ErrorBody(json.dumps(body))
     if parsed.overflow:
-        kind = K.CONTEXT_OVERFLOW
+        kind = FailureKind.CONTEXT_OVERFLOW
     elif parsed.tags & {"429", "rate_limit_exceeded"}:
-        kind = K.RATE_LIMITED
+        kind = FailureKind.RATE_LIMITED
     elif parsed.tags & {"401", "403", "invalid_api_key"}:
-        kind = K.UNAUTHORISED
+        kind = FailureKind.UNAUTHORISED
     else:
-        kind = K.ERROR_BODY
-    return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(parsed.message, endpoint.secret))
+        kind = FailureKind.ERROR_BODY
+    return ServerFailure(kind, where=endpoint.url, status=status, detail=one_line_excerpt(parsed.message, endpoint.secret))
 
 
 _MESSAGE_FIELDS = frozenset({"detail", "message"})
@@ -176,7 +174,7 @@ def _as_text(value: Any) -> str:
 
 
 def retry_after_s(headers: Mapping[str, str]) -> float | None:
-    """Return the seconds that Retry-After asks for; None if it is absent or invalid."""
+    """Return the pause in seconds that the Retry-After header requests; None if it is absent or invalid."""
     milliseconds = _number(headers.get("retry-after-ms"))
     if milliseconds is not None:
         return milliseconds / 1000
@@ -185,11 +183,11 @@ def retry_after_s(headers: Mapping[str, str]) -> float | None:
     if seconds is not None or not value:
         return seconds
     try:
-        when = parsedate_to_datetime(value)
+        date = parsedate_to_datetime(value)
     except (ValueError, TypeError, IndexError, OverflowError):
         return None
-    when = when if when.tzinfo is not None else when.replace(tzinfo=UTC)
-    return max(0.0, (when - datetime.now(UTC)).total_seconds())
+    date = date if date.tzinfo is not None else date.replace(tzinfo=UTC)
+    return max(0.0, (date - datetime.now(UTC)).total_seconds())
 
 
 def _number(value: str | None) -> float | None:

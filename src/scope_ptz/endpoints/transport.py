@@ -1,4 +1,4 @@
-"""The HTTP client of all model clients. This module imports an HTTP library, so it is imported only at the first request."""
+"""The HTTP client that all model clients use. This module imports an HTTP library, so import it only before a request."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.version import __version__
 
-_KEPT_HEADERS = frozenset(
+_ALLOWED_HEADERS = frozenset(
     {"host", "accept", "accept-encoding", "connection", "content-type", "content-length", "transfer-encoding", "user-agent"}
 )
 _MAX_COMPRESSION = 128
@@ -34,7 +34,7 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
 
     async def replace_headers(request: httpx2.Request) -> None:
         # The openai client adds headers from OPENAI_... variables, which are credentials for another server.
-        for name in [name for name in request.headers if name.lower() not in _KEPT_HEADERS]:
+        for name in [name for name in request.headers if name.lower() not in _ALLOWED_HEADERS]:
             del request.headers[name]
         request.headers.update(own_headers)
 
@@ -43,38 +43,38 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
             response.stream = _LimitedBody(response.stream, response, endpoint)
 
     try:
-        return _open(endpoint, {"request": [replace_headers], "response": [limit_body]})
+        return _create_client(endpoint, {"request": [replace_headers], "response": [limit_body]})
     except (ValueError, OSError, ImportError, httpx2.InvalidURL) as error:
         # The original message is not shown, because a proxy's address may contain a password.
         detail = f"the environment's proxy or certificate settings cannot be used ({type(error).__name__})"
         raise ServerFailure(FailureKind.REFUSED, where=endpoint.url, detail=detail) from None
 
 
-def _open(endpoint: Endpoint, hooks: dict[str, list[Callable[..., Any]]]) -> httpx2.AsyncClient:
+def _create_client(endpoint: Endpoint, hooks: dict[str, list[Callable[..., Any]]]) -> httpx2.AsyncClient:
     timeouts = endpoint.timeouts
     return httpx2.AsyncClient(
         timeout=httpx2.Timeout(timeouts.first_byte_s, connect=timeouts.connect_s, pool=timeouts.total_s),
         limits=httpx2.Limits(max_connections=64, max_keepalive_connections=16, keepalive_expiry=30.0),
         headers={"accept-encoding": "identity"},
         trust_env=not endpoint.loopback,  # requests to this machine never use a proxy
-        verify=endpoint.url.startswith("https:"),  # certificates, which load slowly, are needed for HTTPS only
+        verify=endpoint.url.startswith("https:"),  # certificates load slowly and are needed for HTTPS only
         follow_redirects=False,
         event_hooks=hooks,
     )
 
 
 class _LimitedBody(httpx2.AsyncByteStream):
-    """A response body that raises ``ServerFailure`` above its size limit, also when the library reads it."""
+    """A response body that raises ``ServerFailure`` above its size limit, even when the library reads it."""
 
     def __init__(self, stream: httpx2.AsyncByteStream, response: httpx2.Response, endpoint: Endpoint) -> None:
         compressed = response.headers.get("content-encoding", "identity") != "identity"
         self._stream, self._endpoint, self._status = stream, endpoint, response.status_code
-        self._left = MAX_BODY_BYTES // _MAX_COMPRESSION if compressed else MAX_BODY_BYTES
+        self._bytes_left = MAX_BODY_BYTES // _MAX_COMPRESSION if compressed else MAX_BODY_BYTES
 
     async def __aiter__(self) -> AsyncIterator[bytes]:
         async for chunk in self._stream:
-            self._left -= len(chunk)
-            if self._left < 0:
+            self._bytes_left -= len(chunk)
+            if self._bytes_left < 0:
                 raise too_large(self._endpoint, self._status)
             yield chunk
 

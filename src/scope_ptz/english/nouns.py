@@ -1,4 +1,4 @@
-"""Singular, plural and article of nouns."""
+"""Singular and plural forms of nouns, and their articles."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ SINGULARS: Mapping[str, str] = MappingProxyType({
     "foremen": "foreman", "passers-by": "passer-by", "passersby": "passerby", "axes": "axe", "taxis": "taxi", "oxen": "ox",
     "wolves": "wolf", "loaves": "loaf", "halves": "half", "roofs": "roof", "banksmen": "banksman", "ponies": "pony",
 })  # fmt: skip
-"""Singulars by irregular plural."""
+"""The singular forms of irregular plurals."""
 
 _NEVER_GENERATED = frozenset({"persons", "busses"})  # plurals that are recognised but never generated
 
 PLURALS: Mapping[str, str] = MappingProxyType({one: many for many, one in SINGULARS.items() if many not in _NEVER_GENERATED})
-"""Irregular plurals by singular."""
+"""The plural forms of nouns with an irregular plural."""
 
 _INVARIANT = frozenset({
     "bus", "grass", "gas", "glass", "press", "sheep", "deer", "series", "traffic", "vms", "this", "is", "its", "was", "has", "does",
@@ -82,5 +82,5 @@ def article(phrase: str) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """Return a count with its noun in the right number: "1 car", "2 cars"."""
+    """Return a count with the noun in the singular or plural: "1 car", "2 cars"."""
     return f"{count} {noun if count == 1 else plural(noun)}"

@@ -55,8 +55,8 @@ def ordinal(word: str) -> int | None:
         return -1
     if word in ORDINALS:
         return ORDINALS[word]
-    found = re.fullmatch(r"(\d+)(st|nd|rd|th)", word)
-    return int(found.group(1)) if found else None
+    match = re.fullmatch(r"(\d+)(st|nd|rd|th)", word)
+    return int(match.group(1)) if match else None
 
 
 def ordinal_suffix(number: int) -> str:
@@ -71,7 +71,7 @@ def number_word(number: int) -> str:
         ValueError: The number is negative or above 99.
     """
     if not 0 <= number < 100:
-        raise ValueError(f"number_word takes 0 to 99, got {number}")
+        raise ValueError(f"the number must be from 0 to 99; got {number}")
     if number < len(SMALL_NUMBERS):
         return SMALL_NUMBERS[number]
     tens, unit = _TENS_WORDS[number // 10 - 2], number % 10

@@ -1,1 +1,4 @@
-"""Creation of cameras, planners, perception and evaluation contexts from specs and options. No other package creates them."""
+"""Creation of cameras, planners, perception backends and evaluation contexts from specs and options.
+
+No other package creates these objects.
+"""

@@ -69,7 +69,7 @@ def planner_for(resolved: ResolvedPlanner) -> Planner:
 
 
 def perception_for(resolved: ResolvedPerception, scenes: Callable[[str], Scene], seed: int, truth: CachedTruth) -> Perception:
-    """Create perception for an evaluation. ``truth`` caches the ground truth of each view."""
+    """Create the perception backend of an evaluation. ``truth`` caches the ground truth of each view."""
     return make_perception(resolved, scenes, seed, truth.read)
 
 
@@ -84,22 +84,24 @@ def eval_context(
     Args:
         seed: Seed for every random choice.
         planner: The planner; None creates the one that the engine requests by name.
-        perception: The perception, which is created immediately so that errors are reported before the first run; None creates
-            the one that the engine requests by name.
+        perception: The resolved perception backend, which is created immediately so that errors are reported before the first
+            run; None creates the one that the engine requests by name.
     """
     from scope_ptz.factory.validation_perception import CachedTruth
 
     scenes, cache = Library(scene_search(load_settings())), CachedTruth(MAX_CACHED_VIEWS)
-    made = perception_for(perception, scenes, seed, cache) if perception is not None else None
+    backend = perception_for(perception, scenes, seed, cache) if perception is not None else None
 
     async def requested_planner(request: ModelRequest) -> Planner:
         return planner or planner_for((await resolve_models(_model_options(request, "planner"))).planner)
 
     async def requested_perception(request: ModelRequest) -> Perception:
-        return made or perception_for((await resolve_models(_model_options(request, "perception"))).perception, scenes, seed, cache)
+        return backend or perception_for(
+            (await resolve_models(_model_options(request, "perception"))).perception, scenes, seed, cache
+        )
 
     async def requested_judge(request: ModelRequest, repeat: int) -> Complete:
-        return (await _open_judge(request)).repeated(repeat)
+        return (await _open_judge(request)).for_repeat(repeat)
 
     truth = _ground_truth(scenes, cache)
 
@@ -113,7 +115,7 @@ def eval_context(
         make_judge=requested_judge,
         load_tasks=lambda split: tasks_of(split, scenes),
         true_count=true_count,
-        perception=made,
+        perception=backend,
         perception_note=perception_note(perception) if perception else "",
     )
 
@@ -125,10 +127,10 @@ def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
         split: The name of a split, or the path of a task file.
         scenes: Opens the scenes of the tasks by name.
     """
-    from scope_ptz.bench.tasks.imported import holds_imported, load_imported
+    from scope_ptz.bench.tasks.imported import is_imported_file, load_imported
     from scope_ptz.bench.tasks.splits import load_split
 
-    if holds_imported(Path(split)):
+    if is_imported_file(Path(split)):
         return imported_entries(load_imported(Path(split)))
     return entries_of(load_split(split), scenes)
 
@@ -140,7 +142,7 @@ def _ground_truth(scenes: Callable[[str], Scene], cache: CachedTruth) -> GroundT
 
 
 def _model_options(request: ModelRequest, role: str) -> ModelOptions:
-    """Convert a model request from the engine's own command line.
+    """Convert a model request from the engine's command line to the options of ``resolve_models``.
 
     SCOPE interprets the options ``served`` and ``key_file``; the others are passed to the model.
     """
@@ -168,7 +170,7 @@ async def _open_judge(request: ModelRequest) -> JudgeServer:
 
 
 async def _count(truth: GroundTruthPerception, scene: str, observation: Observation) -> int | None:
-    """Count the objects that a perception call asked for in its view; None if the description is too general to count."""
+    """Return the true count for a perception call; None if ground truth cannot count objects by its description."""
     from scope_ptz.factory.validation_perception import is_plain_noun
 
     if observation.viewpoint is None:
@@ -180,7 +182,7 @@ async def _count(truth: GroundTruthPerception, scene: str, observation: Observat
         origin=FrameOrigin(scene, observation.viewpoint, pose, observation.time_s),
     )  # fmt: skip
     try:
-        found = len((await truth.detect(frame, observation.asked)).boxes)
-        return found if found or is_plain_noun(truth.view(frame, observation.asked), observation.asked) else None
+        count = len((await truth.detect(frame, observation.asked)).boxes)
+        return count if count or is_plain_noun(truth.view(frame, observation.asked), observation.asked) else None
     except PerceptionError:
         return None

@@ -122,17 +122,17 @@ class EvaluationSession:
 
         self.progress.planned(plan)
         try:
-            # The engine catches cancellation. It runs in a task of its own, so that the current task does not count as cancelled.
+            # The engine catches cancellation. It runs in a separate task, so that the current task does not count as cancelled.
             with reduced_garbage_collection():
                 async with group:
                     group.start_soon(work)
         finally:
             self.progress.closed()
         if breaker.tripped:
-            why = "".join(f" {line[0].upper()}{line[1:]}" for line in failure_summary([*finished, *breaker.trials], setup.card))
+            causes = "".join(f" {line[0].upper()}{line[1:]}" for line in failure_summary([*finished, *breaker.trials], setup.card))
             raise ScopeError(
                 f"The evaluation stopped because {MAX_CONSECUTIVE_FAILURES} consecutive runs failed because of infrastructure."
-                f"{why} Check the servers; running the same command again resumes the evaluation."
+                f"{causes} Check the servers; running the same command again resumes the evaluation."
             )
         (result,) = outcome
         if isinstance(result, ScopeError):
@@ -152,10 +152,10 @@ class EvaluationSession:
         if judge is None:
             return EvaluationResult(read_evaluation(log))
         return await complete_judgements(
-            log, judge, lambda: self._opened_judge(judge), self.context, retry_failed=retry_failed, notify=self.progress.note
+            log, judge, lambda: self._connected_judge(judge), self.context, retry_failed=retry_failed, notify=self.progress.note
         )
 
-    async def _opened_judge(self, settings: JudgeSettings) -> JudgeServer:
+    async def _connected_judge(self, settings: JudgeSettings) -> JudgeServer:
         """Return the connection to the judge. It is opened on first use."""
         if self.judge is None:
             self.judge = await open_requested_judge(settings)
@@ -202,20 +202,20 @@ class EvaluationSession:
     def _plan(self, finished: tuple[Trial, ...], stored: Sequence[StoredLog]) -> EvaluationPlan:
         from scope_ptz.bench.engine.entries import digest
         from scope_ptz.bench.engine.estimate import estimate
-        from scope_ptz.bench.engine.runs import earlier_evaluations, log_of_other_source
+        from scope_ptz.bench.engine.runs import earlier_evaluations, log_with_other_source
 
         options, pair = self.options, self.pair
         agent = options.agent if options.agent != BUILT_IN_AGENT else None
         runs, origin = len(self.entries) * options.epochs, ""
         if stored:
-            origin = f"Resuming {stored[0].path}: {len(finished)} of {runs} runs are done."
+            origin = f"Resuming {stored[0].path}: {len(finished)} of {runs} runs are finished."
         elif agent:
-            other = log_of_other_source(options.out, agent, self.agent_source, digest(self.entries))
+            other = log_with_other_source(options.out, agent, self.agent_source, digest(self.entries))
             if other is not None:
                 origin = f"The source of {agent} differs from that in {other}: this is a new evaluation."
         earlier = earlier_evaluations(options.out, agent or pair.planner.name, pair.perception.name)
-        done = {trial.task.id for trial in finished} if options.epochs == 1 else set()
-        remaining = [entry for entry in self.entries if entry.facts.id not in done]
+        finished_ids = {trial.task.id for trial in finished} if options.epochs == 1 else set()
+        remaining = [entry for entry in self.entries if entry.facts.id not in finished_ids]
         expected = estimate(remaining, options.epochs, self.concurrency, earlier, options.price, prompt_chars(self.planner))
         return EvaluationPlan(
             runs, pair.planner.name, pair.perception.name, agent, self.concurrency, finished, expected,
@@ -232,12 +232,12 @@ class _CircuitBreaker(Watcher):
         self.trials: list[Trial] = []
         self.tripped = False
 
-    def began(self, sample: str, entry: Entry) -> None:
-        self._watcher.began(sample, entry)
+    def run_began(self, sample: str, entry: Entry) -> None:
+        self._watcher.run_began(sample, entry)
 
-    def ended(self, sample: str, trial: Trial) -> None:
+    def run_ended(self, sample: str, trial: Trial) -> None:
         self.trials.append(trial)
-        self._watcher.ended(sample, trial)
+        self._watcher.run_ended(sample, trial)
         self._consecutive_failures = self._consecutive_failures + 1 if trial.headline == "infrastructure" else 0
         if self._consecutive_failures >= MAX_CONSECUTIVE_FAILURES and not self.tripped:
             self.tripped = True
@@ -249,16 +249,19 @@ def reduced_garbage_collection() -> Iterator[None]:
     """Run the garbage collector less often inside the block, and exclude the objects that already exist.
 
     Scenes and tasks consist of many small objects. Scanning them repeatedly would take a tenth of an evaluation's time.
+    If the program has already excluded objects itself, they stay excluded: one cannot include only a part again.
     """
-    thresholds = gc.get_threshold()
+    thresholds, excludes = gc.get_threshold(), gc.get_freeze_count() == 0
     gc.collect()
-    gc.freeze()
+    if excludes:
+        gc.freeze()
     gc.set_threshold(*GC_THRESHOLDS)
     try:
         yield
     finally:
         gc.set_threshold(*thresholds)
-        gc.unfreeze()
+        if excludes:
+            gc.unfreeze()
 
 
 def prompt_chars(planner: Planner | None) -> int | None:

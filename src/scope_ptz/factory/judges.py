@@ -23,9 +23,9 @@ _LOG = logging.getLogger(__name__)
 class UnnamedJudgeError(ScopeError):
     """A judge's server does not report its model, and no option names the judge."""
 
-    def __init__(self, url: str, why: str) -> None:
+    def __init__(self, url: str, reason: str) -> None:
         super().__init__(
-            f"The judge's server at {url} did not report the name of its model, so nothing was judged: {why} "
+            f"The judge's server at {url} did not report the name of its model, so nothing was judged: {reason} "
             "Name the model with --judge-model or SCOPE_JUDGE_MODEL."
         )
 

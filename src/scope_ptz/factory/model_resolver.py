@@ -31,7 +31,7 @@ BACKENDS_WITHOUT_SERVER = ("ocr", "router", "transformers_local", "zero_shot")
 
 
 class ModelResolver:
-    """Resolves the user's model options to a planner and perception.
+    """Resolves the user's model options to a planner and a perception backend.
 
     Args:
         options: The options that the user gave.
@@ -60,7 +60,7 @@ class ModelResolver:
         perception = perception or (CHAT_BACKEND if options.perception_url or options.perception_model else BUILT_IN_PERCEPTION[0])
         one_model = planner == perception
         resolved = await self._planner(planner, sees=one_model)
-        return ResolvedPair(resolved, self._routed(await self._perception(perception, resolved if one_model else None)))
+        return ResolvedPair(resolved, self._with_router(await self._perception(perception, resolved if one_model else None)))
 
     async def _planner(self, name: str, *, sees: bool) -> ResolvedPlanner:
         options = self.options
@@ -139,14 +139,14 @@ class ModelResolver:
 
     def _spec(self, name: str, model: Model | None, endpoint: Endpoint | None) -> ResolvedPerception:
         from scope_ptz.perception.backends.spec import BackendSpec
-        from scope_ptz.planner.chat.families import likely_server, switch_for
+        from scope_ptz.planner.chat.families import switch_for, usual_server
 
         options = dict(parse_options(self.options.perception_options, "--perception-option"))
         options.pop("backend", None)
         backend = self._backend(name, model)
         coordinates = options.pop("coordinates", None) or (model.coordinates if model else "generic")
         if backend == CHAT_BACKEND and endpoint is not None and "extra" not in options:
-            no_thinking = switch_for(model.repo if model else endpoint.model, "off", likely_server(endpoint.url)).fields
+            no_thinking = switch_for(model.repo if model else endpoint.model, "off", usual_server(endpoint.url)).fields
             options |= {"extra": dict(no_thinking)} if no_thinking else {}
         served = self.options.perception_model or (endpoint.model if endpoint else "") or (model.repo if model else "")
         label = model.name if model else (served or name)
@@ -157,7 +157,7 @@ class ModelResolver:
         requested = parse_options(self.options.perception_options, "--perception-option").get("backend")
         return normalised(str(requested or (model.backend if model else name)))
 
-    def _routed(self, perception: ResolvedPerception) -> ResolvedPerception:
+    def _with_router(self, perception: ResolvedPerception) -> ResolvedPerception:
         """Combine the perception backend with the requested reader and detector in a router. Without them, return it unchanged."""
         from scope_ptz.perception.backends.spec import BackendSpec
 
@@ -167,7 +167,7 @@ class ModelResolver:
             return perception
         if perception.spec is None:
             raise InputError(
-                f"--reader and --detector need a perception model, and '{perception.name}' is none. Remove them, or name a model."
+                f"--reader and --detector need a perception model, but '{perception.name}' is not one. Remove them, or name one."
             )
         label = "+".join((perception.name, *(part.name for part in parts.values())))
         options = {"answerer": perception.spec, **parts}

@@ -1,4 +1,4 @@
-"""Options that name a planner and perception, and the resolved planner and perception."""
+"""Options that name a planner and a perception backend, and the results of resolving them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class ModelOptions:
     """Options for planner, perception and their servers, as the user gave them.
 
-    ``own_planner`` and ``own_perception`` are objects that a caller from Python passes instead of names.
+    ``planner_instance`` and ``perception_instance`` are objects that Python code passes instead of names.
     """
 
     planner: str | None = None
@@ -37,13 +37,13 @@ class ModelOptions:
     reader: str | None = None
     detector: str | None = None
     timeout_s: float | None = None
-    own_planner: Planner | None = None
-    own_perception: Perception | None = None
+    planner_instance: Planner | None = None
+    perception_instance: Perception | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPlanner:
-    """A resolved planner, from which ``make_planner`` creates one: the grammar, a chat model or a plug-in.
+    """The result of resolving the options for a planner: the grammar, a chat model or a plug-in. ``make_planner`` creates it.
 
     Attributes:
         name: The name in traces and reports.
@@ -64,13 +64,13 @@ class ResolvedPlanner:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPerception:
-    """Resolved perception, from which ``make_perception`` creates one: built in, or a backend with its model.
+    """The result of resolving the options for a perception backend, which ``make_perception`` creates.
 
     Attributes:
         name: The name in traces and reports.
-        spec: The backend's spec; None for built-in perception.
+        spec: The backend's spec; None for a built-in backend.
         model: The registry's entry; None for a model that is not registered.
-        instance: An existing perception that the caller passed. All other fields except the name are then None.
+        instance: An existing perception backend that the caller passed. All other fields except the name are then None.
     """
 
     name: str
@@ -81,7 +81,7 @@ class ResolvedPerception:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPair:
-    """A resolved planner and perception."""
+    """The result of resolving the options for a pair."""
 
     planner: ResolvedPlanner
     perception: ResolvedPerception

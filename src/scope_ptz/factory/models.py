@@ -1,4 +1,4 @@
-"""Resolve model options to names and servers, and create planners and perception from them."""
+"""Resolve model options to names and servers, and create planners and perception backends from them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR, GROUND_TRUTH, NOISY
+from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR, GROUND_TRUTH, NOISY, SERVED_TRUTH
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.model_specs import (
     ModelOptions,
@@ -18,6 +18,7 @@ from scope_ptz.factory.model_specs import (
 if TYPE_CHECKING:
     from scope_ptz.perception.base import Perception
     from scope_ptz.perception.ground_truth import TruthReader
+    from scope_ptz.perception.ground_truth.served import ServedTruth
     from scope_ptz.planner.base import Planner
     from scope_ptz.planner.spec import PlannerSpec
     from scope_ptz.simulator.pack import Scene
@@ -25,10 +26,12 @@ if TYPE_CHECKING:
 __all__ = [
     "GROUND_TRUTH_NOTE",
     "NOISY_NOTE",
+    "SERVED_TRUTH_NOTE",
     "ModelOptions",
     "ResolvedPair",
     "ResolvedPerception",
     "ResolvedPlanner",
+    "dry_run_note",
     "make_perception",
     "make_planner",
     "perception_note",
@@ -37,7 +40,8 @@ __all__ = [
 
 GROUND_TRUTH_NOTE = "Perception is the simulator's own ground truth, not a model."
 NOISY_NOTE = "Perception is the simulator's ground truth with seeded mistakes, not a model."
-_NOTES = {GROUND_TRUTH: GROUND_TRUTH_NOTE, NOISY: NOISY_NOTE}
+SERVED_TRUTH_NOTE = "Simulation only: perception is the ground truth that the virtual camera serves, not a model."
+_NOTES = {GROUND_TRUTH: GROUND_TRUTH_NOTE, NOISY: NOISY_NOTE, SERVED_TRUTH: SERVED_TRUTH_NOTE}
 
 
 async def resolve_models(options: ModelOptions) -> ResolvedPair:
@@ -48,11 +52,11 @@ async def resolve_models(options: ModelOptions) -> ResolvedPair:
     Raises:
         InputError: A name, an address or a combination of options is invalid.
     """
-    if options.own_planner is not None or options.own_perception is not None:
-        pair = await resolve_models(replace(options, own_planner=None, own_perception=None))
-        if (planner := options.own_planner) is not None:
+    if options.planner_instance is not None or options.perception_instance is not None:
+        pair = await resolve_models(replace(options, planner_instance=None, perception_instance=None))
+        if (planner := options.planner_instance) is not None:
             pair = replace(pair, planner=ResolvedPlanner(planner.name, instance=planner))
-        if (perception := options.own_perception) is not None:
+        if (perception := options.perception_instance) is not None:
             pair = replace(pair, perception=ResolvedPerception(perception.name, instance=perception))
         return pair
     if _only_built_in(options):
@@ -64,7 +68,7 @@ async def resolve_models(options: ModelOptions) -> ResolvedPair:
 
 
 def _only_built_in(options: ModelOptions) -> bool:
-    """Return whether the options name only the grammar and built-in perception, so that the registry need not be loaded."""
+    """Return whether the options name only built-in planners and perception backends. The registry is then not needed."""
     names_only = ModelOptions(planner=options.planner, perception=options.perception)
     return options == names_only and options.planner in (None, GRAMMAR) and options.perception in (None, *BUILT_IN_PERCEPTION)
 
@@ -104,18 +108,23 @@ def make_plugin_planner(spec: PlannerSpec) -> Planner:
 
 
 def make_perception(
-    resolved: ResolvedPerception, scenes: Callable[[str], Scene] | None, seed: int, read_truth: TruthReader | None = None
+    resolved: ResolvedPerception,
+    scenes: Callable[[str], Scene] | None,
+    seed: int,
+    read_truth: TruthReader | None = None,
+    served_truth: Callable[[], ServedTruth] | None = None,
 ) -> Perception:
-    """Create perception.
+    """Create a perception backend.
 
     Args:
-        resolved: The resolved perception.
+        resolved: The resolved perception backend.
         scenes: Opens the scenes of simulated frames by name; None for a camera without ground truth.
         seed: Seed for the random errors of ``noisy``.
         read_truth: Reads the ground truth of a view; the default does not cache it.
+        served_truth: Connects to the ground truth that a virtual camera serves; None for other cameras.
 
     Raises:
-        InputError: Built-in perception is requested for a camera without ground truth.
+        InputError: A built-in perception backend is requested for a camera without ground truth.
         ConfigError: A backend's options are invalid, or a package is missing or cannot be loaded.
     """
     if resolved.instance is not None:
@@ -124,6 +133,8 @@ def make_perception(
         from scope_ptz.perception.backends import make_backend
 
         return make_backend(resolved.spec)
+    if resolved.name == SERVED_TRUTH:
+        return _make_served_truth(served_truth)
     if scenes is None:
         raise InputError(
             f"The backend '{resolved.name}' reads the ground truth of a simulated scene, and this camera has none. Name a "
@@ -139,6 +150,25 @@ def make_perception(
     return NoisyPerception(truth, seed=seed)
 
 
+def _make_served_truth(served_truth: Callable[[], ServedTruth] | None) -> Perception:
+    if served_truth is None:
+        raise InputError(
+            f"The backend '{SERVED_TRUTH}' is for a virtual camera on this machine, such as axis://root@127.0.0.1:8080, "
+            "without rules in scope.yaml. Name another backend with --perception."
+        )
+    from scope_ptz.factory.scenes import scene_search
+    from scope_ptz.perception.ground_truth.served import ServedTruthPerception
+    from scope_ptz.settings import load_settings
+    from scope_ptz.simulator.library import Library
+
+    return ServedTruthPerception(served_truth(), Library(scene_search(load_settings())))
+
+
+def dry_run_note(note: str) -> str:
+    """Return the note of a dry run: what its answers are about, and the note about perception."""
+    return f"Dry run: nothing has moved, and answers are about the view at the start. {note}".rstrip()
+
+
 def perception_note(resolved: ResolvedPerception) -> str:
-    """Return a sentence for the user that describes built-in perception; empty for models."""
+    """Return a sentence for the user that describes a built-in perception backend; empty for models."""
     return _NOTES.get(resolved.name, "") if resolved.spec is None and resolved.instance is None else ""

@@ -26,7 +26,7 @@ def parse_options(pairs: Iterable[str], option: str) -> dict[str, Any]:
     for pair in pairs:
         name, equals, value = pair.partition("=")
         if not equals or not name.strip():
-            raise InputError(f"{option} must have the form NAME=VALUE, got '{pair[:80]}'.")
+            raise InputError(f"{option} must have the form NAME=VALUE; got '{pair[:80]}'.")
         try:
             options[name.strip()] = json.loads(value)
         except ValueError:

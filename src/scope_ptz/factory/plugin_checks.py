@@ -108,7 +108,7 @@ async def _check_perception(plugin: Plugin) -> tuple[Verdict, str]:
     spec = BackendSpec(name=plugin.name, backend=plugin.name)
     perception = call_factory(plugin.entry, Perception, spec)  # type: ignore[type-abstract]
     frame = _grey_frame()
-    tries: dict[str, tuple[Callable[[], Awaitable[object]], type]] = {
+    requests: dict[str, tuple[Callable[[], Awaitable[object]], type]] = {
         "detect": (lambda: perception.detect(frame, "cone"), Detections),
         "point": (lambda: perception.point(frame, "cone"), Points),
         "query": (lambda: perception.query(frame, "Is there a cone?"), Answer),
@@ -118,8 +118,8 @@ async def _check_perception(plugin: Plugin) -> tuple[Verdict, str]:
         unknown = sorted(set(perception.skills) - ALL_SKILLS)
         _expect(not unknown, f"it declares unknown skills: {', '.join(unknown)}")
         _expect(bool(perception.skills), "it declares no skills")
-        skill = next(name for name in tries if name in perception.skills)
-        request, kind = tries[skill]
+        skill = next(name for name in requests if name in perception.skills)
+        request, kind = requests[skill]
         try:
             result = await request()
         except PerceptionError as error:
@@ -127,7 +127,7 @@ async def _check_perception(plugin: Plugin) -> tuple[Verdict, str]:
     finally:
         await perception.close()
     _expect(isinstance(result, kind), f"{skill}() returned a {type(result).__name__} instead of a {kind.__name__}")
-    return "ok", f"skills: {', '.join(name for name in tries if name in perception.skills)}"
+    return "ok", f"skills: {', '.join(name for name in requests if name in perception.skills)}"
 
 
 _CHECKS: dict[Kind, Callable[[Plugin], Awaitable[tuple[Verdict, str]]]] = {

@@ -1,4 +1,4 @@
-"""Plug-ins: cameras, planners and perception that other installed packages provide.
+"""Plug-ins: cameras, planners and perception backends that other installed packages provide.
 
 A package declares a factory function as an entry point in one of three groups:
 
@@ -30,11 +30,11 @@ class Plugin:
     """An installed plug-in, which may not be imported yet.
 
     Attributes:
-        kind: Whether it provides a camera, a planner or perception.
+        kind: Whether it provides a camera, a planner or a perception backend.
         name: The name that selects it.
         package: The distribution and its version.
         target: The factory as ``module:attribute``.
-        problem: The reason why its name does not select it; empty if it does.
+        problem: The reason why the name does not select this plug-in; empty if it does.
         entry: The entry point.
     """
 

@@ -29,7 +29,7 @@ def with_judge(context: EvalContext, judge: JudgeServer) -> EvalContext:
     """Return a context that provides the same judge for every request."""
 
     async def make_judge(request: ModelRequest, repeat: int) -> Complete:  # noqa: ARG001 - the engine passes a request
-        return judge.repeated(repeat)
+        return judge.for_repeat(repeat)
 
     return replace(context, make_judge=make_judge)
 
@@ -53,9 +53,9 @@ async def add_scores(
     context: EvalContext,
     *,
     repeats: int,
-    further: bool = True,
+    additional: bool = True,
     checks: bool = False,
-    at_a_time: int = CONCURRENT_JUDGEMENTS,
+    concurrency: int = CONCURRENT_JUDGEMENTS,
     notify: Notify,
 ) -> JudgementTally:
     """Add scores to a log and return the outcome of the judgements. The agent is not run again.
@@ -65,10 +65,10 @@ async def add_scores(
         judge: The judge; None to apply only the checks.
         context: Context of the evaluation.
         repeats: Number of judgements of each run.
-        further: Whether to add ``repeats`` judgements to those in the log. Otherwise, add only those that are missing from the
+        additional: Whether to add ``repeats`` judgements to those in the log. Otherwise, add only those that are missing from the
             first ``repeats``.
         checks: Whether to apply the current executable checks again.
-        at_a_time: Number of runs that are scored concurrently.
+        concurrency: Number of runs that are scored concurrently.
         notify: Receives notes about progress.
 
     Raises:
@@ -83,16 +83,23 @@ async def add_scores(
 
     if judge is not None:
         context = with_judge(context, judge)
-    model = judge_model(judge, at_a_time) if judge is not None else None
+    model = judge_model(judge, concurrency) if judge is not None else None
     return await rescore(
-        log, context, judge_model=model, repeats=repeats, further=further, with_checks=checks, at_a_time=at_a_time, report=report
+        log,
+        context,
+        judge_model=model,
+        repeats=repeats,
+        additional=additional,
+        with_checks=checks,
+        concurrency=concurrency,
+        report=report,
     )
 
 
 async def complete_judgements(
     log: Path,
     settings: JudgeSettings,
-    opened_judge: Callable[[], Awaitable[JudgeServer]],
+    connect_judge: Callable[[], Awaitable[JudgeServer]],
     context: EvalContext,
     *,
     retry_failed: bool,
@@ -103,7 +110,7 @@ async def complete_judgements(
     Args:
         log: Log of an evaluation.
         settings: The judge, and the number of judgements of each run.
-        opened_judge: Connects to the judge. It is not called if no judgement is missing and the judge's name is known.
+        connect_judge: Connects to the judge. It is not called if no judgement is missing and the judge's name is known.
         context: Context of the evaluation.
         retry_failed: Whether to repeat the judgements for which the judge's server failed.
         notify: Receives notes for the user.
@@ -119,22 +126,24 @@ async def complete_judgements(
     requested = settings.model or load_settings().judge_model
     if not requested:
         try:
-            requested = (await opened_judge()).client.endpoint.model
+            requested = (await connect_judge()).client.endpoint.model
         except UnnamedJudgeError as error:
-            only = judged_by(evaluation.trials, "", settings.repeats)
-            if only is None:
+            known_judge = judged_by(evaluation.trials, "", settings.repeats)
+            if known_judge is None:
                 raise
-            notify(f"{error} {only} has already judged every run, and its verdicts are reported.")
-            requested = only
+            notify(f"{error} {known_judge} has already judged every run, and its verdicts are reported.")
+            requested = known_judge
     name = judged_by(evaluation.trials, requested, settings.repeats)
     if name is None:
-        judge = await opened_judge()
+        judge = await connect_judge()
         name = judge.client.endpoint.model
         judgements = requested_judgements(evaluation.trials, name, settings.repeats)
         missing = sum(judgement is None or judgement.verdict == "failed" for judgement in judgements)
         if evaluation.finished and (None in judgements or (retry_failed and missing)):
             notify(f"{missing} of {len(judgements)} judgements by {name} are missing; requesting them now.")
-            await add_scores(log, judge, context, repeats=settings.repeats, further=False, notify=notify)
+            await add_scores(log, judge, context, repeats=settings.repeats, additional=False, notify=notify)
             evaluation = read_evaluation(log)
-    made = [judgement for judgement in requested_judgements(evaluation.trials, name, settings.repeats) if judgement is not None]
-    return EvaluationResult(evaluation, name, JudgementTally.of(made))
+    judgements_made = [
+        judgement for judgement in requested_judgements(evaluation.trials, name, settings.repeats) if judgement is not None
+    ]
+    return EvaluationResult(evaluation, name, JudgementTally.of(judgements_made))

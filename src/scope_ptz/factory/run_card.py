@@ -20,7 +20,7 @@ from scope_ptz.planner.base import Planner
 from scope_ptz.version import __version__
 
 SERVER_QUERY_TIMEOUT_S = 10.0
-"""Maximum time for asking a server about its configuration. Some servers do not answer."""
+"""Maximum time in seconds for requesting the configuration of a server. Some servers do not answer."""
 
 
 async def run_card(
@@ -34,7 +34,7 @@ async def run_card(
     contended: bool,
     variant: str,
     price: Price | None,
-    **facts: Any,
+    **fields: Any,
 ) -> RunCard:
     """Return the run card of an evaluation that is about to start.
 
@@ -48,7 +48,7 @@ async def run_card(
         contended: Whether concurrent runs may have increased the latencies.
         variant: Label of the evaluation.
         price: Price of the planner's tokens.
-        **facts: Further fields of the card, such as split, seed and epochs.
+        **fields: Further fields of the card, such as split, seed and epochs.
     """
     details = planner.details if planner is not None else {}
     spec = resolved.perception.spec
@@ -75,7 +75,7 @@ async def run_card(
         concurrency=concurrency,
         contended=contended,
         host=f"{platform.machine()} {platform.system()}, Python {platform.python_version()}",
-        **facts,
+        **fields,
     )
 
 

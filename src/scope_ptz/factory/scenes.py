@@ -26,21 +26,21 @@ def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
     return (settings.scenes_dir,)
 
 
-def open_scene(name: str, *, keep: bool = False) -> Scene:
+def open_scene(name: str, *, cache_pictures: bool = False) -> Scene:
     """Open a scene by name.
 
     Args:
         name: Name of the scene or variation.
-        keep: Whether decoded pictures stay on disk, so that the next program shows its first view sooner.
+        cache_pictures: Whether decoded pictures are cached on disk, so that the next program shows its first view sooner.
 
     Raises:
         UnknownNameError: There is no such scene.
         PackError: The files of the scene are damaged.
     """
     from scope_ptz.simulator.pack import load_scene
-    from scope_ptz.simulator.sheets.kept import KeptPictures
+    from scope_ptz.simulator.sheets.picture_cache import PictureCache
     from scope_ptz.simulator.views import RENDERING_VERSION
 
     settings = load_settings()
-    kept = KeptPictures(settings.pictures_folder(), f"{__version__} {RENDERING_VERSION}") if keep else None
-    return load_scene(name, scene_search(settings), tile_bytes=settings.tile_bytes(), kept=kept)
+    cache = PictureCache(settings.pictures_folder(), f"{__version__} {RENDERING_VERSION}") if cache_pictures else None
+    return load_scene(name, scene_search(settings), tile_bytes=settings.tile_bytes(), picture_cache=cache)

@@ -33,7 +33,7 @@ class DiscardedImages:
         self._count += 1
         return f"{self._count:04d}.png"
 
-    def save_look(self, frame: Frame) -> str:  # noqa: ARG002
+    def save_frame(self, frame: Frame) -> str:  # noqa: ARG002
         return self._next_name()
 
     def save_picture(self, frame: Frame) -> str:  # noqa: ARG002
@@ -63,7 +63,7 @@ class CachedTruth:
 
 
 def is_answerable(draft: TaskDraft) -> bool:
-    """Return whether ground-truth perception can answer the questions of a draft's reference program, in agreement with the draft.
+    """Return whether ground-truth perception answers the questions in a draft's reference program as the draft expects.
 
     The result is True for drafts that end with a zoom; validation checks those later.
     """

@@ -5,18 +5,33 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from scope_ptz.errors import InputError
+
 if TYPE_CHECKING:
     from scope_ptz.bench.tasks.task import Task
     from scope_ptz.simulator.pack import Scene
 
 
 def scenes_named(names: list[str] | None) -> dict[str, Scene]:
-    """Return scenes by name; all scenes if ``names`` is empty or None."""
+    """Return scenes with ground truth by name; all of them if ``names`` is empty or None.
+
+    Raises:
+        InputError: A named scene was captured from a camera, so it has no ground truth.
+        UnknownNameError: There is no such scene.
+        PackError: The files of a scene are damaged.
+    """
     from scope_ptz.factory.scenes import open_scene, scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.pack import list_scenes
 
-    return {name: open_scene(name) for name in dict.fromkeys(names or list_scenes(scene_search(load_settings())))}
+    scenes = {name: open_scene(name) for name in dict.fromkeys(names or list_scenes(scene_search(load_settings())))}
+    captured = [name for name, scene in scenes.items() if scene.file.captured is not None]
+    if names and captured:
+        raise InputError(
+            f"The scene '{captured[0]}' was captured from a camera and has no ground truth, so no task can be made or scored in "
+            "it. Name a scene that was built with Blender."
+        )
+    return {name: scene for name, scene in scenes.items() if name not in captured}
 
 
 def worlds_of(tasks: Iterable[Task]) -> dict[str, Scene]:

@@ -25,7 +25,7 @@ class Optics:
         zooms = [z for z, _ in self.table]
         fields = [h for _, h in self.table]
         if len(self.table) < 2 or sorted(set(zooms)) != zooms or sorted(set(fields), reverse=True) != fields:
-            raise ValueError("a zoom table needs two or more rows, with increasing magnification and decreasing field of view")
+            raise ValueError("a zoom table must have two or more rows, with increasing magnification and decreasing field of view")
 
     @property
     def min_zoom(self) -> float:
@@ -40,7 +40,7 @@ class Optics:
 
     def focal(self, zoom: float) -> float:
         """Return the focal length in units of half the image width: 1 / tan(hfov / 2)."""
-        import numpy as np  # imported here, so that limits and optics can be loaded without it
+        import numpy as np  # imported here, so that this module can be imported without NumPy
 
         return float(np.interp(zoom, [z for z, _ in self.table], self._focals()))
 
@@ -74,7 +74,7 @@ class Limits:
     def clamp(self, pose: Pose) -> tuple[Pose, tuple[Axis, ...]]:
         """Return the nearest pose within the limits, and the axes that were clamped.
 
-        Pan is not wrapped first: 170 + 20 = 190 is clamped to 179, and the camera does not turn the other way round.
+        Pan is not wrapped first: 170 + 20 = 190 is clamped to 179, because the camera does not turn the other way.
         """
         pan = wrap_pan_deg(pose.pan_deg) if self.pan_endless else _clamped(pose.pan_deg, self.min_pan_deg, self.max_pan_deg)
         tilt = _clamped(pose.tilt_deg, self.min_tilt_deg, self.max_tilt_deg)
@@ -98,7 +98,7 @@ class Limits:
         return not (axis == "pan" and self.pan_endless) and (value <= low + 1e-6 or value >= high - 1e-6)
 
     def aim_pan_deg(self, pan_deg: float) -> float:
-        """Return a pan angle plus or minus full turns, so that it is within the limits if possible."""
+        """Return an equivalent pan angle (plus or minus full turns) that is within the limits if possible."""
         wrapped = wrap_pan_deg(pan_deg)
         for candidate in (wrapped, wrapped + 360.0, wrapped - 360.0):
             if self.min_pan_deg <= candidate <= self.max_pan_deg:

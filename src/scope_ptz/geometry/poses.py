@@ -26,9 +26,9 @@ class Pose:
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(v) for v in (self.pan_deg, self.tilt_deg, self.zoom)):
-            raise ValueError(f"a pose needs finite numbers, got {self}")
+            raise ValueError(f"pan, tilt and zoom must be finite numbers; got {self}")
         if self.zoom <= 0:
-            raise ValueError(f"zoom must be positive, got {self.zoom}")
+            raise ValueError(f"zoom must be positive; got {self.zoom}")
 
     def turned(self, pan_deg: float = 0.0, tilt_deg: float = 0.0) -> Pose:
         """Return the pose after a relative move. It is neither wrapped nor clamped, because the camera applies its limits."""

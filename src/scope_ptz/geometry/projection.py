@@ -76,23 +76,23 @@ class Perspective:
 
     def directions(self, points: ArrayLike) -> Floats:
         p = np.asarray(points, dtype=np.float64)
-        local = np.stack(
-            [(p[..., 0] - 0.5) * self.width, (0.5 - p[..., 1]) * self.height, np.full(p.shape[:-1], self.focal_px)], axis=-1
-        )
+        local = np.empty((*p.shape[:-1], 3))
+        local[..., 0], local[..., 1], local[..., 2] = (p[..., 0] - 0.5) * self.width, (0.5 - p[..., 1]) * self.height, self.focal_px
         rays = local @ camera_axes(self.pan_deg, self.tilt_deg)
-        return np.asarray(rays / np.linalg.norm(rays, axis=-1, keepdims=True))
+        return np.asarray(rays / np.sqrt(np.add.reduce(rays * rays, axis=-1, keepdims=True)))
 
     def points(self, directions: ArrayLike) -> Floats:
         local = np.asarray(directions, dtype=np.float64) @ camera_axes(self.pan_deg, self.tilt_deg).T
         depth = np.where(local[..., 2] > 1e-9, local[..., 2], np.nan)
-        x = 0.5 + self.focal_px * local[..., 0] / depth / self.width
-        y = 0.5 - self.focal_px * local[..., 1] / depth / self.height
-        return np.stack([x, y], axis=-1)
+        focal_px, found = self.focal_px, np.empty((*local.shape[:-1], 2))
+        found[..., 0] = 0.5 + focal_px * local[..., 0] / depth / self.width
+        found[..., 1] = 0.5 - focal_px * local[..., 1] / depth / self.height
+        return found
 
 
 @dataclass(frozen=True, slots=True)
 class Equirectangular:
-    """A panorama, whose columns are linear in pan and whose rows are linear in tilt.
+    """An equirectangular panorama: columns are linear in pan, and rows are linear in tilt.
 
     It covers ``pan_span_deg`` (at most 360) clockwise from ``left_pan_deg``.
     """

@@ -1,4 +1,4 @@
-"""The perception contract: the calls that a backend answers about a frame, and their typed results.
+"""The perception contract: the calls that a backend implements, and their typed results.
 
 Boxes and points are normalised to [0, 1] with the origin at the top left, regardless of what the model reports. A failure
 raises ``PerceptionError``; it never becomes a count of zero, an empty list or an invented result.
@@ -28,7 +28,7 @@ class Agreement(BaseModel):
     other: str
     """The second backend."""
     said: str
-    """The second backend's answer in short; for boxes and points, their number."""
+    """The second backend's answer, shortened; for boxes and points, their number."""
     share: Unit
     """How far the results agree, from 0 to 1."""
 
@@ -44,7 +44,7 @@ class _Result(BaseModel):
     Attributes:
         source: The backend that answered ("ground-truth", "moondream3").
         raw: The reply as received.
-        latency_s: Wall time in seconds.
+        latency_s: Wall-clock time in seconds.
         notes: Corrections to the reply, omissions from it, and failures of backends that were asked before ``source``.
         agreement: The comparison with a second backend, if one was asked.
         attempts: The requests that were sent to a model server.
@@ -75,7 +75,7 @@ class Box(BaseModel):
     @model_validator(mode="after")
     def _ordered(self) -> Box:
         if self.x_min > self.x_max or self.y_min > self.y_max:
-            raise ValueError(f"a box needs min <= max, got {self.x_min, self.y_min, self.x_max, self.y_max}")
+            raise ValueError(f"a box must have min <= max; got {self.x_min, self.y_min, self.x_max, self.y_max}")
         return self
 
     @property
@@ -108,7 +108,7 @@ class Caption(_Result):
 
 
 class Answer(_Result):
-    """The answer to a question. ``known`` is False if the answer is that the picture does not tell."""
+    """The answer to a question. ``known`` is False if the picture does not show the answer."""
 
     text: str
     known: bool = True
@@ -131,13 +131,16 @@ class Points(_Result):
 class Perception(ABC):
     """Base class of perception backends: a vision-language model, a detector, OCR, or the simulator's ground truth.
 
-    ``skills`` lists the calls that a backend supports; others raise ``PerceptionError``. A detector, for example, lacks "query".
+    ``skills`` lists the calls that a backend supports; other calls raise ``PerceptionError``. A detector, for example, does not
+    support "query".
     """
 
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
     handles_panoramas: bool = False
-    """Whether it finds small objects in a whole panorama. Other backends get panoramas in parts (``models.tiled_panoramas``)."""
+    """Whether the backend finds small objects in a whole panorama. Other backends receive it in parts (see
+    ``models.tiled_panoramas``).
+    """
 
     @abstractmethod
     async def caption(self, frame: Frame) -> Caption:
@@ -149,11 +152,11 @@ class Perception(ABC):
 
     @abstractmethod
     async def detect(self, frame: Frame, description: str) -> Detections:
-        """Return a box for everything that fits a description."""
+        """Return a box for each object that matches a description."""
 
     @abstractmethod
     async def point(self, frame: Frame, description: str) -> Points:
-        """Return one point on everything that fits a description."""
+        """Return one point on each object that matches a description."""
 
     async def close(self) -> None:
         """Release the backend's resources. The default does nothing."""

@@ -30,9 +30,9 @@ class PerceptionConformance(ABC):
     """Checks of the ``Perception`` contract. They do not measure accuracy."""
 
     present: str = "thing"
-    """A description that fits something in the frame."""
+    """A description of something in the frame."""
     absent: str = "purple unicorn"
-    """A description that fits nothing in the frame."""
+    """A description of something that is not in the frame."""
     question: str | None = None
     """A question that the backend can answer from the frame; if None, the checks ask whether ``present`` is there."""
 
@@ -92,23 +92,23 @@ class PerceptionConformance(ABC):
         async with self.perception() as perception:
             if "detect" not in perception.skills:
                 return
-            found = await perception.detect(self.frame(), self.present)
-            _expect(isinstance(found, Detections), f"detect returned a {type(found).__name__}")
-            _expect(len(found.boxes) > 0, f"nothing fits '{self.present}', which is in the frame")
-            for box in found.boxes:
+            result = await perception.detect(self.frame(), self.present)
+            _expect(isinstance(result, Detections), f"detect returned a {type(result).__name__}")
+            _expect(len(result.boxes) > 0, f"nothing was found for '{self.present}', which is in the frame")
+            for box in result.boxes:
                 _expect(0 <= box.x_min < box.x_max <= 1 and 0 <= box.y_min < box.y_max <= 1, f"{box} is not a box inside the frame")
                 _expect(box.score is None or 0 <= box.score <= 1, f"score {box.score} is not between 0 and 1")
-            self._expect_result(found)
+            self._expect_result(result)
 
     async def test_point_returns_points_inside_the_frame(self) -> None:
         async with self.perception() as perception:
             if "point" not in perception.skills:
                 return
-            found = await perception.point(self.frame(), self.present)
-            _expect(isinstance(found, Points), f"point returned a {type(found).__name__}")
-            _expect(len(found.points) > 0, f"nothing fits '{self.present}', which is in the frame")
-            _expect(all(0 <= p.x <= 1 and 0 <= p.y <= 1 for p in found.points), "a point lies outside the frame")
-            self._expect_result(found)
+            result = await perception.point(self.frame(), self.present)
+            _expect(isinstance(result, Points), f"point returned a {type(result).__name__}")
+            _expect(len(result.points) > 0, f"nothing was found for '{self.present}', which is in the frame")
+            _expect(all(0 <= p.x <= 1 and 0 <= p.y <= 1 for p in result.points), "a point lies outside the frame")
+            self._expect_result(result)
 
     async def test_absent_things_are_an_empty_list(self) -> None:
         async with self.perception() as perception:
@@ -161,7 +161,7 @@ class PerceptionConformance(ABC):
         _expect(bool(result.source), "the result has no source")
         _expect(
             math.isfinite(result.latency_s) and result.latency_s > 0,
-            f"the latency must be finite and positive, got {result.latency_s} s",
+            f"the latency must be finite and positive; got {result.latency_s} s",
         )
 
 

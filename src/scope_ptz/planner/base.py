@@ -35,7 +35,7 @@ class ToolCall(_Model):
 
 
 class Picture(_Model):
-    """A frame for planners that take images: a JPEG as a data URL. Traces store the name of the image file instead."""
+    """A frame for planners that accept images: a JPEG as a data URL. Traces store the name of the image file instead."""
 
     data_url: str = Field(repr=False)
     caption: str
@@ -69,7 +69,7 @@ class PastTurn(_Model):
 
 
 class Briefing(_Model):
-    """The facts about the camera that the planner gets when a run starts."""
+    """The facts about the camera that the planner receives when a run starts."""
 
     presets: tuple[str, ...]
     pose: Pose
@@ -80,7 +80,7 @@ class State(_Model):
     """The state S_t: the instruction U, the history H_t (whose results are the observations), and the earlier conversation.
 
     Attributes:
-        view: The newest frame, for planners that take images; older frames are not kept.
+        view: The newest frame, for planners that accept images; older frames are not included.
     """
 
     instruction: str
@@ -112,7 +112,8 @@ class Served(_Model):
     Attributes:
         model: The model's name as the server reports it.
         first_token_s: Seconds to the first token of a streamed reply.
-        calls_from: Where the calls were found: "native" for the server's own field, otherwise the name of a text notation.
+        calls_from: The place where the calls were found: "native" for the server's own field, otherwise the name of a text
+            notation.
         attempts: All requests, including failed ones.
     """
 
@@ -130,8 +131,8 @@ class CallTools(_Model):
     Attributes:
         thought: Text that accompanies the calls.
         reasoning: The planner's reasoning, kept in traces only.
-        opened: Whether an external agent fetched the picture that it was offered; None for planners that get the pictures with
-            each request.
+        opened: Whether an external agent fetched the picture that it was offered; None for planners that receive the pictures
+            with each request.
     """
 
     kind: Literal["call"] = "call"
@@ -147,7 +148,7 @@ class Finish(_Model):
     """The end of a run. ``text`` is the answer, the clarifying question or the reason for the refusal.
 
     Attributes:
-        opened: As in ``CallTools``.
+        opened: See ``CallTools``.
     """
 
     kind: Literal["answered", "clarification", "refused"]
@@ -166,7 +167,7 @@ class Planner(ABC):
 
     Attributes:
         name: The planner's name in traces and results.
-        sees: Whether it takes images: ``State.view`` and the pictures of ``take_image``.
+        sees: Whether the planner accepts images: ``State.view`` and the pictures of ``take_image``.
     """
 
     name: str

@@ -65,33 +65,33 @@ def plan(
     """Return the plan for an instruction.
 
     Args:
-        instruction: What the user typed.
+        instruction: The text that the user typed.
         presets: The camera's presets; without any, preset names are accepted as written.
         pose: The camera's pose at the start.
-        preset_poses: Poses of the presets; a preset without a pose here is assumed to be at the home pose.
+        preset_poses: Poses of the presets; a preset that is not listed is assumed to be at the home pose.
         limits: The camera's limits.
     """
     meaning = understand(instruction, tuple(presets) or None)
     if meaning.refusal or meaning.clarification:
         return Plan(instruction, False, (), meaning.clarification or meaning.refusal)
     program = Program(limits, pose, assume_met=True)
-    world = _AssumedWorld(pose, limits, preset_poses or {})
+    simulated_camera = _AssumedWorld(pose, limits, preset_poses or {})
     calls: list[PlannedCall] = []
     run = program.run(meaning.steps)
     try:
         name, arguments = next(run)
         while len(calls) < _MAX_CALLS:
             calls.append(PlannedCall(name, arguments))
-            name, arguments = run.send(AssumedOutcome(world.result(name, arguments)))
+            name, arguments = run.send(AssumedOutcome(simulated_camera.result(name, arguments)))
     except StopIteration:
         pass
-    world = _AssumedWorld(pose, limits, preset_poses or {})
-    return Plan(instruction, True, tuple(calls), None, make_outline(meaning.steps, limits, pose, world.result))
+    simulated_camera = _AssumedWorld(pose, limits, preset_poses or {})
+    return Plan(instruction, True, tuple(calls), None, make_outline(meaning.steps, limits, pose, simulated_camera.result))
 
 
 @dataclass(slots=True)
 class _AssumedWorld:
-    """A stand-in for the camera and perception: it tracks the pose, and every object is found."""
+    """A simulated camera and perception for plans. It tracks the pose, and finds every object."""
 
     pose: Pose
     limits: Limits
@@ -106,9 +106,9 @@ class _AssumedWorld:
             self.pose = self.presets.get(arguments["name"], Pose())
         elif name == "zoom_to_object":
             self.pose, _ = self.limits.clamp(self.pose.zoomed(_OBJECT_ZOOM_FACTOR))
-        seen = {"count": 1, "answer": "yes", "known": True, "found": True, "matches": 1, "held_share": 1.0}
+        perception_result = {"count": 1, "answer": "yes", "known": True, "found": True, "matches": 1, "held_share": 1.0}
         pose = {"pan_deg": self.pose.pan_deg, "tilt_deg": self.pose.tilt_deg, "zoom": self.pose.zoom}
-        return {"pose": pose, "clamped": (), **seen}
+        return {"pose": pose, "clamped": (), **perception_result}
 
     def _adjusted(self, arguments: Mapping[str, Any]) -> Pose:
         factor = arguments.get("zoom_factor", 1 + arguments.get("zoom_percent", 0.0) / 100)

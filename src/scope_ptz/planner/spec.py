@@ -14,7 +14,7 @@ class PlannerSpec(BaseModel):
 
     Attributes:
         name: The planner's name, as traces and reports show it.
-        model: The value of ``--planner-model``, empty when it was not given.
+        model: The value of ``--planner-model``; empty if the option is not given.
         endpoint: The server named by ``--planner-url`` or ``SCOPE_PLANNER_URL``; None if there is none.
         options: The values of ``--planner-option NAME=VALUE``, parsed as JSON where possible.
     """

@@ -16,7 +16,7 @@ PACKAGED_FILE = "models.yaml"
 
 
 class _File(BaseModel):
-    """The content of a YAML file, in which the names of servers and models are keys."""
+    """The content of a models file. The keys of ``servers`` and ``models`` are their names."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -62,11 +62,14 @@ class Registry:
             return self.pairs[text]
         planner, plus, perception = text.partition("+")
         if plus:
-            plans, sees = self.model(planner, "planner").name, self.model(perception, "perception").name
-            return self.pairs.get(f"{plans}+{sees}") or Pair(name=f"{plans}+{sees}", planner=plans, perception=sees)
+            planner, perception = self.model(planner, "planner").name, self.model(perception, "perception").name
+            name = f"{planner}+{perception}"
+            return self.pairs.get(name) or Pair(name=name, planner=planner, perception=perception)
         model = self.model(text)
         if set(model.roles) != {"planner", "perception"}:
-            raise ConfigError(f"{model.name} is only a {model.roles[0]} model. Give PLANNER+PERCEPTION, see `scope models pairs`.")
+            raise ConfigError(
+                f"{model.name} is only a {model.roles[0]} model. Give PLANNER+PERCEPTION; `scope models pairs` lists the pairs."
+            )
         return Pair(name=model.name, planner=model.name, perception=model.name)
 
     def server(self, name: str) -> Server:
@@ -80,7 +83,7 @@ class Registry:
         return self.servers[name]
 
     def commands(self, model: Model, server: str) -> tuple[str, ...]:
-        """Return the commands that serve a model on a server, with all placeholders filled.
+        """Return the commands that serve a model on a server, with all placeholders replaced.
 
         Raises:
             ConfigError: The server cannot run the model.
@@ -91,7 +94,7 @@ class Registry:
             raise ConfigError(f"{model.name} cannot be served with {server}. Servers that can: {supported}.")
         serving = model.serve[server]
         values = {"source": serving.source or model.repo, "window": str(model.window), "flags": serving.flags}
-        return tuple(_filled(line, values) for line in serving.command or program.command)
+        return tuple(_fill(line, values) for line in serving.command or program.command)
 
 
 def load_registry(user_file: Path | None = None) -> Registry:
@@ -104,56 +107,59 @@ def load_registry(user_file: Path | None = None) -> Registry:
     servers, models, pairs = _parse(packaged, PACKAGED_FILE)
     if user_file is not None:
         try:
-            added = user_file.read_text(encoding="utf-8")
+            user_text = user_file.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ConfigError(f"The models file {user_file} cannot be read: {error}.") from error
-        own_servers, own_models, own_pairs = _parse(added, str(user_file))
-        servers, models, pairs = servers | own_servers, models | own_models, pairs | own_pairs
+        user_servers, user_models, user_pairs = _parse(user_text, str(user_file))
+        servers, models, pairs = servers | user_servers, models | user_models, pairs | user_pairs
         _check(Registry(servers, models, pairs), user_file)
     return Registry(servers, models, pairs)
 
 
-def _parse(text: str, where: str) -> tuple[dict[str, Server], dict[str, Model], dict[str, Pair]]:
+def _parse(text: str, source: str) -> tuple[dict[str, Server], dict[str, Model], dict[str, Pair]]:
     import yaml
 
     try:
         content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - both are safe loaders
     except yaml.YAMLError as error:
-        raise ConfigError(f"{where} is not valid YAML: {' '.join(str(error).split())}.") from error
-    spot: tuple[str | int, ...] = ()
+        raise ConfigError(f"{source} is not valid YAML: {' '.join(str(error).split())}.") from error
+    location: tuple[str | int, ...] = ()
     try:
         file = _File.model_validate(content or {})
         servers, models, pairs = {}, {}, {}
-        for name, given in file.servers.items():
-            spot = ("servers", name)
-            servers[name] = Server.model_validate(given)
-        for name, given in file.models.items():
-            spot = ("models", name)
-            models[name] = Model.model_validate({**given, "name": name, "title": given.get("title", name)})
-        for index, given in enumerate(file.pairs):
-            spot = ("pairs", index)
-            pair = Pair.model_validate({"name": f"{given.get('planner')}+{given.get('perception')}", **given})
+        for name, entry in file.servers.items():
+            location = ("servers", name)
+            servers[name] = Server.model_validate(entry)
+        for name, entry in file.models.items():
+            location = ("models", name)
+            models[name] = Model.model_validate({**entry, "name": name, "title": entry.get("title", name)})
+        for index, entry in enumerate(file.pairs):
+            location = ("pairs", index)
+            pair = Pair.model_validate({"name": f"{entry.get('planner')}+{entry.get('perception')}", **entry})
             pairs[pair.name] = pair
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
-        path = ".".join(str(part) for part in (*spot, *first["loc"]))
-        raise ConfigError(f"{where}: {path}: {first['msg']}.") from error
+        path = ".".join(str(part) for part in (*location, *first["loc"]))
+        raise ConfigError(f"{source}: {path}: {first['msg']}.") from error
     return servers, models, pairs
 
 
-def _check(registry: Registry, where: Path) -> None:
+def _check(registry: Registry, source: Path) -> None:
     """Check that the servers and models that entries refer to exist."""
     for model in registry.models.values():
         for server in model.serve:
             if server not in registry.servers:
-                raise ConfigError(f"{where}: models.{model.name}.serve.{server}: there is no such server.")
+                raise ConfigError(
+                    f"{source}: models.{model.name}.serve.{server}: there is no such server. "
+                    f"Use one of {', '.join(registry.servers)}, or add it under servers."
+                )
     for pair in registry.pairs.values():
         registry.model(pair.planner, "planner")
         registry.model(pair.perception, "perception")
 
 
-def _filled(line: str, values: Mapping[str, str]) -> str:
-    """Return a command with its placeholders filled. Other braces, such as JSON in a flag, remain unchanged."""
+def _fill(line: str, values: Mapping[str, str]) -> str:
+    """Return a command with its placeholders replaced. Other braces, such as JSON in a flag, remain unchanged."""
     for name, value in values.items():
         line = line.replace(f"{{{name}}}", value)
     return " ".join(line.split())

@@ -11,8 +11,8 @@ Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[a-z0-9][a-z
 Role = Literal["planner", "perception"]
 Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
 Thinking = Literal["none", "optional", "default", "always"]
-"""Whether a model reasons: never ("none"), on request ("optional"), unless switched off ("default"), or always ("always"), in which
-case only the length of the reasoning can be set.
+"""Whether a model reasons: "none" (never), "optional" (on request), "default" (unless switched off) or "always". With "always",
+only the length of the reasoning can be set.
 """
 BYTES_PER_PARAMETER: dict[Precision, float] = {
     "fp32": 4.0, "fp16": 2.0, "bf16": 2.0, "fp8": 1.05, "int4": 0.6, "q4": 0.61, "mxfp4": 0.61,
@@ -77,7 +77,7 @@ class Model(_Entry):
     precision: Precision
     context: int = Field(ge=0, description="Context length in tokens; 0 if the model has none.")
     thinking: Thinking = "none"
-    sees: bool = Field(default=False, description="Whether the model takes images in the chat.")
+    sees: bool = Field(default=False, description="Whether the model accepts images in the chat.")
     coordinates: str = Field(default="none", description="Notation of boxes and points, see perception.models.coordinates.")
     licence: str
     kv_kib: float = Field(default=128.0, ge=0)
@@ -116,8 +116,8 @@ class Model(_Entry):
         """Tokens of context to serve the model with."""
         return min(self.context, WINDOW)
 
-    def least_memory(self) -> tuple[str | None, float]:
-        """Return the server on which the model needs the least memory (the first of equals), and that memory in GB."""
+    def min_memory_server(self) -> tuple[str | None, float]:
+        """Return the server on which the model needs the least memory, and that memory in GB. Ties go to the first server."""
         if not self.serve:
             return None, self.memory_for()
         server = min(self.serve, key=self.memory_for)

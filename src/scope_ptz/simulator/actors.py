@@ -1,8 +1,8 @@
-"""Moving actors: where they are at a scene time, and how their sprites are composited over the still world.
+"""Moving actors: their positions at a scene time, and the sprites that are composited over the static world.
 
 A sprite is a rendering of an actor from the viewpoint, with the actor at one point of its path. Between two such points, the
-nearest sprite is turned to the true direction and scaled to the true distance. The depth layer decides for each pixel whether
-something hides the actor.
+nearest sprite is moved to the exact direction and scaled to the exact distance. For each pixel, the depth layer determines whether
+the actor is hidden.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from scope_ptz.simulator.viewpoint import Viewpoint
 
 TOLERANCE_M = 0.15
 TOLERANCE_SHARE = 0.01
-"""The still world hides an actor where it is nearer by more than this: metres, plus a share of the distance."""
+"""An actor is hidden where the static world is nearer by more than this: metres, plus a fraction of the actor's distance."""
 
 Floats = NDArray[np.float64]
 
@@ -35,10 +35,10 @@ class Appearance:
 
     Attributes:
         actor: The actor.
-        sheet: The sheet that holds its sprites.
+        sheet: The sheet that contains its sprites.
         sprite: The sprite to draw.
-        view: The perspective that the sprite fills.
-        offset_m: The actor's ground point relative to the optical centre, in the camera's own frame.
+        view: The perspective view that the sprite covers.
+        offset_m: The actor's ground point relative to the optical centre, in camera coordinates.
         scale: How many times larger the actor appears than in its sprite.
     """
 
@@ -67,7 +67,7 @@ class ActorInView:
 
 @dataclass(frozen=True, slots=True)
 class PathPosition:
-    """Where an actor is on its path: path time, metres walked since its start, ground point (3,) in world coordinates."""
+    """The position of an actor on its path: path time, metres walked since its start, ground point (3,) in world coordinates."""
 
     path_s: float
     walked_m: float
@@ -75,7 +75,7 @@ class PathPosition:
 
 
 def path_position(actor: SceneActor, time_s: float) -> PathPosition | None:
-    """Return where an actor is at a scene time, or None while it is outside the scene."""
+    """Return the position of an actor at a scene time, or None if it is not in the scene."""
     path = np.array(actor.waypoints, dtype=np.float64)
     path_s = (time_s - actor.delay_s) % actor.period_s
     if not path[0, 0] <= path_s <= path[-1, 0]:
@@ -87,63 +87,63 @@ def path_position(actor: SceneActor, time_s: float) -> PathPosition | None:
 
 def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
     """Return the actors in the scene at a time that have sprites from this viewpoint, farthest first."""
-    return _seen(viewpoint, ((actor, time_s) for actor in scene.file.actors))
+    return _appearances_of(viewpoint, ((actor, time_s) for actor in scene.file.actors))
 
 
 def composited(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
-    """Return everything that is composited over the still world: actors, and what a variation of the scene holds in place."""
+    """Return everything that is composited over the static world: actors, and the held objects of a scene variation."""
     moving = ((actor, time_s) for actor in scene.file.actors)
-    return _seen(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
+    return _appearances_of(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
 
 def composited_actors(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[ActorInView]:
-    """Return the same actors as ``composited``, farthest first, without choosing sprites."""
+    """Return the actors of ``composited``, farthest first, without selecting sprites."""
     moving = ((actor, time_s) for actor in scene.file.actors)
-    return _present(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
+    return _actors_in_view(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
 
-def _seen(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[Appearance]:
-    return [_appearance(viewpoint, present) for present in _present(viewpoint, actors)]
+def _appearances_of(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[Appearance]:
+    return [_appearance(viewpoint, actor_in_view) for actor_in_view in _actors_in_view(viewpoint, actors)]
 
 
-def _present(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[ActorInView]:
-    found = []
+def _actors_in_view(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[ActorInView]:
+    in_view = []
     for actor, time_s in actors:
-        sheet, here = viewpoint.sheets.get(actor.number), path_position(actor, time_s)
-        if sheet is not None and here is not None:
-            phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
-            found.append(ActorInView(actor, sheet, viewpoint.offset(here.position_m), here.path_s, phase))
-    return sorted(found, key=lambda a: (-float(np.linalg.norm(a.offset_m)), a.actor.number))
+        sheet, place = viewpoint.sheets.get(actor.number), path_position(actor, time_s)
+        if sheet is not None and place is not None:
+            phase = place.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
+            in_view.append(ActorInView(actor, sheet, viewpoint.offset(place.position_m), place.path_s, phase))
+    return sorted(in_view, key=lambda a: (-float(np.linalg.norm(a.offset_m)), a.actor.number))
 
 
-def _appearance(viewpoint: Viewpoint, present: ActorInView) -> Appearance:
-    actor, sheet, now = present.actor, present.sheet, present.offset_m
+def _appearance(viewpoint: Viewpoint, actor_in_view: ActorInView) -> Appearance:
+    actor, sheet, offset_m = actor_in_view.actor, actor_in_view.sheet, actor_in_view.offset_m
 
-    def misfit(sprite: Sprite) -> tuple[float, float]:
-        off = abs(sprite.phase - present.phase)
-        return abs(sprite.path_s - present.path_s), min(off, 1.0 - off)
+    def mismatch(sprite: Sprite) -> tuple[float, float]:
+        phase_difference = abs(sprite.phase - actor_in_view.phase)
+        return abs(sprite.path_s - actor_in_view.path_s), min(phase_difference, 1.0 - phase_difference)
 
-    # The sprite nearest on the path and, for walkers, nearest in the phase of the stride.
-    sprite = min(sheet.sprites, key=misfit)
-    then = viewpoint.offset(np.array(sprite.position_m))
-    scale = float(np.linalg.norm(then) / np.linalg.norm(now))
+    # Select the sprite that is nearest on the path and, for walkers, nearest in the phase of the stride.
+    sprite = min(sheet.sprites, key=mismatch)
+    sprite_offset_m = viewpoint.offset(np.array(sprite.position_m))
+    scale = float(np.linalg.norm(sprite_offset_m) / np.linalg.norm(offset_m))
     rendered = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
     hfov_deg = float(np.degrees(2 * np.arctan(sprite.width / 2 * scale / rendered.focal_px)))
-    # Aim the view so that the sprite's ground point lies in the actor's present direction at the new scale.
-    foot = rendered.points(then)
+    # Aim the view so that the sprite's ground point lies in the actor's current direction at the new scale.
+    foot = rendered.points(sprite_offset_m)
     pan, tilt = sprite.pan_deg, sprite.tilt_deg
-    wanted_pan, wanted_tilt = (float(a) for a in pan_tilt_deg(now))
+    target_pan, target_tilt = (float(a) for a in pan_tilt_deg(offset_m))
     for _ in range(6):
-        got_pan, got_tilt = pan_tilt_deg(Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height).directions(foot))
-        pan += (wanted_pan - float(got_pan) + 180.0) % 360.0 - 180.0
-        tilt += wanted_tilt - float(got_tilt)
-    return Appearance(actor, sheet, sprite, Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height), now, scale)
+        current_pan, current_tilt = pan_tilt_deg(Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height).directions(foot))
+        pan += (target_pan - float(current_pan) + 180.0) % 360.0 - 180.0
+        tilt += target_tilt - float(current_tilt)
+    return Appearance(actor, sheet, sprite, Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height), offset_m, scale)
 
 
 def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
-    """Return the actor's present silhouette, including hidden parts."""
-    own = viewpoint.sprites.distances(appearance.sheet, appearance.sprite) > 0
-    measures = measure(own.astype(np.uint16), appearance.view)
+    """Return the actor's current silhouette, including hidden parts."""
+    silhouette = viewpoint.sprites.distances(appearance.sheet, appearance.sprite) > 0
+    measures = measure(silhouette.astype(np.uint16), appearance.view)
     if not len(measures.numbers):
         return Extent(number=appearance.actor.number, solid_angle_sr=0.0, hull=[], distance_m=appearance.distance_m)
     x0, y0, x1, y1 = measures.box[0]
@@ -153,17 +153,17 @@ def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
         number=appearance.actor.number,
         solid_angle_sr=float(measures.solid_angle_sr[0]),
         hull=list(zip(pan.tolist(), tilt.tolist(), strict=True)),
-        distance_m=float(_distances(viewpoint, appearance)[own].min()),
+        distance_m=float(_distances(viewpoint, appearance)[silhouette].min()),
     )
 
 
 def shows(appearance: Appearance, projection: Projection) -> bool:
-    """Return whether an actor may be inside a view, judged by directions alone."""
+    """Return whether an actor may be visible in a view, judged only by directions. Occlusion is ignored."""
     return place_of(appearance, projection) is not None
 
 
 def place_of(appearance: Appearance, projection: Projection) -> Place | None:
-    """Return the rows and columns of a view in which an actor may show, None if it is outside."""
+    """Return the rows and columns of a view in which an actor may be visible; None if it is outside."""
     showing = next(iter(Tiles([appearance.view]).in_view(projection)), None)
     return None if showing is None else showing.place
 
@@ -178,10 +178,10 @@ def draw_numbers(
     """Draw one actor into a view's instance numbers, in place.
 
     Args:
-        viewpoint: The viewpoint that holds the actor's sprites.
+        viewpoint: The viewpoint with the actor's sprites.
         projection: Projection of the view.
         appearance: The actor at this instant.
-        depth_m: Distances of the still world in the rows and columns in which the actor may show; see ``place_of``.
+        depth_m: Distances of the static world in the rows and columns in which the actor may be visible; see ``place_of``.
         numbers: (H, W) instance numbers to draw into.
     """
     sprite = Tiles([appearance.view])
@@ -193,11 +193,11 @@ def draw_numbers(
     uv = sprite.points(showing, projection, grid.x, grid.y)
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
-    still_m = depth_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M
-    numbers[place][(distance_m > 0) & (distance_m <= still_m)] = appearance.actor.number
+    static_m = depth_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M
+    numbers[place][(distance_m > 0) & (distance_m <= static_m)] = appearance.actor.number
 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:
-    """Return (h, w) present distances of the sprite's pixels in metres, 0 where the sprite does not show the actor."""
+    """Return the (h, w) current distances of the sprite's pixels in metres, 0 where the actor does not cover the sprite."""
     codes = viewpoint.sprites.distances(appearance.sheet, appearance.sprite)
     return np.where(codes > 0, viewpoint.depth_metres[codes] / np.float32(appearance.scale), np.float32(0.0))

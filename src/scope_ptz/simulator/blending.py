@@ -1,7 +1,7 @@
-"""Blend the borders of tiles into what surrounds them, and match their tone to the panorama.
+"""Blend the borders of tiles into the pictures around them, and match the tone of tiles to the panorama.
 
-A tile is a sharp picture inside a soft one. Its border would show as a hard edge, so over some pixels it fades into what lies below
-it: the panorama, or less sharp tiles. This happens once, when a tile is read, and costs nothing when a view is taken.
+A tile is a sharp picture inside a soft one. Its border would be visible as a hard edge, so the tile fades over some pixels into the
+picture below it: the panorama, or a less sharp tile. Tiles are blended once, when they are read, so views cost no extra time.
 """
 
 from __future__ import annotations
@@ -22,39 +22,39 @@ from scope_ptz.simulator.mapping.tiles import POLYGON_SHIFT, Tiles
 from scope_ptz.simulator.models import Band
 from scope_ptz.simulator.sheets.atlas import Atlas
 
-FADE_PX, MOST_FADE_SHARE = 90.0, 0.2
-"""A tile fades over this many of its pixels, but over no more than this share of its shorter side."""
+FADE_PX, MAX_FADE_SHARE = 90.0, 0.2
+"""A tile fades over this many of its pixels, but over no more than this fraction of its shorter side."""
 
 HIDDEN_PX = 4.0
-"""The outermost pixels of a tile show only what lies below it, because views cut tiles off a little inside their border."""
+"""Width of the outermost part of a tile that is fully transparent, because views cut tiles off slightly inside their border."""
 
 JOINT_PX = 12.0
-"""Tiles that continue each other fade over this many pixels. They overlap by about 28."""
+"""Adjoining tiles fade into each other over this many pixels. They overlap by about 28 pixels."""
 
 SHARP_SHARE = 0.7
-"""A tile continues another if it is at least this sharp in comparison."""
+"""A tile adjoins another without a soft border if its sharpness is at least this fraction of the other's."""
 
-COARSE_PX = 4  # cells in which the distance from soft areas is computed
+COARSE_PX = 4  # size of the cells in which the distance from soft areas is computed
 
-KEPT_FADE_PX = 28.0
-"""Texts and small things near the border stay sharp. The tile fades over this many pixels around them."""
+DETAIL_FADE_PX = 28.0
+"""Texts and small objects near the border stay sharp. The tile fades over this many pixels around them."""
 
 SMALL_PX = 160.0
-"""Things larger than this in a tile may fade."""
+"""Objects larger than this in a tile may fade."""
 
 TONE_CELL_PX = 32
-"""Tone is matched between means of cells of this size, which keeps every detail of the tile."""
+"""Size of the cells whose mean tones are matched. Details smaller than a cell are preserved."""
 
 MAX_TONE_SHIFT = 24.0
-"""Largest change of tone, in steps of 0 to 255. Larger differences are not of tone, but of content."""
+"""Maximum change of tone, in steps of 0 to 255. Larger differences are caused by different content."""
 
-KEPT_TILES = 4  # toned tiles kept in memory, because neighbours need them soon after
+MAX_CACHED_TILES = 4  # tiles with matched tone that stay in memory, because neighbouring tiles need them soon
 
 Floats = NDArray[np.float32]
 
 
 class Outlines:
-    """Outlines, each (n, 3) directions, of things that stay sharp where they are small."""
+    """Outlines, as arrays of (n, 3) directions, of objects that stay sharp where they are small."""
 
     def __init__(self, outlines: Sequence[NDArray[np.float64]]) -> None:
         self._outlines = list(outlines)
@@ -64,7 +64,7 @@ class Outlines:
         self._reach_deg = np.array(list(reach))
 
     def small_in(self, view: Perspective) -> NDArray[np.uint8]:
-        """Return an (H, W) mask of the small things in a view."""
+        """Return an (H, W) mask of the small objects in a view."""
         mask = np.zeros((view.height, view.width), np.uint8)
         size = np.array([view.width, view.height])
         apart_deg = angle_between_deg(self._middles, view.directions((0.5, 0.5)))
@@ -77,14 +77,14 @@ class Outlines:
 
 
 class TileBlender:
-    """Reads the tiles of a viewpoint with faded borders.
+    """Reads the tiles of a viewpoint and blends their borders.
 
     Args:
         read: Reads tile ``i`` as (H, W, 3) RGB, as stored.
         tiles: Geometry of the tiles.
         band: The band of the sphere that the panorama covers.
-        keep_sharp: Returns outlines, each (n, 3) directions, of things that stay sharp where they are small. Called with the first
-            tile.
+        keep_sharp: Returns outlines, as arrays of (n, 3) directions, of objects that stay sharp where they are small. Called when
+            the first tile is read.
     """
 
     def __init__(
@@ -103,9 +103,9 @@ class TileBlender:
         below = self._panorama(atlas, view)
         toned = self._toned_tile(atlas, index, below)
         order = self._tiles.in_view(view)
-        own = next(k for k, showing in enumerate(order) if showing.tile == index)
+        position = next(k for k, showing in enumerate(order) if showing.tile == index)
         grid_step = step_px(view)
-        for showing in reversed(order[own + 1 :]):  # the least sharp first
+        for showing in reversed(order[position + 1 :]):  # starting with the least sharp tile
             grid = Grid(view, grid_step, showing.place)
             other = self._tiles.views[showing.tile]
             nodes = self._tiles.points(showing, view, grid.x, grid.y) * (other.width, other.height) - 0.5
@@ -114,21 +114,25 @@ class TileBlender:
                 continue
             layer = cv2.remap(self._toned_tile(atlas, showing.tile), where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0))
             part = below[showing.place]
-            part[...] = _mixed(layer, part)
-        return _mixed(toned, below)
+            part[...] = _blend(layer, part)
+        return _blend(toned, below)
+
+    def clear_cache(self) -> None:
+        """Release the cached tiles."""
+        self._toned.clear()
 
     def _panorama(self, atlas: Atlas, view: Perspective) -> NDArray[np.uint8]:
         where = panorama_map(self._band, atlas.need(0, 0), Grid(view, step_px(view)))
         return np.asarray(cv2.remap(atlas.sheet, where, None, cv2.INTER_LINEAR))
 
     def _toned_tile(self, atlas: Atlas, index: int, panorama: NDArray[np.uint8] | None = None) -> NDArray[np.uint8]:
-        """Return a tile in the tone of the panorama, (H, W, 4), with its share in the picture as fourth channel."""
+        """Return a tile in the tone of the panorama as (H, W, 4). The fourth channel is its opacity."""
         if index not in self._toned:
             view = self._tiles.views[index]
             around = self._panorama(atlas, view) if panorama is None else panorama
-            share = np.rint(_share(self._tiles, index, self._outlines()) * 255).astype(np.uint8)
-            self._toned[index] = cv2.merge([*cv2.split(_in_tone(self._read(index), around)), share])
-            while len(self._toned) > KEPT_TILES:
+            opacity = np.rint(_opacity(self._tiles, index, self._outlines()) * 255).astype(np.uint8)
+            self._toned[index] = cv2.merge([*cv2.split(_in_tone(self._read(index), around)), opacity])
+            while len(self._toned) > MAX_CACHED_TILES:
                 self._toned.popitem(last=False)
         self._toned.move_to_end(index)
         return self._toned[index]
@@ -138,14 +142,14 @@ def _reaches(where: Floats, other: Perspective) -> bool:
     return bool(np.any((where[..., 0] > 0) & (where[..., 0] < other.width) & (where[..., 1] > 0) & (where[..., 1] < other.height)))
 
 
-def _mixed(over: NDArray[np.uint8], under: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return (H, W, 4) colour with its share as fourth channel over (H, W, 3) colour."""
-    share = cv2.extractChannel(over, 3) / np.float32(255)
-    return np.asarray(cv2.blendLinear(cv2.cvtColor(over, cv2.COLOR_RGBA2RGB), np.ascontiguousarray(under), share, 1 - share))
+def _blend(over: NDArray[np.uint8], under: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Blend an (H, W, 4) picture, whose fourth channel is its opacity, over an (H, W, 3) picture."""
+    opacity = cv2.extractChannel(over, 3) / np.float32(255)
+    return np.asarray(cv2.blendLinear(cv2.cvtColor(over, cv2.COLOR_RGBA2RGB), np.ascontiguousarray(under), opacity, 1 - opacity))
 
 
 def _in_tone(tile: NDArray[np.uint8], panorama: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return a tile whose means over large cells are those of the panorama."""
+    """Return a tile whose mean tones over large cells match those of the panorama."""
     height, width = tile.shape[:2]
     cells = max(2, round(width / TONE_CELL_PX)), max(2, round(height / TONE_CELL_PX))
     means = (cv2.resize(picture, cells, interpolation=cv2.INTER_AREA).astype(np.float32) for picture in (panorama, tile))
@@ -154,25 +158,25 @@ def _in_tone(tile: NDArray[np.uint8], panorama: NDArray[np.uint8]) -> NDArray[np
     return np.asarray(cv2.add(tile, smooth, dtype=cv2.CV_8U))
 
 
-def _share(tiles: Tiles, index: int, outlines: Outlines) -> Floats:
-    """Return the (H, W) share of a tile in the picture.
+def _opacity(tiles: Tiles, index: int, outlines: Outlines) -> Floats:
+    """Return the (H, W) opacity of a tile, 0 to 1.
 
-    It falls to 0 at the tile's border: slowly where the sharp area ends, and over a few pixels where another tile continues it.
+    It decreases to 0 at the tile's border: slowly where the sharp area ends, and over a few pixels where another tile adjoins.
     """
     view = tiles.views[index]
     columns, rows = (np.minimum(np.arange(n) + 0.5, n - np.arange(n) - 0.5) for n in (view.width, view.height))
     inside = np.minimum(rows[:, None], columns[None, :]).astype(np.float32) - np.float32(HIDDEN_PX)
-    fade_px = min(FADE_PX, MOST_FADE_SHARE * min(view.width, view.height))
-    share = np.minimum(_smooth(inside / JOINT_PX), _smooth((_to_soft_px(tiles, index, fade_px) - HIDDEN_PX) / fade_px))
-    kept = outlines.small_in(view)
-    if kept.any():
-        away = np.asarray(cv2.distanceTransform(255 - kept, cv2.DIST_L2, 5))
-        share = np.maximum(share, np.minimum(_smooth(1 - away / KEPT_FADE_PX), _smooth(inside / JOINT_PX)))
-    return share
+    fade_px = min(FADE_PX, MAX_FADE_SHARE * min(view.width, view.height))
+    opacity = np.minimum(_smooth(inside / JOINT_PX), _smooth((_distance_to_soft_px(tiles, index, fade_px) - HIDDEN_PX) / fade_px))
+    details = outlines.small_in(view)
+    if details.any():
+        away = np.asarray(cv2.distanceTransform(255 - details, cv2.DIST_L2, 5))
+        opacity = np.maximum(opacity, np.minimum(_smooth(1 - away / DETAIL_FADE_PX), _smooth(inside / JOINT_PX)))
+    return opacity
 
 
-def _to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
-    """Return the (H, W) distance of a tile's pixels from where no tile is about as sharp, exact up to ``reach_px``."""
+def _distance_to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
+    """Return the (H, W) distance of pixels from the nearest area without an equally sharp tile, exact up to ``reach_px``."""
     view = tiles.views[index]
     pad = COARSE_PX * math.ceil(reach_px / COARSE_PX + 1)
     width, height = view.width + 2 * pad, view.height + 2 * pad
@@ -182,13 +186,13 @@ def _to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
     for showing in tiles.in_view(around):
         if showing.polygon is not None and tiles.views[showing.tile].focal_px >= SHARP_SHARE * view.focal_px:
             cv2.fillConvexPoly(sharp, showing.polygon // COARSE_PX, 255, shift=POLYGON_SHIFT)
-    # The distance is huge where every tile around is sharp.
+    # If the whole neighbourhood is sharp, the distance transform returns a very large distance, hence the limit.
     away = np.minimum(cv2.distanceTransform(sharp, cv2.DIST_L2, 5), pad) * np.float32(COARSE_PX)
     fine = cv2.resize(away, (sharp.shape[1] * COARSE_PX, sharp.shape[0] * COARSE_PX), interpolation=cv2.INTER_LINEAR)
     return np.asarray(fine[pad : pad + view.height, pad : pad + view.width])
 
 
-def _smooth(share: NDArray[np.floating]) -> Floats:
-    """Return 0 to 1 for 0 to 1, without a kink at either end."""
-    t = np.clip(share, 0, 1)
+def _smooth(value: NDArray[np.floating]) -> Floats:
+    """Map [0, 1] to [0, 1] with zero slope at both ends (smoothstep)."""
+    t = np.clip(value, 0, 1)
     return np.asarray(t * t * (3 - 2 * t), dtype=np.float32)

@@ -1,4 +1,4 @@
-"""A scene's card: what it contains and how it was made, for the terminal and as a Markdown page."""
+"""The card of a scene, which describes its contents and how it was made, for the terminal and as a Markdown page."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
-from scope_ptz.simulator.models import Layer, Manifest, ScenePreset, SceneViewpoint
+from scope_ptz.simulator.models import CapturedFrom, Layer, Manifest, ScenePreset, SceneViewpoint
 from scope_ptz.simulator.pack import Scene
 
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """A part of a card: a title, and lines that consist of a name (may be empty) and a text.
+    """A section of a card: a title and its lines. Each line is a pair of a name, which may be empty, and a text.
 
     Attributes:
         title: The heading.
-        lines: The name and the text of each line.
+        lines: The pairs of name and text.
     """
 
     title: str
@@ -41,19 +41,21 @@ def card(scene: Scene) -> Iterator[Paragraph]:
     for viewpoint in file.viewpoints:
         presets = [p for p in file.presets if p.viewpoint == viewpoint.name]
         yield Paragraph(f"Viewpoint {viewpoint.name}", (("", _place(scene, viewpoint)), *(_preset(scene, p) for p in presets)))
+    if file.captured is not None:
+        yield Paragraph("Captured", tuple(_capture(scene, file.captured)))
+        yield Paragraph("Checksums (SHA-256)", tuple(_checksums(scene)))
+        return
     categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
     inventory = ", ".join(f"{count} {category}" for category, count in categories.most_common())
     yield Paragraph(
-        f"{len(file.instances)} objects and {len(file.actors)} moving ones, of {len(categories)} categories", (("", inventory),)
+        f"{len(file.instances)} static and {len(file.actors)} moving objects in {len(categories)} categories", (("", inventory),)
     )
     readable = Counter(f"“{' '.join(t.text.split())}”" for t in file.texts)
     texts = "; ".join(f"{text} ({n} times)" if n > 2 else text for text, n in readable.items())
     yield Paragraph(f"{len(file.texts)} texts", (("", texts or "none"),))
-    movers = tuple(
-        (a.name, f"{a.waypoints[0][0]:.0f} to {a.waypoints[-1][0]:.0f} s of every {a.period_s:.0f} s") for a in file.actors
-    )
-    yield Paragraph("Moving", movers or (("", "nothing"),))
-    yield Paragraph("Deliberately absent", (("", ", ".join(file.absent) or "nothing"),))
+    movers = tuple((a.name, _presence(a.waypoints[0][0], a.waypoints[-1][0], a.period_s)) for a in file.actors)
+    yield Paragraph("Moving objects", movers or (("", "none"),))
+    yield Paragraph("Deliberately absent", (("", ", ".join(file.absent) or "none"),))
     yield Paragraph("How it was made", tuple(_making(scene)))
     yield Paragraph("Checksums (SHA-256)", tuple(_checksums(scene)))
 
@@ -63,7 +65,7 @@ def markdown(scene: Scene, picture: str | None) -> str:
 
     Args:
         scene: The scene.
-        picture: Path of its contact sheet, as the page should link to it; None for a page without a picture.
+        picture: Path of the contact sheet, relative to the page. None for a page without a picture.
     """
     parts = [f"# {scene.file.title}", f"`{scene.name}`, version {scene.file.version}"]
     if picture:
@@ -79,7 +81,8 @@ def markdown(scene: Scene, picture: str | None) -> str:
 
 def _place(scene: Scene, viewpoint: SceneViewpoint) -> str:
     x, y, z = viewpoint.position_m
-    return f"{viewpoint.description}; at ({x:.1f}, {y:.1f}, {z:.1f}) m, {megabytes(folder_bytes(scene.folder / viewpoint.name))}"
+    size = megabytes(folder_bytes(scene.folder / viewpoint.name))
+    return f"{viewpoint.description}; position ({x:.1f}, {y:.1f}, {z:.1f}) m; files {size}"
 
 
 def _preset(scene: Scene, preset: ScenePreset) -> tuple[str, str]:
@@ -88,13 +91,38 @@ def _preset(scene: Scene, preset: ScenePreset) -> tuple[str, str]:
     return preset.name, f"{pose}; {preset.description}" if preset.description else pose
 
 
+def capture_summary(captured: CapturedFrom) -> str:
+    """Return in one sentence where a captured scene comes from."""
+    unseen = f"{captured.unseen_share:.1%} of what the camera reaches was not seen" if captured.unseen_share else "all was seen"
+    return f"from {captured.camera} at {captured.captured_at}; {unseen}; no ground truth"
+
+
+def _capture(scene: Scene, captured: CapturedFrom) -> Iterator[tuple[str, str]]:
+    yield "", capture_summary(captured)
+    (low_pan, high_pan), (low_tilt, high_tilt), (low, high) = captured.pan_range_deg, captured.tilt_range_deg, captured.zoom_range
+    yield "limits", f"pan {low_pan:g}° to {high_pan:g}°, tilt {low_tilt:g}° to {high_tilt:g}°, zoom {low:g}x to {high:g}x"
+    for place in scene.file.viewpoints:
+        manifest = scene.viewpoint(place.name).manifest
+        yield place.name, f"panorama {manifest.base.width}x{manifest.base.height}; {len(manifest.tiles)} sharper tiles"
+
+
+def _presence(start_s: float, end_s: float, period_s: float) -> str:
+    """Describe the times at which a moving object is in the scene."""
+    if round(start_s) == 0 and round(end_s) >= round(period_s):
+        return "always in the scene"
+    return f"in the scene from {start_s:.0f} to {end_s:.0f} s of every {period_s:.0f} s"
+
+
 def _making(scene: Scene) -> Iterator[tuple[str, str]]:
-    yield "", f"modelled by code (`scope scene build {scene.name}`), rendered with Cycles of Blender {scene.file.blender_version}"
+    yield (
+        "",
+        f"modelled in code (`scope scene build {scene.name}`) and rendered with Cycles in Blender {scene.file.blender_version}",
+    )
     for place in scene.file.viewpoints:
         manifest = scene.viewpoint(place.name).manifest
         sprites = sum(len(sheet.sprites) for sheet in manifest.actors)
         layers = ", ".join(f"{part} {layer.width}x{layer.height}" for part, layer in _panoramas(manifest))
-        rest = f"{len(manifest.tiles)} sharper tiles, {sprites} sprites of moving objects"
+        rest = f"{len(manifest.tiles)} tiles of higher resolution and {sprites} sprites of moving objects"
         yield place.name, f"{layers}, {manifest.samples} samples per pixel, denoised; {rest}"
 
 
@@ -107,7 +135,7 @@ def _checksums(scene: Scene) -> Iterator[tuple[str, str]]:
     for place in scene.file.viewpoints:
         yield (
             f"{place.name}/manifest.json",
-            f"`{_digest(scene.folder / place.name / 'manifest.json')}` (contains those of its files)",
+            f"`{_digest(scene.folder / place.name / 'manifest.json')}` (contains the checksums of the viewpoint's other files)",
         )
 
 

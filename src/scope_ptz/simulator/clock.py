@@ -1,4 +1,4 @@
-"""The scene clock: explicit scene time, which follows the wall clock only when a person watches."""
+"""The scene clock. Its time follows the wall clock in real-time mode and advances only by sleeping otherwise."""
 
 from __future__ import annotations
 
@@ -9,35 +9,81 @@ from time import monotonic
 import anyio
 import anyio.lowlevel
 
+from scope_ptz.errors import InputError
+
+MIN_SPEED, MAX_SPEED = 0.1, 10.0
+"""Minimum and maximum speed of scene time, relative to the time of the motors."""
+
+MAX_TIME_S = 86_400.0
+"""The latest scene time to seek to, in seconds (one day)."""
+
+
+def check_time(time_s: float) -> None:
+    """Check a scene time in seconds.
+
+    Raises:
+        InputError: The time is not between 0 s and one day.
+    """
+    if not 0.0 <= time_s <= MAX_TIME_S:  # also false for NaN
+        raise InputError(f"Scene time must be from 0 to {MAX_TIME_S:g} seconds; got {time_s}.")
+
+
+def check_speed(speed: float) -> None:
+    """Check a speed of scene time.
+
+    Raises:
+        InputError: The speed is not between 0.1 and 10.
+    """
+    if not MIN_SPEED <= speed <= MAX_SPEED:
+        raise InputError(f"The speed of scene time must be from {MIN_SPEED:g} to {MAX_SPEED:g}; got {speed}.")
+
 
 class SceneClock:
     """A clock in seconds of scene time.
 
-    In evaluation, sleeping advances the clock at once. In real time, the clock follows the wall clock.
+    In an evaluation, sleeping advances the clock instantly. In real-time mode, the clock follows the wall clock.
+
+    Viewers can pause scene time, seek, and change the speed. The motors of the camera are not affected.
     """
 
     def __init__(self, start_s: float = 0.0, *, realtime: bool = False) -> None:
         self._realtime = realtime
         self._wall_start_s = monotonic()
         self._slept_s = 0.0
+        self._base_s = 0.0
         self._held_s = -start_s
-        self._hold_since_s = 0.0
+        self._speed = 1.0
+        self._stopped_at_s = 0.0
+        self._stops = 0
         self._holds = 0
+        self._playing = True
 
     def now_s(self) -> float:
-        """Return the scene time, which moves the actors. It stands still while held."""
-        return (self._hold_since_s if self._holds else self.elapsed_s()) - self._held_s
+        """Return the scene time in seconds, which determines where actors are. It stops while the clock is held or paused."""
+        passed_s = (self._stopped_at_s if self._stops else self.elapsed_s()) - self._base_s
+        return passed_s * self._speed - self._held_s
 
     @property
     def held(self) -> bool:
+        """Whether the clock is inside a ``hold`` context. A paused clock is not held: moves still take time then."""
         return self._holds > 0
 
+    @property
+    def playing(self) -> bool:
+        """Whether scene time passes whenever the clock is not held. False after ``pause``."""
+        return self._playing
+
+    @property
+    def speed(self) -> float:
+        """The speed of scene time, relative to the time of the motors."""
+        return self._speed
+
     def elapsed_s(self) -> float:
-        """Return the seconds that have passed for the camera's motors since the clock was created, even while held."""
+        """Return the time of the camera's motors: seconds since the clock was created, including the time while it was held."""
         return monotonic() - self._wall_start_s if self._realtime else self._slept_s
 
     async def sleep(self, seconds: float) -> None:
-        """Let the given number of seconds pass."""
+        """Wait for a number of seconds of motor time. Outside real-time mode, this advances the clock and returns immediately."""
         if self._realtime:
             await anyio.sleep(max(0.0, seconds))
         else:
@@ -47,12 +93,54 @@ class SceneClock:
     @contextmanager
     def hold(self) -> Iterator[None]:
         """Stop scene time while the context is open. Holds may be nested."""
-        if not self._holds:
-            self._hold_since_s = self.elapsed_s()
         self._holds += 1
+        self._stop()
         try:
             yield
         finally:
             self._holds -= 1
-            if not self._holds:
-                self._held_s += self.elapsed_s() - self._hold_since_s
+            self._continue()
+
+    def play(self) -> None:
+        """Resume scene time after ``pause``. If it is not paused, the call has no effect."""
+        if not self._playing:
+            self._playing = True
+            self._continue()
+
+    def pause(self) -> None:
+        """Stop scene time until ``play`` is called."""
+        if self._playing:
+            self._playing = False
+            self._stop()
+
+    def seek(self, time_s: float) -> None:
+        """Go to a scene time, earlier or later.
+
+        Raises:
+            InputError: The time is not between 0 s and one day.
+        """
+        check_time(time_s)
+        self._start_from(time_s, self._speed)
+
+    def set_speed(self, speed: float) -> None:
+        """Change the speed of scene time from now on.
+
+        Raises:
+            InputError: The speed is not between 0.1 and 10.
+        """
+        check_speed(speed)
+        self._start_from(self.now_s(), speed)
+
+    def _start_from(self, time_s: float, speed: float) -> None:
+        self._base_s = self._stopped_at_s = self.elapsed_s()
+        self._held_s, self._speed = -time_s, speed
+
+    def _stop(self) -> None:
+        if not self._stops:
+            self._stopped_at_s = self.elapsed_s()
+        self._stops += 1
+
+    def _continue(self) -> None:
+        self._stops -= 1
+        if not self._stops:
+            self._held_s += (self.elapsed_s() - self._stopped_at_s) * self._speed

@@ -1,4 +1,4 @@
-"""Draw moving actors into a picture. Layers of the still world are read only where an actor may show."""
+"""Draw moving actors into a picture. Layers of the static world are read only where an actor may be visible."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.mapping.tiles import OUTLINE, Place, bounds
 from scope_ptz.simulator.models import ActorSheet, Sprite
 from scope_ptz.simulator.occlusion import outlined_depth_part
-from scope_ptz.simulator.sprites.choice import Aspect, Weighted, bend
+from scope_ptz.simulator.sprites.choice import Aspect, Weighted, warp_matrix
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 LARGE_PX = 120_000
-"""Actors that cover more pixels than this have what hides them computed at half the size."""
+"""For actors that cover more pixels than this, occlusion is computed at half the resolution."""
 
 MIN_SHRINK = 0.75
-"""Sprites are shrunk before they are sampled when the view is less dense than this share of theirs, which prevents aliasing."""
+"""A sprite is shrunk before sampling, to prevent aliasing, if the view's pixel density is below this fraction of the sprite's."""
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.uint8]
@@ -34,7 +34,7 @@ _BEHIND = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class ActorPatch:
-    """What an actor adds to a part of a picture: (h, w, 4) premultiplied colour."""
+    """An actor's contribution to a part of a picture: (h, w, 4) premultiplied colour."""
 
     place: Place
     colour: NDArray[np.uint8]
@@ -49,8 +49,12 @@ class ActorPatch:
 
 
 def actor_patch(viewpoint: Viewpoint, projection: Projection, actor: ActorInView) -> ActorPatch | None:
-    """Return an actor as it shows in a view, or None if nothing of it does."""
+    """Return the visible part of an actor in a view, or None if it is not visible."""
     choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
+    if angle_between_deg(actor.offset_m, projection.directions((0.5, 0.5))) > projection.reach_deg + choice.reach_deg(
+        actor.offset_m
+    ):
+        return None
     now = Aspect(actor.offset_m, choice.heading(actor.path_s))
     layers = [_Layer.of(viewpoint, actor, weighted, now) for weighted in choice.choose(now, actor.phase)]
     place = _place(layers, projection)
@@ -67,7 +71,7 @@ def actor_patch(viewpoint: Viewpoint, projection: Projection, actor: ActorInView
         return None
     inner = slice(y, y + height), slice(x, x + width)
     part = slice(place[0].start + y, place[0].start + y + height), slice(place[1].start + x, place[1].start + x + width)
-    masks = _shows(viewpoint, projection, part, actor, layers, alpha[inner])
+    masks = _visible_masks(viewpoint, projection, part, actor, layers, alpha[inner])
     total = np.zeros((height, width, 4), np.uint8)
     for layer, shows, colour in zip(layers, masks, colours, strict=True):
         over = cv2.bitwise_and(colour[inner], colour[inner], mask=shows)
@@ -75,12 +79,12 @@ def actor_patch(viewpoint: Viewpoint, projection: Projection, actor: ActorInView
     return ActorPatch(part, np.asarray(total))
 
 
-def _shows(
+def _visible_masks(
     viewpoint: Viewpoint, projection: Projection, part: Place, actor: ActorInView, layers: Sequence[_Layer], alpha: Mask
 ) -> list[Mask]:
-    """Return for each layer where in a part of a view nothing hides the actor or its shadow.
+    """Return, for each layer, a mask of the pixels in a part of a view where the actor or its shadow is not hidden.
 
-    Large parts are computed at half the size: hidden edges are then two pixels coarse on an actor that fills the view.
+    Large parts are computed at half the resolution, so occlusion edges on an actor that fills the view are accurate to two pixels.
     """
     height, width = alpha.shape
     if isinstance(projection, Perspective) and height * width > LARGE_PX and not (projection.width % 2 or projection.height % 2):
@@ -91,38 +95,38 @@ def _shows(
         size = columns.stop - columns.start, rows.stop - rows.start
         y, x = part[0].start - 2 * rows.start, part[1].start - 2 * columns.start
         small = cv2.resize(alpha, size, interpolation=cv2.INTER_AREA)
-        masks = _shows(viewpoint, half, (rows, columns), actor, layers, small)
+        masks = _visible_masks(viewpoint, half, (rows, columns), actor, layers, small)
         grown = (cv2.resize(mask, (2 * size[0], 2 * size[1]), interpolation=cv2.INTER_NEAREST) for mask in masks)
         return [mask[y : y + height, x : x + width] for mask in grown]
     grid = Grid(projection, step_px(projection), part)
     rays = grid.directions()
-    still_m = outlined_depth_part(viewpoint, projection, part, alpha)
-    cv2.addWeighted(still_m, 1 + TOLERANCE_SHARE, still_m, 0, TOLERANCE_M, dst=still_m)
-    on_ground = _ground_shows(grid.to_pixels(rays[..., 2]), float(actor.offset_m[2]), still_m)
-    return [layer.shows(viewpoint, grid.to_pixels(layer.positions(rays)), still_m, on_ground) for layer in layers]
+    static_m = outlined_depth_part(viewpoint, projection, part, alpha)
+    cv2.addWeighted(static_m, 1 + TOLERANCE_SHARE, static_m, 0, TOLERANCE_M, dst=static_m)
+    on_ground = _visible_ground(grid.to_pixels(rays[..., 2]), float(actor.offset_m[2]), static_m)
+    return [layer.visible_mask(viewpoint, grid.to_pixels(layer.positions(rays)), static_m, on_ground) for layer in layers]
 
 
-def _ground_shows(drop: NDArray[np.float32], height_m: float, still_m: NDArray[np.float32]) -> Mask:
-    """Return where the still world is no nearer than the ground on which the actor's shadow falls.
+def _visible_ground(drop: NDArray[np.float32], height_m: float, static_m: NDArray[np.float32]) -> Mask:
+    """Return a mask of the pixels where the static world is not nearer than the ground on which the actor's shadow falls.
 
     Args:
         drop: (h, w) vertical parts of the unit vectors through the pixels.
         height_m: Height of the ground relative to the optical centre.
-        still_m: (h, w) distances of the still world.
+        static_m: (h, w) distances of the static world.
     """
-    # The ground is height / drop away. Both are negative below the horizon, which turns the comparison round.
-    reached = cv2.multiply(still_m, drop)
+    # The distance to the ground is height / drop. Both are negative below the horizon, which reverses the comparison.
+    reached = cv2.multiply(static_m, drop)
     return np.asarray(reached <= height_m if height_m < 0 else reached >= height_m).view(np.uint8)
 
 
 @dataclass(frozen=True, slots=True)
 class _Layer:
-    """A sprite as it is drawn.
+    """A sprite that is drawn into a view.
 
     Attributes:
         sheet: The actor's sheet.
         sprite: The sprite.
-        weight: Its share in the picture.
+        weight: Its weight in the blend of sprites, 0 to 1.
         scale: How many times larger the actor appears than in the sprite.
         density: The sprite's pixels per radian as it is drawn.
         to_sprite: (3, 3) homography from directions to pixels of the sprite.
@@ -142,9 +146,9 @@ class _Layer:
         sprite, then_m, now_m = weighted.sprite, weighted.aspect.offset_m, actor.offset_m
         scale = float(np.linalg.norm(then_m) / np.linalg.norm(now_m))
         focal_px = sprite.width / 2 / math.tan(math.radians(sprite.hfov_deg / 2))
-        # In the plane before a camera that looks at the ground point, the sprite is scaled and bent about its centre.
+        # In the plane before a camera that looks at the ground point, the sprite is scaled and warped about its centre.
         plane = np.eye(3)
-        plane[:2, :2] = np.linalg.inv(scale * bend(actor.actor, weighted.aspect, now))
+        plane[:2, :2] = np.linalg.inv(scale * warp_matrix(actor.actor, weighted.aspect, now))
         looking_now, looking_then = (camera_axes(*map(float, pan_tilt_deg(m))) for m in (now_m, then_m))
         pixels = np.array([[focal_px, 0.0, sprite.width / 2], [0.0, -focal_px, sprite.height / 2], [0.0, 0.0, 1.0]])
         to_sprite = pixels @ camera_axes(sprite.pan_deg, sprite.tilt_deg) @ looking_then.T @ plane @ looking_now
@@ -152,24 +156,25 @@ class _Layer:
         return cls(actor.sheet, sprite, weighted.weight, scale, focal_px * scale, to_sprite, box)
 
     def outline(self) -> Floats:
-        """Return (n, 3) directions around what is not empty in the sprite."""
+        """Return (n, 3) directions around the sprite's box."""
         left, top, width, height = self.box
         pixels = np.column_stack([OUTLINE * (width + 2, height + 2) + (left - 1, top - 1), np.ones(len(OUTLINE))])
         rays = pixels @ np.linalg.inv(self.to_sprite).T
         return np.asarray(rays / np.linalg.norm(rays, axis=-1, keepdims=True))
 
     def positions(self, rays: Floats, size: tuple[float, float] = (1.0, 1.0)) -> Floats:
-        """Return the (h, w, 2) positions in the sprite under (h, w, 3) directions, far outside for those behind the camera.
+        """Return the (h, w, 2) sprite positions for (h, w, 3) directions. Directions behind the camera get positions far outside.
 
         Args:
-            rays: Directions in the camera's own frame.
+            rays: Directions in camera coordinates.
             size: Width and height of the sprite that is sampled, relative to the stored one.
         """
-        x, y, ahead = np.moveaxis(rays @ self.to_sprite.T, -1, 0)
+        pixels = rays @ self.to_sprite.T
+        ahead = pixels[..., 2]
         behind = ahead <= _BEHIND
-        found = np.stack([x * size[0], y * size[1]], axis=-1) / np.where(behind, 1.0, ahead)[..., None] - 0.5
-        found[behind] = -1e4
-        return found
+        positions = pixels[..., :2] * size / np.where(behind, 1.0, ahead)[..., None] - 0.5
+        positions[behind] = -1e4
+        return np.asarray(positions)
 
     def colour(self, viewpoint: Viewpoint, grid: Grid, rays: Floats, projection: Projection) -> NDArray[np.uint8]:
         """Return the sprite's (h, w, 4) premultiplied colour in the part of a view that a grid covers."""
@@ -178,22 +183,21 @@ class _Layer:
         shrink = projection.density / self.density
         if shrink < MIN_SHRINK:
             size = max(1, round(width * shrink)), max(1, round(height * shrink))
-            colour = cv2.resize(colour, size, interpolation=cv2.INTER_AREA)
+            colour = viewpoint.sprites.shrunk_colour(self.sheet, self.sprite, *size)
         where = grid.to_pixels(self.positions(rays, (colour.shape[1] / width, colour.shape[0] / height)))
         return np.asarray(cv2.remap(colour, where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0)))
 
-    def shows(self, viewpoint: Viewpoint, where: NDArray[np.float32], still_m: NDArray[np.float32], on_ground: Mask) -> Mask:
-        """Return where nothing hides the actor or its shadow."""
-        codes = viewpoint.sprites.distances(self.sheet, self.sprite)
-        metres = viewpoint.depth_metres[codes]
-        metres[codes == 0] = 0.0
-        own_m = cv2.remap(metres, where, None, cv2.INTER_NEAREST, borderValue=0.0)
-        before = own_m <= still_m * np.float32(self.scale)
-        return np.where(own_m > 0, before.view(np.uint8), on_ground)
+    def visible_mask(
+        self, viewpoint: Viewpoint, where: NDArray[np.float32], static_m: NDArray[np.float32], on_ground: Mask
+    ) -> Mask:
+        """Return a mask of the pixels where the actor or its shadow is not hidden."""
+        codes = cv2.remap(viewpoint.sprites.distances(self.sheet, self.sprite), where, None, cv2.INTER_NEAREST, borderValue=0.0)
+        before = np.take(viewpoint.depth_metres, codes) <= static_m * np.float32(self.scale)
+        return np.where(codes > 0, before.view(np.uint8), on_ground)
 
 
 def _place(layers: Sequence[_Layer], projection: Projection) -> Place | None:
-    """Return the rows and columns of a view in which any of the layers shows."""
+    """Return the rows and columns of a view that the layers cover; None if all are outside."""
     rays = np.stack([layer.outline() for layer in layers])
     middles = rays.mean(axis=1)
     reach_deg = angle_between_deg(rays, middles[:, None]).max(axis=1)

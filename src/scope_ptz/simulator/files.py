@@ -1,4 +1,4 @@
-"""Reading files of a pack, which may come from anywhere."""
+"""Read files of packs, which may come from untrusted sources."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from scope_ptz.errors import PackError
 
 
 def read_regular_file(path: Path) -> bytes:
-    """Return a file's content. Only a regular file is read: opening a pipe in its place would block the program.
+    """Return a file's content. Only regular files are read, because opening a pipe would block the program.
 
     Raises:
         OSError: The file is missing or cannot be read.
-        PackError: There is something other than a regular file.
+        PackError: The path is not a regular file.
     """
     if not stat.S_ISREG(path.stat().st_mode):
         raise PackError(f"{path} is not a regular file. Restore the pack or bake it again.")
-    # A pipe that was put there in the meantime is not waited for.
+    # O_NONBLOCK: do not wait if the file was replaced with a pipe after the check.
     with open(path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))) as file:
         return file.read()

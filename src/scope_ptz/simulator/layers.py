@@ -13,7 +13,7 @@ from typing import Any
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from PIL import AvifImagePlugin as AvifImagePlugin  # Pillow would import all of its plug-ins to find this one
+from PIL import AvifImagePlugin as AvifImagePlugin  # imported explicitly, because Pillow would otherwise import all of its plug-ins
 from PIL import Image
 
 from scope_ptz.errors import PackError
@@ -35,12 +35,12 @@ def read_colour(path: Path) -> NDArray[np.uint8]:
 
 
 def _read_avif(path: Path) -> NDArray[np.uint8] | None:
-    """Return the pixels of an AVIF file without Pillow's own copy of them, or None if Pillow does not offer that.
+    """Return the pixels of an AVIF file without Pillow's copy of them, or None if this version of Pillow does not support that.
 
     Pillow copies the decoder's buffer into an image, and NumPy copies that image. A panorama needs half the time and 100 MB less
     when NumPy uses the decoder's buffer.
     """
-    with _opened(path) as image:
+    with _open_picture(path) as image:
         decoder: Any = getattr(image, "_decoder", None)
         channels = {"RGB": 3, "RGBA": 4}.get(image.mode)
         if not hasattr(decoder, "get_frame") or channels is None or getattr(image, "n_frames", 1) != 1:
@@ -61,7 +61,7 @@ def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
         case ".png":
             image.save(path, "PNG", optimize=True)
         case suffix:
-            raise ValueError(f"colour is written as one of {', '.join(COLOUR_SUFFIXES)}, not {suffix}")
+            raise ValueError(f"the suffix of a colour file must be one of {', '.join(COLOUR_SUFFIXES)}; got {suffix}")
 
 
 def read_ids(path: Path) -> NDArray[np.uint16]:
@@ -70,9 +70,9 @@ def read_ids(path: Path) -> NDArray[np.uint16]:
 
 
 def read_coded_numbers(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
-    """Return numbers as the file holds them: (H, W, 3) byte channels of a WebP file, or the (H, W) numbers of a PNG file.
+    """Return numbers as stored in the file: (H, W, 3) byte channels of a WebP file, or the (H, W) numbers of a PNG file.
 
-    ``decode_numbers`` turns any part of the array into numbers, so that the largest layers of a pack need not be in memory twice.
+    ``decode_numbers`` converts any part of the array to numbers, so that the largest layers of a pack need not be in memory twice.
     OpenCV needs half the time and less than half the memory of Pillow, which decodes a still WebP picture as an animation.
     """
     if path.suffix != ".webp":
@@ -84,7 +84,7 @@ def read_coded_numbers(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
         raise _undecodable(path, error.strerror) from error
     channels = cv2.imdecode(content, cv2.IMREAD_COLOR_RGB) if content.size else None
     if channels is None:
-        raise _undecodable(path, "it is no WebP picture, or is cut short")
+        raise _undecodable(path, "it is not a WebP picture, or it is truncated")
     return np.asarray(channels)
 
 
@@ -92,7 +92,7 @@ def decode_numbers(coded: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.
     """Return the (H, W) numbers of coded rows."""
     if coded.ndim == 2:
         return coded.astype(np.uint16, copy=False)
-    # High byte in red, low byte in green: swapped, the two are little-endian numbers already.
+    # Red is the high byte and green the low byte, so (green, red) pairs are little-endian 16-bit numbers.
     pairs = np.empty((*coded.shape[:2], 2), np.uint8)
     cv2.mixChannels([coded], [pairs], [0, 1, 1, 0])
     return pairs.view("<u2")[..., 0]
@@ -108,18 +108,18 @@ def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:
             channels = np.stack([high, low, np.zeros_like(low)], axis=-1)
             Image.fromarray(channels).save(path, "WEBP", lossless=True, quality=70, method=4, exact=True)
         case suffix:
-            raise ValueError(f"numbers are written as one of {', '.join(NUMBER_SUFFIXES)}, not {suffix}")
+            raise ValueError(f"the suffix of a number file must be one of {', '.join(NUMBER_SUFFIXES)}; got {suffix}")
 
 
 def encode_depth(metres: NDArray[np.floating], near_m: float, far_m: float, step: int = 1) -> NDArray[np.uint16]:
     """Return distance codes: 1 to 65535, logarithmic from ``near_m`` to ``far_m``, and 0 for the sky (0 or infinite metres).
 
-    ``step`` rounds codes to multiples of itself, which makes files smaller; distances change by at most half a step.
+    ``step`` rounds codes to multiples of itself, which makes files smaller; distances then change by at most half a step.
     """
-    real = np.isfinite(metres) & (metres > 0)
-    share = np.log(np.where(real, metres, near_m) / near_m) / np.log(far_m / near_m)
-    codes = 1 + np.rint(np.clip(share, 0, 1) * 65534 / step) * step
-    return np.where(real, np.minimum(codes, 65535), 0).astype(np.uint16)
+    has_distance = np.isfinite(metres) & (metres > 0)
+    fraction = np.log(np.where(has_distance, metres, near_m) / near_m) / np.log(far_m / near_m)
+    codes = 1 + np.rint(np.clip(fraction, 0, 1) * 65534 / step) * step
+    return np.where(has_distance, np.minimum(codes, 65535), 0).astype(np.uint16)
 
 
 def decode_depth(codes: NDArray[np.uint16], near_m: float, far_m: float) -> NDArray[np.float32]:
@@ -130,14 +130,14 @@ def decode_depth(codes: NDArray[np.uint16], near_m: float, far_m: float) -> NDAr
 
 def _open(path: Path, suffixes: tuple[str, ...]) -> Image.Image:
     if path.suffix not in suffixes:
-        raise PackError(f"{path} is no picture that this program reads ({', '.join(suffixes)}).")
-    with _opened(path) as image:
+        raise PackError(f"{path} has an unsupported format. It must be one of {', '.join(suffixes)}.")
+    with _open_picture(path) as image:
         image.load()
         return image
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[Image.Image]:
+def _open_picture(path: Path) -> Iterator[Image.Image]:
     """Yield the picture in a file before its pixels are decoded. Errors inside the context are reported as a damaged file."""
     try:
         with path.open("rb") as file:

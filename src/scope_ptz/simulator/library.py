@@ -10,7 +10,7 @@ from scope_ptz.simulator.pack import Scene, find_scenes, load_scene, variation_o
 from scope_ptz.simulator.recent import RecentViewpoints
 
 OPEN_VIEWPOINTS = 2
-"""Viewpoints whose layers stay in memory. Each takes several hundred megabytes once its pictures are drawn."""
+"""Number of viewpoints whose layers stay in memory. Each takes several hundred megabytes once views of it are rendered."""
 
 
 class Library:
@@ -21,7 +21,7 @@ class Library:
 
     Args:
         search: Extra folders of scenes, searched before the built-in ones.
-        open_viewpoints: How many viewpoints, over all scenes, keep their layers in memory.
+        open_viewpoints: Number of viewpoints, across all scenes, whose layers stay in memory.
         tile_bytes: Limits the memory of each viewpoint's tiles; see ``Scene``.
     """
 

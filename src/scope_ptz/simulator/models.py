@@ -1,31 +1,32 @@
-"""The pack format: what a scene folder and its viewpoint folders hold, as validated models.
+"""The pack format: the contents of a scene folder and its viewpoint folders, as validated models.
 
 Layout of a scene folder::
 
-    scene.json                    SceneFile: instances, texts, presets, actors, absences
-    <viewpoint>/manifest.json     Manifest: optics-free geometry of every layer, with checksums
+    scene.json                    SceneFile: instances, texts, presets, actors, absent objects
+    <viewpoint>/manifest.json     Manifest: geometry of every layer, independent of the camera's optics, with checksums
     <viewpoint>/base.avif         equirectangular colour
     <viewpoint>/ids.webp          equirectangular instance numbers, 16 bit
     <viewpoint>/depth.webp        equirectangular distance, 16 bit, logarithmic
     <viewpoint>/tiles/NN.avif     perspective colour where more detail is needed, NN-ids.webp its instance numbers
     <viewpoint>/actors/ID.avif    sprites of a moving actor along its path (colour, alpha), ID-depth.webp their distances
+    <viewpoint>/seen.png          captured scenes only: which parts of the panorama were seen
 
-All angles are in the camera's own frame (pan 0 = the viewpoint's ``pan0_bearing_deg``), all lengths in metres.
+All angles are in camera coordinates (pan 0 is the viewpoint's ``pan0_bearing_deg``), all lengths in metres.
 """
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from scope_ptz.geometry import Perspective
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics, Perspective
 
 FORMAT_VERSION = 1
-"""Version of the pack format. It is raised when an older program could misread a pack."""
+"""Version of the pack format. It increases when older programs could misread a pack."""
 
 INJECTED_FROM = 60000
-"""First instance number for objects injected at run time. A bake never uses numbers from here on."""
+"""First instance number for objects injected at run time. A bake uses only smaller numbers."""
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Vec3 = tuple[Number, Number, Number]
@@ -101,8 +102,55 @@ class SceneActor(Model):
     size_m: Vec3
 
 
+class CapturedFrom(Model):
+    """The camera that a scene was captured from. Such a scene has pictures, and no ground truth.
+
+    Attributes:
+        camera: Name of the camera.
+        captured_at: When the sweep began, as an ISO 8601 time in UTC.
+        pan_range_deg: Limits of pan of the part that was captured.
+        tilt_range_deg: Limits of tilt of the part that was captured.
+        zoom_range: Limits of the magnification.
+        pan_endless: Whether pan has no stops.
+        zoom_table: Rows of magnification and horizontal field of view in degrees, widest first.
+        frame_width: Width of the camera's frames in pixels.
+        frame_height: Height of the camera's frames in pixels.
+        unseen_share: Share of the reachable part of the sphere that no frame showed, or that rules hide.
+    """
+
+    camera: str
+    captured_at: str
+    pan_range_deg: tuple[Number, Number]
+    tilt_range_deg: tuple[Number, Number]
+    zoom_range: tuple[Number, Number]
+    pan_endless: bool
+    zoom_table: tuple[tuple[Number, Number], ...]
+    frame_width: int = Field(gt=0)
+    frame_height: int = Field(gt=0)
+    unseen_share: Number = Field(ge=0, le=1)
+
+    @model_validator(mode="after")
+    def _has_optics(self) -> CapturedFrom:
+        Optics(self.zoom_table)  # raises ValueError if no lens can have these fields of view
+        return self
+
+    @property
+    def limits(self) -> Limits:
+        """The camera's limits of motion in the captured part."""
+        return Limits(*self.pan_range_deg, *self.tilt_range_deg, *self.zoom_range, pan_endless=self.pan_endless)
+
+    @property
+    def optics(self) -> Optics:
+        """The camera's fields of view, as measured in the pictures."""
+        return Optics(self.zoom_table)
+
+
 class SceneFile(Model):
-    """The content of ``scene.json``. ``start_s`` is the scene time at which sessions start by default."""
+    """The content of ``scene.json``.
+
+    ``start_s`` is the scene time at which sessions start by default. ``captured`` is None unless the scene was captured from a
+    camera.
+    """
 
     format: Literal[1] = 1
     name: Kebab
@@ -117,6 +165,17 @@ class SceneFile(Model):
     actors: list[SceneActor] = []
     absent: list[str] = []
     start_s: Number = 0.0
+    captured: CapturedFrom | None = None
+
+    @property
+    def limits(self) -> Limits:
+        """Limits of motion of a camera in this scene."""
+        return Limits() if self.captured is None else self.captured.limits
+
+    @property
+    def optics(self) -> Optics:
+        """Fields of view of a camera in this scene."""
+        return AXIS_M5075_G if self.captured is None else self.captured.optics
 
 
 class Layer(Model):
@@ -142,8 +201,8 @@ class Depth(Layer):
     far_m: Number = Field(gt=0)
 
 
-SUITABLE = 0.9
-"""A tile suits a view when its density is at least this share of the view's."""
+MIN_RELATIVE_DENSITY = 0.9
+"""A tile suits a view if its pixel density is at least this fraction of the view's."""
 
 
 class Tile(Model):
@@ -161,8 +220,8 @@ class Tile(Model):
         return Perspective(self.pan_deg, self.tilt_deg, self.hfov_deg, self.colour.width, self.colour.height)
 
     def suits(self, view: Perspective) -> bool:
-        """Return whether the tile's pixel density is about that of a view, or higher."""
-        return self.view.focal_px >= SUITABLE * view.focal_px
+        """Return whether the tile's pixel density is at least ``MIN_RELATIVE_DENSITY`` times that of a view."""
+        return self.view.focal_px >= MIN_RELATIVE_DENSITY * view.focal_px
 
 
 class Extent(Model):
@@ -200,7 +259,7 @@ class Sprite(Model):
 class ActorSheet(Model):
     """The sprites of an actor from this viewpoint, in order of time along the path.
 
-    ``colour`` holds straight RGBA including the shadow (black with alpha). ``depth`` holds the distances of the actor's own
+    ``colour`` contains straight RGBA, including the shadow (black with alpha). ``depth`` contains the distances of the actor's own
     pixels, coded as in the depth layer; it is 0 where the sheet shows only shadow or nothing. Walkers have ``stride_m``, the
     distance covered in one gait cycle: several sprites, one per phase, then share each ``path_s``.
     """
@@ -213,7 +272,10 @@ class ActorSheet(Model):
 
 
 class Manifest(Model):
-    """The content of a viewpoint pack's ``manifest.json``."""
+    """The content of a viewpoint pack's ``manifest.json``.
+
+    ``seen`` is 255 where a captured panorama shows what the camera saw, and 0 elsewhere; None for a rendered panorama.
+    """
 
     format: Literal[1] = 1
     scene: Kebab
@@ -230,3 +292,4 @@ class Manifest(Model):
     tiles: list[Tile]
     extents: list[Extent]
     actors: list[ActorSheet] = []
+    seen: Layer | None = None

@@ -1,4 +1,4 @@
-"""Distances of the still world in a view, with edges as sharp as the instance numbers: they decide what hides an actor."""
+"""Distances of the static world in a view, with edges as sharp as those of the instance numbers. They determine occlusion."""
 
 from __future__ import annotations
 
@@ -13,36 +13,36 @@ from scope_ptz.simulator.mapping.tiles import Place
 from scope_ptz.simulator.reproject import id_view, view_map
 from scope_ptz.simulator.viewpoint import Viewpoint
 
-REACHES_TEXELS = (1.0, 2.0)
-"""How far from a pixel a distance on the right instance is searched for, in texels of the depth layer."""
+SEARCH_RADII_TEXELS = (1.0, 2.0)
+"""Search radii around a pixel for a distance measured on the correct instance, in texels of the depth layer."""
 
-_AROUND = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
+_NEIGHBOURS = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
 """The eight neighbouring pixels, in the order in which they are tried."""
 
 
 def outlined_depth_view(
     viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16], part: Place | None = None
 ) -> NDArray[np.float32]:
-    """Like ``depth_view``, but with the edges of instances as sharp as in ``numbers``, the view's (H, W) instance numbers.
+    """Return the distances of ``depth_view`` with edges as sharp as in ``numbers``, the view's (H, W) instance numbers.
 
-    Where a distance was measured on a different instance than the pixel shows, it is replaced by a neighbour's distance that was
-    measured on the right one.
+    If the distance of a pixel was measured on a different instance, it is replaced with the distance of a nearby pixel that was
+    measured on the correct instance.
 
     Args:
         viewpoint: The viewpoint.
         projection: The view.
-        numbers: Its instance numbers.
+        numbers: The view's instance numbers.
         part: The rows and columns that are needed; the default is the whole view.
     """
     whole = (slice(0, projection.height), slice(0, projection.width))
     around, inner = _with_margin(viewpoint, projection, part or whole)
-    return _outlined(viewpoint, projection, around, numbers[around], None)[inner]
+    return _sharpened_depth(viewpoint, projection, around, numbers[around], None)[inner]
 
 
 def outlined_depth_part(
     viewpoint: Viewpoint, projection: Projection, part: Place, needed: NDArray[np.uint8]
 ) -> NDArray[np.float32]:
-    """Return those distances for a part of a view. Only the layers' pixels in and near the part are read.
+    """Return the distances of ``outlined_depth_view`` for a part of a view. Only pixels in and near the part are read.
 
     Args:
         viewpoint: The viewpoint.
@@ -53,12 +53,12 @@ def outlined_depth_part(
     around, inner = _with_margin(viewpoint, projection, part)
     mask = np.zeros([a.stop - a.start for a in around], bool)
     mask[inner] = needed
-    return _outlined(viewpoint, projection, around, id_view(viewpoint, projection, around), mask)[inner]
+    return _sharpened_depth(viewpoint, projection, around, id_view(viewpoint, projection, around), mask)[inner]
 
 
 def _with_margin(viewpoint: Viewpoint, projection: Projection, part: Place) -> tuple[Place, Place]:
-    """Return a part of a view with the pixels around it that sharpening its edges reads, and the part's place in the result."""
-    margin = math.ceil(max(REACHES_TEXELS) * _texel_px(viewpoint, projection)) + 1
+    """Return a part of a view enlarged by the margin that edge sharpening reads, and the position of the part inside it."""
+    margin = math.ceil(max(SEARCH_RADII_TEXELS) * _texel_px(viewpoint, projection)) + 1
     rows, columns = (
         slice(max(0, span.start - margin), min(size, span.stop + margin))
         for span, size in zip(part, (projection.height, projection.width), strict=True)
@@ -67,7 +67,7 @@ def _with_margin(viewpoint: Viewpoint, projection: Projection, part: Place) -> t
     return (rows, columns), (inner_rows, inner_columns)
 
 
-def _outlined(
+def _sharpened_depth(
     viewpoint: Viewpoint, projection: Projection, part: Place, numbers: NDArray[np.uint16], needed: NDArray[np.bool_] | None
 ) -> NDArray[np.float32]:
     where = view_map(viewpoint, viewpoint.depth_atlas, projection, part)
@@ -76,18 +76,21 @@ def _outlined(
     )
     viewpoint.owner_atlas.need(0)
     owners = cv2.remap(viewpoint.owner_atlas.sheet, where, None, cv2.INTER_NEAREST)
-    unsure = owners != numbers
-    ys, xs = np.nonzero(unsure if needed is None else unsure & needed)
+    same = owners == numbers
+    ys, xs = np.nonzero(~same if needed is None else needed & ~same)
     texel_px = _texel_px(viewpoint, projection)
     refined = metres.copy()
     last_row, last_column = metres.shape[0] - 1, metres.shape[1] - 1
-    for reach in REACHES_TEXELS:
-        for dx, dy in _AROUND:
-            y = np.clip(ys + round(dy * reach * texel_px), 0, last_row)
-            x = np.clip(xs + round(dx * reach * texel_px), 0, last_column)
-            fits = (owners[y, x] == numbers[ys, xs]) & (owners[y, x] == numbers[y, x])
-            refined[ys[fits], xs[fits]] = metres[y[fits], x[fits]]
-            ys, xs = ys[~fits], xs[~fits]
+    for reach in SEARCH_RADII_TEXELS:
+        for dx, dy in _NEIGHBOURS:
+            if not len(ys):
+                return refined
+            y = np.minimum(np.maximum(ys + round(dy * reach * texel_px), 0), last_row)
+            x = np.minimum(np.maximum(xs + round(dx * reach * texel_px), 0), last_column)
+            matches = same[y, x] & (owners[y, x] == numbers[ys, xs])
+            refined[ys[matches], xs[matches]] = metres[y[matches], x[matches]]
+            unmatched = ~matches
+            ys, xs = ys[unmatched], xs[unmatched]
     return refined
 
 

@@ -13,10 +13,10 @@ from importlib.resources import files
 from pathlib import Path
 from threading import RLock
 
-from scope_ptz.errors import PackError, UnknownNameError
+from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.simulator.models import SceneActor, SceneFile, SceneInstance
 from scope_ptz.simulator.recent import RecentViewpoints
-from scope_ptz.simulator.sheets.kept import KeptPictures
+from scope_ptz.simulator.sheets.picture_cache import PictureCache
 from scope_ptz.simulator.variation import HeldObject, vary
 from scope_ptz.simulator.viewpoint import Viewpoint, read_json
 
@@ -24,18 +24,18 @@ from scope_ptz.simulator.viewpoint import Viewpoint, read_json
 def find_scenes(search: Iterable[Path] = ()) -> dict[str, Path]:
     """Return the folder of each scene by name: folders with a ``scene.json`` in ``search`` and in the package.
 
-    The first folder with a name wins. Nothing is opened, so a damaged scene is listed, too.
+    If several folders have the same name, the first is returned. Files are not opened, so damaged scenes are listed, too.
     """
     found: dict[str, Path] = {}
     for root in (*search, Path(str(files("scope_ptz"))) / "data" / "scenes"):
         if root.is_dir():
             for folder in sorted(root.iterdir()):
-                if _holds_scene(folder):
+                if _is_scene_folder(folder):
                     found.setdefault(folder.name, folder)
     return found
 
 
-def _holds_scene(folder: Path) -> bool:
+def _is_scene_folder(folder: Path) -> bool:
     try:
         return os.path.lexists(folder / "scene.json") or (folder.is_dir() and not os.access(folder, os.R_OK | os.X_OK))
     except OSError:
@@ -52,7 +52,7 @@ def load_scene(
     search: Iterable[Path] = (),
     recent: RecentViewpoints | None = None,
     tile_bytes: int | None = None,
-    kept: KeptPictures | None = None,
+    picture_cache: PictureCache | None = None,
 ) -> Scene:
     """Open a scene (``highway-works``) or a variation of one (``highway-works-v7``) by name.
 
@@ -61,7 +61,7 @@ def load_scene(
         search: Extra folders of scenes, searched before the built-in ones.
         recent: Limits how many viewpoints stay in memory; see ``Scene``.
         tile_bytes: Limits the memory of each viewpoint's tiles; see ``Scene``.
-        kept: Where decoded pictures stay on disk; see ``Scene``.
+        picture_cache: Cache on disk for decoded pictures; see ``Scene``.
 
     Raises:
         UnknownNameError: The scene does not exist.
@@ -69,11 +69,11 @@ def load_scene(
     """
     folders = find_scenes(search)
     if name in folders:
-        return Scene(folders[name], recent, tile_bytes, kept)
+        return Scene(folders[name], recent, tile_bytes, picture_cache)
     scene, number = variation_of(name)
     if number is None or scene not in folders:
         raise UnknownNameError("scene", name, folders)
-    return Scene(folders[scene], recent, tile_bytes, kept).varied(number)
+    return Scene(folders[scene], recent, tile_bytes, picture_cache).varied(number)
 
 
 def variation_name(scene: str, number: int) -> str:
@@ -83,26 +83,26 @@ def variation_name(scene: str, number: int) -> str:
 
 def variation_of(name: str) -> tuple[str, int | None]:
     """Split the name of a variation into scene and number; the number is None for other names."""
-    varied = _VARIED.fullmatch(name)
+    varied = _VARIATION_NAME.fullmatch(name)
     return (name, None) if varied is None else (varied["scene"], int(varied["number"]))
 
 
-_VARIED = re.compile(r"(?P<scene>.+)-v(?P<number>[1-9]\d{0,8})")
+_VARIATION_NAME = re.compile(r"(?P<scene>.+)-v(?P<number>[1-9]\d{0,8})")
 
 
 class Scene:
-    """A scene folder. The instance table is read at once, viewpoints on request. Safe to share between threads and cameras.
+    """A scene folder. The instance table is read immediately, viewpoints on first use. Safe to share between threads and cameras.
 
     Attributes:
         variation: Number of the variation, None for the scene itself.
-        held: Objects that this variation keeps in one place and that otherwise move.
+        held: Objects that move in the scene but do not move in this variation.
 
     Args:
         folder: The scene folder.
-        recent: Releases viewpoints when many scenes are open. Without it, every opened viewpoint stays in memory.
-        tile_bytes: Limit on the memory of each viewpoint's tiles. Beyond it, tiles that were not used for longest are released and
-            read again on request. Without it, everything that was read stays in memory.
-        kept: Where decoded pictures stay on disk, so that the next program need not decode them. Not used with ``tile_bytes``.
+        recent: Releases viewpoints if too many are open. Without it, every opened viewpoint stays in memory.
+        tile_bytes: Limit on the memory of each viewpoint's tiles. Beyond it, the least recently used tiles are released and read
+            again when they are needed. Without it, all tiles stay in memory.
+        picture_cache: Cache on disk for decoded pictures, used by later programs. Not used with ``tile_bytes``.
 
     Raises:
         PackError: A file is missing, damaged or inconsistent.
@@ -113,25 +113,31 @@ class Scene:
         folder: Path,
         recent: RecentViewpoints | None = None,
         tile_bytes: int | None = None,
-        kept: KeptPictures | None = None,
+        picture_cache: PictureCache | None = None,
     ) -> None:
         self.folder = folder
         self.file = read_json(folder / "scene.json", SceneFile)
         if self.file.name != folder.name:
-            raise PackError(f"{folder} holds the scene '{self.file.name}': a scene folder must bear its scene's name. Rename it.")
+            raise PackError(f"{folder} contains the scene '{self.file.name}'. Rename the folder to the name of its scene.")
         self.name = self.file.name
         self.variation: int | None = None
         self.held: tuple[HeldObject, ...] = ()
         self._viewpoints: dict[str, Viewpoint] = {}
-        self._recent, self._tile_bytes, self._kept = recent, tile_bytes, kept
+        self._recent, self._tile_bytes, self._picture_cache = recent, tile_bytes, picture_cache
         self._lock = RLock()
         _check_references(self.file, folder)
 
     def varied(self, number: int) -> Scene:
-        """Return a variation of this scene, which shares the layers of its viewpoints."""
+        """Return a variation of this scene, which shares the layers of its viewpoints.
+
+        Raises:
+            InputError: The scene was captured from a camera, so it has no objects that could vary.
+        """
+        if self.file.captured is not None:
+            raise InputError(f"The scene '{self.name}' was captured from a camera and has no variations. Use it as '{self.name}'.")
         extents = {place.name: self.viewpoint(place.name).manifest.extents for place in self.file.viewpoints}
         variation = vary(self.file, number, extents)
-        other = Scene(self.folder, self._recent, self._tile_bytes, self._kept)
+        other = Scene(self.folder, self._recent, self._tile_bytes, self._picture_cache)
         other.variation = number
         other.name, other.file, other.held = variation_name(self.name, number), variation.file, variation.held
         other._viewpoints, other._lock = self._viewpoints, self._lock
@@ -182,10 +188,12 @@ class Scene:
             raise UnknownNameError("viewpoint", name, known)
         with self._lock:
             if name not in self._viewpoints:
-                self._viewpoints[name] = Viewpoint(self.folder / name, self.file, known[name], self._tile_bytes, self._kept)
+                self._viewpoints[name] = Viewpoint(
+                    self.folder / name, self.file, known[name], self._tile_bytes, self._picture_cache
+                )
             viewpoint = self._viewpoints[name]
             if self._recent is not None:
-                self._recent.used(self._viewpoints, name)
+                self._recent.mark_used(self._viewpoints, name)
             return viewpoint
 
     def release(self) -> None:
@@ -196,8 +204,8 @@ class Scene:
 
 def _check_references(file: SceneFile, folder: Path) -> None:
     """Check that references between the tables exist and that ids and numbers are unique."""
-    things: list[SceneInstance | SceneActor] = [*file.instances, *file.actors]
-    ids, numbers = {t.id for t in things}, {t.number for t in things}
+    objects: list[SceneInstance | SceneActor] = [*file.instances, *file.actors]
+    ids, numbers = {t.id for t in objects}, {t.number for t in objects}
     viewpoints, presets = {v.name for v in file.viewpoints}, {p.name for p in file.presets}
     faults = [f"preset '{p.name}' names the viewpoint '{p.viewpoint}'" for p in file.presets if p.viewpoint not in viewpoints]
     faults += [f"text '{t.id}' names the instance '{t.parent}'" for t in file.texts if t.parent not in ids]
@@ -206,5 +214,5 @@ def _check_references(file: SceneFile, folder: Path) -> None:
         faults.append(f"the home preset is '{file.home_preset}'")
     if faults:
         raise PackError(f"{folder / 'scene.json'}: {faults[0]}, which does not exist. Restore the pack or build the scene again.")
-    if len(ids) != len(things) or len(numbers) != len(things):
-        raise PackError(f"{folder / 'scene.json'} gives an id or a number to two things. Restore it or build the scene again.")
+    if len(ids) != len(objects) or len(numbers) != len(objects):
+        raise PackError(f"{folder / 'scene.json'} assigns an id or a number twice. Restore it or build the scene again.")

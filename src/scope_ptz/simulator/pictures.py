@@ -22,15 +22,15 @@ class Pictures:
 
     def colour(self, layer: Layer) -> NDArray[np.uint8]:
         """Return a colour layer as (H, W, 3) RGB, or (H, W, 4) RGBA for sprite sheets."""
-        return self._sized(layer, layers.read_colour(self.checked(layer)))
+        return self._check_size(layer, layers.read_colour(self.checked(layer)))
 
     def numbers(self, layer: Layer) -> NDArray[np.uint16]:
         """Return a layer of (H, W) instance numbers (0 = not annotated) or distance codes."""
-        return self._sized(layer, layers.read_ids(self.checked(layer)))
+        return self._check_size(layer, layers.read_ids(self.checked(layer)))
 
     def coded_numbers(self, layer: Layer) -> NDArray[np.uint8] | NDArray[np.uint16]:
-        """Return such a layer as the file holds it; ``layers.decode_numbers`` decodes any of its rows."""
-        return self._sized(layer, layers.read_coded_numbers(self.checked(layer)))
+        """Return a layer of numbers as stored in the file; ``layers.decode_numbers`` decodes any of its rows."""
+        return self._check_size(layer, layers.read_coded_numbers(self.checked(layer)))
 
     def checked(self, layer: Layer) -> Path:
         """Verify the checksum of a layer's file and return its path."""
@@ -45,10 +45,10 @@ class Pictures:
             raise PackError(f"{path} is damaged: its checksum differs from the manifest. Restore the pack or bake it again.")
         return path
 
-    def _sized(self, layer: Layer, image: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
+    def _check_size(self, layer: Layer, image: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
         if image.shape[:2] != (layer.height, layer.width):
             raise PackError(
-                f"{self.folder / layer.file} is {image.shape[1]}x{image.shape[0]} pixels, its manifest says "
+                f"{self.folder / layer.file} is {image.shape[1]}x{image.shape[0]} pixels, but its manifest states "
                 f"{layer.width}x{layer.height}. Bake it again."
             )
         image.flags.writeable = False

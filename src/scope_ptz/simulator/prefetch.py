@@ -1,27 +1,35 @@
-"""Read a viewpoint in the background, so that no later view has to wait for a file."""
+"""Read the pictures of a viewpoint in the background, so that no later view has to wait for a file."""
 
 from __future__ import annotations
 
+import atexit
 import threading
+import time
 
-from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics, Perspective, angle_between_deg
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics, Perspective
 from scope_ptz.simulator.mapping.atlas_map import TILE_GAIN, panorama_density, suitable_scale
+from scope_ptz.simulator.sheets.memory import release_free_memory
 from scope_ptz.simulator.viewpoint import Viewpoint
 
-DENSITY_STEPS = 64  # zooms between the widest and the closest at which the scales of tiles are determined
+SPRITE_MARGIN = 1.3  # enlarges the views of sprites to include actors at positions between two sprites
+
+PAUSE_S = 0.002
+"""Pause between pictures in seconds. Without it, this thread would reacquire locks before a waiting view can get them."""
+
+DENSITY_STEPS = 64  # zoom steps, from the widest to the closest, at which the required scales of tiles are determined
 
 
 class Prefetch:
-    """Reads what live views of a viewpoint need, in a thread of its own that starts at once.
+    """Reads the pictures that live views of a viewpoint need, in a separate thread that starts immediately.
 
-    Afterwards, no view with this frame width reads a file. If the memory of tiles is limited, tiles are left out: they are read
-    when they come into view.
+    Afterwards, views of this width do not have to read files. If the memory for tiles is limited, tiles are not prefetched, but
+    read when they come into view.
 
     Args:
         viewpoint: The viewpoint.
         width: Width of the views in pixels.
-        optics: Fields of view of the camera.
-        limits: Limits of its zoom.
+        optics: Fields of view of the camera by zoom.
+        limits: Limits of the camera. Only the zoom limits are used.
     """
 
     def __init__(
@@ -34,6 +42,8 @@ class Prefetch:
         self._cancelled = threading.Event()
         self._error: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name=f"prefetch {viewpoint.name}", daemon=True)
+        # If the thread still decoded a picture during interpreter shutdown, the process would abort.
+        atexit.register(self._stop_and_wait)
         self._thread.start()
 
     @property
@@ -42,7 +52,7 @@ class Prefetch:
         return not self._thread.is_alive()
 
     def wait(self, timeout_s: float | None = None) -> bool:
-        """Wait for the end and return whether it came in time.
+        """Wait until the thread ends, and return whether it ended within the timeout.
 
         Raises:
             PackError: A file of the viewpoint is missing or damaged.
@@ -56,6 +66,10 @@ class Prefetch:
         """Stop after the picture that is being read."""
         self._cancelled.set()
 
+    def _stop_and_wait(self) -> None:
+        self.cancel()
+        self._thread.join()
+
     def _run(self) -> None:
         try:
             steps = [self._panorama, self._occlusion, self._sprites]
@@ -65,32 +79,39 @@ class Prefetch:
                 if self._cancelled.is_set():
                     return
                 step()
+            self._viewpoint.tile_blender.clear_cache()
+            release_free_memory()
         except BaseException as error:
             self._error = error
+        finally:
+            atexit.unregister(self._stop_and_wait)
 
     def _panorama(self) -> None:
         atlas = self._viewpoint.colour_atlas
         atlas.need_scales(0, sorted({suitable_scale(atlas, panorama_density(atlas), d) for d in self._densities}))
 
     def _occlusion(self) -> None:
-        """Read the layers that decide what hides an actor, and of the tiles' instance numbers those around the actors' paths."""
+        """Read the layers that determine occlusion, and the instance numbers of the tiles around the actors' paths."""
         viewpoint = self._viewpoint
         if not viewpoint.manifest.actors:
             return
         for atlas in (viewpoint.id_atlas, viewpoint.depth_atlas, viewpoint.owner_atlas):
             atlas.need(0)
         sprites = {
-            (s.pan_deg, s.tilt_deg): Perspective(s.pan_deg, s.tilt_deg, s.hfov_deg, s.width, s.height)
+            (s.pan_deg, s.tilt_deg): Perspective(
+                s.pan_deg,
+                s.tilt_deg,
+                min(170.0, SPRITE_MARGIN * s.hfov_deg),
+                round(SPRITE_MARGIN * s.width),
+                round(SPRITE_MARGIN * s.height),
+            )
             for sheet in viewpoint.manifest.actors
             for s in sheet.sprites
         }.values()
-        middle = (0.5, 0.5)
-        for index, tile in enumerate(viewpoint.tiles.views):
-            near = (
-                angle_between_deg(tile.directions(middle), s.directions(middle)) <= tile.reach_deg + s.reach_deg for s in sprites
-            )
-            if any(near) and not self._cancelled.is_set():
+        for index in sorted({showing.tile for sprite in sprites for showing in viewpoint.tiles.in_view(sprite)}):
+            if not self._cancelled.is_set():
                 viewpoint.id_atlas.need(1 + index)
+                time.sleep(PAUSE_S)
 
     def _sprites(self) -> None:
         for sheet in self._viewpoint.manifest.actors:
@@ -98,10 +119,11 @@ class Prefetch:
                 self._viewpoint.sprites.load([sheet])
 
     def _tiles(self) -> None:
-        """Read the tiles at all scales that zooming needs, neighbours after each other because they are blended together."""
+        """Read the tiles at all scales that zooming requires. Neighbours are read in succession, because blending uses both."""
         atlas, views = self._viewpoint.colour_atlas, self._viewpoint.tiles.views
         needed = [density for density in self._densities if density > TILE_GAIN * panorama_density(atlas)]
         for index in sorted(range(len(views)), key=lambda i: views[i].pan_deg):
             if self._cancelled.is_set():
                 return
             atlas.need_scales(1 + index, sorted({suitable_scale(atlas, views[index].focal_px, d) for d in needed}))
+            time.sleep(PAUSE_S)

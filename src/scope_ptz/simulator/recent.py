@@ -1,4 +1,4 @@
-"""A limit on the number of viewpoints whose layers stay in memory across scenes."""
+"""Limit the number of viewpoints, across scenes, whose layers stay in memory."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ Opened = MutableMapping[str, Any]
 
 
 class RecentViewpoints:
-    """A least-recently-used limit over the open viewpoints of several scenes. Safe to share between threads.
+    """A least-recently-used limit on the open viewpoints of several scenes. Safe to share between threads.
 
-    A released viewpoint stays alive while something still refers to it. The next request reads it again.
+    A released viewpoint stays alive while other objects refer to it. The next request reads it again.
     """
 
     def __init__(self, limit: int) -> None:
@@ -22,8 +22,8 @@ class RecentViewpoints:
         self._lock = Lock()
         self._used: OrderedDict[tuple[int, str], Opened] = OrderedDict()
 
-    def used(self, opened: Opened, name: str) -> None:
-        """Record that viewpoint ``name`` was requested, and release the least recently used ones beyond the limit."""
+    def mark_used(self, opened: Opened, name: str) -> None:
+        """Record that the viewpoint ``name`` was requested. Release the least recently used viewpoints beyond the limit."""
         with self._lock:
             self._used[id(opened), name] = opened
             self._used.move_to_end((id(opened), name))

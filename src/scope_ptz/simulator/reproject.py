@@ -1,4 +1,4 @@
-"""Re-projection: from the stored sphere of a viewpoint to any view, by one map and one look-up.
+"""Re-projection: compute any view from the stored pictures of a viewpoint, with one map and one look-up.
 
 The map gives the position of each pixel of the view on the sheet of stored pictures. It is computed exactly at the nodes of a
 coarse grid and interpolated between them; the grid is fine enough to keep errors below ``grid.MAX_MAP_ERROR_PX``. The same pack and
@@ -19,20 +19,25 @@ from scope_ptz.simulator.viewpoint import Viewpoint
 
 
 def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint8]:
-    """Return the still world through a projection as (H, W, 3) RGB."""
+    """Return the static world in a view as (H, W, 3) RGB."""
     atlas = viewpoint.colour_atlas
     with atlas.reading():
-        return np.asarray(cv2.remap(atlas.sheet, view_map(viewpoint, atlas, projection), None, cv2.INTER_LINEAR))
+        return sampled(atlas, view_map(viewpoint, atlas, projection))
+
+
+def sampled(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
+    """Return the (H, W, 3) colours at (H, W, 2) positions on an atlas's sheet."""
+    return np.asarray(cv2.remap(atlas.sheet, positions, None, cv2.INTER_LINEAR))
 
 
 def id_view(viewpoint: Viewpoint, projection: Projection, part: Place | None = None) -> NDArray[np.uint16]:
-    """Return the still world's (H, W) instance numbers, 0 where nothing is annotated, in a view or in some rows and columns."""
+    """Return the static world's (H, W) instance numbers in a view or a part of it; 0 where nothing is annotated."""
     atlas = viewpoint.id_atlas
     return np.asarray(cv2.remap(atlas.sheet, view_map(viewpoint, atlas, projection, part), None, cv2.INTER_NEAREST))
 
 
 def depth_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.float32]:
-    """Return the still world's (H, W) distances from the optical centre in metres, infinite for the sky."""
+    """Return the static world's (H, W) distances from the optical centre in metres, infinite for the sky."""
     atlas = viewpoint.depth_atlas
     codes = cv2.remap(atlas.sheet, view_map(viewpoint, atlas, projection), None, cv2.INTER_NEAREST)
     return np.asarray(np.take(viewpoint.depth_metres, codes))
@@ -50,7 +55,7 @@ def distances_m(viewpoint: Viewpoint, directions: NDArray[np.float64]) -> tuple[
 
     Args:
         viewpoint: The viewpoint.
-        directions: (n, 3) unit vectors in the camera's own frame.
+        directions: (n, 3) unit vectors in camera coordinates.
 
     Returns:
         (n,) metres, infinite for the sky, and (n,) instance numbers.

@@ -34,8 +34,8 @@ def measure(numbers: NDArray[np.uint16], projection: Projection) -> Measures:
     """Measure every instance in an (H, W) picture of instance numbers."""
     runs = _Runs(numbers)
     height, width = numbers.shape
-    whole_turn = isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0 - 1e-9
-    main = runs.mainland(width) if whole_turn else np.ones(len(runs.number), dtype=bool)
+    is_full_circle = isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0 - 1e-9
+    measured = runs.measured_runs(width) if is_full_circle else np.ones(len(runs.number), dtype=bool)
     length = runs.stop - runs.start
     solid = _solid_angles(projection, runs.row, runs.start, runs.stop)
 
@@ -43,16 +43,16 @@ def measure(numbers: NDArray[np.uint16], projection: Projection) -> Measures:
         return np.asarray(np.add.reduceat(values * 1.0, runs.first)) if len(runs.first) else np.zeros(0)
 
     def lowest(values: Ints, otherwise: int) -> Floats:
-        chosen = np.where(main, values, otherwise)
+        chosen = np.where(measured, values, otherwise)
         return np.asarray(np.minimum.reduceat(chosen, runs.first) * 1.0) if len(runs.first) else np.zeros(0)
 
-    weight = length * main.astype(np.int64)
-    mainland = np.maximum(total(weight), 1.0)
-    middle_x = total((runs.start + runs.stop) / 2 * weight) / mainland
-    middle_y = total((runs.row + 0.5) * weight) / mainland
+    weight = length * measured.astype(np.int64)
+    measured_pixels = np.maximum(total(weight), 1.0)
+    middle_x = total((runs.start + runs.stop) / 2 * weight) / measured_pixels
+    middle_y = total((runs.row + 0.5) * weight) / measured_pixels
     x_min, y_min = lowest(runs.start, width), lowest(runs.row, height)
     x_max, y_max = -lowest(-runs.stop, 0), -lowest(-runs.row - 1, 0)
-    point_x, point_y = runs.nearest(middle_x, middle_y, main)
+    point_x, point_y = runs.nearest(middle_x, middle_y, measured)
     size = np.array([width, height], dtype=np.float64)
     return Measures(
         numbers=runs.number[runs.first],
@@ -67,7 +67,7 @@ def measure(numbers: NDArray[np.uint16], projection: Projection) -> Measures:
 class _Runs:
     """``number``, ``row``, ``start`` and ``stop`` of every run with a number other than 0, sorted by number.
 
-    ``first`` holds the index of each number's first run.
+    ``first`` is the index of each number's first run.
     """
 
     def __init__(self, numbers: NDArray[np.uint16]) -> None:
@@ -87,25 +87,25 @@ class _Runs:
         self.first: Ints = np.flatnonzero(np.diff(self.number, prepend=-1))
         self.group: Ints = np.cumsum(np.diff(self.number, prepend=-1) != 0) - 1
 
-    def mainland(self, width: int) -> NDArray[np.bool_]:
-        """Return which runs belong to the larger part of an instance that lies across the seam of a full panorama."""
-        main = np.ones(len(self.number), dtype=bool)
+    def measured_runs(self, width: int) -> NDArray[np.bool_]:
+        """Return a mask of the runs to measure. If an instance crosses the panorama's seam, only its larger part is measured."""
+        measured = np.ones(len(self.number), dtype=bool)
         edges = np.intersect1d(self.number[self.start == 0], self.number[self.stop == width])
         for number in edges:
-            own = self.number == number
-            left = own & (self.start + self.stop < width)
+            of_instance = self.number == number
+            left = of_instance & (self.start + self.stop < width)
             length = self.stop - self.start
-            smaller = left if length[left].sum() * 2 < length[own].sum() else own & ~left
-            main[smaller] = False
-        return main
+            smaller = left if length[left].sum() * 2 < length[of_instance].sum() else of_instance & ~left
+            measured[smaller] = False
+        return measured
 
-    def nearest(self, x: Floats, y: Floats, main: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    def nearest(self, x: Floats, y: Floats, measured: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         """Return, for each number, the centre of its pixel nearest to a point (in pixels)."""
         if not len(self.first):
             return np.zeros(0), np.zeros(0)
         near_x = np.clip(x[self.group], self.start + 0.5, self.stop - 0.5)
-        away = np.where(main, np.hypot(near_x - x[self.group], self.row + 0.5 - y[self.group]), np.inf)
-        best = np.lexsort((away, self.number))[self.first]
+        distance = np.where(measured, np.hypot(near_x - x[self.group], self.row + 0.5 - y[self.group]), np.inf)
+        best = np.lexsort((distance, self.number))[self.first]
         return np.asarray(near_x[best]), np.asarray(self.row[best] + 0.5)
 
 
@@ -116,7 +116,7 @@ def _solid_angles(projection: Projection, row: Ints, start: Ints, stop: Ints) ->
         y = row + 0.5 - projection.height / 2
 
         def integral(column: Ints) -> Floats:
-            # of f / (f^2 + x^2 + y^2)^(3/2), the solid angle of a unit of image plane, over x
+            # integral over x of f / (f^2 + x^2 + y^2)^(3/2), the solid angle per unit area of the image plane
             x = column - projection.width / 2
             return np.asarray(f * x / ((f**2 + y**2) * np.sqrt(f**2 + y**2 + x**2)))
 
@@ -127,4 +127,4 @@ def _solid_angles(projection: Projection, row: Ints, start: Ints, stop: Ints) ->
         bottom = np.radians(projection.top_tilt_deg + slope * (row + 1))
         turn = math.radians(projection.pan_span_deg) / projection.width * (stop - start)
         return np.asarray(np.abs(np.sin(top) - np.sin(bottom)) * turn)
-    raise TypeError(f"no solid angles for {type(projection).__name__}")
+    raise TypeError(f"solid angles of {type(projection).__name__} are not supported")

@@ -1,4 +1,4 @@
-"""The texts of a scene from one viewpoint: the part of their geometry that does not depend on where the camera points."""
+"""The geometry of a scene's texts as seen from one viewpoint. It does not depend on the camera's pose."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ Flags = NDArray[np.bool_]
 
 _ACROSS, _ALONG = np.meshgrid((np.arange(24) + 0.5) / 24 - 0.5, (np.arange(8) + 0.5) / 8 - 0.5)
 CELLS = _ACROSS.size
-"""Cells of the grid over the letters of a text, at whose centres the text is sampled."""
+"""Number of cells in the grid over the letters of a text. The text is sampled at the centres of the cells."""
 
 
 class TextGeometry:
-    """The texts that face a viewpoint. It keeps no reference to the viewpoint, so that its layers can be released.
+    """The texts that face a viewpoint. The object does not refer to the viewpoint, so that the viewpoint's layers can be released.
 
     Attributes:
         texts: The texts that face the viewpoint.
         angle_deg: The angle between each text's normal and the line of sight, below 90.
         rays: (n, CELLS, 3) vectors in metres from the optical centre to the cells of each text.
-        capitals: (n, 2, 3) vectors to the foot and the top of a capital of each text.
+        capitals: (n, 2, 3) vectors to the bottom and the top of a capital letter of each text.
     """
 
     def __init__(self, texts: Iterable[SceneText], families: Mapping[str, frozenset[int]], viewpoint: Viewpoint) -> None:
@@ -62,8 +62,8 @@ class TextGeometry:
     def unhidden(self, viewpoint: Viewpoint, texts: Ints, cells: Ints, shown: NDArray[np.uint16]) -> Flags:
         """Return which cells are not hidden.
 
-        Instance numbers reveal other objects that hide a text. Distances reveal parts of the same object that do, such as a
-        shop's awning in front of the name on its door.
+        Instance numbers show whether another object hides a text. Distances show whether a part of the same object hides it, such
+        as a shop's awning in front of the name on its door.
 
         Args:
             viewpoint: The viewpoint that this geometry belongs to.
@@ -72,8 +72,8 @@ class TextGeometry:
             shown: (n,) instance number of the pixel that each cell falls into.
         """
         self._measure(viewpoint, np.unique(texts))
-        own = self._object_of_instance[shown] == self._object[texts]
-        return np.asarray(own & ~(self._nearer[texts, cells] & (self._owners[texts, cells] == shown)))
+        same_object = self._object_of_instance[shown] == self._object[texts]
+        return np.asarray(same_object & ~(self._nearer[texts, cells] & (self._owners[texts, cells] == shown)))
 
     def _measure(self, viewpoint: Viewpoint, texts: Ints) -> None:
         """Compare the cells of texts with the depth layer, once for each text."""
@@ -81,21 +81,21 @@ class TextGeometry:
         if not new.size:
             return
         rays = self.rays[new].reshape(-1, 3)
-        still_m, owners = distances_m(viewpoint, rays)
-        nearer = still_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M < np.linalg.norm(rays, axis=-1)
+        static_m, owners = distances_m(viewpoint, rays)
+        nearer = static_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M < np.linalg.norm(rays, axis=-1)
         self._nearer[new], self._owners[new] = nearer.reshape(-1, CELLS), owners.reshape(-1, CELLS)
         self._measured[new] = True
 
 
-_KNOWN: WeakKeyDictionary[Viewpoint, WeakKeyDictionary[Scene, TextGeometry]] = WeakKeyDictionary()
+_GEOMETRIES: WeakKeyDictionary[Viewpoint, WeakKeyDictionary[Scene, TextGeometry]] = WeakKeyDictionary()
 
 
 def text_geometry(scene: Scene, viewpoint: Viewpoint) -> TextGeometry:
     """Return the geometry of a scene's texts from a viewpoint. It is computed once."""
-    of_scene = _KNOWN.setdefault(viewpoint, WeakKeyDictionary())
-    if scene not in of_scene:
-        of_scene[scene] = TextGeometry(scene.file.texts, scene.families, viewpoint)
-    return of_scene[scene]
+    by_scene = _GEOMETRIES.setdefault(viewpoint, WeakKeyDictionary())
+    if scene not in by_scene:
+        by_scene[scene] = TextGeometry(scene.file.texts, scene.families, viewpoint)
+    return by_scene[scene]
 
 
 def _axes(text: SceneText) -> Sequence[Floats]:

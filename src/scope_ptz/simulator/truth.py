@@ -23,20 +23,22 @@ MIN_VISIBLE_PX = 100
 """A visible instance covers at least this many pixels of the frame. A person can name an object of about 10 x 10 pixels."""
 
 MIN_VISIBLE_SHARE = 0.3
-"""At least this share of a visible instance's silhouette is neither hidden nor cut off by the frame."""
+"""At least this fraction of a visible instance's silhouette is neither hidden nor cut off by the frame."""
 
 MIN_CAP_HEIGHT_PX = 14.0
 """Capitals of a legible text are at least this high in the frame."""
 
 MAX_READING_ANGLE_DEG = 55.0
-"""A legible text is seen at most this far from its normal."""
+"""The line of sight to a legible text is at most this many degrees from the normal of the text."""
 
 MIN_UNHIDDEN_SHARE = 0.9
-"""At least this share of a legible text is inside the frame and not hidden."""
+"""At least this fraction of a legible text is inside the frame and not hidden."""
 
 UNOCCLUDED_SHARE = 0.95
-"""An instance that shows at least this share of its silhouette inside the frame counts as not occluded, because boundaries are
-never measured exactly."""
+"""An instance is not occluded if at least this fraction of its silhouette inside the frame is visible.
+
+The tolerance is needed because boundaries are not measured exactly.
+"""
 
 BoxTuple = tuple[float, float, float, float]
 """``(x_min, y_min, x_max, y_max)``, normalised to [0, 1], with the origin at the top left."""
@@ -49,9 +51,9 @@ class Sighting:
     Attributes:
         box: Encloses the instance's own pixels.
         point: A point on one of these pixels, near their centre.
-        share: Solid angle that shows divided by the solid angle of the whole silhouette.
-        pan_deg: Pan of the centre of what shows.
-        tilt_deg: Tilt of the centre of what shows.
+        share: Visible solid angle divided by the solid angle of the whole silhouette.
+        pan_deg: Pan of the centre of the visible part.
+        tilt_deg: Tilt of the centre of the visible part.
         distance_m: Distance to the nearest point.
         cut: The instance reaches beyond the frame.
         occluded: Something hides part of the instance.
@@ -94,7 +96,7 @@ class TextSighting:
 
 @dataclass(frozen=True, slots=True)
 class ViewTruth:
-    """Everything that shows in a view, nearest first. Answers may use only what is ``visible`` or ``legible``."""
+    """Everything that has pixels in a view, nearest first. Answers may only use ``visible`` instances and ``legible`` texts."""
 
     sightings: tuple[Sighting, ...]
     texts: tuple[TextSighting, ...]
@@ -110,10 +112,10 @@ class ViewTruth:
 
 def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
     """Return the ground truth of a picture taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
-    here = scene.viewpoint(viewpoint)
+    opened = scene.viewpoint(viewpoint)
     numbers = instance_numbers(scene, viewpoint, projection, time_s)
-    actors = {a.actor.number: a for a in composited(scene, here, time_s)}
-    return ViewTruth(_sightings(scene, here, actors, projection, numbers), _texts(scene, here, projection, numbers))
+    actors = {a.actor.number: a for a in composited(scene, opened, time_s)}
+    return ViewTruth(_sightings(scene, opened, actors, projection, numbers), _texts(scene, opened, projection, numbers))
 
 
 def _sightings(
@@ -125,11 +127,13 @@ def _sightings(
     for k, number in enumerate(seen.numbers.tolist()):
         if number not in scene.by_number:
             raise PackError(
-                f"A pixel of scene '{scene.name}' shows instance {number}, which scene.json does not know. Bake it again."
+                f"A pixel of scene '{scene.name}' shows instance {number}, which scene.json does not contain. Bake the scene again."
             )
         if number in actors:
             extents[k] = extent(viewpoint, actors[number])
-        elif number in viewpoint.extents:  # else it covers less than one pixel of the bake from here: it can never be visible
+        elif (
+            number in viewpoint.extents
+        ):  # an instance without an extent covers less than one pixel of the bake and is never visible
             extents[k] = viewpoint.extents[number]
     found = []
     for (k, extent_), inside in zip(extents.items(), _shares_inside(list(extents.values()), projection), strict=True):
@@ -152,7 +156,7 @@ def _sightings(
 
 
 def _shares_inside(extents: Sequence[Extent], projection: Projection) -> list[float]:
-    """Return the share of each outline's area that lies inside the frame, 1 when nothing is cut off."""
+    """Return the fraction of each outline's area that lies inside the frame, 1 if nothing is cut off."""
     hulls = [np.array(extent.hull, dtype=np.float64).reshape(-1, 2) for extent in extents]
     if not hulls:
         return []
@@ -164,7 +168,7 @@ def _shares_inside(extents: Sequence[Extent], projection: Projection) -> list[fl
 
 def _share_inside(points: NDArray[np.float64], projection: Projection) -> float:
     if isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0:
-        # A full panorama cuts nothing at its left and right edges.
+        # A full panorama cuts off nothing at its left and right edges.
         return float(np.mean((points[:, 1] >= 0) & (points[:, 1] <= 1))) if len(points) else 1.0
     points = points[~np.isnan(points).any(axis=-1)]
     if np.all((points >= 0) & (points <= 1)):
@@ -177,7 +181,7 @@ def _share_inside(points: NDArray[np.float64], projection: Projection) -> float:
 
 
 def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> tuple[TextSighting, ...]:
-    """Return the sightings of the texts of which some of the front is in the frame."""
+    """Return the sightings of texts that face the camera and are at least partly in the frame."""
     if not scene.file.texts:
         return ()
     geometry = text_geometry(scene, viewpoint)

@@ -1,6 +1,6 @@
 """Variations of a scene: other positions of moving objects and other presets, derived deterministically from a number.
 
-The baked layers stay as they are. The same code composites moving objects into pictures and into the ground truth, so
+The baked layers are unchanged. The same code composites moving objects into pictures and into the ground truth, so
 pictures and ground truth agree in every variation.
 """
 
@@ -18,9 +18,9 @@ import numpy as np
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction
 from scope_ptz.simulator.models import Attribute, Extent, SceneActor, SceneFile, SceneInstance, ScenePreset, SceneViewpoint
 
-MOST_START_S = 120.0
+MAX_START_S = 120.0
 CLEARANCE_M = 3.0
-"""Smallest distance in metres between a held object and the path of a moving one."""
+"""Minimum distance in metres between a held object and the path of a moving one."""
 
 _MOMENTS = 16
 _LONGER = (1.0, 1.5, 2.0)
@@ -29,7 +29,7 @@ _CLOSE_ZOOM, _FAR_TILT_DEG, _LOW_TILT_DEG = 2.0, -7.5, -17.5
 _POSES = 14
 _WIDTH, _HEIGHT = 1280, 720
 _CLEAR_PX = 900.0
-_WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
+_DIRECTIONS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,14 +42,14 @@ class HeldObject:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """A varied scene file. Objects that are ``held`` are listed with its instances instead of its actors."""
+    """A scene file with changes. Objects in ``held`` are instances of the file instead of actors."""
 
     file: SceneFile
     held: tuple[HeldObject, ...]
 
 
 def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) -> Variation:
-    """Return variation ``number`` of a scene. The same number always gives the same world.
+    """Return variation ``number`` of a scene. The same number always gives the same variation.
 
     Args:
         file: The scene.
@@ -57,7 +57,7 @@ def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) 
         extents: Silhouettes of the visible objects, by viewpoint.
     """
     rng = random.Random(f"{file.name}:{number}")
-    start_s = round(rng.uniform(0.0, MOST_START_S), 1)
+    start_s = round(rng.uniform(0.0, MAX_START_S), 1)
     moving, held = _itineraries(file.actors, rng)
     presets = list(_presets(file, extents, rng))
     home = next(p.viewpoint for p in file.presets if p.name == file.home_preset)
@@ -65,7 +65,7 @@ def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) 
         update={
             "start_s": start_s,
             "actors": moving,
-            "instances": [*file.instances, *map(_standing, held)],
+            "instances": [*file.instances, *map(_as_instance, held)],
             "presets": presets,
             "home_preset": next(p.name for p in presets if p.viewpoint == home),
         }
@@ -74,7 +74,7 @@ def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) 
 
 
 def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
-    """Group the actors that move together, such as a dog and its owner: those with the same timetable."""
+    """Group the actors that move together, such as a dog and its owner: those with the same waypoint times."""
     groups: dict[tuple[float, ...], list[SceneActor]] = {}
     for actor in actors:
         groups.setdefault((actor.period_s, *(round(w[0], 3) for w in actor.waypoints)), []).append(actor)
@@ -85,15 +85,15 @@ def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list
     """Decide for every group whether it is delayed, held at a point on its path, or removed."""
     moving, held = list[SceneActor](), list[HeldObject]()
     for group in companions(actors):
-        fate = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
-        if fate == "held":
+        treatment = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
+        if treatment == "held":
             others = [a for a in actors if a not in group]
-            spots = (_hold(group, rng) for _ in range(_MOMENTS))
-            stay = next((s for s in spots if all(_clear(h, others) for h in s)), None)
-            if stay is not None:
-                held += stay
+            placements = (_hold(group, rng) for _ in range(_MOMENTS))
+            accepted = next((s for s in placements if all(_clear(h, others) for h in s)), None)
+            if accepted is not None:
+                held += accepted
                 continue
-        if fate != "gone":
+        if treatment != "gone":
             period_s = _period(group[0], rng)
             delay_s = round(period_s * rng.uniform(0.15, 0.85), 1)
             moving += [a.model_copy(update={"delay_s": a.delay_s + delay_s, "period_s": period_s}) for a in group]
@@ -101,16 +101,16 @@ def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list
 
 
 def _period(actor: SceneActor, rng: random.Random) -> float:
-    """Return a period at least as long as the original. Actors on a closed circuit keep theirs."""
+    """Return a period at least as long as the original one. The period of actors on a closed circuit is unchanged."""
     rests_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
     longer = rng.choice(_LONGER)
     return actor.period_s if rests_s < 0.1 else round(actor.period_s * longer, 3)
 
 
 def _hold(group: Sequence[SceneActor], rng: random.Random) -> list[HeldObject]:
-    share = rng.uniform(0.15, 0.85)
+    fraction = rng.uniform(0.15, 0.85)
     return [
-        HeldObject(a, round(a.delay_s + a.waypoints[0][0] + share * (a.waypoints[-1][0] - a.waypoints[0][0]), 2)) for a in group
+        HeldObject(a, round(a.delay_s + a.waypoints[0][0] + fraction * (a.waypoints[-1][0] - a.waypoints[0][0]), 2)) for a in group
     ]
 
 
@@ -124,7 +124,7 @@ def _place(held: HeldObject) -> tuple[float, float, float, float]:
 
 
 def _clear(held: HeldObject, others: Sequence[SceneActor]) -> bool:
-    """Return whether all moving objects keep their distance from a held object."""
+    """Return whether the paths of all moving objects are far enough from a held object."""
     x, y, _, _ = _place(held)
     reach = CLEARANCE_M + max(held.actor.size_m[:2]) / 2
     return all(_distance(x, y, one, two) > reach for other in others for one, two in pairwise(other.waypoints))
@@ -134,11 +134,11 @@ def _distance(x: float, y: float, one: Sequence[float], two: Sequence[float]) ->
     """Return the distance on the ground, in metres, from a point to the segment between two waypoints."""
     start, along = np.array(one[1:3]), np.array(two[1:3]) - np.array(one[1:3])
     length = float(along @ along)
-    share = 0.0 if length == 0.0 else min(max(float((np.array([x, y]) - start) @ along) / length, 0.0), 1.0)
-    return float(np.linalg.norm(np.array([x, y]) - start - share * along))
+    fraction = 0.0 if length == 0.0 else min(max(float((np.array([x, y]) - start) @ along) / length, 0.0), 1.0)
+    return float(np.linalg.norm(np.array([x, y]) - start - fraction * along))
 
 
-def _standing(held: HeldObject) -> SceneInstance:
+def _as_instance(held: HeldObject) -> SceneInstance:
     """Return a held object as an instance of the scene. Its ``state`` is left out, because its sprite still shows it in motion."""
     actor, (x, y, z, heading) = held.actor, _place(held)
     width, length, height = actor.size_m
@@ -159,17 +159,17 @@ def _standing(held: HeldObject) -> SceneInstance:
 def _presets(file: SceneFile, extents: Mapping[str, Sequence[Extent]], rng: random.Random) -> Iterator[ScenePreset]:
     """Yield one new preset for each old one, at the same viewpoint: the random view that shows the most objects."""
     places = {place.name: place for place in file.viewpoints}
-    taken = {preset.name for preset in file.presets}
-    made = list(file.presets)
+    used_names = {preset.name for preset in file.presets}
+    presets = list(file.presets)
     for old in file.presets:
         candidates = [_named(_pose(old, rng), places[old.viewpoint]) for _ in range(_POSES)]
-        apart = [c for c in candidates if all(_is_apart(c, p) for p in made if p.viewpoint == old.viewpoint)] or candidates
-        free = [c for c in apart if c.name not in taken] or apart
-        best = max(free, key=lambda c: _things_in(c, extents[old.viewpoint]))
-        name = next(n for n in (best.name, *(f"{best.name}-{letter}" for letter in ascii_lowercase)) if n not in taken)
-        taken.add(name)
-        made.append(best.model_copy(update={"name": name}))
-        yield made[-1]
+        apart = [c for c in candidates if all(_is_apart(c, p) for p in presets if p.viewpoint == old.viewpoint)] or candidates
+        free = [c for c in apart if c.name not in used_names] or apart
+        best = max(free, key=lambda c: _objects_in(c, extents[old.viewpoint]))
+        name = next(n for n in (best.name, *(f"{best.name}-{letter}" for letter in ascii_lowercase)) if n not in used_names)
+        used_names.add(name)
+        presets.append(best.model_copy(update={"name": name}))
+        yield presets[-1]
 
 
 def _pose(old: ScenePreset, rng: random.Random) -> ScenePreset:
@@ -185,7 +185,7 @@ def _is_apart(one: ScenePreset, two: ScenePreset) -> bool:
     return off_deg > 12 or abs(one.tilt_deg - two.tilt_deg) > 8 or max(one.zoom, two.zoom) > 1.6 * min(one.zoom, two.zoom)
 
 
-def _things_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
+def _objects_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
     """Count the sufficiently large outlines whose centre is well inside the view. Occlusion is ignored."""
     view = Perspective(preset.pan_deg, preset.tilt_deg, AXIS_M5075_G.hfov_deg(preset.zoom), _WIDTH, _HEIGHT)
     large = [e for e in extents if e.hull and e.solid_angle_sr * view.focal_px**2 > _CLEAR_PX]
@@ -199,9 +199,9 @@ def _things_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
 
 def _named(preset: ScenePreset, place: SceneViewpoint) -> ScenePreset:
     """Name a preset by viewpoint and direction, such as ``mast-south-east-close``, with a description in words."""
-    wind = _WINDS[round((place.pan0_bearing_deg + preset.pan_deg) / 45) % 8]
+    wind = _DIRECTIONS[round((place.pan0_bearing_deg + preset.pan_deg) / 45) % 8]
     close, far, low = preset.zoom >= _CLOSE_ZOOM, preset.tilt_deg > _FAR_TILT_DEG, preset.tilt_deg < _LOW_TILT_DEG
     how = "-close" if close else "-far" if far else "-low" if low else ""
     words = {"-close": ", close up", "-far": ", far off", "-low": ", at what is near", "": ""}[how]
-    said = f"looking {wind} from the {place.name}{words}"
-    return preset.model_copy(update={"name": f"{place.name}-{wind}{how}", "description": said})
+    description = f"looking {wind} from the {place.name}{words}"
+    return preset.model_copy(update={"name": f"{place.name}-{wind}{how}", "description": description})

@@ -1,4 +1,4 @@
-"""One optical centre: its layers, which are read and verified on demand, and the sheets that views are taken from."""
+"""A viewpoint of a pack: reads and verifies its layers on demand, and assembles the sheets from which views are sampled."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ from scope_ptz.simulator.files import read_regular_file
 from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pictures import Pictures
-from scope_ptz.simulator.sheets.atlas import Atlas, Keep, Scale
-from scope_ptz.simulator.sheets.kept import KeptPictures
+from scope_ptz.simulator.sheets.atlas import Atlas, Scale, SheetCache
+from scope_ptz.simulator.sheets.picture_cache import PictureCache
 from scope_ptz.simulator.sprites.choice import SpriteChoice
 from scope_ptz.simulator.sprites.store import SpriteStore
+from scope_ptz.simulator.still_views import StillViews
 
 COLOUR_SCALES = (
     Scale(1.0, sharpening=0.6),
@@ -36,9 +37,9 @@ COLOUR_SCALES = (
     Scale(2**-2.5, sharpening=0.15),
     Scale(2**-3.0),
 )
-"""Scales at which colour is kept, half an octave apart, so that no view undersamples its source. The first serves views that are
-about as dense as the stored picture, or denser. Sharpening compensates for the blur of shrinking and bilinear look-up; the amounts
-bring the Laplacian variance of views closest to that of directly rendered ones."""
+"""Scales of colour pictures on a sheet, half an octave apart, so that no view undersamples its source. The first scale is for views
+that are about as dense as the stored picture, or denser. Sharpening compensates for the blur of shrinking and
+bilinear look-up; the amounts bring the Laplacian variance of views closest to that of directly rendered ones."""
 
 _File = TypeVar("_File", bound=BaseModel)
 
@@ -51,7 +52,7 @@ class Viewpoint:
         scene: The scene that it belongs to.
         place: The scene's entry for this viewpoint.
         tile_bytes: Limit on the memory of tiles at all scales; see ``Atlas``.
-        kept: Where decoded pictures stay on disk.
+        picture_cache: Cache on disk for decoded pictures.
 
     Raises:
         PackError: The manifest is missing, damaged or belongs to another scene.
@@ -63,50 +64,66 @@ class Viewpoint:
         scene: SceneFile,
         place: SceneViewpoint,
         tile_bytes: int | None = None,
-        kept: KeptPictures | None = None,
+        picture_cache: PictureCache | None = None,
     ) -> None:
         self.folder, self.pictures = folder, Pictures(folder)
         self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
         self.name = place.name
-        self.sprites = SpriteStore(self.pictures, kept)
+        self.sprites = SpriteStore(self.pictures, picture_cache)
+        self.still_views = StillViews()
         self._choices: dict[int, SpriteChoice] = {}
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
                 f"{folder} was baked for viewpoint '{manifest.viewpoint}' of scene '{manifest.scene}' version "
-                f"{manifest.scene_version}, but lies in '{place.name}' of '{scene.name}' version {scene.version}. Bake it again."
+                f"{manifest.scene_version}, but the folder is that of '{place.name}' in '{scene.name}' version "
+                f"{scene.version}. Bake it again."
             )
 
         tiles = manifest.tiles
         self.tiles = Tiles([tile.view for tile in tiles])
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
-        # The sheets refer to the files and not to this object. Without a reference cycle, memory is freed with the last reference.
+        # The sheets refer to the files and not to this object, because a reference cycle would delay freeing their memory.
         read, depth = self.pictures, manifest.depth
         pans_deg = [tile.pan_deg for tile in tiles]
-        blender = TileBlender(
-            lambda i: read.colour(tiles[i].colour), self.tiles, manifest.band, lambda: _small_things(scene, manifest)
+        self.tile_blender = blender = TileBlender(
+            lambda i: read.colour(tiles[i].colour), self.tiles, manifest.band, lambda: _detail_outlines(scene, manifest)
         )
 
         def colour(atlas: Atlas, index: int) -> NDArray[np.uint8]:
             return blender.blended(atlas, index - 1) if index else read.colour(manifest.base)
 
         sizes = [_size(c) for c in colours]
-        source = "" if kept is None else _source(folder)
+        source = "" if picture_cache is None else _source(folder)
 
-        def keep(kind: str, files: Sequence[Layer]) -> Keep | None:
-            return None if kept is None else Keep(kept, f"{kind} {source}", lambda i: read.checked(files[i]))
+        def sheet_cache(kind: str, files: Sequence[Layer]) -> SheetCache | None:
+            return (
+                None if picture_cache is None else SheetCache(picture_cache, f"{kind} {source}", lambda i: read.checked(files[i]))
+            )
 
         self.colour_atlas = Atlas(
-            sizes, colour, np.uint8, 3, COLOUR_SCALES, pans_deg=pans_deg, tile_bytes=tile_bytes, kept=keep("colour", colours)
+            sizes,
+            colour,
+            np.uint8,
+            3,
+            COLOUR_SCALES,
+            pans_deg=pans_deg,
+            tile_bytes=tile_bytes,
+            disk_cache=sheet_cache("colour", colours),
         )
         decode = layers.decode_numbers
         self.id_atlas = id_atlas = Atlas(
-            [_size(n) for n in ids], lambda _, i: read.coded_numbers(ids[i]), np.uint16, 1, decode=decode, kept=keep("ids", ids)
+            [_size(n) for n in ids],
+            lambda _, i: read.coded_numbers(ids[i]),
+            np.uint16,
+            1,
+            decode=decode,
+            disk_cache=sheet_cache("ids", ids),
         )
         depths, size = [depth], [_size(depth)]
         self.depth_atlas = Atlas(
-            size, lambda *_: read.coded_numbers(depth), np.uint16, 1, decode=decode, kept=keep("depth", depths)
+            size, lambda *_: read.coded_numbers(depth), np.uint16, 1, decode=decode, disk_cache=sheet_cache("depth", depths)
         )
-        self.owner_atlas = Atlas(size, lambda *_: _owners(id_atlas, depth), np.uint16, 1, kept=keep("owners", depths))
+        self.owner_atlas = Atlas(size, lambda *_: _owners(id_atlas, depth), np.uint16, 1, disk_cache=sheet_cache("owners", depths))
 
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
@@ -115,12 +132,12 @@ class Viewpoint:
 
     @cached_property
     def world_to_camera(self) -> NDArray[np.float64]:
-        """(3, 3) rotation from world axes (x east, y north) to the camera's own frame (y forward at pan 0)."""
+        """(3, 3) rotation from world axes (x east, y north) to camera coordinates (y forward at pan 0)."""
         return _world_to_camera(self.manifest)
 
     @cached_property
     def extents(self) -> dict[int, Extent]:
-        """Whole silhouettes of the instances that can be seen from here, by instance number."""
+        """Whole silhouettes of the instances that are visible from this viewpoint, by instance number."""
         return {extent.number: extent for extent in self.manifest.extents}
 
     @cached_property
@@ -129,7 +146,7 @@ class Viewpoint:
         return {sheet.number: sheet for sheet in self.manifest.actors}
 
     def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return world points (..., 3) as vectors from the optical centre, in metres in the camera's own frame."""
+        """Return world points (..., 3) as vectors from the optical centre, in metres in camera coordinates."""
         return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)
 
     def files(self) -> Iterator[Layer]:
@@ -140,6 +157,8 @@ class Viewpoint:
             yield from (tile.colour, tile.ids)
         for sheet in manifest.actors:
             yield from (sheet.colour, sheet.depth)
+        if manifest.seen is not None:
+            yield manifest.seen
 
     def check_files(self) -> int:
         """Verify the checksum of every file and return the number of files.
@@ -156,7 +175,7 @@ class Viewpoint:
         return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
 
     def sprite_choice(self, actor: SceneActor, sheet: ActorSheet) -> SpriteChoice:
-        """Return what chooses among an actor's sprites. Computed once and shared."""
+        """Return the object that selects an actor's sprites. It is created once and shared."""
         if actor.number not in self._choices:
             self._choices[actor.number] = SpriteChoice(actor, sheet.sprites, self.offset, self.world_to_camera)
         return self._choices[actor.number]
@@ -168,7 +187,7 @@ def _world_to_camera(manifest: Manifest) -> NDArray[np.float64]:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def _small_things(scene: SceneFile, manifest: Manifest) -> list[NDArray[np.float64]]:
+def _detail_outlines(scene: SceneFile, manifest: Manifest) -> list[NDArray[np.float64]]:
     """Return outlines, each (n, 3) directions, of the texts that face the viewpoint and of all instances."""
     turn = _world_to_camera(manifest)
     outlines = [direction(*np.array(e.hull, dtype=np.float64).T) for e in manifest.extents if len(e.hull) > 2]
@@ -191,7 +210,7 @@ def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
 
 
 def _source(folder: Path) -> str:
-    """Return the hash of everything but the code that a viewpoint's sheets depend on; the manifest has the files' checksums."""
+    """Return a hash of the files that determine a viewpoint's sheets. The manifest contains the checksums of all other files."""
     files = (folder / "manifest.json", folder.parent / "scene.json")
     return hashlib.sha256(b"".join(read_regular_file(path) for path in files)).hexdigest()
 
@@ -211,13 +230,15 @@ def read_json(path: Path, model: type[_File]) -> _File:
     except OSError as error:
         raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
     except (ValueError, RecursionError) as error:
-        raise PackError(f"{path} is no valid JSON ({error}). Restore the pack or bake it again.") from error
+        raise PackError(f"{path} is not valid JSON ({error}). Restore the pack or bake it again.") from error
     version = content.get("format") if isinstance(content, dict) else None
     if isinstance(version, int) and version > FORMAT_VERSION:
-        raise PackError(f"{path} has format {version}, this program reads up to {FORMAT_VERSION}. Install a newer scope-ptz.")
+        raise PackError(
+            f"{path} has format {version}, but this program supports formats up to {FORMAT_VERSION}. Install a newer scope-ptz."
+        )
     try:
         return model.model_validate(content)
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise PackError(f"{path} is not as it should be: {where}: {first['msg']}. Restore the pack or bake it again.") from error
+        where = ".".join(str(part) for part in first["loc"]) or "the top level"
+        raise PackError(f"{path} is invalid at {where}: {first['msg']}. Restore the pack or bake it again.") from error

@@ -1,6 +1,8 @@
-"""Pictures and instance numbers of a scene at one instant: the still world and its moving actors."""
+"""Pictures and instance numbers of a scene at one instant: the static world and its moving actors."""
 
 from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,24 +12,33 @@ from scope_ptz.simulator.actors import composited, composited_actors, draw_numbe
 from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import colour_view, id_view
+from scope_ptz.simulator.reproject import colour_view, id_view, sampled, view_map
 
 RENDERING_VERSION = 2
-"""Version of the rendering, which traces record. It is raised when the same pack, pose and time give other pixels.
+"""Version of the rendering, which traces record. It increases when the same pack, pose and time give different pixels.
 
 - 1: tiles end in hard edges; actors are shown by the sprite nearest on their path.
-- 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, bent and faded.
+- 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, which are warped and faded.
 
 The ground truth of a view is the same in both.
 """
 
 
 def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint8]:
-    """Return what a camera at a viewpoint sees at a time, as (H, W, 3) RGB."""
-    here = scene.viewpoint(viewpoint)
-    # Actors before the still world: decoding instance numbers needs the most memory, and then the colour is not in memory yet.
-    patches = [actor_patch(here, projection, actor) for actor in composited_actors(scene, here, time_s)]
-    image = colour_view(here, projection)
+    """Return the picture from a viewpoint at a scene time as (H, W, 3) RGB."""
+    opened = scene.viewpoint(viewpoint)
+    actors = composited_actors(scene, opened, time_s)
+    atlas, still = opened.colour_atlas, opened.still_views
+    if not (opened.id_atlas.in_use and atlas.in_use) or still.keeps(projection):
+        # Render actors first: decoding instance numbers needs the most memory, and the colour is then not in memory yet.
+        patches = [actor_patch(opened, projection, actor) for actor in actors]
+        image = still.get(projection, lambda: colour_view(opened, projection))
+    else:
+        # Another thread samples the static world while this one renders the actors. OpenCV releases the GIL.
+        with atlas.reading(), ThreadPoolExecutor(1) as pool:
+            static = pool.submit(sampled, atlas, view_map(opened, atlas, projection))
+            patches = [actor_patch(opened, projection, actor) for actor in actors]
+            image = still.get(projection, static.result)
     for patch in patches:
         if patch is not None:
             patch.draw(image)
@@ -35,12 +46,12 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
 
 
 def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint16]:
-    """Return the instance or actor that each pixel of that picture shows as (H, W) numbers, 0 for none."""
-    here = scene.viewpoint(viewpoint)
-    numbers = id_view(here, projection)
-    places = [(actor, place_of(actor, projection)) for actor in composited(scene, here, time_s)]
-    # The distances of all actors come first, because drawing changes the numbers that they are read with.
-    behind = [(actor, outlined_depth_view(here, projection, numbers, place)) for actor, place in places if place is not None]
-    for actor, depth_m in behind:
-        draw_numbers(here, projection, actor, depth_m, numbers)
+    """Return the (H, W) numbers of the instances and actors that the pixels of ``picture`` show; 0 for none."""
+    opened = scene.viewpoint(viewpoint)
+    numbers = id_view(opened, projection)
+    places = [(actor, place_of(actor, projection)) for actor in composited(scene, opened, time_s)]
+    # Read the distances for all actors first, because drawing changes the instance numbers that determine them.
+    depths = [(actor, outlined_depth_view(opened, projection, numbers, place)) for actor, place in places if place is not None]
+    for actor, depth_m in depths:
+        draw_numbers(opened, projection, actor, depth_m, numbers)
     return numbers

@@ -10,5 +10,5 @@ The packages, in the order in which a dataset passes through them:
 - ``picture_audit`` compares the expected answers with those of people or models that see only the pictures.
 - ``dataset`` builds the unseen split and writes the dataset card.
 
-Callers pass perception as an argument, so this package does not depend on it.
+Callers pass a perception backend as an argument, so this package does not depend on any backend.
 """

@@ -53,7 +53,7 @@ def _caption(observation: Observation, scene: Scene) -> str:
     if not isinstance(view, Perspective):
         return "everything around the camera, from pan -180 to 180 degrees"
     zoom = AXIS_M5075_G.zoom_for_hfov(view.hfov_deg)
-    at = [
+    presets = [
         p.name
         for p in scene.file.presets
         if p.viewpoint == observation.viewpoint
@@ -61,5 +61,5 @@ def _caption(observation: Observation, scene: Scene) -> str:
         and abs(p.tilt_deg - view.tilt_deg) < POSE_TOLERANCE
         and abs(p.zoom - zoom) < POSE_TOLERANCE
     ]
-    place = f"preset {at[0]}" if at else f"camera at the {observation.viewpoint}"
+    place = f"preset {presets[0]}" if presets else f"camera at the {observation.viewpoint}"
     return f"{place}: pan {view.pan_deg:.4g}, tilt {view.tilt_deg:.4g} degrees, zoom {zoom:.3g}x"

@@ -133,19 +133,19 @@ def score_answers(folder: Path, tasks: Sequence[Task]) -> Audit:
     (draw,) = _rows(folder / DRAW, QuestionDraw)
     if draw.tasks != digest_of(tasks):
         raise InputError(f"The questions in {folder} were sampled from other tasks. Name those tasks with --tasks.")
-    given: dict[str, list[ReaderAnswer]] = {}
+    by_question: dict[str, list[ReaderAnswer]] = {}
     for answer in _rows(folder / ANSWERS, ReaderAnswer):
-        given.setdefault(answer.q, []).append(answer)
+        by_question.setdefault(answer.q, []).append(answer)
     findings = {f.q: f.finding for f in _rows(folder / FINDINGS, DisagreementNote)} if (folder / FINDINGS).is_file() else {}
     questions = dict(draw_questions(tasks, draw.number, draw.seed))
-    if unknown := sorted({*given, *findings} - set(questions)):
+    if unknown := sorted({*by_question, *findings} - set(questions)):
         raise InputError(
             f"{folder} contains an answer or a finding for {unknown[0]}, which is not one of its questions. Remove it."
         )
     rows = [
         _audited(q, task, answer, findings)
         for q, task in questions.items()
-        for answer in given.get(q) or [ReaderAnswer(q=q, answer="", reader="")]
+        for answer in by_question.get(q) or [ReaderAnswer(q=q, answer="", reader="")]
     ]
     return Audit(draw=draw, rows=tuple(rows))
 

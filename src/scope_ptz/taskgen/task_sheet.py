@@ -10,7 +10,18 @@ import anyio
 import numpy as np
 from PIL import Image
 
-from scope_ptz.agent.drawing import AMBER, CYAN, EDGE, FAINT, INK, SURFACE, Canvas, cut, drawable, wrap
+from scope_ptz.agent.drawing import (
+    AMBER,
+    CYAN,
+    EDGE_COLOUR,
+    PANEL_COLOUR,
+    SECONDARY_TEXT_COLOUR,
+    TEXT_COLOUR,
+    Canvas,
+    printable,
+    shorten,
+    wrap,
+)
 from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
 from scope_ptz.bench.scoring.coverage import box_directions
 from scope_ptz.bench.scoring.verdict import score_episode
@@ -97,9 +108,9 @@ def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, ite
     rows = -(-len(items) // columns)
     canvas = Canvas(width + 2 * _MARGIN, _HEAD + height + _MARGIN + (rows * cell[1] + 24 if rows else 0))
     lines = wrap(task.instruction, 24, width, 2)
-    for at, line in enumerate(lines):
-        canvas.text(_MARGIN, (72 if len(lines) == 1 else 42) + 30 * at, line, 24, INK, bold=True)
-    canvas.text(_MARGIN, _HEAD - 16, cut(drawable(f"{task.id} · {caption}"), 17, width), 17, FAINT)
+    for index, line in enumerate(lines):
+        canvas.text(_MARGIN, (72 if len(lines) == 1 else 42) + 30 * index, line, 24, TEXT_COLOUR, bold=True)
+    canvas.text(_MARGIN, _HEAD - 16, shorten(printable(f"{task.id} · {caption}"), 17, width), 17, SECONDARY_TEXT_COLOUR)
     canvas.picture(image, _MARGIN, _HEAD, width, height)
     for number, item in enumerate(items, 1):
         _outline(canvas, projection, item, number, width, height)
@@ -109,19 +120,19 @@ def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, ite
             close_up = Image.fromarray(picture(scene, viewpoint, _close_up_view(item), task.time_s))
             canvas.picture(close_up, x, y - 16, *_CLOSE_UP)
             y += _CLOSE_UP[1] + 8
-        canvas.panel(x, y - 14, 34, 20, SURFACE, radius=6, edge=EDGE)
+        canvas.panel(x, y - 14, 34, 20, PANEL_COLOUR, radius=6, edge=EDGE_COLOUR)
         canvas.text(x + 17, y - 4, str(number), 14, AMBER, bold=True, anchor="mm")
         caption_text = item.instance if item.value is None or isinstance(item.value, bool) else f"{item.instance}: {item.value}"
-        canvas.text(x + 44, y, cut(drawable(caption_text), 17, cell[0] - 60), 17, INK)
+        canvas.text(x + 44, y, shorten(printable(caption_text), 17, cell[0] - 60), 17, TEXT_COLOUR)
     return canvas.finish()
 
 
 def _close_up_view(item: Item) -> Perspective:
     """Return a close-up view of an item and its surroundings."""
     left, bottom, right, top = item.box_deg
-    across = (right - left) % 360.0
-    hfov_deg = min(max(2.5 * max(across, (top - bottom) * _CLOSE_UP[0] / _CLOSE_UP[1]), 6.0), 80.0)
-    return Perspective((left + across / 2 + 180) % 360 - 180, (bottom + top) / 2, hfov_deg, 2 * _CLOSE_UP[0], 2 * _CLOSE_UP[1])
+    width_deg = (right - left) % 360.0
+    hfov_deg = min(max(2.5 * max(width_deg, (top - bottom) * _CLOSE_UP[0] / _CLOSE_UP[1]), 6.0), 80.0)
+    return Perspective((left + width_deg / 2 + 180) % 360 - 180, (bottom + top) / 2, hfov_deg, 2 * _CLOSE_UP[0], 2 * _CLOSE_UP[1])
 
 
 def _outline(canvas: Canvas, projection: Projection, item: Item, number: int, width: float, height: float) -> None:
@@ -131,5 +142,11 @@ def _outline(canvas: Canvas, projection: Projection, item: Item, number: int, wi
     (x0, y0), (x1, y1) = (tuple(map(float, corner)) for corner in (points.min(axis=0), points.max(axis=0)))
     canvas.frame(_MARGIN + x0, _HEAD + y0, x1 - x0, y1 - y0, CYAN)
     canvas.tag(
-        _MARGIN + min(max(x0, 12), width - 12), _HEAD + max(y0 - 12, 12), str(number), 13, fill=AMBER, ink="#0E131A", anchor="m"
+        _MARGIN + min(max(x0, 12), width - 12),
+        _HEAD + max(y0 - 12, 12),
+        str(number),
+        13,
+        fill=AMBER,
+        text_colour="#0E131A",
+        anchor="m",
     )

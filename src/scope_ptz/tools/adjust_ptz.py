@@ -14,7 +14,7 @@ from scope_ptz.tools.results import MoveResult, PoseData
 from scope_ptz.tools.tool import Tool
 
 MAX_REQUESTED_ZOOM = 1e6
-"""Higher magnifications are reduced to this, so that a huge zoom factor cannot overflow. No camera reaches it."""
+"""Limit on the requested magnification, so that a huge zoom factor cannot overflow. No camera reaches it."""
 
 
 class AdjustPtz(Arguments):
@@ -31,7 +31,7 @@ class AdjustPtz(Arguments):
     zoom_limit: Literal["in", "out"] | None = Field(None, description="Zoom to the stop: 'in' = closest, 'out' = widest.")
 
     @model_validator(mode="after")
-    def _one_zoom(self) -> AdjustPtz:
+    def _check_single_zoom(self) -> AdjustPtz:
         if sum(v is not None for v in (self.zoom_factor, self.zoom_percent, self.zoom_limit)) > 1:
             raise ValueError("give at most one of zoom_factor, zoom_percent, zoom_limit")
         return self

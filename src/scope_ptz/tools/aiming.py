@@ -1,7 +1,7 @@
-"""Aiming: calculates the pose that shows a box in the middle of the frame at a requested size.
+"""Calculate the pose that shows a box in the middle of the frame at a requested size.
 
 All calculations use directions on the sphere. Adding angles in the image to pan and tilt would be inexact away from the middle of
-the frame, and far off at steep tilts.
+the frame, and wrong at steep tilts.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from scope_ptz.geometry import Perspective
+    from scope_ptz.geometry import Perspective, Projection
 
     Floats = NDArray[np.float64]
 
 TARGET_FILL = 0.75
-"""Share of the frame that a framed target fills, along its limiting side. The paper asks for 60 to 90%."""
+"""Share of the frame that a framed target fills, along its limiting side. The paper requires 60 to 90%."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +44,18 @@ class Aim:
 
 def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
     """Return directions of shape ``(4 * per_side, 3)`` along the border of a box."""
+    return outline_in(frame.projection, box, per_side)
+
+
+def outline_in(projection: Projection, box: Box, per_side: int = 9) -> Floats:
+    """Return directions of shape ``(4 * per_side, 3)`` along the border of a box in a view."""
     import numpy as np
 
     t = np.linspace(0.0, 1.0, per_side)
     xs, ys = box.x_min + t * box.width, box.y_min + t * box.height
     low_x, high_x, low_y, high_y = (np.full(per_side, v) for v in (box.x_min, box.x_max, box.y_min, box.y_max))
     border = np.concatenate([np.stack(pair, axis=-1) for pair in ((xs, low_y), (xs, high_y), (low_x, ys), (high_x, ys))])
-    return frame.projection.directions(border)
+    return projection.directions(border)
 
 
 def view(info: CameraInfo, pose: Pose) -> Perspective:
@@ -69,7 +74,7 @@ def bounds(points: Floats) -> tuple[float, float, float, float]:
 
 
 def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[float, float]]:
-    """Return how a target appears at a pose.
+    """Measure the size and the position of a target in the view at a pose.
 
     Args:
         info: The camera.
@@ -99,13 +104,13 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
         pan, tilt = (float(v) for v in geometry.pan_tilt_deg(middle))
         zoom = _zoom_for(info, Pose(pan, tilt, start.zoom), target, fill)
         requested = pose_towards(info, pan, tilt, zoom)
-        pose, cut = limits.clamp(requested)
-        clamped = set(cut)
+        pose, clamped_axes = limits.clamp(requested)
+        clamped = set(clamped_axes)
         left, top, right, bottom = bounds(view(info, requested).points(target))
         if not math.isfinite(left):
             break
         middle = view(info, requested).directions(np.array([(left + right) / 2, (top + bottom) / 2]))
-    return Aim(pose, fill, in_order(clamped))
+    return Aim(pose, fill, sorted_axes(clamped))
 
 
 def aim_at_zoom(info: CameraInfo, target: Floats, zoom: float) -> Aim:
@@ -115,8 +120,8 @@ def aim_at_zoom(info: CameraInfo, target: Floats, zoom: float) -> Aim:
     return Aim(pose, None, clamped)
 
 
-def in_order(axes: set[Axis]) -> tuple[Axis, ...]:
-    """Return axes in the order pan, tilt, zoom."""
+def sorted_axes(axes: set[Axis]) -> tuple[Axis, ...]:
+    """Return the axes in the order pan, tilt, zoom."""
     order: tuple[Axis, ...] = ("pan", "tilt", "zoom")
     return tuple(name for name in order if name in axes)
 
@@ -127,10 +132,10 @@ def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> floa
     A focal length outside the range of the lens gives a zoom outside the camera's limits, so that clamping reports the limit.
     """
     optics = info.optics
-    reached, _ = measure(info, pose, target)
-    if not math.isfinite(reached):
+    current_fill, _ = measure(info, pose, target)
+    if not math.isfinite(current_fill):
         return optics.min_zoom
-    focal = optics.focal(pose.zoom) * fill / max(reached, 1e-6)
+    focal = optics.focal(pose.zoom) * fill / max(current_fill, 1e-6)
     if focal > optics.focal(optics.max_zoom):
         return optics.max_zoom * focal / optics.focal(optics.max_zoom)
     if focal < optics.focal(optics.min_zoom):
@@ -138,19 +143,19 @@ def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> floa
     return optics.zoom_for_focal(focal)
 
 
-def is_cut(box: Box, margin: float = 0.004) -> bool:
+def touches_border(box: Box, margin: float = 0.004) -> bool:
     """Return whether a box touches the border of its frame, so that the target may continue outside."""
     return min(box.x_min, box.y_min, 1 - box.x_max, 1 - box.y_max) <= margin
 
 
 def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floats) -> Box | None:
-    """Return the box nearest to the expected place of a known target, or None if it is too far away to be the target."""
+    """Return the box nearest to the expected place of the target; None if there is none near enough to be the target."""
     left, top, right, bottom = bounds(frame.projection.points(target))
     if not boxes or not math.isfinite(left):
         return None
     x, y = (left + right) / 2, (top + bottom) / 2
     best = min(boxes, key=lambda b: math.hypot(b.centre[0] - x, (b.centre[1] - y) * info.frame_height / info.frame_width))
-    # The earlier box or this one may show only part of the target, so the larger of the two sets the tolerance.
+    # Either box may show only part of the target, so the larger one sets the tolerance.
     near_x, near_y = max(right - left, best.width, 0.05), max(bottom - top, best.height, 0.05)
     if abs(best.centre[0] - x) > near_x or abs(best.centre[1] - y) > near_y:
         return None
@@ -163,9 +168,9 @@ def pose_towards(info: CameraInfo, pan_deg: float, tilt_deg: float, zoom: float)
     return Pose(pan_deg if limits.pan_endless else limits.aim_pan_deg(pan_deg), tilt_deg, zoom)
 
 
-def lookahead(previous: Floats, now: Floats, ratio: float) -> Floats:
+def lookahead(previous: Floats, current: Floats, ratio: float) -> Floats:
     """Extrapolate a motion by ``ratio`` times the interval between two unit vectors of shape ``(3,)``."""
     pan0, tilt0 = geometry.pan_tilt_deg(previous)
-    pan1, tilt1 = geometry.pan_tilt_deg(now)
+    pan1, tilt1 = geometry.pan_tilt_deg(current)
     turn = (float(pan1 - pan0) + 180.0) % 360.0 - 180.0
     return geometry.direction(float(pan1) + turn * ratio, float(tilt1) + float(tilt1 - tilt0) * ratio)

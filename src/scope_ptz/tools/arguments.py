@@ -12,7 +12,7 @@ Phrase = Annotated[str, Field(min_length=1, max_length=500, pattern=r"\S")]
 
 
 class Arguments(BaseModel):
-    """Base of a tool's arguments.
+    """Base class of a tool's arguments.
 
     Wrong types, unknown fields, NaN and infinities are errors. Finite values beyond a limit are clamped by the camera.
     """

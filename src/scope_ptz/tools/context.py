@@ -10,20 +10,20 @@ from scope_ptz.perception.base import Perception
 
 
 class ImageStore(Protocol):
-    """Saves pictures under unique names, which are relative to the run folder."""
+    """A store that saves pictures under unique names, relative to the run folder."""
 
-    def save_look(self, frame: Frame) -> str:
+    def save_frame(self, frame: Frame) -> str:
         """Save a frame that perception received, with lossy compression, and return its name."""
         ...
 
     def save_picture(self, frame: Frame) -> str:
-        """Save a picture that the user asked for, losslessly, and return its name."""
+        """Save a picture that the user requested, losslessly, and return its name."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class ToolContext:
-    """The camera, the perception and the picture store of a run."""
+    """The camera, the perception backend and the picture store of a run."""
 
     camera: Camera
     perception: Perception

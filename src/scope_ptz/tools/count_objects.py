@@ -7,7 +7,7 @@ from pydantic import Field
 from scope_ptz.perception.base import Box
 from scope_ptz.tools.arguments import Arguments, Phrase, View
 from scope_ptz.tools.context import ToolContext
-from scope_ptz.tools.observing import remarks, view_frame
+from scope_ptz.tools.observing import note_sentences, view_frame
 from scope_ptz.tools.results import PerceptionResult, PoseData
 from scope_ptz.tools.tool import Tool
 
@@ -23,7 +23,7 @@ class CountResult(PerceptionResult):
     """The result of ``count_objects``.
 
     Attributes:
-        description: What was counted.
+        description: The description of the counted objects.
         count: The number of matches.
         complete: Whether the count is exact; otherwise it is a lower bound.
         boxes: The matches.
@@ -36,22 +36,22 @@ class CountResult(PerceptionResult):
 
 
 async def count_objects(context: ToolContext, arguments: CountObjects) -> CountResult:
-    """Count what perception detects."""
+    """Count the objects that perception detects."""
     frame = await view_frame(context, arguments.view)
-    found = await context.perception.detect(frame, arguments.description)
-    count = len(found.boxes)
+    detections = await context.perception.detect(frame, arguments.description)
+    count = len(detections.boxes)
     where = "in the full scene" if arguments.view == "full" else "in the current view"
-    number = f"{count}" if found.complete else f"At least {count}"
+    number = f"{count}" if detections.complete else f"At least {count}"
     return CountResult(
-        message=f"{number} of '{arguments.description}' {where} (seen by {found.source}).{remarks(found)}",
+        message=f"{number} of '{arguments.description}' {where} (seen by {detections.source}).{note_sentences(detections)}",
         pose=PoseData.of(frame.pose),
-        source=found.source,
+        source=detections.source,
         view=arguments.view,
-        frames=(context.images.save_look(frame),),
+        frames=(context.images.save_frame(frame),),
         description=arguments.description,
         count=count,
-        complete=found.complete,
-        boxes=found.boxes,
+        complete=detections.complete,
+        boxes=detections.boxes,
     )
 
 

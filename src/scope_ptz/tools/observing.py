@@ -1,4 +1,4 @@
-"""Helpers for ``count_objects`` and ``query_answer``: the frame of a view, and remarks about an observation."""
+"""Helpers for ``count_objects`` and ``query_answer``: the frame of a view, and sentences about the notes of an observation."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ async def view_frame(context: ToolContext, view: View) -> Frame:
     return await context.camera.frame()
 
 
-def remarks(observation: Detections | Answer) -> str:
-    """Return sentences about corrections of an observation and about a second backend that disagrees, with a leading space."""
+def note_sentences(observation: Detections | Answer) -> str:
+    """Return sentences about corrections of an observation and about a second backend that disagrees, each after a space."""
     sentences = list(observation.notes)
     agreement = observation.agreement
     if agreement is not None and not agreement.agrees:

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from scope_ptz.tools.arguments import Arguments, Phrase, View
 from scope_ptz.tools.context import ToolContext
-from scope_ptz.tools.observing import remarks, view_frame
+from scope_ptz.tools.observing import note_sentences, view_frame
 from scope_ptz.tools.results import PerceptionResult, PoseData
 from scope_ptz.tools.tool import Tool
 
@@ -37,11 +37,11 @@ async def query_answer(context: ToolContext, arguments: QueryAnswer) -> AnswerRe
     frame = await view_frame(context, arguments.view)
     answer = await context.perception.query(frame, arguments.question)
     return AnswerResult(
-        message=f"{answer.text} (seen by {answer.source}){remarks(answer)}",
+        message=f"{answer.text} (seen by {answer.source}){note_sentences(answer)}",
         pose=PoseData.of(frame.pose),
         source=answer.source,
         view=arguments.view,
-        frames=(context.images.save_look(frame),),
+        frames=(context.images.save_frame(frame),),
         question=arguments.question,
         answer=answer.text,
         known=answer.known,

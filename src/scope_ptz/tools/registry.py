@@ -1,4 +1,4 @@
-"""The registry of the nine tools of the paper. A new tool needs a module of its own and a line in ``TOOLS``."""
+"""The registry of the nine tools of the paper. To add a tool, write a module for it and add it to ``TOOLS``."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class ToolRegistry(Mapping[str, Tool]):
         return [tool.schema() for tool in self._tools.values()]
 
     def parse_call(self, name: str, arguments: Any) -> tuple[Tool, Arguments]:
-        """Validate a call.
+        """Validate a call, and return its tool and its arguments.
 
         Raises:
             ToolCallError: The name or the arguments are invalid. The message tells a planner how to correct the call.
@@ -70,9 +70,9 @@ class ToolRegistry(Mapping[str, Tool]):
         try:
             return tool, tool.arguments.model_validate(arguments)
         except ValidationError as error:
-            known = ", ".join(tool.arguments.model_fields) or "no arguments"
+            fields = ", ".join(tool.arguments.model_fields) or "no arguments"
             problems = "; ".join(_problem(e["loc"], e["msg"]) for e in error.errors(include_url=False, include_input=False))
-            raise ToolCallError(f"Wrong arguments for {name}: {problems}. It takes {known}.") from error
+            raise ToolCallError(f"Wrong arguments for {name}: {problems}. It takes {fields}.") from error
 
     async def run(self, context: ToolContext, name: str, arguments: Any) -> Result:
         """Validate and run a call.

@@ -1,7 +1,8 @@
-"""The shipped copy of the tools' schemas, for those who only print them.
+"""A stored copy of the tools' schemas, for commands that only print them.
 
-The schemas belong to ``scope_ptz.tools.registry``, which makes them from pydantic models. Importing the models takes longer than
-reading ``data/tools.json``. A test compares both; ``renew()`` rewrites the copy after a tool was changed.
+The schemas belong to ``scope_ptz.tools.registry``, which generates them from pydantic models. Importing the models takes longer
+than reading ``data/tools.json``. A test compares both. After changing a tool, run ``write_stored_schemas()`` to rewrite
+the copy.
 """
 
 from __future__ import annotations
@@ -12,14 +13,14 @@ from pathlib import Path
 from typing import Any
 
 
-def shipped_schemas() -> list[dict[str, Any]]:
+def stored_schemas() -> list[dict[str, Any]]:
     """Return all tools in the OpenAI function format, as ``ToolRegistry.schemas`` does."""
     schemas: list[dict[str, Any]] = json.loads(_path().read_bytes())
     return schemas
 
 
-def renew() -> None:
-    """Rewrite the shipped copy."""
+def write_stored_schemas() -> None:
+    """Write the current schemas to the stored copy."""
     from scope_ptz.tools.registry import schemas
 
     _path().write_text(json.dumps(schemas(), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

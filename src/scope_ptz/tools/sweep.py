@@ -34,22 +34,22 @@ class Block:
 
 
 def plan_sweep(info: CameraInfo) -> list[Block]:
-    """Return the blocks of a sweep over all pans and tilts that the camera reaches, row by row from the top, left to right."""
+    """Return the blocks of a sweep over all directions that the camera reaches, row by row from the top, left to right."""
     limits, hfov = info.limits, info.optics.hfov_deg(info.limits.min_zoom)
     half_height = math.tan(math.radians(hfov) / 2) * info.frame_height / info.frame_width
     columns = math.ceil(_pan_span_deg(limits) / (hfov * 0.85))
     step = _pan_span_deg(limits) / columns
     # Frames cover less height towards their sides. This is the reach at the edge of a column, less 1 degree for tilted frames.
-    reach = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2)))) - 1.0
-    top = min(limits.max_tilt_deg + reach, 30.0)
-    low, high = limits.min_tilt_deg, min(limits.max_tilt_deg, top - reach)
-    rows = max(1, math.ceil((high - low) / (2 * reach - 3.0)) + 1)
+    half_height_at_edge = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2)))) - 1.0
+    top = min(limits.max_tilt_deg + half_height_at_edge, 30.0)
+    low, high = limits.min_tilt_deg, min(limits.max_tilt_deg, top - half_height_at_edge)
+    rows = max(1, math.ceil((high - low) / (2 * half_height_at_edge - 3.0)) + 1)
     tilts = [high - (high - low) * k / (rows - 1) for k in range(rows)] if rows > 1 else [high]
     first = limits.min_pan_deg if not limits.pan_endless else -180.0
     blocks = []
     for row, tilt in enumerate(tilts):
         upper = top if row == 0 else (tilts[row - 1] + tilt) / 2
-        lower = max(tilt - reach + 1.0, -88.0) if row == rows - 1 else (tilt + tilts[row + 1]) / 2
+        lower = max(tilt - half_height_at_edge + 1.0, -88.0) if row == rows - 1 else (tilt + tilts[row + 1]) / 2
         for column in range(columns):
             left = first + column * step
             blocks.append(Block(Pose(left + step / 2, tilt, limits.min_zoom), left, left + step, upper, lower))
@@ -63,20 +63,26 @@ def _pan_span_deg(limits: Limits) -> float:
 
 
 async def sweep(camera: Camera) -> Frame:
-    """Take the frames of a sweep at one instant of scene time and stitch them. The camera always returns to its pose."""
+    """Take the frames of a sweep at one instant of scene time and stitch them. The camera always returns to its pose.
+
+    In a dry run the moves are reported, and the result is a frame of the view at the start.
+    """
     start = await camera.pose()
     blocks = plan_sweep(camera.info)
-    frames = []
+    frames: list[Frame] = []
     with camera.hold_time():
         try:
             for block in blocks:
                 arrival = await camera.move(block.pose)
                 if arrival.clamped and not arrival.limited_by:
-                    raise CameraError(f"The sweep needs {block.pose} and the camera stops at {arrival.pose}.")
-                frames.append(await camera.frame())
+                    raise CameraError(
+                        f"The camera cannot reach a pose of the sweep: {block.pose} was requested, it stopped at {arrival.pose}."
+                    )
+                if not (frames and camera.info.dry_run):
+                    frames.append(await camera.frame())
         finally:
             await camera.move(start)
-    return await to_thread.run_sync(stitch, blocks, frames, start)
+    return frames[0] if camera.info.dry_run else await to_thread.run_sync(stitch, blocks, frames, start)
 
 
 def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
@@ -91,16 +97,16 @@ def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
     width, height = round(span * density), round((top - bottom) * density)
     projection = Equirectangular(left, span, top, bottom, width, height)
     if all(frame.image.strides == (0, 0, 0) and frame.image[0, 0, 0] == first.image[0, 0, 0] for frame in frames):
-        # The camera renders nothing: its images repeat one value, which takes neither memory nor time.
+        # The camera does not render: its images repeat one value, and so does the panorama, which saves memory and time.
         return Frame(np.broadcast_to(first.image[:1, :1], (height, width, 3)), pose, span, first.time_s, projection, first.origin)
     panorama = np.empty((height, width, 3), np.uint8)
     for block, frame in zip(blocks, frames, strict=True):
         x0, x1 = (round((p - left) / span * width) for p in (block.left_pan_deg, block.right_pan_deg))
         y0, y1 = (round((top - t) / (top - bottom) * height) for t in (block.top_tilt_deg, block.bottom_tilt_deg))
         if not isinstance(frame.projection, Perspective):
-            raise CameraError("A sweep needs perspective frames.")
+            raise CameraError("A sweep supports only perspective frames.")
         map_x, map_y = _block_maps(projection, frame.projection, x0, y0, x1, y1)
-        # A site's rules may have kept the camera away from a block. What its frame does not show stays black.
+        # A site's rules may keep the camera from turning to a block. Pixels that its frame does not show stay black.
         border = cv2.BORDER_REPLICATE if _aims_at(frame, block) else cv2.BORDER_CONSTANT
         panorama[y0:y1, x0:x1] = cv2.remap(frame.image, map_x, map_y, cv2.INTER_LINEAR, borderMode=border)
     return Frame(panorama, pose, span, first.time_s, projection, first.origin)
@@ -112,14 +118,14 @@ def _aims_at(frame: Frame, block: Block) -> bool:
 
 @lru_cache(maxsize=64)
 def _block_maps(
-    whole: Equirectangular, view: Perspective, x0: int, y0: int, x1: int, y1: int
+    panorama: Equirectangular, view: Perspective, x0: int, y0: int, x1: int, y1: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return the source pixel of every panorama pixel of a block, interpolated from a coarse grid of exact values."""
     columns, rows = (x1 - x0) // _GRID_PX + 2, (y1 - y0) // _GRID_PX + 2
-    xs = (x0 + 0.5 + np.arange(columns) * _GRID_PX) / whole.width
-    ys = (y0 + 0.5 + np.arange(rows) * _GRID_PX) / whole.height
-    points = view.points(whole.directions(np.stack(np.meshgrid(xs, ys), axis=-1)))
+    xs = (x0 + 0.5 + np.arange(columns) * _GRID_PX) / panorama.width
+    ys = (y0 + 0.5 + np.arange(rows) * _GRID_PX) / panorama.height
+    points = view.points(panorama.directions(np.stack(np.meshgrid(xs, ys), axis=-1)))
     coarse = (points * [view.width, view.height] - 0.5).astype(np.float32)
-    at_x, at_y = np.meshgrid(np.arange(x1 - x0, dtype=np.float32) / _GRID_PX, np.arange(y1 - y0, dtype=np.float32) / _GRID_PX)
-    fine = cv2.remap(coarse, at_x, at_y, cv2.INTER_LINEAR)
-    return np.ascontiguousarray(fine[..., 0]), np.ascontiguousarray(fine[..., 1])
+    grid_x, grid_y = np.meshgrid(np.arange(x1 - x0, dtype=np.float32) / _GRID_PX, np.arange(y1 - y0, dtype=np.float32) / _GRID_PX)
+    interpolated = cv2.remap(coarse, grid_x, grid_y, cv2.INTER_LINEAR)
+    return np.ascontiguousarray(interpolated[..., 0]), np.ascontiguousarray(interpolated[..., 1])

@@ -19,7 +19,7 @@ def _json_schema(arguments: type[Arguments]) -> dict[str, Any]:
     return arguments.model_json_schema()
 
 
-def _never(arguments: Any) -> bool:  # noqa: ARG001 - the signature of ``only_reads``
+def _always_false(arguments: Any) -> bool:  # noqa: ARG001 - the signature of ``only_reads``
     return False
 
 
@@ -42,7 +42,7 @@ class Tool:
     run: Callable[[ToolContext, Any], Awaitable[Result]]
     moves: bool = False
     perceives: bool = False
-    only_reads: Callable[[Any], bool] = _never
+    only_reads: Callable[[Any], bool] = _always_false
 
     def schema(self) -> dict[str, Any]:
         """Return the tool in the OpenAI function format."""

@@ -9,9 +9,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from scope_ptz import geometry
 from scope_ptz.camera.base import Frame
+from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Axis
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import in_order, lookahead, pose_towards
+from scope_ptz.tools.aiming import lookahead, pose_towards, sorted_axes
 from scope_ptz.tools.arguments import Arguments, Phrase
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.results import PerceptionResult, PoseData
@@ -21,24 +22,26 @@ if TYPE_CHECKING:
     from scope_ptz.tools.aiming import Floats
 
 PERIOD_S = 0.5
-"""Time between two detections: the paper's control loop runs at 2 Hz."""
+"""Time between two detections. The paper's control loop runs at 2 Hz."""
 
 DEAD_ZONE = 0.06
 """Offsets below this share of the frame are not corrected, to spare the motors."""
 
 FILL_RANGE = (0.12, 0.5)
 TRACKING_FILL = 0.28
-"""Outside the range, the zoom is corrected to this fill. It leaves room for motion, and enough pixels to recognise the target."""
+"""If the target's share of the frame is outside ``FILL_RANGE``, the zoom is corrected to ``TRACKING_FILL``, which leaves room for
+motion and enough pixels to recognise the target.
+"""
 
 MAX_RATE_UNKNOWN_MOTION_DEG_S = 25.0
 MAX_RATE_KNOWN_MOTION_DEG_S = 10.0
-"""Limits on how fast the target may deviate from the expected direction, before and after its motion is known. A match beyond the
-limit is a different object.
+"""Maximum speed at which the target may deviate from the expected direction, before and after its motion is known. A match beyond
+the maximum is a different object.
 """
 
 LOST_DETECTIONS = 2
 LOST_ZOOM = 0.6
-"""After this many detections without the target, each further one widens the view by this factor."""
+"""After ``LOST_DETECTIONS`` detections without the target, each further one multiplies the zoom by ``LOST_ZOOM``."""
 
 
 class TrackObject(Arguments):
@@ -49,7 +52,7 @@ class TrackObject(Arguments):
 
 
 class TrackPoint(BaseModel):
-    """The camera's pose at one time of the tracking, and whether the target was seen."""
+    """The camera's pose at one moment of the tracking, and whether the target was seen."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -62,8 +65,8 @@ class TrackResult(PerceptionResult):
     """The result of ``track_object``.
 
     Attributes:
-        description: What was followed.
-        found: Whether anything in view fits the description.
+        description: The description of the followed object.
+        found: Whether anything in view matches the description.
         duration_s: The requested time.
         held_share: Share of that time in which the target was in view.
         path: The poses of the camera while it followed the target.
@@ -83,19 +86,19 @@ class _Target:
         self.size_deg = _size_deg(frame, box)
         self.middle = _middle(frame, box)
         self.time_s = frame.time_s
-        self.before: tuple[Floats, float] | None = None
+        self.previous: tuple[Floats, float] | None = None
 
     def update(self, frame: Frame, box: Box) -> None:
         """Add a detection."""
-        self.before = (self.middle, self.time_s)
+        self.previous = (self.middle, self.time_s)
         self.size_deg, self.middle, self.time_s = _size_deg(frame, box), _middle(frame, box), frame.time_s
 
     def at(self, time_s: float) -> Floats:
         """Return the expected direction at a time, extrapolated from the last two detections by at most two periods."""
-        if self.before is None or self.time_s <= self.before[1]:
+        if self.previous is None or self.time_s <= self.previous[1]:
             return self.middle
         ahead = min(max(time_s - self.time_s, 0.0), 2 * PERIOD_S)
-        return lookahead(self.before[0], self.middle, ahead / (self.time_s - self.before[1]))
+        return lookahead(self.previous[0], self.middle, ahead / (self.time_s - self.previous[1]))
 
     def find(self, frame: Frame, boxes: tuple[Box, ...]) -> Box | None:
         """Return the box nearest to the expected direction, or None if the target cannot have moved that far."""
@@ -104,7 +107,7 @@ class _Target:
         if not angles:
             return None
         best = min(range(len(boxes)), key=angles.__getitem__)
-        rate = MAX_RATE_UNKNOWN_MOTION_DEG_S if self.before is None else MAX_RATE_KNOWN_MOTION_DEG_S
+        rate = MAX_RATE_UNKNOWN_MOTION_DEG_S if self.previous is None else MAX_RATE_KNOWN_MOTION_DEG_S
         return boxes[best] if angles[best] <= self.size_deg + rate * (frame.time_s - self.time_s) else None
 
 
@@ -122,42 +125,45 @@ def _size_deg(frame: Frame, box: Box) -> float:
 
 
 async def track_object(context: ToolContext, arguments: TrackObject) -> TrackResult:
-    """Keep an object in the middle of the view. If several objects fit, the first one that perception lists is followed."""
+    """Keep an object in the middle of the view. If several objects match, the first one that perception lists is followed."""
     camera, description = context.camera, arguments.description
     frame = await camera.frame()
-    found = await context.perception.detect(frame, description)
-    saved = [context.images.save_look(frame)]
-    if not found.boxes:
+    detections = await context.perception.detect(frame, description)
+    saved = [context.images.save_frame(frame)]
+    if not detections.boxes:
         return TrackResult(
             message=f"Nothing that fits '{description}' is in view; the camera stayed where it was.",
-            pose=PoseData.of(frame.pose), source=found.source, frames=tuple(saved), description=description,
+            pose=PoseData.of(frame.pose), source=detections.source, frames=tuple(saved), description=description,
             found=False, duration_s=0.0, held_share=0.0,
         )  # fmt: skip
-    target, box = _Target(frame, found.boxes[0]), found.boxes[0]
+    target, box = _Target(frame, detections.boxes[0]), detections.boxes[0]
     started, clamped = frame.time_s, set[Axis]()
     path = [TrackPoint(time_s=0.0, pose=PoseData.of(frame.pose), seen=True)]
     seen: Box | None = box
-    lost = 0
+    misses = 0
     while True:
         if seen is not None:
             clamped |= set(await _correct(context, frame, seen, target))
-        elif lost >= LOST_DETECTIONS:
+        elif misses >= LOST_DETECTIONS:
             pose = await camera.pose()
             clamped |= set(await _turn(context, target.at(frame.time_s + PERIOD_S), pose.zoom * LOST_ZOOM)) - {"zoom"}
         left_s = arguments.duration_s - (camera.clock.now_s() - started)
         if left_s <= 1e-6:
             break
         due_s = started + PERIOD_S * len(path)
-        await camera.clock.sleep(min(max(due_s - camera.clock.now_s(), 0.05), left_s))
+        now_s = camera.clock.now_s()
+        await camera.clock.sleep(min(max(due_s - now_s, 0.05), left_s))
+        if camera.clock.now_s() <= now_s:  # otherwise the requested time would never be over
+            raise CameraError("Scene time is stopped, so nothing moves that could be followed. Let it pass, and try again.")
         frame = await camera.frame()
-        found = await context.perception.detect(frame, description)
-        seen = target.find(frame, found.boxes)
+        detections = await context.perception.detect(frame, description)
+        seen = target.find(frame, detections.boxes)
         if seen is not None:
             target.update(frame, seen)
-        lost = 0 if seen is not None else lost + 1
+        misses = 0 if seen is not None else misses + 1
         path.append(TrackPoint(time_s=round(frame.time_s - started, 3), pose=PoseData.of(frame.pose), seen=seen is not None))
-    saved.append(context.images.save_look(frame))
-    return _report(arguments, found.source, frame, path, clamped, saved)
+    saved.append(context.images.save_frame(frame))
+    return _report(arguments, detections.source, frame, path, clamped, saved)
 
 
 async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Target) -> tuple[Axis, ...]:
@@ -170,7 +176,7 @@ async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Targe
         return ()
     zoom = pose.zoom
     # Zooming in before the motion is known would lose a fast target.
-    if fill > FILL_RANGE[1] or (fill < FILL_RANGE[0] and target.before is not None):
+    if fill > FILL_RANGE[1] or (fill < FILL_RANGE[0] and target.previous is not None):
         zoom = info.optics.zoom_for_focal(info.optics.focal(pose.zoom) * TRACKING_FILL / max(fill, 1e-3))
     return await _turn(context, target.at(frame.time_s + PERIOD_S), zoom)
 
@@ -183,11 +189,12 @@ async def _turn(context: ToolContext, towards: Floats, zoom: float) -> tuple[Axi
 def _report(
     arguments: TrackObject, source: str, frame: Frame, path: list[TrackPoint], clamped: set[Axis], saved: list[str]
 ) -> TrackResult:
-    held = _held_share(path)
-    stops = in_order(clamped)
+    share = _held_share(path)
+    stops = sorted_axes(clamped)
     bound = f" The {' and '.join(stops)} limit was reached." if stops else ""
     return TrackResult(
-        message=f"Followed '{arguments.description}' for {arguments.duration_s:g} s; it was in view {held:.0%} of the time.{bound}",
+        message=f"Followed '{arguments.description}' for {arguments.duration_s:g} s; "
+        f"it was in view {share:.0%} of the time.{bound}",
         pose=PoseData.of(frame.pose),
         clamped=stops,
         source=source,
@@ -195,16 +202,16 @@ def _report(
         description=arguments.description,
         found=True,
         duration_s=arguments.duration_s,
-        held_share=round(held, 4),
+        held_share=round(share, 4),
         path=tuple(path),
     )  # fmt: skip
 
 
 def _held_share(path: list[TrackPoint]) -> float:
-    """Return the share of the time in which the target was in view. Each detection counts for the time since the one before."""
-    held = sum((now.time_s - before.time_s) for before, now in pairwise(path) if now.seen)
+    """Return the share of the time in which the target was in view. Each detection counts for the time since the previous one."""
+    visible_s = sum((current.time_s - previous.time_s) for previous, current in pairwise(path) if current.seen)
     span = max(path[-1].time_s, 1e-9)
-    return min(held / span, 1.0) if len(path) > 1 else 1.0
+    return min(visible_s / span, 1.0) if len(path) > 1 else 1.0
 
 
 TRACK_OBJECT = Tool("track_object", TrackObject, track_object, moves=True, perceives=True)

@@ -11,7 +11,7 @@ from scope_ptz import geometry
 from scope_ptz.camera.base import Arrival, CameraInfo, Frame
 from scope_ptz.geometry import Axis, Pose
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import TARGET_FILL, Aim, aim, aim_at_zoom, is_cut, measure, nearest, outline
+from scope_ptz.tools.aiming import TARGET_FILL, Aim, aim, aim_at_zoom, measure, nearest, outline, touches_border
 from scope_ptz.tools.arguments import Arguments, Phrase
 from scope_ptz.tools.context import ToolContext, pose_text
 from scope_ptz.tools.results import PerceptionResult, PoseData
@@ -34,7 +34,7 @@ CUT_ZOOM = 0.4
 
 SETTLED_OFFSET = 0.012
 SETTLED_FILL = (0.64, 0.86)
-"""A target within this offset from the middle and in this range of fill needs no further move."""
+"""A target within this offset from the middle and in this range of fill needs no more moves."""
 
 
 class ZoomToObject(Arguments):
@@ -47,8 +47,8 @@ class ZoomResult(PerceptionResult):
     """The result of ``zoom_to_object``.
 
     Attributes:
-        description: What to zoom in on.
-        found: Whether anything in view fits the description.
+        description: The description of the target.
+        found: Whether anything in view matches the description.
         matches: Number of matches in the first frame.
         chosen: Name of the match that the camera zoomed to.
         fill: Share of its limiting side that the target fills after the move.
@@ -82,37 +82,37 @@ class _Detection:
 
 
 async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomResult:
-    """Centre an object and make it fill its share of the frame.
+    """Centre an object and make it fill ``TARGET_FILL`` of the frame.
 
-    If several objects fit, the first one that perception lists is used; the ground truth lists the largest first. After a move, the
-    match nearest to the expected place is taken to be the same object. The camera does not move if nothing is found.
+    If several objects match, the first one that perception lists is used; the ground truth lists the largest first. After a move,
+    the match nearest to the expected place is taken to be the same object. The camera does not move if nothing is found.
     """
     start = await context.camera.pose()
     first = await _locate(context, arguments.description, None)
     if isinstance(first, Frame):
-        return await _nothing(context, arguments.description, first)
+        return await _nothing_found(context, arguments.description, first)
     last, detections, target = first, 1, first.target
-    frames = [context.images.save_look(first.frame)]
+    frames = [context.images.save_frame(first.frame)]
     try:
         while True:
             plan = _plan(context.camera.info, await context.camera.pose(), last.box, target, detections)
-            interim = plan.fill != TARGET_FILL
-            if not interim and _framed(context, await context.camera.pose(), target, plan):
+            is_interim = plan.fill != TARGET_FILL
+            if not is_interim and _is_framed(context, await context.camera.pose(), target, plan):
                 break
             before = await context.camera.pose()
             arrival = await context.camera.move(plan.pose)
             if detections == MAX_DETECTIONS:
                 break
-            again = await _locate(context, arguments.description, target)
+            redetected = await _locate(context, arguments.description, target)
             detections += 1
-            if isinstance(again, Frame):
+            if isinstance(redetected, Frame):
                 # Perception may not recognise the target in a close-up. Its direction is still known.
-                if interim:
+                if is_interim:
                     await context.camera.move(aim(context.camera.info, arrival.pose, target).pose)
                 break
-            if arrival.pose == before and again.box == last.box:
+            if arrival.pose == before and redetected.box == last.box:
                 break
-            last, target = again, again.target
+            last, target = redetected, redetected.target
     except BaseException:
         await context.camera.move(start)
         raise
@@ -121,7 +121,7 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
 
 def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, detections: int) -> Aim:
     """Return the next move: the final framing if the box shows the whole target, otherwise a pose for a better detection."""
-    if detections < MAX_DETECTIONS and is_cut(box):
+    if detections < MAX_DETECTIONS and touches_border(box):
         # A large target, or one that is cut off again, may need the widest view to fit.
         large = max(box.width, box.height) > 0.25
         zoom = info.limits.min_zoom if detections > 1 or large else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
@@ -130,36 +130,42 @@ def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, detections: in
     return aim(info, pose, target, CLOSER_FILL if small else TARGET_FILL)
 
 
-def _framed(context: ToolContext, pose: Pose, target: Floats, plan: Aim) -> bool:
+def _is_framed(context: ToolContext, pose: Pose, target: Floats, plan: Aim) -> bool:
     """Return whether the target is framed well enough, or as well as the limits allow."""
     fill, (dx, dy) = measure(context.camera.info, pose, target)
     if plan.limited_by:
-        turn = geometry.angle_between_deg(_axis(pose), _axis(plan.pose))
+        turn = geometry.angle_between_deg(_view_direction(pose), _view_direction(plan.pose))
         return bool(turn < 0.05) and abs(plan.pose.zoom / pose.zoom - 1) < 0.01
     return max(abs(dx), abs(dy)) <= SETTLED_OFFSET and SETTLED_FILL[0] <= fill <= SETTLED_FILL[1]
 
 
-def _axis(pose: Pose) -> Floats:
+def _view_direction(pose: Pose) -> Floats:
     return geometry.direction(pose.pan_deg, pose.tilt_deg)
 
 
-async def _locate(context: ToolContext, description: str, known: Floats | None) -> _Detection | Frame:
-    """Detect the target in the current view. Return only the frame if the target is not in it."""
+async def _locate(context: ToolContext, description: str, expected: Floats | None) -> _Detection | Frame:
+    """Detect the target in the current view. Return only the frame if the target is not in it.
+
+    Args:
+        context: The context of the call.
+        description: The description of the target.
+        expected: Directions along the target's outline, if it was detected before; None for the first detection.
+    """
     frame = await context.camera.frame()
-    found = await context.perception.detect(frame, description)
-    box = nearest(context.camera.info, frame, found.boxes, known) if known is not None else None
-    if known is None and found.boxes:
-        box = found.boxes[0]
-    return frame if box is None else _Detection(frame, box, len(found.boxes), found.source)
+    observation = await context.perception.detect(frame, description)
+    box = nearest(context.camera.info, frame, observation.boxes, expected) if expected is not None else None
+    if expected is None and observation.boxes:
+        box = observation.boxes[0]
+    return frame if box is None else _Detection(frame, box, len(observation.boxes), observation.source)
 
 
-async def _nothing(context: ToolContext, description: str, frame: Frame) -> ZoomResult:
-    """Return the result when nothing fits the description."""
+async def _nothing_found(context: ToolContext, description: str, frame: Frame) -> ZoomResult:
+    """Return the result when nothing in view matches the description."""
     return ZoomResult(
         message=f"Nothing that fits '{description}' is in view; the camera stayed where it was.",
         pose=PoseData.of(frame.pose),
         source=context.perception.name,
-        frames=(context.images.save_look(frame),),
+        frames=(context.images.save_frame(frame),),
         description=description,
         found=False,
         matches=0,
@@ -181,7 +187,7 @@ async def _report(context: ToolContext, description: str, first: _Detection, tar
         pose=PoseData.of(frame.pose),
         clamped=limited,
         source=first.source,
-        frames=(*frames, context.images.save_look(frame)),
+        frames=(*frames, context.images.save_frame(frame)),
         description=description,
         found=True,
         matches=first.matches,

@@ -8,14 +8,14 @@ from enum import IntEnum
 
 
 class Role(IntEnum):
-    """What an account may do. Each role includes those below it."""
+    """The permissions of an account. Each role includes those below it."""
 
     VIEWER = 1
-    """Pictures and streams."""
+    """May view pictures and streams."""
     OPERATOR = 2
-    """Moves and going to presets as well."""
+    """May also move the camera and go to presets."""
     ADMINISTRATOR = 3
-    """Presets, home and parameters as well."""
+    """May also change presets, home and parameters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Accounts:
     """The accounts of one camera.
 
     Args:
-        accounts: The accounts. Without any, the camera asks nobody for a password.
+        accounts: The accounts. If there are none, the camera requires no password.
     """
 
     def __init__(self, accounts: Iterable[Account] = ()) -> None:
@@ -39,7 +39,7 @@ class Accounts:
 
     @property
     def open_to_all(self) -> bool:
-        """Whether the camera asks nobody for a password."""
+        """Whether the camera requires no password."""
         return not self._accounts
 
     def __iter__(self) -> Iterator[Account]:

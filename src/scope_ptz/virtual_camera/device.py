@@ -14,16 +14,17 @@ from scope_ptz.camera.head_motion import HeadMotion
 from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Head
 from scope_ptz.camera.scene_presets import preset_pose, starting_preset
 from scope_ptz.errors import CameraError, InputError, UnknownNameError
-from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
+from scope_ptz.geometry import Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.simulator.views import picture
 from scope_ptz.virtual_camera.accounts import Account, Accounts
 from scope_ptz.virtual_camera.faults import Faults
+from scope_ptz.virtual_camera.lens import VirtualLens
 
 MAX_PRESETS = 256
-"""Number of presets that the device can store, as the AXIS M5075-G."""
+"""Number of presets that the device can store, as on the AXIS M5075-G."""
 
 _STUCK_FIELDS = {"pan": "pan_deg", "tilt": "tilt_deg", "zoom": "zoom"}
 
@@ -39,11 +40,11 @@ class DevicePreset:
 
 @dataclass(frozen=True, slots=True)
 class Exposure:
-    """A picture as the sensor took it.
+    """A picture of the sensor.
 
     Attributes:
         image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
-        pose: What the encoders reported at exposure.
+        pose: The pose that the encoders reported at exposure.
         time_s: Scene time of the exposure.
         taken_s: Time of the exposure on ``time.monotonic``.
     """
@@ -61,18 +62,19 @@ class VirtualDevice:
 
     Args:
         scene: The scene.
-        viewpoint: Where the camera stands; the default is the viewpoint of the scene's home preset.
+        viewpoint: The viewpoint of the camera; by default, that of the scene's home preset.
         name: The device's name, which discovery and clients show.
-        accounts: Who may use it. Without any, it asks nobody for a password.
-        clock: The scene's clock. It moves the actors, and can be held while the motors go on.
+        accounts: The accounts that may use it. If there are none, it requires no password.
+        clock: The scene's clock. It moves the actors, and can be held while the motors keep moving.
         head: The motors; the default is those of the AXIS M5075-G.
         width: Width of a full-size picture in pixels.
         height: Height of a full-size picture in pixels.
-        time_scale: How many times faster than real the motors are.
+        time_scale: Speed of the motors, as a multiple of the real speed.
 
     Attributes:
-        faults: The faults that it currently shows; assign another ``Faults`` to change them.
+        faults: The current faults; assign another ``Faults`` to change them.
         observers: Functions that get every new exposure, in the thread that takes it.
+        lens: Its focus and iris.
     """
 
     def __init__(
@@ -93,13 +95,14 @@ class VirtualDevice:
         self.name = name or f"{scene.name} {start.viewpoint}"
         self.accounts = Accounts(accounts)
         self.clock = clock or SceneClock(scene.file.start_s, realtime=True)
-        self.limits, self.optics, self.head = Limits(), AXIS_M5075_G, head
+        self.limits, self.optics, self.head = scene.file.limits, scene.file.optics, head
         self.width, self.height, self.time_scale = width, height, time_scale
         self.home = preset_pose(start)
         local = [preset for preset in scene.file.presets if preset.viewpoint == self.viewpoint]
         self._presets = {k: DevicePreset(k, preset.name, preset_pose(preset)) for k, preset in enumerate(local, start=1)}
         self._motion = HeadMotion(head, self.limits, self.home)
         self._started_s = monotonic()
+        self.lens = VirtualLens(self.now_s)
         self._stopped_by_s = -np.inf
         self._faults, self._faults_since_s = Faults(), 0.0
         self._frozen: Exposure | None = None
@@ -118,7 +121,7 @@ class VirtualDevice:
         return (monotonic() - self._started_s) * self.time_scale
 
     def pose(self) -> Pose:
-        """Return what the encoders report."""
+        """Return the pose that the encoders report."""
         return self._motion.pose(self.now_s())
 
     def moving(self) -> bool:
@@ -126,20 +129,20 @@ class VirtualDevice:
         return self._motion.moving(self.now_s())
 
     def reported_moving(self) -> bool | None:
-        """Return the move status as clients see it; None if the device reports none."""
+        """Return the move status that clients get; None if the device reports none."""
         status = self._faults.move_status
         return None if status == "missing" else (self.moving() and status != "lying")
 
     @property
     def destination(self) -> Pose:
-        """Where the current move leads to; the current pose if it is driven at a velocity."""
+        """The target of the current move; the current pose if the camera is driven at a velocity."""
         return self._motion.end or self.pose()
 
     def move(self, pose: Pose, *, speed_share: float = 1.0, zoom_share: float | None = None) -> None:
-        """Start towards a pose. Values beyond a limit are clamped, and a stuck axis stays where it is.
+        """Start a move to a pose. Values beyond a limit are clamped, and a stuck axis does not move.
 
         Args:
-            pose: Where to go.
+            pose: The target.
             speed_share: Share of the top speeds.
             zoom_share: Share of the top speed of zoom, if it differs.
         """
@@ -153,8 +156,8 @@ class VirtualDevice:
 
         Args:
             velocity: Velocities; those above the top speed are reduced to it.
-            timeout_s: Seconds of motor time after which the device stops by itself; None for never.
-            sent_s: When the client sent the command, in Unix seconds, if it says so.
+            timeout_s: Seconds of motor time after which the device stops on its own; None for never.
+            sent_s: The time at which the client sent the command, in Unix seconds, if known.
 
         Returns:
             Whether the command is carried out.
@@ -167,7 +170,7 @@ class VirtualDevice:
             0.0 if "tilt" in stuck else velocity.tilt_dps,
             0.0 if "zoom" in stuck else velocity.zoom_rate,
         )
-        # Without a timeout the motors run until the next command or their stops: a year of motor time stands for "never".
+        # Without a timeout the motors run until the next command or their stops: a year of motor time represents "never".
         self._motion.drive(free, self.now_s(), 3.2e7 if timeout_s is None else timeout_s)
         return True
 
@@ -182,12 +185,12 @@ class VirtualDevice:
         return self._motion.driven_at(self.now_s())
 
     def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
-        """Brake pan and tilt, the zoom, or all. The other axes keep their motion.
+        """Stop pan and tilt, the zoom, or both. The other axes keep moving.
 
         Args:
             pan_tilt: Whether pan and tilt stop.
             zoom: Whether the zoom stops.
-            sent_s: When the client sent the command, in Unix seconds, if it says so.
+            sent_s: The time at which the client sent the command, in Unix seconds, if known.
         """
         if sent_s is not None:
             self._stopped_by_s = max(self._stopped_by_s, sent_s)
@@ -201,8 +204,12 @@ class VirtualDevice:
             self._motion.brake(now_s)
 
     def reboot(self) -> None:
-        """Go back to home at once and forget the stop times, as after a reboot. Presets stay."""
+        """Return to the home position immediately and clear the stop times, as after a reboot.
+
+        Presets are kept; focus and iris become automatic.
+        """
         self._motion.halt(self.home, self.now_s())
+        self.lens = VirtualLens(self.now_s)
         self._stopped_by_s = -np.inf
 
     def presets(self) -> list[DevicePreset]:
@@ -235,7 +242,7 @@ class VirtualDevice:
 
         Raises:
             InputError: The name is empty, too long, or has characters that cannot be printed.
-            CameraError: All places are taken.
+            CameraError: The device cannot store more presets.
         """
         check_preset_name(name)
         if number is None:
@@ -243,20 +250,20 @@ class VirtualDevice:
             free = (k for k in range(1, MAX_PRESETS + 1) if k not in self._presets)
             number = next(same, None) or next(free, None)
         if number is None or not 1 <= number <= MAX_PRESETS:
-            raise CameraError(f"All {MAX_PRESETS} presets are taken.")
+            raise CameraError(f"All {MAX_PRESETS} presets are in use. Remove one first.")
         self._presets[number] = DevicePreset(number, name, self.pose())
         return self._presets[number]
 
     def rename_preset(self, number: int, name: str) -> None:
-        """Give a preset another name.
+        """Rename a preset.
 
         Raises:
             UnknownNameError: There is no such preset.
-            InputError: The name is empty, too long, taken, or has characters that cannot be printed.
+            InputError: The name is empty, too long, in use, or has characters that cannot be printed.
         """
         check_preset_name(name)
         if any(preset.name == name and preset.number != number for preset in self._presets.values()):
-            raise InputError(f"There is a preset '{name}' already.")
+            raise InputError(f"A preset named '{name}' already exists.")
         self._presets[number] = replace(self.preset(number), name=name)
 
     def remove_preset(self, number: int) -> None:
@@ -268,7 +275,7 @@ class VirtualDevice:
         del self._presets[self.preset(number).number]
 
     def set_home(self) -> None:
-        """Make the current pose home."""
+        """Set the home position to the current pose."""
         self.home = self.pose()
 
     def prefetch(self) -> Prefetch:
@@ -278,7 +285,7 @@ class VirtualDevice:
     def expose(self, width: int | None = None, height: int | None = None) -> Exposure:
         """Take a picture. It blocks for the time of one re-projection.
 
-        The horizontal field of view is that of the zoom, whatever the size.
+        The horizontal field of view depends only on the zoom, not on the size.
         """
         faults = self._faults
         if faults.picture == "frozen" and self._frozen is not None:
@@ -292,7 +299,7 @@ class VirtualDevice:
         else:
             drift_deg = faults.drift_dps * (self.now_s() - self._faults_since_s)
             view = Perspective(pose.pan_deg + drift_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), width, height)
-            image = picture(self.scene, self.viewpoint, view, time_s)
+            image = self.lens.through(picture(self.scene, self.viewpoint, view, time_s), pose.zoom)
         image.flags.writeable = False
         exposure = Exposure(image, pose, time_s, taken_s)
         for observe in self.observers:

@@ -1,4 +1,4 @@
-"""Digest authentication (RFC 7616) as a server: challenges, and checks of what clients answer. HTTP and RTSP share it."""
+"""Server side of digest authentication (RFC 7616), for HTTP and RTSP."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ALGORITHMS: dict[str, Callable[[bytes], hashlib._Hash]] = {"SHA-256": hashlib.s
 _PARAMETER = re.compile(r'([\w*-]+)\s*=\s*(?:"((?:[^"\\]|\\.)*)"|([^\s,"]+))\s*(?:,|$)')
 _NONCE = Struct("!d12s")  # time of issue, random bytes
 _SIGNATURE_BYTES = 16
-_WINDOW = 64  # nonce counts this far below the highest one may still arrive: requests of one client overtake each other
+_WINDOW = 64  # nonce counts up to this far below the highest one are accepted, because requests of a client may arrive out of order
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Verdict:
     """The result of a check.
 
     Attributes:
-        account: Who sent the request; None if it must be refused.
+        account: The authenticated account; None if the request must be refused.
         stale: Whether a refused client need only repeat its request with a new nonce.
     """
 
@@ -41,13 +41,13 @@ class Verdict:
 
 
 class DigestAuthenticator:
-    """Asks clients for a password and checks their answers. The password itself never crosses the network.
+    """Challenges clients and checks their responses. The password itself never crosses the network.
 
     Nonces are signed by the server, so that requests without an account cost it no memory.
 
     Args:
-        accounts: Who may sign in.
-        realm: Name of what is protected. Clients show it.
+        accounts: The accounts that may sign in.
+        realm: The authentication realm, which clients show.
         qop: Whether ``qop=auth`` is offered and required. Many RTSP clients do not know it.
         nonce_lifetime_s: Seconds for which a nonce is accepted.
         now_s: The clock of nonces.
@@ -79,7 +79,7 @@ class DigestAuthenticator:
         Args:
             authorization: The value of the header, None if there is none.
             method: The method of the request, such as ``GET`` or ``DESCRIBE``.
-            uri: What the request asks for: path and query in HTTP. None accepts any address in the answer, because RTSP clients
+            uri: The target of the request: path and query in HTTP. None accepts any address in the answer, because RTSP clients
                 name the stream in requests for its tracks.
         """
         answer = _parse(authorization or "")
@@ -91,7 +91,7 @@ class DigestAuthenticator:
         if (self._qop or "qop" in answer) and not (answer.get("qop") == "auth" and answer.get("cnonce")):
             return Verdict()
         account = self._accounts.find(answer.get("username", ""))
-        # An unknown name costs as much time as a wrong password, so that names cannot be found by timing.
+        # An unknown name takes as long to reject as a wrong password, so that names cannot be found by timing.
         password = secrets.token_hex(16) if account is None else account.password
         expected = self._response(algorithm, answer, password, method)
         if not hmac.compare_digest(expected.encode(), answer.get("response", "").lower().encode()) or account is None:
@@ -117,7 +117,7 @@ class DigestAuthenticator:
         return urlsafe_b64encode(content + self._signature(content)).decode()
 
     def _issued_s(self, nonce: str) -> float | None:
-        """Return when this server issued a nonce, None if it did not."""
+        """Return the time at which this server issued a nonce; None if it did not issue it."""
         try:
             content = urlsafe_b64decode(nonce.encode())
         except ValueError:
@@ -154,7 +154,7 @@ class _NonceCounts:
     seen: int = 0
 
     def add(self, count: int) -> bool:
-        """Note a count and return whether it is new."""
+        """Record a count and return whether it is new."""
         if count > self.highest:
             shift = min(count - self.highest, _WINDOW)
             self.seen = ((self.seen << shift) | 1) & ((1 << _WINDOW) - 1)
@@ -168,7 +168,7 @@ class _NonceCounts:
 
 
 def _parse(authorization: str) -> dict[str, str]:
-    """Return the parameters of a digest answer, empty if it is none."""
+    """Return the parameters of a digest response; empty if the header is invalid."""
     scheme, _, rest = authorization.strip().partition(" ")
     if scheme.lower() != "digest":
         return {}
@@ -177,7 +177,7 @@ def _parse(authorization: str) -> dict[str, str]:
 
 
 def _same_target(answered: str, target: str) -> bool:
-    """Return whether a client signed this request. Some clients sign the full address in place of path and query."""
+    """Return whether a signed address is that of the request. Some clients sign the full URL instead of path and query."""
     if answered == target:
         return True
     parts = urlsplit(answered)

@@ -1,4 +1,4 @@
-"""Faults that a virtual camera shows on demand."""
+"""Faults that a virtual camera simulates on demand."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ class Faults(BaseModel):
 
     Attributes:
         drop: Share of requests whose connection is closed without a reply.
-        stall_s: Seconds by which every reply is late.
-        unauthorized: Whether every account is refused.
-        garbage: Whether replies have a body that is not what their protocol says.
-        picture: What is wrong with pictures: ``truncated`` JPEGs, one ``frozen`` picture, a ``black`` one, or another ``size``.
+        stall_s: Seconds by which every reply is delayed.
+        unauthorized: Whether every account is rejected.
+        garbage: Whether the bodies of replies violate their protocol.
+        picture: The fault of pictures: ``truncated`` JPEGs, one ``frozen`` picture, a ``black`` one, or another ``size``.
         stuck: Axes whose motor does not turn.
-        drift_dps: Degrees per second by which the picture turns away from what the encoders report.
+        drift_dps: Degrees per second by which the picture drifts away from the pose that the encoders report.
         move_status: The move status is ``lying`` (always idle) or ``missing``.
-        down: Whether the camera is off the network, as while it reboots.
+        down: Whether the camera is off the network, as during a reboot.
         clock_skew_s: Seconds by which the camera's clock is ahead.
     """
 
@@ -45,7 +45,7 @@ def checked_faults(content: Mapping[str, object]) -> Faults:
     """Return faults from names and values.
 
     Raises:
-        InputError: A fault is unknown or has a wrong value.
+        InputError: A fault is unknown or has an invalid value.
     """
     try:
         return Faults.model_validate(content)

@@ -1,4 +1,4 @@
-"""What a virtual camera says about itself, the same in all protocols."""
+"""The identity of a virtual camera, which is the same in all protocols."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from scope_ptz.virtual_camera.device import VirtualDevice
 BRAND = "AXIS"
 PRODUCT = "M5075-G"
 FIRMWARE = "11.11.0"
-"""The version of AXIS OS whose interface this follows."""
+"""The version of AXIS OS whose interface the virtual camera implements."""
 
 
 def serial_number(device: VirtualDevice) -> str:
-    """Return twelve hexadecimal digits, constant for a viewpoint of a scene, so that clients recognise the camera again."""
+    """Return twelve hexadecimal digits, constant for a viewpoint of a scene, so that clients recognise the camera."""
     place = f"{device.scene.name}/{device.viewpoint}"
     return "ACCC8E" + hashlib.sha256(place.encode()).hexdigest()[:6].upper()
 
 
 def mac_address(device: VirtualDevice) -> str:
-    """Return the serial number as the address of a network card, which it is on cameras of this brand."""
+    """Return the serial number in the form of a MAC address, because the two are the same on AXIS cameras."""
     serial = serial_number(device)
     return ":".join(serial[k : k + 2] for k in range(0, len(serial), 2))
 

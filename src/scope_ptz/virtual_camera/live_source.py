@@ -1,4 +1,4 @@
-"""One live picture for all streams of a device: it is exposed once per tick, while at least one client watches."""
+"""The live picture of a device, exposed once per tick for all streams while at least one client watches."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
 
 
 class LiveSource:
-    """Exposes frames at a constant rate and hands the newest one to every subscriber.
+    """Exposes frames at a constant rate and passes the newest one to every subscriber.
 
     A slow subscriber misses frames and never delays the others. The source runs inside ``run``, in the caller's event loop.
 
     Args:
         device: The camera.
         rate_hz: Frames per second.
-        latency_s: Time from exposure until a frame is handed out, as in the encoder of a real camera.
+        latency_s: Time in seconds from exposure until a frame is delivered, as in the encoder of a real camera.
     """
 
     def __init__(self, device: VirtualDevice, *, rate_hz: float = 25.0, latency_s: float = 0.0) -> None:
@@ -37,11 +37,11 @@ class LiveSource:
 
     @property
     def subscribers(self) -> int:
-        """Number of clients that watch."""
+        """Number of clients that are watching."""
         return self._subscribers
 
     async def run(self) -> None:
-        """Expose frames while somebody watches. Run it in a task group; cancel it to end."""
+        """Expose frames while at least one client watches. Run it in a task group; cancel it to stop."""
         while True:
             await self._wanted.wait()
             async with anyio.create_task_group() as group:
@@ -49,7 +49,7 @@ class LiveSource:
 
     @asynccontextmanager
     async def subscribe(self) -> AsyncIterator[AsyncIterator[Exposure]]:
-        """Return a context with an endless iterator over exposures. Each step waits for a frame that was not seen yet."""
+        """Return a context with an endless iterator over exposures. Each step waits for a new frame."""
         self._subscribers += 1
         self._wanted.set()
         try:

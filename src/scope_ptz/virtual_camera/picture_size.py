@@ -1,4 +1,4 @@
-"""Sizes of pictures: what clients ask for, and pictures fitted to it."""
+"""Parse requested picture sizes, and fit pictures to a size."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ MIN_SIDE_PX = 16
 
 
 def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
-    """Return width and height from ``WIDTHxHEIGHT``; those of the camera if the text is empty.
+    """Parse ``WIDTHxHEIGHT``. An empty text means the size of the camera.
 
     Raises:
-        InputError: The text is something else, or the size is larger than the camera's.
+        InputError: The text has another form, or the size is larger than the camera's.
     """
     if not text:
         return device.width, device.height
@@ -30,7 +30,7 @@ def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
 
 
 def fitted(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
-    """Return a picture of a size. One of another shape is cropped at its sides or at top and bottom, never stretched.
+    """Scale a picture to a size. If its shape differs, it is cropped at its sides or at top and bottom, never stretched.
 
     Args:
         image: Array of shape ``(H, W, 3)``.

@@ -1,4 +1,4 @@
-"""The ground truth of frames that went over the network, for perception that is labelled simulation-only."""
+"""The ground truth of frames that were sent over the network, for the perception backend ``simulation-only-truth``."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from scope_ptz.camera.base import FrameOrigin
 from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
 
 KEPT_EXPOSURES = 3000
-"""Number of exposures that are remembered: two minutes at 25 frames per second."""
+"""Maximum number of stored exposures: two minutes at 25 frames per second."""
 
 TOLERANCE_S = 0.001
-"""How far a requested time may be from that of an exposure. Times on the wire have microseconds."""
+"""Default tolerance of requested times in seconds. Times on the network have a resolution of microseconds."""
 
 
 class TruthLog:
-    """Remembers where and when recent exposures were taken.
+    """Stores the pose and time of recent exposures.
 
     Args:
-        device: The camera. Every exposure for any protocol is noted.
+        device: The camera. Its exposures for all protocols are stored.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
@@ -28,23 +28,27 @@ class TruthLog:
         device.observers.append(self._note)
 
     def close(self) -> None:
-        """Stop noting exposures."""
+        """Stop storing exposures."""
         self._device.observers.remove(self._note)
 
-    def at(self, *, taken_s: float | None = None, time_s: float | None = None) -> FrameOrigin | None:
-        """Return the origin of an exposure, None if none is known.
+    def at(
+        self, *, taken_s: float | None = None, time_s: float | None = None, within_s: float = TOLERANCE_S
+    ) -> tuple[float, FrameOrigin] | None:
+        """Return the time (in Unix seconds) and the origin of an exposure; None if no stored exposure matches.
 
         Args:
-            taken_s: When it was taken, in Unix seconds.
-            time_s: The scene time of the exposure. While scene time is held, the newest exposure of that time counts.
+            taken_s: The time of the exposure in Unix seconds. The nearest exposure is returned.
+            time_s: The scene time of the exposure. While scene time is held, the newest exposure at that time is returned.
+            within_s: Maximum difference from ``taken_s`` in seconds.
         """
-        for taken, scene_time, origin in reversed(list(self._exposures)):
-            if taken_s is not None and abs(taken - taken_s) > TOLERANCE_S:
-                continue
-            if time_s is not None and abs(scene_time - time_s) > TOLERANCE_S:
-                continue
-            return origin
-        return None
+        fitting = [
+            (taken, origin)
+            for taken, scene_time, origin in reversed(list(self._exposures))
+            if (taken_s is None or abs(taken - taken_s) <= within_s) and (time_s is None or abs(scene_time - time_s) <= TOLERANCE_S)
+        ]
+        if taken_s is None:
+            return fitting[0] if fitting else None
+        return min(fitting, key=lambda found: abs(found[0] - taken_s), default=None)
 
     def origin(self, exposure: Exposure) -> FrameOrigin:
         """Return the origin of an exposure."""
@@ -55,11 +59,11 @@ class TruthLog:
 
 
 def unix_s(exposure: Exposure) -> float:
-    """Return when an exposure was taken, in Unix seconds to the microsecond."""
+    """Return the time of an exposure in Unix seconds, rounded to microseconds."""
     return round(time() - monotonic() + exposure.taken_s, 6)
 
 
 def origin_fields(origin: FrameOrigin) -> dict[str, object]:
-    """Return an origin for JSON."""
+    """Return an origin as JSON data."""
     pose = {"pan_deg": origin.pose.pan_deg, "tilt_deg": origin.pose.tilt_deg, "zoom": origin.pose.zoom}
     return {"scene": origin.scene, "viewpoint": origin.viewpoint, "pose": pose, "time_s": origin.time_s}

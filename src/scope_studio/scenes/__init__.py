@@ -1,1 +1,1 @@
-"""The built-in scenes. Each is a package that defines ``build(stage)``, ``NAME`` and ``TITLE``."""
+"""The built-in scenes. Each scene is a package that defines ``build(stage)``, ``NAME`` and ``TITLE``."""

@@ -13,8 +13,10 @@ from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.cli import main
 from tests.bench.engine.making import TASKS
 from tests.cli.conftest import scenes, scope
+from tests.support.fixtures import one_search_for_packages
+from tests.support.shared import made_once
 
-__all__ = ["scenes", "scope"]
+__all__ = ["one_search_for_packages", "scenes", "scope"]
 
 HERE = Path(__file__).parent
 ENGINES_OWN = ("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning", "ignore::DeprecationWarning")
@@ -37,22 +39,22 @@ def nothing_left_behind() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def tasks_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("tasks") / "tasks.jsonl"
-    dump_tasks(TASKS, path)
-    return path
+    return made_once(tmp_path_factory, "engine-tasks", lambda folder: dump_tasks(TASKS, folder / "tasks.jsonl")) / "tasks.jsonl"
 
 
 @pytest.fixture(scope="session")
 def a_log(scenes: Path, tasks_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The log of all tasks with the built-in planner and ground truth, pictures included. Not to be written to."""
-    out = tmp_path_factory.mktemp("logs")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SCOPE_SCENES_DIR", str(scenes))
-        patch.setattr("sys.argv", ["scope", "bench", "run", "--tasks", str(tasks_file), "--out", str(out)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        assert ended.value.code in (0, None)
-    (log,) = out.glob("*.eval")
+
+    def evaluate(out: Path) -> None:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("SCOPE_SCENES_DIR", str(scenes))
+            patch.setattr("sys.argv", ["scope", "bench", "run", "--tasks", str(tasks_file), "--out", str(out)])
+            with pytest.raises(SystemExit) as ended:
+                main()
+            assert ended.value.code in (0, None)
+
+    (log,) = made_once(tmp_path_factory, "engine-logs", evaluate).glob("*.eval")
     return log
 
 

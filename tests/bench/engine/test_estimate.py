@@ -26,12 +26,12 @@ PAIR: dict[str, Any] = {"planner": "m", "perception": "moondream2", "planner_is_
 
 def test_an_estimate_without_earlier_runs_is_labelled_as_a_guess() -> None:
     # Four tasks of one call each: two steps, each with the prompt, the second with a call in the history.
-    told = estimate(ENTRIES, 2, 4, (), Price(1.0, 2.0), opening_chars=4000)
-    assert (told.runs, told.decisions, told.looks, told.seconds) == (8, 16, 4, None)
+    told = estimate(ENTRIES, 2, 4, (), Price(1.0, 2.0), prompt_chars=4000)
+    assert (told.runs, told.planner_calls, told.perception_calls, told.seconds) == (8, 16, 4, None)
     assert (told.input_tokens, told.output_tokens) == (16 * 1000 + 8 * 100, 16 * 40)
     assert told.cost_usd == pytest.approx((16_800 + 2 * 640) / 1e6)
     text = "\n".join(estimate_lines(told, **PAIR, concurrency=4))
-    assert "about 17 thousand tokens in and 640 out for the planner (guessed from the length of the prompt), 0.02 US" in text
+    assert "about 17 thousand input and 640 output tokens for the planner (guessed from the length of the prompt), 0.02 US" in text
     assert "time    unknown" in text
 
 
@@ -46,9 +46,9 @@ async def test_a_guess_is_based_on_the_prompt_only() -> None:
 def test_an_estimate_with_earlier_runs_is_measured(a_log: Path) -> None:
     earlier = read_evaluation(a_log)
     trials = tuple(t.model_copy(update={"input_tokens": 1000, "output_tokens": 100}) for t in earlier.trials)
-    told = estimate(ENTRIES, 1, 1, [earlier.model_copy(update={"trials": trials})], opening_chars=4000)
+    told = estimate(ENTRIES, 1, 1, [earlier.model_copy(update={"trials": trials})], prompt_chars=4000)
     assert (told.measured_on, told.guessed) == (4, False)
-    share = told.decisions / sum(t.steps for t in trials)
+    share = told.planner_calls / sum(t.steps for t in trials)
     assert told.input_tokens == round(4000 * share)
     assert "measured on 4 earlier runs of this pair" in "\n".join(estimate_lines(told, **PAIR, concurrency=1))
 

@@ -50,10 +50,10 @@ def test_what_cannot_be_compared(a_log: Path) -> None:
     other = like.model_copy(update={"card": like.card.model_copy(update={"dataset_digest": "0" * 16})})
     with pytest.raises(InputError, match="different tasks"):
         gate(other, like)
-    with pytest.raises(InputError, match="finish it first"):
+    with pytest.raises(InputError, match="Finish the evaluation first"):
         gate(like.model_copy(update={"wanted": 99}), like)
     broken = tuple(t.model_copy(update={"headline": "infrastructure"}) for t in like.trials)
-    with pytest.raises(InputError, match="nothing to compare"):
+    with pytest.raises(InputError, match="no task is scored in both"):
         gate(like.model_copy(update={"trials": broken}), like)
 
 
@@ -69,12 +69,13 @@ def test_broken_tasks_and_changed_judges_are_reported(a_log: Path) -> None:
     broken = first.model_copy(update={"headline": "infrastructure"})
     now = like.model_copy(update={"trials": (broken, *rest)})
     assert any(
-        line.startswith("1 task is left out, because infrastructure broke it") for line in comparison_lines(gate(now, like), now)
+        line.startswith("1 task is left out, because in one of the logs infrastructure")
+        for line in comparison_lines(gate(now, like), now)
     )
     assert judge_change_note(like, like) == judge_change_note(judged_by(like, "a"), judged_by(like, "a")) == ""
     assert judge_change_note(judged_by(like, "a"), like) == ""
     told = judge_change_note(judged_by(like, "b"), judged_by(like, "a"))
-    assert told.startswith("note: a (p) decided in the baseline and b (p) decides now")
+    assert told.startswith("note: the deciding judge is a (p) in the baseline and b (p) in the log")
 
 
 def test_the_command(scope: Scope, evaluated: Path) -> None:
@@ -83,4 +84,4 @@ def test_the_command(scope: Scope, evaluated: Path) -> None:
     assert '"passed": true' in done.out
     missing = scope("bench", "gate", str(evaluated), "--baseline", str(evaluated.with_name("none.eval")))
     assert missing.code == 2
-    assert "There is no log" in missing.err
+    assert "does not exist" in missing.err

@@ -12,10 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.bench.engine.annotations import check_beside
+from scope_ptz.bench.engine.annotations import check_labels
 from scope_ptz.bench.engine.judgement_journal import Journal, journal_file
-from scope_ptz.bench.engine.logs import open_sample, read_evaluation
+from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.runs import exclusive
+from scope_ptz.bench.engine.sample_files import open_sample
 from scope_ptz.bench.judging.human_labels import add_label, labels_file, read_labels
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement, Label
@@ -200,12 +201,12 @@ def test_labels_are_kept_with_reused_runs(scope: Scope, tmp_path: Path) -> None:
             mode = "scope" if verdict == "incorrect" else None
             add_label(labels_file(old), Label.model_validate({"by": "ann", "verdict": verdict, "error_mode": mode}), sample)
         said = Judgement(judge="j", prompt=prompt_version(), verdict="correct")
-        Journal.beside(old).add(kept.sample, said)  # as a rescoring that was killed leaves it
+        Journal.of_log(old).add(kept.sample, said)  # as a rescoring that was killed leaves it
         assert run(scope, server, tmp_path / "tasks.jsonl", logs) == 0
     (new,) = logs.glob("*.eval")
     assert new != old
     assert [(row.sample, row.verdict) for row in read_labels(labels_file(new))] == [(kept.sample, "unclear")]
-    assert Journal.beside(new).find(kept.sample, "j", 0) == said
+    assert Journal.of_log(new).find(kept.sample, "j", 0) == said
     # The old log has its own as they were.
     away = logs / "superseded" / old.name
     assert away.is_file() and len(read_labels(labels_file(away))) == 2
@@ -214,5 +215,5 @@ def test_labels_are_kept_with_reused_runs(scope: Scope, tmp_path: Path) -> None:
     assert compared.code == 0 and "1 unclear" in compared.out
     # A damaged line is told before anything is run.
     labels_file(new).write_text("nonsense\n", "utf-8")
-    with pytest.raises(InputError, match="line 1 is no label"):
-        check_beside([new])
+    with pytest.raises(InputError, match="line 1 is not a valid label"):
+        check_labels([new])

@@ -13,7 +13,8 @@ from typing import Any
 import pytest
 
 from scope_ptz.bench.engine.external_agents import AgentReply, AgentSession, ExternalPlanner, source_digest
-from scope_ptz.bench.engine.logs import open_sample, read_evaluation
+from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.sample_files import open_sample
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Exchange, Finish, State, ToolOutcome

@@ -8,7 +8,7 @@ from pathlib import Path
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.regression_gate import gate
 from scope_ptz.bench.engine.run_totals import accuracy
-from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge, decider_of, other_judges_note
+from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge, other_judges_note, reported_judge
 from scope_ptz.bench.judging.judgement_tally import not_judged
 from scope_ptz.bench.reports.report_judge import judge_name, verdicts
 from scope_ptz.bench.reports.report_runs import ReportRun
@@ -96,11 +96,11 @@ def test_one_judge_decides_on_all_runs_of_a_log(evaluated: Path) -> None:
     made = decided_by_one_judge(rows)
     assert [t.headline for t in made] == ["correct", "correct", "unscored", "unscored"]
     assert not_judged(made[2]) and not_judged(made[3]) and accuracy(made) == 1.0
-    assert decider_of(made) == "a (p)" and "a (p) decides on the 4 runs" in other_judges_note(made)
+    assert reported_judge(made) == "a (p)" and "a (p) decides on the 4 runs" in other_judges_note(made)
     named = decided_by_one_judge(rows, "b")
     assert [t.headline for t in named] == ["incorrect", "incorrect", "incorrect", "unscored"]
     assert [t.judgements[0].judge for t in named[:3]] == ["b", "b", "b"]
-    assert decider_of(named) == "b (p)"
+    assert reported_judge(named) == "b (p)"
     # One model under two prompts is two judges, and a judge that has said nothing yet decides nothing.
     again = [judged(first, a, said_by("a", "incorrect", "q")), judged(second, a)]
     assert [t.headline for t in decided_by_one_judge(again)] == ["correct", "correct"]

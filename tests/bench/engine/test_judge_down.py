@@ -123,7 +123,7 @@ def test_an_evaluation_that_was_run_without_a_judge_is_judged_by_the_same_comman
 def test_verdicts_of_another_judge_are_resumed_by_its_own_command(scope: Scope, evaluated: Path) -> None:
     trial = read_evaluation(evaluated).trials[0]
     said = Judgement(judge="a", prompt=prompt_version(), verdict="correct", reason="Kept.")
-    Journal.beside(evaluated).add(trial.sample, said)  # as a rescoring by "a" that was killed leaves it
+    Journal.of_log(evaluated).add(trial.sample, said)  # as a rescoring by "a" that was killed leaves it
     with Misbehaving(then=good(verdict)) as server:
         for judge, asked in (("b", 4), ("a", 4 + 3)):
             assert scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", judge).code == 0
@@ -140,7 +140,7 @@ def test_summaries_of_judgements(evaluated: Path) -> None:
         [judgement("correct"), judgement("failed", reason="No route\nto it."), judgement("failed", reason="x")]
     )
     told += JudgementTally.of([judgement("unparseable"), judgement("incorrect", error_mode="scope")])
-    assert (told.summary, told.made, told.failure) == ("2 with a verdict, 1 unparseable, 2 failed", 5, "No route to it.")
+    assert (told.summary, told.total, told.failure) == ("2 with a verdict, 1 unparseable, 2 failed", 5, "No route to it.")
     first, second, *_ = read_evaluation(evaluated).trials
     whole = [t.model_copy(update={"judgements": (judgement("unparseable"),)}) for t in (first, second)]
     half = [whole[0], second.model_copy(update={"judgements": (judgement("failed"),)})]

@@ -46,7 +46,7 @@ def test_a_log_is_judged_twice_and_keeps_everything(scope: Scope, evaluated: Pat
     ]  # fmt: skip
     condemned = after.trials[1].judgements[0]
     assert (condemned.verdict, condemned.error_mode, condemned.reason) == ("incorrect", "vlm_counting", "It counted wrongly.")
-    assert not Journal.beside(evaluated).path.exists()  # type: ignore[union-attr]
+    assert not Journal.of_log(evaluated).path.exists()  # type: ignore[union-attr]
 
 
 def test_judgements_before_an_interruption_are_not_repeated(scope: Scope, evaluated: Path) -> None:
@@ -55,7 +55,7 @@ def test_judgements_before_an_interruption_are_not_repeated(scope: Scope, evalua
         assert scope("bench", "rescore", str(evaluated), *options).code == 0
         trial = read_evaluation(evaluated).trials[0]
         # As a rescoring that was killed leaves it: the next judgement of one run stands in the journal.
-        Journal.beside(evaluated).add(trial.sample, trial.judgements[0].model_copy(update={"repeat": 1}))
+        Journal.of_log(evaluated).add(trial.sample, trial.judgements[0].model_copy(update={"repeat": 1}))
         asked = len([r for r in server.requests if r.chat])
         assert scope("bench", "rescore", str(evaluated), *options).code == 0
         assert len([r for r in server.requests if r.chat]) - asked == 3

@@ -8,7 +8,8 @@ from zipfile import ZipFile
 
 import pytest
 
-from scope_ptz.bench.engine.logs import open_sample, read_evaluation
+from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.sample_files import open_sample
 from scope_ptz.errors import TraceError
 from tests.cli.conftest import Scope
 
@@ -22,7 +23,7 @@ def test_a_file_that_is_not_a_log(tmp_path: Path, content: bytes) -> None:
 
 
 def test_a_missing_file(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match="There is no log"):
+    with pytest.raises(TraceError, match="does not exist"):
         read_evaluation(tmp_path / "none.eval")
     with pytest.raises(TraceError, match=r"cannot be read|no log"):
         read_evaluation(tmp_path)
@@ -45,13 +46,13 @@ def test_a_log_of_another_evaluation(evaluated: Path, tmp_path: Path) -> None:
             if name == "header.json":
                 content["eval"]["metadata"] = {}
             new.writestr(name, json.dumps(content))
-    with pytest.raises(TraceError, match="another evaluation"):
+    with pytest.raises(TraceError, match="this benchmark did not write"):
         read_evaluation(path)
 
 
 def test_a_missing_run(evaluated: Path) -> None:
     for name in ("nothing#1", "nothing", "", "#", "../../x#1"):
-        with pytest.raises(TraceError, match="contains no run"):
+        with pytest.raises(TraceError, match="does not contain the run"):
             open_sample(evaluated, name)
 
 

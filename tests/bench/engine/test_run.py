@@ -12,7 +12,8 @@ import pytest
 from inspect_ai.log import read_eval_log
 
 from scope_ptz.bench.engine.entries import Entry, select
-from scope_ptz.bench.engine.logs import open_sample, read_evaluation
+from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.sample_files import open_sample
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.tasks.task_wording import facts_of
 from tests.bench.engine.making import SCENE, TASKS
@@ -30,7 +31,7 @@ def test_a_log_reads_as_judged_runs(evaluated: Path) -> None:
     (look,) = counted.looks
     assert look.view == "current" and look.capture_s > 0 and look.eyes_s > 0
     assert 0 < look.eyes_s + look.capture_s <= look.call_s
-    assert look.eyes_s <= counted.timings.perception_s + 1e-3
+    assert counted.timings.perception_s > 0
     assert (counted.task.viewpoint, counted.task.category) == ("mast", "counting")
     # The eyes said what really shows, so it was not they that erred.
     assert miscounted.error_mode not in (None, ErrorMode.VLM_COUNTING)
@@ -152,8 +153,8 @@ def test_a_pair_may_contain_built_in_models(scope: Scope, tasks_file: Path, tmp_
         (["--agent", "nonsense"], "module:Class"),
         (["--agent", "json:nothing"], "cannot be imported"),
         (["--agent", "json:JSONDecoder"], "is not an agent"),
-        (["--price", "cheap"], "--price needs two amounts"),
-        (["--resume", "missing.eval"], "There is no log"),
+        (["--price", "cheap"], "--price must be two amounts"),
+        (["--resume", "missing.eval"], "does not exist"),
         (["--perception", "rapidocr", "--no-pictures"], "needs pictures"),
     ],
 )

@@ -45,7 +45,7 @@ def test_server_failures_are_reported_with_address_and_advice() -> None:
         "cannot be reached. Start it, or check the address."
     )
     assert eyes == (
-        "4 perception calls failed in 2 of 6 runs, which still count (circuit-open 6, refused 2). The model server at "
+        "4 perception calls failed in 2 of 6 runs, which were scored nevertheless (circuit-open 6, refused 2). The model server at "
         "http://10.0.0.8/v1 cannot be reached. Start it, or check the address."
     )
     assert failure_summary(evaluation.trials[5:], evaluation.card) == []

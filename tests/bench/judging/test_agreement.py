@@ -25,9 +25,9 @@ from scope_ptz.taskgen.gold.judge_results import (
     GoldVerdict,
     alternating_modes,
     gold_case,
+    gold_raters,
     judge_gold,
     passing_case,
-    raters_of_gold,
     read_verdicts,
     result,
     results,
@@ -84,10 +84,10 @@ def test_all_raters_are_found_and_compared() -> None:
     names = {rater.name: rater for rater in report.raters}
     assert [rater.kind for rater in report.raters] == ["checks", "judge", "judge", "judge", "person"]
     assert len(names["the checks"].ratings) == 3
-    assert names["the checks"].apart == Counter(unscored=1, infrastructure=1)
-    assert names["one (judge-1:0) #2"].apart == Counter(unparseable=1)
-    assert names["two (judge-1:0)"].apart == Counter(failed=1)
-    assert names["ann"].apart == Counter(unclear=1)
+    assert names["the checks"].other_verdicts == Counter(unscored=1, infrastructure=1)
+    assert names["one (judge-1:0) #2"].other_verdicts == Counter(unparseable=1)
+    assert names["two (judge-1:0)"].other_verdicts == Counter(failed=1)
+    assert names["ann"].other_verdicts == Counter(unclear=1)
     pairs = {(pair.first, pair.second): pair for pair in report.pairs}
     checks_one = pairs["the checks", "one (judge-1:0)"].verdicts
     assert checks_one.runs == 3
@@ -95,7 +95,7 @@ def test_all_raters_are_found_and_compared() -> None:
     assert ("the checks", "one (judge-1:0) #2") not in pairs, "repeats stand for themselves only"
     repeats = pairs["one (judge-1:0)", "one (judge-1:0) #2"].verdicts
     assert (repeats.runs, repeats.raw) == (2, 0.5)
-    groups = {group.what: group for group in report.groups}
+    groups = {group.title: group for group in report.groups}
     assert groups["repeats of one (judge-1:0)"].left_out == 2
     assert groups["judges"].verdicts.runs == 2
     assert pairs["the checks", "ann"].modes.confusion == (("reasoning", "scope", 1),)
@@ -216,7 +216,7 @@ def test_verdicts_on_disk_and_their_repeats(tmp_path: Path) -> None:
             append_line(path, verdict.model_dump_json())
     (made,) = results(read_verdicts(path))
     assert sum(made.cells.values()) == 48
-    raters = raters_of_gold(read_verdicts(path))
+    raters = gold_raters(read_verdicts(path))
     assert [rater.name.split(" (")[0] for rater in raters] == ["the known faults", "oracle", "oracle"]
     report = measure_agreement(raters)
     known, repeats = report.pairs

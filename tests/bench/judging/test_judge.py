@@ -166,7 +166,7 @@ def test_refused_fields_are_not_sent_again() -> None:
     async def twice(url: str) -> None:
         port = JudgeServer(Endpoint(url=url, model="x", retries=0))
         for repeat in range(2):
-            made = await Judge("x", port.repeated(repeat)).judge_case(*facts_and_case(), repeat=repeat)
+            made = await Judge("x", port.for_repeat(repeat)).judge_case(*facts_and_case(), repeat=repeat)
             assert (made.verdict, made.repeat) == ("correct", repeat)
             made = await Judge("x", port).judge_case(*facts_and_case())
             assert made.verdict == "correct"

@@ -80,11 +80,11 @@ def test_means_cover_the_pairs_that_have_both_settings() -> None:
     found, mean, again = table(made, "oracle"), "Mean of the pairs", "Mean of the pairs run again"
     assert row(made, "oracle", mean)["macro_checks"] == pytest.approx(fmean([0.75, 0.5, 0.0]))
     assert row(made, "oracle", mean)["macro_judge"] == pytest.approx(fmean([0.75, 0.25]))
-    assert cell(found, mean, "macro_judge").note == cell(found, mean, "oracle_judge").note == "of 2 of 3 pairs"
+    assert cell(found, mean, "macro_judge").note == cell(found, mean, "oracle_judge").note == "over 2 of 3 pairs"
     assert cell(found, mean, "macro_checks").note == "" and cell(found, mean, "macro_rerun") == ""
     told = row(made, "oracle", again)
     assert (told["macro_checks"], told["macro_rerun"], told["gain_rerun"]) == pytest.approx((0.5, 0.75, 0.25))
-    assert cell(found, again, "macro_checks").note == "of 1 of 3 pairs"
+    assert cell(found, again, "macro_checks").note == "over 1 of 3 pairs"
     assert "Mean" not in chart(made).alt
 
 

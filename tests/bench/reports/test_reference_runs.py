@@ -104,8 +104,8 @@ def test_incorrect_and_unscored_trials_are_distinguished() -> None:
 
 def test_costs_name_the_role_of_their_tokens() -> None:
     found = table(build(whole(*PAIRS[0], "correct")), "costs")
-    assert "those of the planner, as its server" in found.notes[0]
-    assert "Tokens of the perception model are not counted" in found.notes[0]
+    assert "those of the planner, as reported by its server" in found.notes[0]
+    assert "tokens of the perception model are not counted" in found.notes[0]
 
 
 def test_long_conditions_fit() -> None:

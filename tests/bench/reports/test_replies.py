@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.reports.task_pages import _message, _seen, evidence_lines
+from scope_ptz.bench.reports.task_pages import _message, _reply_text, evidence_lines
 from scope_ptz.endpoints.failures import Attempt
 from scope_ptz.perception.base import Answer, Box, Detections, Point, Points
 from tests.bench.making import samples
@@ -38,7 +38,7 @@ def dumped(seen: Any) -> dict[str, Any]:
     ],
 )
 def test_places_and_answers(seen: Any, said: str) -> None:
-    assert _seen(dumped(seen)) == said
+    assert _reply_text(dumped(seen)) == said
 
 
 def test_replies_without_a_sentence_are_listed_by_name_with_rounded_values() -> None:
@@ -50,14 +50,14 @@ def test_replies_without_a_sentence_are_listed_by_name_with_rounded_values() -> 
         "ok": True,
     }
     assert _message(result) == "pose: pan deg: 12.35; tilt deg: -1; attempts: 1, 2; ok: yes"
-    assert _message(None) == _seen(None) == "nothing"
+    assert _message(None) == _reply_text(None) == "nothing"
 
 
 @pytest.mark.parametrize(
     "odd", [{"boxes": ["left"]}, {"boxes": [{"somewhere": 1}]}, {"points": [{"x": "1", "y": None}]}, {"boxes": 3}]
 )
 def test_a_reply_in_another_format_is_shown_unchanged(odd: dict[str, Any]) -> None:
-    assert _seen(odd)
+    assert _reply_text(odd)
 
 
 def test_a_task_without_evidence_differs_from_a_task_that_is_not_available() -> None:

@@ -11,7 +11,7 @@ import pytest
 from scope_ptz.agent.timing import Timings
 from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, report_runs, timing_run
-from scope_ptz.bench.reports.tables import CellValue, MarkedCell, ReportTable, in_words, unmarked
+from scope_ptz.bench.reports.tables import CellValue, MarkedCell, ReportTable, cell_text, unmarked
 from scope_ptz.bench.reports.writer import html
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
@@ -104,7 +104,7 @@ def test_the_best_is_marked_among_runs_of_the_same_tasks(report: EvaluationRepor
     assert [label for label, values in rows.items() if isinstance(values[at], MarkedCell) and values[at].best_of_all] == [best]  # type: ignore[union-attr]
     partial = rows[PARTIAL][at]
     assert isinstance(partial, MarkedCell) and partial.note == "over 4 of 8 categories" and not partial.best
-    assert any("ran different tasks than most" in warning and "qwen2.5-vl-7b" in warning for warning in report.warnings)
+    assert any("different tasks from most pairs" in warning and "qwen2.5-vl-7b" in warning for warning in report.warnings)
 
 
 def _value(cell: CellValue) -> float:
@@ -249,7 +249,7 @@ def test_unmeasured_quantities_are_never_numbers() -> None:
     assert (told["input_tokens"], told["cost_usd"], told["judge_tokens"]) == (None, None, None)
     told = row(made, "oracle", label)
     assert (told["macro_judge"], told["oracle_judge"], told["macro_rerun"], told["perception_rules"]) == (None, None, None, None)
-    assert in_words(None, "share") == in_words(None, "count") == "not measured"
+    assert cell_text(None, "share") == cell_text(None, "count") == "not measured"
     words = " ".join(line for section in made.sections for line in section.text)
     assert "not measured" in words and "fewer than two model pairs" in words
 
@@ -300,4 +300,4 @@ def test_one_viewpoint_gives_no_interval() -> None:
     tasks = [t.model_copy(update={"scene": "a", "viewpoint": "b"}) for t in facts(2)]
     made = build_report([evaluation("qwen3-4b", "moondream2", tasks, 0.6)], load_registry())
     cell = unmarked(table(made, "accuracy").rows[0][1])
-    assert isinstance(cell, IntervalEstimate) and cell.low is None and in_words(cell, "share").count("to") == 0
+    assert isinstance(cell, IntervalEstimate) and cell.low is None and cell_text(cell, "share").count("to") == 0

@@ -28,13 +28,13 @@ def test_the_command_writes_everything(tmp_path: Path, monkeypatch: pytest.Monke
     assert (out / "report.md").is_file() and (out / "tables" / "accuracy.csv").is_file()
     assert not list((out / "tasks").iterdir()) and "Each has a page" not in (out / "report.md").read_text("utf-8")
     again = CliRunner().invoke(app, ["bench", "report", *files, "--out", str(tmp_path), "--no-pages"])
-    assert again.exit_code == 2 and "not a report" in again.stderr
+    assert again.exit_code == 2 and "contains no report" in again.stderr
 
 
 def test_a_file_that_is_not_a_log_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "x.eval"
     path.write_text("nothing")
-    for log, message in ((path, "damaged"), (tmp_path / "none.eval", "There is no log")):
+    for log, message in ((path, "damaged"), (tmp_path / "none.eval", "does not exist")):
         done = CliRunner().invoke(app, ["bench", "report", str(log), "--out", str(tmp_path / "r")])
         assert done.exit_code == 2 and message in done.stderr, done.output
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scope_ptz.bench.statistics.clustered import (
     Scores,
     cluster_variance,
-    detectable,
+    detectable_difference,
     difference,
     independent_variance,
     macro_weights,
@@ -152,7 +152,7 @@ def test_shares_stay_within_their_intervals_and_these_within_0_and_1(rows: list[
 def test_without_data_there_is_no_estimate() -> None:
     empty = Scores(np.array([]), (), ())
     assert share(empty) is None and difference(empty) is None and cluster_bootstrap(empty) is None
-    with pytest.raises(ValueError, match="no outcome in c"):
+    with pytest.raises(ValueError, match="there is none in c"):
         weighted_mean(SMALL, {"c": 1.0})
     with pytest.raises(ValueError, match="length"):
         Scores(np.array([1.0]), (), ())
@@ -168,8 +168,8 @@ def test_wilson(right: int, number: int) -> None:
 def test_quantiles_of_students_t() -> None:
     assert t_quantile(12) == pytest.approx(2.200985)
     assert t_quantile(2) == pytest.approx(12.706205)
-    assert detectable(1.0, 12) == pytest.approx(2.200985 + 0.875530)
-    assert detectable(0.5, 1_000_000) == pytest.approx(0.5 * (1.959964 + 0.841621), rel=1e-5)
+    assert detectable_difference(1.0, 12) == pytest.approx(2.200985 + 0.875530)
+    assert detectable_difference(0.5, 1_000_000) == pytest.approx(0.5 * (1.959964 + 0.841621), rel=1e-5)
 
 
 @pytest.mark.parametrize(("one", "other"), [(0, 0), (1, 0), (5, 5), (12, 3), (40, 61), (0, 9)])
@@ -243,7 +243,7 @@ def test_the_pareto_front(points: list[tuple[int, int, int]]) -> None:
 
 def test_the_smallest_detectable_difference_has_a_power_of_80_percent() -> None:
     clusters = 20
-    true = detectable(sqrt(1 / clusters), clusters)
+    true = detectable_difference(sqrt(1 / clusters), clusters)
     means = np.random.default_rng(5).normal(true, 1.0, (4000, clusters))
     found = np.abs(means.mean(axis=1)) / (means.std(axis=1, ddof=1) / sqrt(clusters)) > t_quantile(clusters)
     assert found.mean() == pytest.approx(0.8, abs=0.03)

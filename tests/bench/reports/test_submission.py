@@ -107,16 +107,16 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
         (lambda rows: rows.append(rows[2]), "occurs 2 times"),
         (change(2, task="scope1-made-up-001"), "is not a task of the split"),
         (change(2, epoch=3), "repeat 3, but the header states 2"),
-        (change(2, error_mode="scope"), "error mode scope although the trial is correct"),
-        (change(1, error_mode=None), "an incorrect trial has no error mode"),
+        (change(2, error_mode="scope"), "the error mode scope although it is correct"),
+        (change(1, error_mode=None), "no error mode although it is incorrect"),
         (change(1, headline="correct", error_mode=None), "correct although not every check passed"),
         (change(2, headline="incorrect", error_mode="scope"), "incorrect although no check failed"),
-        (change(2, headline="unscored"), "unscored although the checks decide"),
+        (change(2, headline="unscored"), "unscored although a check failed"),
         (change(2, checks={}), "has no checks"),
-        (change(2, answer="I cannot tell."), "the answer is wrong, but its check says right"),
+        (change(2, answer="I cannot tell."), "the answer is wrong, but the result of its check is right"),
         (change(2, scored_by="judge"), "but no judgement has this verdict"),
-        (change(2, category="ocr"), "the category is ocr, but that of the task is"),
-        (change(2, outcome="won"), "outcome won is not one of"),
+        (change(2, category="ocr"), "category is ocr, but the task"),
+        (change(2, outcome="won"), "it is won"),
         (change(2, steps=61), "61 steps, but the limit is 60"),
         (change(2, steps=-1), "steps: Input should be greater than or equal to 0"),
         (change(2, steps=1.5), "line 3: trial.steps"),
@@ -131,13 +131,13 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
         (change(0, tasks_digest="0" * 64), "the digest of the tasks differs"),
         (change(0, tasks=1), "the header states 1 tasks"),
         (change(0, wanted=1), "the header states 1 trials"),
-        (put_card(dataset="scope9"), "the dataset is scope9, but the tasks are of"),
-        (put_card(package_version="99.0.0"), "newer than this one"),
+        (put_card(dataset="scope9"), "the header states the dataset scope9"),
+        (put_card(package_version="99.0.0"), "newer than the installed version"),
         (put_card(package_version="new"), "is not a version number"),
         (put_card(epochs=3), "is missing (repeats 3)"),
         (put_card(sampling={"api_key": "x"}), "card.sampling.api_key looks like a secret"),
         (drop(0), "exactly one header"),
-        (lambda rows: rows.insert(2, rows[0]), "this one has 2 headers"),
+        (lambda rows: rows.insert(2, rows[0]), "this file has 2 headers"),
     ],
 )  # fmt: skip
 def test_every_error_is_reported(spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path) -> None:
@@ -181,11 +181,11 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
     [
         (fewer_checks, "checks of the task are missing: coverage"),
         (lambda rows: rows[2]["checks"].update(luck=True), "the task does not have these checks: luck"),
-        (lambda rows: rows[2]["checks"].update(outcome=False), "the outcome answered contradicts its check"),
-        (broken(), "broken by infrastructure although it ended answered"),
+        (lambda rows: rows[2]["checks"].update(outcome=False), "the outcome answered contradicts the check"),
+        (broken(), "but the trial ended answered"),
         (counted(checks={"outcome": True, "answer": True}), "checks of the task are missing: calls, coverage, pose"),
-        (broken(outcome="step_limit"), "broken by infrastructure although it ended step_limit"),
-        (broken(perception_failures=1), "broken by infrastructure although it ended answered"),
+        (broken(outcome="step_limit"), "but the trial ended step_limit"),
+        (broken(perception_failures=1), "but the trial ended answered"),
         (change(1, headline="correct", error_mode=None, scored_by="judge", judged=JUDGED), "although the task has checks"),
         (change(2, tool_calls={}, steps=0), "ended answered without a step"),
         (change(2, tool_calls={}, steps=0), "the check 'coverage' passed without a perception call"),
@@ -275,7 +275,7 @@ def test_settings_lose_their_addresses_and_keys_and_nothing_else() -> None:
 
 def test_an_unfinished_run_cannot_be_submitted() -> None:
     whole = made()
-    with pytest.raises(InputError, match=r"unfinished: 3 of \d+ trials"):
+    with pytest.raises(InputError, match=r"only 3 of \d+ trials"):
         submission_lines(whole.model_copy(update={"trials": whole.trials[:3]}))
 
 

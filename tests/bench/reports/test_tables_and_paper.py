@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from scope_ptz.bench.reports.paper import load_paper
-from scope_ptz.bench.reports.tables import Column, MarkedCell, ReportTable, as_csv, as_markdown, escape, in_words
+from scope_ptz.bench.reports.tables import Column, MarkedCell, ReportTable, as_csv, as_markdown, cell_text, escape
 from scope_ptz.bench.statistics.clustered import IntervalEstimate
 from scope_ptz.registry import load_registry
 
@@ -30,7 +30,7 @@ INTERVAL = IntervalEstimate(0.7383, 0.7, 0.8, 0.02, 100, 12)
     ],
 )  # fmt: skip
 def test_cells_as_text(value: object, kind: object, words: str) -> None:
-    assert in_words(value, kind) == words  # type: ignore[arg-type]
+    assert cell_text(value, kind) == words  # type: ignore[arg-type]
 
 
 def small(text: str = "a") -> ReportTable:
@@ -71,7 +71,7 @@ def test_markdown_characters_are_escaped() -> None:
 
 
 def test_a_row_of_the_wrong_length_is_refused() -> None:
-    with pytest.raises(ValueError, match="2 values for 1 columns"):
+    with pytest.raises(ValueError, match="must have 1 values; got 2"):
         ReportTable("key", "Title", (Column("a", "A"),), ((1, 2),))
 
 

@@ -148,13 +148,13 @@ def test_an_unreadable_trace_is_reported(evil: Evaluation, tmp_path: Path) -> No
 
 @pytest.mark.parametrize("content", [None, b"", b"not a picture", jpeg()[:300], b"<svg onload='x'/>"])
 def test_only_pictures_become_files(content: bytes | None, tmp_path: Path) -> None:
-    assert FrameStore(tmp_path / "frames", "frames").keep(content) is None
+    assert FrameStore(tmp_path / "frames", "frames").add(content) is None
     assert not (tmp_path / "frames").exists()
 
 
 def test_pictures_are_reduced(tmp_path: Path) -> None:
     store = FrameStore(tmp_path / "frames", "frames")
-    kept = store.keep(jpeg(size=(4000, 700)))
+    kept = store.add(jpeg(size=(4000, 700)))
     assert kept is not None
     with Image.open(tmp_path / kept) as picture:
         assert picture.width == 1280
@@ -197,7 +197,7 @@ def test_only_older_reports_are_replaced(evil: Evaluation, tmp_path: Path) -> No
     other = tmp_path / "other"
     other.mkdir()
     (other / "index.html").write_text("somebody's page")
-    with pytest.raises(OutputError, match="not a report"):
+    with pytest.raises(OutputError, match="contains no report"):
         write_report([fine], load_registry(), other)
     with pytest.raises(OutputError, match="is a file"):
         write_report([fine], load_registry(), kept)

@@ -55,12 +55,14 @@ class FakeVapix:
     cloak: frozenset[str] = frozenset()  # queries that the device does not know
     clamp_pan: float | None = None  # a limit that appears later
     locked: bool = False
+    more_support: tuple[str, ...] = ()  # functions that it announces and does not have
     shake: bool = False  # the picture keeps moving
     actor: bool = False  # something walks through the picture
     stall_after: int | None = None  # the MJPEG stream falls silent after so many pictures
     presets: dict[str, tuple[float, float, float]] = field(
         default_factory=lambda: {"home": (0.0, 0.0, 1.0), "gate": (40.0, -5.0, 3000.0)}
     )
+    auto: dict[str, str] = field(default_factory=lambda: {"focus": "on", "iris": "on"})
     moves: list[tuple[float, str]] = field(default_factory=list)
     on_move: Callable[[FakeVapix], None] = lambda _: None
 
@@ -179,7 +181,7 @@ class FakeVapix:
                 "RelativeFocus",
                 "AutoIris",
             )
-            lines = [f"root.PTZ.Support.S1.{name}=true" for name in supported]
+            lines = [f"root.PTZ.Support.S1.{name}=true" for name in (*supported, *self.more_support)]
             various = {"CtlQueueing": self.queueing, "Locked": self.locked}
             return "\r\n".join([*lines, *(f"root.PTZ.Various.V1.{name}={str(on).lower()}" for name, on in various.items())])
         if group == "root.Properties.Image":
@@ -195,7 +197,8 @@ class FakeVapix:
             return f"Error: query: unknown value: {what}"
         if what == "position":
             pan, tilt, zoom = self.position()
-            return f"pan={pan:.4f}\r\ntilt={tilt:.4f}\r\nzoom={zoom:.0f}\r\nautofocus=on\r\nautoiris=on\r\n"
+            modes = "".join(f"auto{name}={mode}\r\n" for name, mode in self.auto.items())
+            return f"pan={pan:.4f}\r\ntilt={tilt:.4f}\r\nzoom={zoom:.0f}\r\n{modes}"
         if what == "limits":
             fields = "" if "fields" in self.cloak else "MinFieldAngle=140\nMaxFieldAngle=710\n"
             return f"MinPan=-170\nMaxPan={self.clamp_pan or 170}\nMinTilt=-90\nMaxTilt=20\nMinZoom=1\nMaxZoom=9999\n{fields}"
@@ -226,6 +229,10 @@ class FakeVapix:
             self.presets[query["setserverpresetname"]] = (float(pan), float(tilt), float(zoom))
         elif "removeserverpresetname" in query:
             self.presets.pop(query["removeserverpresetname"], None)
+        elif "autofocus" in query:
+            self.auto["focus"] = query["autofocus"]
+        elif "autoiris" in query:
+            self.auto["iris"] = query["autoiris"]
         else:
             self._drive(query)
         return None

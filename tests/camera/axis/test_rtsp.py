@@ -14,7 +14,7 @@ from scope_ptz.camera.network import rtsp
 from scope_ptz.camera.network.credentials import Credentials
 from scope_ptz.camera.network.errors import CameraUnreachableError
 from scope_ptz.errors import ConfigError
-from scope_ptz.factory.virtual_cameras import VirtualCameraOptions, serve_virtual_cameras
+from scope_ptz.factory.cameras.virtual import VirtualCameraOptions, serve_virtual_cameras
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.accounts import Account, Role

@@ -39,7 +39,7 @@ def test_documented_speeds() -> None:
 
 def test_the_optics_of_the_m5075_follow_from_its_two_fields_of_view() -> None:
     scale = zoom_scale(((1, 1), (9999, 5)), 1, 9999, 71.0, 14.0)
-    optics = optics_of(scale, 71.0, 14.0)
+    optics = optics_of(scale, ((0.0, 71.0), (1.0, 14.0)))
     for zoom, hfov_deg in AXIS_M5075_G.table:
         assert optics.hfov_deg(zoom) == pytest.approx(hfov_deg, abs=0.1)
 

@@ -59,7 +59,7 @@ async def test_the_picture_shows_what_its_geometry_says(mounting: Mounting, to_w
     assert np.abs(frame.image[rows, columns] - expected[rows, columns]).mean() < 2.0
 
 
-async def test_moves_go_where_they_are_told() -> None:
+async def test_moves_reach_their_targets() -> None:
     camera = MountedCamera(SphereCamera(_lean(10.0)), Mounting(tilt_deg=10.0))
     for pose in (Pose(0.0, 0.0, 1.0), Pose(90.0, -10.0, 2.0), Pose(-120.0, 5.0, 1.0)):
         arrival = await camera.move(pose)

@@ -53,7 +53,7 @@ def test_it_tries_until_the_stop_arrives() -> None:
 
 def test_it_gives_up_in_the_end() -> None:
     camera = _Camera(failures=10**6)
-    watch = DriveWatch("test", camera.stop, retry_s=0.01, give_up_s=0.1)
+    watch = DriveWatch("test", camera.stop, retry_s=0.01, give_up_s=1.0)
     watch.arm(0.01)
     watch.join()
     assert not watch.armed

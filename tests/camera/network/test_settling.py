@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from scope_ptz.camera.network.errors import PictureNotStillError, PositionNotReachedError
-from scope_ptz.camera.network.settling import Settling, motion_share, wait_for_still_picture, wait_until_standing
+from scope_ptz.camera.network.settling import Settling, motion_share, wait_for_still_picture, wait_until_stationary
 from scope_ptz.geometry import Pose
 
 pytestmark = pytest.mark.anyio
@@ -77,17 +77,17 @@ def _poses(poses: Iterable[Pose]) -> Callable[[], Awaitable[Pose]]:
 
 async def test_arrival_is_reported_when_the_position_stands_at_the_target() -> None:
     path = [Pose(pan, 0, 1) for pan in (0, 0, 5, 15, 25, 29, 30)]
-    assert await wait_until_standing(_poses(path), QUICK, Pose(30, 0, 1)) == Pose(30, 0, 1)
+    assert await wait_until_stationary(_poses(path), QUICK, Pose(30, 0, 1)) == Pose(30, 0, 1)
 
 
 async def test_passing_through_the_target_is_no_arrival() -> None:
     path = [Pose(pan, 0, 1) for pan in (28, 30, 32, 34, 36)]
-    reached = await wait_until_standing(_poses(path), QUICK, Pose(30, 0, 1))
+    reached = await wait_until_stationary(_poses(path), QUICK, Pose(30, 0, 1))
     assert reached == Pose(36, 0, 1)
 
 
 async def test_a_camera_that_never_starts_is_given_time_and_then_returned() -> None:
-    assert await wait_until_standing(_poses([]), QUICK, Pose(30, 0, 1)) == Pose(0, 0, 1)
+    assert await wait_until_stationary(_poses([]), QUICK, Pose(30, 0, 1)) == Pose(0, 0, 1)
 
 
 async def test_a_camera_that_never_stands_is_an_error() -> None:
@@ -98,7 +98,7 @@ async def test_a_camera_that_never_stands_is_an_error() -> None:
             yield Pose(pan, 0, 1)
 
     with pytest.raises(PositionNotReachedError, match="still moves"):
-        await wait_until_standing(_poses(endless()), QUICK, Pose(-10, 0, 1))
+        await wait_until_stationary(_poses(endless()), QUICK, Pose(-10, 0, 1))
 
 
 async def test_a_picture_that_moves_for_a_while_is_waited_for() -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.errors import CameraError
-from scope_ptz.factory.camera_profiles import calibrate_camera, probe_camera
 from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.cameras.profiles import calibrate_camera, probe_camera
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.clock import SceneClock

@@ -15,11 +15,7 @@ import pytest
 
 from scope_ptz.camera.network.errors import (
     CameraReplyError,
-    CameraSignInError,
-    CameraTimeoutError,
-    CameraUnreachableError,
     ForeignAddressError,
-    PictureError,
     PositionNotReachedError,
 )
 from scope_ptz.camera.onvif.camera import OnvifCamera
@@ -29,10 +25,9 @@ from scope_ptz.camera.onvif.presets import readable_name
 from scope_ptz.errors import CameraError, UnknownNameError
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.virtual_camera.accounts import Account, Role
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.server import serve
-from tests.camera.onvif.opening import ACCOUNTS, PASSWORD, USER, opened
+from tests.camera.onvif.opening import ACCOUNTS, PASSWORD, opened
 from tests.camera.onvif.vendor import Vendor, without
 
 pytestmark = pytest.mark.anyio
@@ -128,29 +123,6 @@ async def test_library_leaves_process_alone(device: VirtualDevice, monkeypatch: 
     assert logging.getLogger().handlers == handlers
 
 
-async def test_wrong_password_is_said(device: VirtualDevice) -> None:
-    with pytest.raises(CameraSignInError) as caught:
-        async with driver(device, password="another-secret"):
-            pass
-    assert "another-secret" not in str(caught.value)
-    assert USER not in repr(caught.value.__context__)
-
-
-async def test_account_without_rights_is_said(analytic_scene: Scene) -> None:
-    device = VirtualDevice(analytic_scene, accounts=[Account(USER, PASSWORD, Role.VIEWER)], width=320, height=180)
-    async with driver(device) as camera:
-        with pytest.raises(CameraSignInError, match="role"):
-            await camera.move(THERE)
-
-
-async def test_clock_skew_at_start_and_later(device: VirtualDevice) -> None:
-    device.faults = device.faults.model_copy(update={"clock_skew_s": -90_000.0})
-    async with driver(device) as camera:
-        await camera.move(THERE)
-        device.faults = device.faults.model_copy(update={"clock_skew_s": 4000.0})  # the clock is set, as by a reboot
-        assert (await camera.pose()).pan_deg == pytest.approx(40.0, abs=0.1)
-
-
 async def test_clock_that_cannot_be_read(device: VirtualDevice) -> None:
     def change(name: str, reply: bytes) -> bytes:
         return without("UTCDateTime")(reply) if name == "GetSystemDateAndTime" else reply
@@ -175,13 +147,6 @@ async def test_device_without_position_says_so(device: VirtualDevice) -> None:
 
     async with driver(device, Vendor(change=change)) as camera:
         with pytest.raises(CameraReplyError, match="does not report its position"):
-            await camera.move(THERE)
-
-
-async def test_stuck_axis_is_named(device: VirtualDevice) -> None:
-    async with driver(device) as camera:
-        device.faults = device.faults.model_copy(update={"stuck": frozenset({"pan"})})
-        with pytest.raises(PositionNotReachedError, match="The pan motor"):
             await camera.move(THERE)
 
 
@@ -213,28 +178,6 @@ async def test_refused_timeout_is_replaced_by_the_dead_mans_switch(analytic_scen
         await anyio.sleep(0.3)
         assert (await camera.pose()).pan_deg == pytest.approx(before.pan_deg, abs=3.0)
         assert device.velocity.pan_dps == 0.0
-
-
-@pytest.mark.parametrize(
-    ("fault", "error"),
-    [({"drop": 1.0}, CameraUnreachableError), ({"stall_s": 30.0}, CameraTimeoutError), ({"unauthorized": True}, CameraSignInError)],
-)
-async def test_transport_faults_are_typed(device: VirtualDevice, fault: dict[str, object], error: type[CameraError]) -> None:
-    async with driver(device) as camera:
-        device.faults = device.faults.model_copy(update=fault)
-        with pytest.raises(error):
-            await camera.pose()
-        device.faults = type(device.faults)()
-        assert (await camera.pose()).zoom >= 1.0
-
-
-@pytest.mark.parametrize("picture", ["truncated", "black", "size"])
-async def test_wrong_pictures_are_typed(device: VirtualDevice, picture: str) -> None:
-    async with driver(device) as camera:
-        device.faults = device.faults.model_copy(update={"picture": picture})
-        with pytest.raises(PictureError) as caught:
-            await camera.frame()
-        assert caught.value.fault == picture
 
 
 def generic_only(name: str, reply: bytes) -> bytes:
@@ -288,12 +231,6 @@ async def test_unknown_model_has_to_be_measured(device: VirtualDevice) -> None:
         assert camera.info.optics.hfov_deg(camera.info.limits.max_zoom) == pytest.approx(14.0)
 
 
-async def test_nobody_there() -> None:
-    with pytest.raises(CameraUnreachableError):
-        async with opened(1):
-            pass
-
-
 def _profile(token: str, width: int, *, ptz: bool) -> Any:
     encoder = SimpleNamespace(Resolution=SimpleNamespace(Width=width, Height=width * 9 // 16))
     source = SimpleNamespace(SourceToken="one")
@@ -312,3 +249,75 @@ def test_profiles_with_ptz_on_the_sub_stream_only() -> None:
         choose_profiles([main, sub], "here", 1280, "third")
     with pytest.raises(CameraError, match="no ONVIF profile with PTZ"):
         choose_profiles([main], "here", 1280)
+
+
+async def test_a_point_is_centred_by_a_relative_move_in_shares_of_the_picture(device: VirtualDevice) -> None:
+    vendor = Vendor()
+    async with driver(device, vendor) as camera:
+        await camera.move(Pose(0.0, -10.0, 1.0))
+        vendor.seen.clear()
+        arrival = await camera.centre_on(0.75, 0.5, zoom_factor=1.5)
+        assert "RelativeMove" in vendor.seen
+        assert "AbsoluteMove" not in vendor.seen
+        assert arrival.pose.pan_deg == pytest.approx(19.9, abs=0.5)
+        zoomed = device.optics.focal(device.pose().zoom) / device.optics.focal(1.0)
+        assert zoomed == pytest.approx(1.5, rel=0.02)
+
+
+async def test_a_point_is_centred_without_such_moves(device: VirtualDevice) -> None:
+    vendor = Vendor(change=lambda _, reply: reply.replace(b"TranslationSpaceFov", b"TranslationSpaceOfVendor"))
+    async with driver(device, vendor) as camera:
+        await camera.move(Pose(0.0, -10.0, 1.0))
+        assert (await camera.centre_on(0.75, 0.5)).pose.pan_deg == pytest.approx(19.9, abs=0.5)
+        assert "RelativeMove" not in vendor.seen
+
+
+async def test_a_relative_move_that_also_zooms_is_corrected(device: VirtualDevice) -> None:
+    def also_zooms(name: str, reply: bytes) -> bytes:
+        if name == "RelativeMove":
+            device.move(Pose(device.destination.pan_deg, device.destination.tilt_deg, 3.0))
+        return reply
+
+    vendor = Vendor(change=also_zooms)
+    async with driver(device, vendor) as camera:
+        await camera.move(Pose(0.0, -10.0, 1.0))
+        arrival = await camera.centre_on(0.75, 0.5)
+        assert arrival.pose.zoom == pytest.approx(1.0, rel=0.01)
+        assert arrival.pose.pan_deg == pytest.approx(19.9, abs=0.5)
+
+
+async def test_a_stuck_axis_is_reported_when_a_point_is_centred(device: VirtualDevice) -> None:
+    async with driver(device) as camera:
+        await camera.move(Pose(0.0, -10.0, 1.0))
+        device.faults = device.faults.model_copy(update={"stuck": ("pan",)})
+        with pytest.raises(PositionNotReachedError, match="pan motor"):
+            await camera.centre_on(0.9, 0.5)
+
+
+async def test_a_device_without_an_imaging_service_has_no_lens_to_set(device: VirtualDevice) -> None:
+    imaging = ("GetOptions", "GetMoveOptions", "GetImagingSettings")
+    vendor = Vendor(refuse=lambda name, _: "ActionNotSupported" if name in imaging else "")
+    async with driver(device, vendor) as camera:
+        assert camera.info.capabilities.focus == camera.info.capabilities.iris == ()
+        with pytest.raises(CameraError, match="cannot be set"):
+            await camera.set_focus("near")
+        with pytest.raises(CameraError, match="cannot be set"):
+            await camera.lens()
+
+
+async def test_a_device_that_lists_no_imaging_service_has_no_lens_to_set(device: VirtualDevice) -> None:
+    vendor = Vendor(
+        change=lambda name, reply: reply.replace(b"ver20/imaging", b"ver99/imaging") if name == "GetServices" else reply
+    )
+    async with driver(device, vendor) as camera:
+        assert camera.info.capabilities.focus == ()
+        assert "GetMoveOptions" not in vendor.seen
+
+
+async def test_focus_is_moved_to_a_position_where_relative_moves_are_missing(device: VirtualDevice) -> None:
+    vendor = Vendor(change=lambda name, reply: without("Relative")(reply) if name == "GetMoveOptions" else reply)
+    async with driver(device, vendor) as camera:
+        before = (await camera.lens()).focus
+        after = (await camera.set_focus("far", step=0.1)).focus
+        assert before is not None
+        assert after == pytest.approx(before + 0.1, abs=0.01)

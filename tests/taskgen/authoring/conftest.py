@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import anyio
 import pytest
 
+from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.factory.validation_perception import ground_truth_tools, is_answerable
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import BuiltTasks, build
 from scope_ptz.taskgen.validation.validate import validate
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
+from tests.support.shared import made_once
 
 QUOTAS: dict[Category, int] = {
     "counting": 8,
@@ -27,8 +30,14 @@ QUOTAS: dict[Category, int] = {
 
 
 @pytest.fixture(scope="session")
-def built(analytic_scene: Scene) -> BuiltTasks:
-    return build([analytic_scene], 1, QUOTAS, None, is_answerable)
+def built(analytic_scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> BuiltTasks:
+    def make(folder: Path) -> None:
+        tasks = build([analytic_scene], 1, QUOTAS, None, is_answerable)
+        dump_tasks(tasks.tasks, folder / "tasks.jsonl")
+        (folder / "short.json").write_text(json.dumps(tasks.short))
+
+    folder = made_once(tmp_path_factory, "built-tasks", make)
+    return BuiltTasks(list(load_tasks(folder / "tasks.jsonl")), json.loads((folder / "short.json").read_text()))
 
 
 @pytest.fixture(scope="session")

@@ -23,6 +23,7 @@ def few(built: BuiltTasks, tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.full
 def test_build_writes_tasks_and_reports_the_shortfall(scope: Scope, tmp_path: Path) -> None:
     out = tmp_path / "made" / "tasks.jsonl"
     done = scope("bench", "build", "--scene", "analytic-yard", "--share", "0.03", "--out", str(out))

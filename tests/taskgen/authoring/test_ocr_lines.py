@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from scope_ptz.simulator.models import SceneText
 from scope_ptz.simulator.truth import BoxTuple, TextSighting
-from scope_ptz.taskgen.authoring.categories.ocr_tasks import lines, on_it, prices
+from scope_ptz.taskgen.authoring.categories.ocr_tasks import is_on_object, lines, prices
 
 
 def written(text: str, box: BoxTuple) -> TextSighting:
@@ -49,6 +49,6 @@ def test_only_the_price_of_a_price_card_is_read() -> None:
 
 def test_a_plate_next_to_an_object_is_not_a_text_on_it() -> None:
     box = (0.4, 0.45, 0.6, 0.9)
-    assert on_it(box, AHEAD)
-    assert not on_it(box, ROAD)
-    assert not on_it(None, AHEAD)
+    assert is_on_object(box, AHEAD)
+    assert not is_on_object(box, ROAD)
+    assert not is_on_object(None, AHEAD)

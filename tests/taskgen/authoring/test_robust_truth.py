@@ -51,7 +51,7 @@ def test_a_barely_visible_object_makes_its_kind_uncertain(analytic_scene: Scene)
 def test_a_passing_actor_is_neither_counted_nor_absent(yard: RobustTruth) -> None:
     assert yard.passing_actors
     assert yard.all_of(Kind("roller")) is None
-    assert not yard.lacks(Kind("roller"))
+    assert not yard.certainly_lacks(Kind("roller"))
 
 
 def test_a_taxi_among_cars_and_a_coach_among_buses_make_their_number_uncertain() -> None:
@@ -71,17 +71,17 @@ def test_an_object_across_the_ends_of_a_sweep_is_detected(yard: RobustTruth, ana
 
 
 def test_a_kind_is_absent_when_nothing_could_be_mistaken_for_it(yard: RobustTruth) -> None:
-    assert yard.lacks(Kind("zebra"))
-    assert not yard.lacks(Kind("ball"))
+    assert yard.certainly_lacks(Kind("zebra"))
+    assert not yard.certainly_lacks(Kind("ball"))
 
 
 def test_nothing_is_stated_about_categories_in_the_backdrop(
     yard: RobustTruth, analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert yard.all_of(Kind("block")) and yard.lacks(Kind("zebra"))
+    assert yard.all_of(Kind("block")) and yard.certainly_lacks(Kind("zebra"))
     monkeypatch.setattr(robust, "INCOMPLETE_CATEGORIES", {analytic_scene.name: frozenset({"block", "zebra"})})
     truth = RobustTruth(analytic_scene, "mast", YARD, 0.0)
-    assert truth.all_of(Kind("block")) is None and not truth.lacks(Kind("zebra"))
+    assert truth.all_of(Kind("block")) is None and not truth.certainly_lacks(Kind("zebra"))
     assert not any(s.instance.category == "block" for s in truth.clear)
 
 

@@ -18,7 +18,7 @@ from scope_ptz.taskgen.authoring.selection import (
     MAX_SAME_YES_NO,
     Selection,
     SharedLimits,
-    offered_positions,
+    answer_positions,
 )
 from scope_ptz.taskgen.authoring.task_places import TaskPlace, go, preset_at
 
@@ -86,10 +86,10 @@ def test_no_draft_is_taken_twice_and_the_selection_is_reproducible(place: TaskPl
 def test_position_of_the_right_answer_among_those_offered(place: TaskPlace) -> None:
     options = Choice(value="cars", options={"cars": (), "vans": (), "buses": ()})
     offer = TaskDraft("comparative", "more", "x", place, options)
-    assert offered_positions(offer, "Are there more cars or more vans?") == ["0"]
-    assert offered_positions(offer, "Are there more vans or more cars?") == ["1", "last"]
-    assert offered_positions(offer, "What is there most of: vans, cars or buses?") == ["1"]
-    assert offered_positions(offer, "What is there most of?") == []
+    assert answer_positions(offer, "Are there more cars or more vans?") == ["0"]
+    assert answer_positions(offer, "Are there more vans or more cars?") == ["1", "last"]
+    assert answer_positions(offer, "What is there most of: vans, cars or buses?") == ["1"]
+    assert answer_positions(offer, "What is there most of?") == []
 
 
 def test_no_offered_position_is_right_too_often(place: TaskPlace) -> None:
@@ -108,7 +108,7 @@ def test_no_offered_position_is_right_too_often(place: TaskPlace) -> None:
     last = [offer(n, f"vans {n}") for n in range(40)]
     first = [offer(n, f"cars {n}") for n in range(40, 60)]
     rows = Selection("comparative", 10, SharedLimits(), 1).fill([*last, *first])
-    assert Counter(at for row in rows for at in offered_positions(row.draft, row.text) if at != "1") == {
+    assert Counter(at for row in rows for at in answer_positions(row.draft, row.text) if at != "1") == {
         "0": 5,
         "last": MAX_AT_ONE_POSITION["comparative"],
     }

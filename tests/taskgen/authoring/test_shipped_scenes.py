@@ -47,6 +47,7 @@ def test_the_dataset_is_sound(made: BuiltTasks, two_scenes: dict[str, Scene]) ->
 
 
 def test_instructions_have_no_formatting_faults(made: BuiltTasks) -> None:
+    assert made.tasks
     for task in made.tasks:
         text = task.instruction
         assert text[0].isupper() or text[0] == '"'

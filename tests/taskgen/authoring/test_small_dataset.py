@@ -21,7 +21,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS as PUBLISHED
 from scope_ptz.taskgen.authoring.assembly import BuiltTasks
 from scope_ptz.taskgen.authoring.reactions import reactions
-from scope_ptz.taskgen.facts.answer_phrasing import offered
+from scope_ptz.taskgen.facts.answer_phrasing import offered_answers
 from scope_ptz.taskgen.validation.adversarial import common_answers
 from scope_ptz.taskgen.validation.dataset_checks import structural_faults
 from scope_ptz.taskgen.validation.report_text import report_lines
@@ -138,11 +138,11 @@ def test_no_fixed_answer_passes_both_tasks_of_a_pair(report: ValidationReport, b
 
 def test_answers_that_a_question_offers() -> None:
     sides = Choice(value="right", options={"left": ("left half",), "right": ("right half",)})
-    assert offered(sides, "Turn 20 degrees to the right. Is the car in the left or the right half?") == ("left", "right")
-    assert offered(sides, "On which side is the car?") == ()
-    assert offered(Number(value=2), "How many cars or vans are there?") == ()
+    assert offered_answers(sides, "Turn 20 degrees to the right. Is the car in the left or the right half?") == ("left", "right")
+    assert offered_answers(sides, "On which side is the car?") == ()
+    assert offered_answers(Number(value=2), "How many cars or vans are there?") == ()
     three = Choice(value="bus", options={"red car": (), "van": (), "bus": (), "same": ()})
-    assert offered(three, "Which is nearest: the van, the red car or the bus?") == ("van", "red car", "bus")
+    assert offered_answers(three, "Which is nearest: the van, the red car or the bus?") == ("van", "red car", "bus")
 
 
 def test_most_common_answer_does_not_contain_words_of_its_question(built: BuiltTasks) -> None:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from scope_ptz.bench.scoring.imported_check import check_imported_calls
-from scope_ptz.bench.tasks.imported import ImportedTask, dump_imported, holds_imported, load_imported
+from scope_ptz.bench.tasks.imported import ImportedTask, dump_imported, is_imported_file, load_imported
 from scope_ptz.bench.tasks.task import Argument
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
@@ -165,8 +165,8 @@ def test_an_expected_zoom_of_zero_is_met_by_a_call_without_zoom(tmp_path: Path, 
         (["count_pointing"], [{}, {"pan_deg": 5}], "unchecked-argument", '{"pan_deg": 5} (number 2)'),
         (["count_pointing"], ["cars"], "unchecked-argument", '"cars" (number 1)'),
         (["count_pointing"], {"count_pointing": [{}, {"view": "full"}]}, "unchecked-argument", 'count_pointing: {"view": "full"}'),
-        (["count_pointing", "take_image"], {"count_pointing": {}, "take_image": 3}, "unchecked-argument", "take_image: 3: no arg"),
-        (None, {"pan_deg": 5}, "unchecked-argument", '{"pan_deg": 5}: no call is expected'),
+        (["count_pointing", "take_image"], {"count_pointing": {}, "take_image": 3}, "unchecked-argument", "3 is not a set"),
+        (None, {"pan_deg": 5}, "unchecked-argument", '{"pan_deg": 5}: the row expects no call'),
         (["count_pointing"], 7, "unchecked-argument", '"7" (number 1)'),
     ],
 )
@@ -198,7 +198,7 @@ def test_a_file_without_rows_is_reported(tmp_path: Path) -> None:
     path.write_text("question,expected_answer\n", "utf-8")
     done = CliRunner().invoke(app, ["bench", "import", str(path), "--out", str(tmp_path / "x.jsonl")])
     assert done.exit_code == 1
-    assert "has a header and no rows" in done.stderr and "--map" not in done.stderr
+    assert "contains a header but no rows" in done.stderr and "--map" not in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -326,10 +326,10 @@ def test_imported_tasks_are_stored_without_loss(tmp_path: Path) -> None:
     )
     path = tmp_path / "tasks.jsonl"
     dump_imported(done.tasks, path)
-    assert holds_imported(path)
+    assert is_imported_file(path)
     assert load_imported(path) == done.tasks
-    assert not holds_imported(tmp_path / "none")
-    assert not holds_imported(tmp_path / "Paper Tasks.csv")
+    assert not is_imported_file(tmp_path / "none")
+    assert not is_imported_file(tmp_path / "Paper Tasks.csv")
     path.write_text(path.read_text() + '{"imported": 1}\n')
     with pytest.raises(InputError, match="line 3"):
         load_imported(path)

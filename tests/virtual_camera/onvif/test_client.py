@@ -34,7 +34,13 @@ async def test_services_and_what_the_device_is(client: Any, served: ServedCamera
     device = await client.create_devicemgmt_service()
     services = await device.GetServices({"IncludeCapability": True})
     found = {service.XAddr.removeprefix(served.url): service.Capabilities for service in services}
-    assert list(found) == ["/onvif/device_service", "/onvif/media_service", "/onvif/media2_service", "/onvif/ptz_service"]
+    assert list(found) == [
+        "/onvif/device_service",
+        "/onvif/media_service",
+        "/onvif/media2_service",
+        "/onvif/ptz_service",
+        "/onvif/imaging_service",
+    ]
     assert found["/onvif/ptz_service"]._value_1.get("MoveStatus") == "true"
     about = await device.GetDeviceInformation()
     assert (about.Manufacturer, about.Model) == ("AXIS", "M5075-G")

@@ -27,7 +27,7 @@ async def test_a_whole_conversation(open_device: VirtualDevice) -> None:
         info = dict(part.partition("=")[::2] for part in played["rtp-info"].split(";"))
         assert played["range"] == "npt=now-"
         first = RtpPacket.parse(await client.packet(0))
-        assert first.sequence == int(info["seq"])
+        assert 0 <= (first.sequence - int(info["seq"])) % 2**16 < 1000  # a busy server drops frames that are late
         assert 0 <= (first.timestamp - int(info["rtptime"])) % 2**32 < 10 * 90_000
         assert f"ssrc={first.ssrc:08X}" in client.set_up["transport"]
         assert first.payload[0] & 0x1F == 7  # parameter sets come first
@@ -42,7 +42,7 @@ async def test_a_whole_conversation(open_device: VirtualDevice) -> None:
         again = await client.request("PLAY", Session=session)
         expected = int(again["rtp-info"].partition("seq=")[2].partition(";")[0])
         packet = RtpPacket.parse(await client.packet(0))
-        while packet.sequence != expected:  # packets from before the pause
+        while (packet.sequence - expected) % 2**16 >= 2**15:  # packets from before the pause
             packet = RtpPacket.parse(await client.packet(0))
         assert packet.payload[0] & 0x1F == 7
         assert (await client.request("TEARDOWN", Session=session)).status == 200

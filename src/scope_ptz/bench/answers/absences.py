@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from scope_ptz.bench.answers.tokenizer import Word
 
-MARK = re.compile(r"[(:=|→]|\s[-–—]\s|—")
+REMARK_SEPARATOR = re.compile(r"[(:=|→]|\s[-–—]\s|—")
 """Separator between a list item and the remark about it."""
 
 _ABSENT_REMARK = re.compile(
@@ -37,7 +37,7 @@ _CROSS = re.compile(r"[\s:|–—-]*[❌✗✘✖]\ufe0f?")
 
 
 def is_denied_jointly(words: Sequence[Word], start: int, end: int) -> bool:
-    """Return whether words are denied together with others, as the bin in "the bin and the drum are not visible"."""
+    """Return whether a thing is denied together with other things, such as the bin in "the bin and the drum are not visible"."""
     before = {w.text for w in words[:start] if w.segment == words[start].segment}
     if (_STATING_WORDS - {"but"}).intersection(before):
         return False
@@ -47,7 +47,7 @@ def is_denied_jointly(words: Sequence[Word], start: int, end: int) -> bool:
 
 def is_listed_as_absent(words: Sequence[Word], end: int) -> bool:
     """Return whether a list marks the thing as absent: "Drum: not visible", "drum - absent"."""
-    if end >= len(words) or not MARK.search(words[end].gap):
+    if end >= len(words) or not REMARK_SEPARATOR.search(words[end].gap):
         return False
     return _ABSENT_REMARK.match(" ".join(w.text for w in words[end : end + 4] if w.clause == words[end].clause)) is not None
 

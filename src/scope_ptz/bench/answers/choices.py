@@ -51,16 +51,16 @@ def _stated_options(expected: Choice, text: AnswerText) -> list[NameMention]:
     options = dict(expected.options)
     if "same" in options:
         options["same"] = (*options["same"], *SAME)
-    return [m for m in option_mentions(text, options) if not m.denied and not m.aside]
+    return [m for m in option_mentions(text, options) if not m.denied and not m.contrast]
 
 
 def _parse_equality(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer | None:
     """Parse an answer that says that the options are equal; return None for other answers."""
-    alike = [m for m in mentions if m.name == "same"]
-    if not alike:
+    equalities = [m for m in mentions if m.name == "same"]
+    if not equalities:
         return None
-    later = [m for m in mentions if m.name != "same" and m.start > alike[-1].start]
-    only_both = all(text.words[m.start].text == "both" for m in alike)
+    later = [m for m in mentions if m.name != "same" and m.start > equalities[-1].start]
+    only_both = all(text.words[m.start].text == "both" for m in equalities)
     if not only_both or len({m.name for m in later}) != 1:
         return ParsedValue("same")
     if not _compare_options(expected, text, later)[0]:
@@ -82,8 +82,8 @@ def _parse_comparison(
         expected: The expected choice.
         text: The answer.
         compared: Mentions of options, without equality.
-        mentions: Those of ``compared`` that are not only the reference of a comparison.
-        stated: ``compared`` with the mentions of equality.
+        mentions: The mentions in ``compared`` that are not merely the reference of a comparison.
+        stated: The mentions in ``compared`` and the mentions of equality.
     """
     picked, excluded = _compare_options(expected, text, compared)
     if picked & excluded:
@@ -91,8 +91,8 @@ def _parse_comparison(
     if len(picked) == 1:
         return ParsedValue(picked.pop())
     if picked or excluded:
-        kept = picked or {m.name for m in mentions} - excluded
-        return _single_option(text, [m for m in mentions if m.name in kept])
+        candidates = picked or {m.name for m in mentions} - excluded
+        return _single_option(text, [m for m in mentions if m.name in candidates])
     has_reference = any(is_reference(text, m) for m in stated)
     chosen = [
         m for m in mentions if (has_reference and _is_heading(text, m)) or not _is_only_counted(text, m, expected.options[m.name])
@@ -103,7 +103,8 @@ def _parse_comparison(
 def _single_option(text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer:
     """Return the only option that is named.
 
-    If several are named, bracketed remarks, parts of things and text before the conclusion are disregarded, in this order.
+    If several are named, bracketed remarks, parts of things and text before the conclusion are disregarded, in this order, until
+    one option remains.
     """
     named = {m.name for m in mentions}
     if len(named) > 1:
@@ -143,19 +144,19 @@ def _compare_options(expected: Choice, text: AnswerText, mentions: Sequence[Name
 
 
 def _is_heading(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether an option opens the answer on its own, as in "Cones: two of them, against one bollard"."""
+    """Return whether an option is a heading at the start of the answer, as in "Cones: two of them, against one bollard"."""
     after = text.words[mention.end : mention.end + 1]
     return mention.start <= 1 and bool(after) and after[0].gap.strip() == ":"
 
 
-def _is_only_counted(text: AnswerText, mention: NameMention, further: Sequence[str]) -> bool:
+def _is_only_counted(text: AnswerText, mention: NameMention, wordings: Sequence[str]) -> bool:
     """Return whether the answer only counts an option ("9 skips", "skips: 9") and does not choose it."""
-    own = [q for q in find_numbers(text, (mention.name, *further)) if q.own]
-    return any(0 <= mention.start - q.end <= 3 or q.start == mention.end for q in own)
+    counts = [n for n in find_numbers(text, (mention.name, *wordings)) if n.counts_unit]
+    return any(0 <= mention.start - n.end <= 3 or n.start == mention.end for n in counts)
 
 
 def _is_remark(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether an option is named only in a remark, as in "green (the wall above is red)" but not in "green (or red)"."""
+    """Return whether an option is named only in a remark: the red of "green (the wall above is red)", not of "green (or red)"."""
     before = text.words[mention.start - 1].text if mention.start else ""
     return text.in_brackets(mention.start) and before not in _ALTERNATIVES
 
@@ -165,16 +166,16 @@ _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "ra
 
 def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
     """Return the mentions that describe only a part of a thing or its base, such as the yellow of "blue, with a yellow top"."""
-    found = list[NameMention]()
+    parts = list[NameMention]()
     for at, mention in enumerate(mentions):
         after = text.words[mention.end : mention.end + 1]
         continues = bool(after) and after[0].clause == text.words[mention.start].clause and after[0].text not in _CONNECTING_WORDS
         more = bool(after) and after[0].text == "and"
         before = " ".join(word.text for word in text.words[max(0, mention.start - 2) : mention.start])
-        listed = at > 0 and found[-1:] == [mentions[at - 1]] and before.endswith("and")
+        listed = at > 0 and parts[-1:] == [mentions[at - 1]] and before.endswith("and")
         if (_ATTACHED.search(before) and (continues or more)) or (listed and continues):
-            found.append(mention)
-    return found
+            parts.append(mention)
+    return parts
 
 
 _ATTACHED = re.compile(r"\b(with( an?| the| its)?|on an?)$")
@@ -190,12 +191,12 @@ def is_reference(text: AnswerText, mention: NameMention) -> bool:
 
 def parse_name_set(expected: NameSet, text: AnswerText) -> ParsedAnswer:
     """Parse the set of all names that an answer states and does not deny."""
-    names = {name: all_wordings(name, further) for name, further in expected.options.items()}
-    mentions = [m for m in text.mentions(names) if not m.denied and not m.aside and not text.is_marked(m.end, _MARKED_NONE)]
+    names = {name: all_wordings(name, other_wordings) for name, other_wordings in expected.options.items()}
+    mentions = [m for m in text.mentions(names) if not m.denied and not m.contrast and not text.is_marked(m.end, _MARKED_NONE)]
     named = frozenset(m.name for m in mentions)
     for one, two in pairwise(mentions):
         if any(w.text == "or" for w in text.words[one.end : two.start]):
-            return Unreadable("an alternative")
+            return Unreadable("it states alternatives")
     if named:
         return ParsedValue(named)
     if _ALL.search(text.joined()):
@@ -209,7 +210,7 @@ def parse_name_set(expected: NameSet, text: AnswerText) -> ParsedAnswer:
 
 _DENIES_ALL = re.compile(
     r"^no (?!(information|data|results?|answers?|response|output|reply|image|idea)\b)\w+\b(?! (is|are) (missing|absent))|"
-    r"\bthere (is|are) (no|not any)\b|\b(found|see|saw|find|sees) (no|nothing)\b"
+    r"\bthere (is|are) (no|not any)\b|\b(parts|see|saw|find|sees) (no|nothing)\b"
 )
 
 
@@ -218,13 +219,14 @@ def _denies_all(text: AnswerText) -> bool:
 
 
 def parse_description(expected: Description, text: AnswerText) -> ParsedAnswer:
-    """Parse which facts and which contradictions of a description an answer states."""
-    return ParsedValue((_stated(expected.facts, text), _stated(expected.contradictions, text)))
+    """Parse which of the expected facts and which of the contradictions an answer states."""
+    return ParsedValue((_stated_facts(expected.facts, text), _stated_facts(expected.contradictions, text)))
 
 
-def _stated(facts: Sequence[Fact], text: AnswerText) -> frozenset[int]:
+def _stated_facts(facts: Sequence[Fact], text: AnswerText) -> frozenset[int]:
+    """Return the indices of the facts that an answer states."""
     stated = set[int]()
     for number, fact in enumerate(facts):
-        if any(not m.denied and not m.aside for m in text.mentions({"fact": fact.any_of})):
+        if any(not m.denied and not m.contrast for m in text.mentions({"fact": fact.any_of})):
             stated.add(number)
     return frozenset(stated)

@@ -23,7 +23,7 @@ class Claim(Enum):
 
 
 def claim_of(words: Sequence[Word], start: int, end: int) -> Claim:
-    """Return what the words from ``start`` to ``end`` (exclusive), which name a thing, claim about it."""
+    """Return the claim that an answer makes about a thing, which the words from ``start`` to ``end`` (exclusive) name."""
     clause = words[start].clause
     before = "".join(f"{w.text} " for w in words[max(0, start - 30) : start] if w.clause == clause)
     after = "".join(f"{w.text} " for w in words[end : end + 30] if w.clause == clause)

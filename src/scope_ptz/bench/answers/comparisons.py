@@ -22,7 +22,7 @@ _PREPOSITIONS = frozenset({"of", "from", "to"})
 
 
 def directions(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """Return the comparatives that mean the same as the given words ("forward") and the opposite ("backward")."""
+    """Return the comparatives that mean the same as the given words ("forward") and those that mean the opposite ("backward")."""
     forward, backward = set(picks), set[str]()
     for ones, others in _OPPOSITES:
         for same, against in ((ones, others), (others, ones)):
@@ -34,20 +34,20 @@ def directions(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
 
 def comparatives(text: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list[NameMention]:
     """Return the comparatives in an answer. "At least", "at most" and "more or less" are left out."""
-    found = list[NameMention]()
+    matches = list[NameMention]()
     for mention in text.mentions(wordings):
         before = text.words[mention.start - 1].text if mention.start else ""
         after = " ".join(w.text for w in text.words[mention.end : mention.end + 2])
         if before not in ("at", "or") and not re.match(r"or less\b", after):
-            found.append(mention)
-    return found
+            matches.append(mention)
+    return matches
 
 
 def described_thing(text: AnswerText, comparative: NameMention, things: Sequence[NameMention]) -> NameMention | None:
     """Return the thing that a comparative describes.
 
-    It is the noun that the comparative counts ("fewer skips"), else the last thing named before the comparative, else the first one
-    after it.
+    This is the noun that the comparative counts ("fewer skips"). If there is none, it is the last thing named before the
+    comparative, otherwise the first thing after it.
     """
     words, reference = text.words, reference_of(text, comparative, things)
     clause = [m for m in things if words[m.start].clause == words[comparative.start].clause and m != reference]

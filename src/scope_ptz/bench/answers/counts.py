@@ -1,4 +1,4 @@
-"""Parse the count that an answer states, which may be one of several numbers in it."""
+"""Parse the count that an answer states. The answer may contain other numbers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def parse_number(text: AnswerText, unit: Sequence[str], *, part: bool = False) -
     Args:
         text: The answer.
         unit: The wordings of what is counted.
-        part: Whether a part of something is asked for, so that "5 of the 7" means 5.
+        part: Whether the question asks for a part of a whole, so that "5 of the 7" means 5.
 
     Returns:
         The number, or the reason why there is none.
@@ -47,7 +47,7 @@ def _stated_number(text: AnswerText, unit: Sequence[str], *, part: bool) -> floa
 
 def _definite(numbers: Sequence[NumberMention]) -> list[NumberMention]:
     """Return the exact numbers that do not count something else."""
-    return [n for n in numbers if not n.bound and not n.other]
+    return [n for n in numbers if not n.bound and not n.counts_other]
 
 
 def _total(text: AnswerText, numbers: Sequence[NumberMention]) -> float | str | None:
@@ -56,8 +56,8 @@ def _total(text: AnswerText, numbers: Sequence[NumberMention]) -> float | str | 
     results = [n for n in _definite(numbers) if n.total and n not in operands]
     if not results:
         return "a sum that is not worked out" if operands else None
-    totals, own = {n.value for n in results}, {n.value for n in results if n.own}
-    candidates = own if len(own) == 1 else totals
+    totals, unit_totals = {n.value for n in results}, {n.value for n in results if n.counts_unit}
+    candidates = unit_totals if len(unit_totals) == 1 else totals
     return candidates.pop() if len(candidates) == 1 else "several totals"
 
 
@@ -65,7 +65,7 @@ def _single_number(text: AnswerText, unit: Sequence[str], numbers: Sequence[Numb
     """Return the only number of an answer without totals, or why there is none."""
     definite = _definite(numbers)
     values = {n.value for n in definite}
-    if _is_denied(text, unit) and not any(n.own for n in definite):
+    if _is_denied(text, unit) and not any(n.counts_unit for n in definite):
         values.add(0.0)
     if len(values) == 1:
         return values.pop()
@@ -79,13 +79,13 @@ def _single_number(text: AnswerText, unit: Sequence[str], numbers: Sequence[Numb
 def _number_in_words(text: AnswerText, unit: Sequence[str]) -> float | str:
     """Return 0 for "none" and 1 for "a dog", or why the answer states no number."""
     if says_none(text):
-        return "both some and none" if _single(text, unit) or says_yes(text) else 0.0
-    return 1.0 if _single(text, unit) else "no number"
+        return "both some and none" if _names_exactly_one(text, unit) or says_yes(text) else 0.0
+    return 1.0 if _names_exactly_one(text, unit) else "no number"
 
 
 def _is_denied(text: AnswerText, unit: Sequence[str]) -> bool:
     """Return whether the answer denies the thing itself and not only a number of it."""
-    return bool(unit) and any(m.denied and not is_only_number_denied(text, m, unit) for m in text.mentions({"own": unit}))
+    return bool(unit) and any(m.denied and not is_only_number_denied(text, m, unit) for m in text.mentions({"unit": unit}))
 
 
 def _wholes(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMention]:
@@ -111,16 +111,18 @@ def _breakdown(text: AnswerText, numbers: Sequence[NumberMention]) -> bool | Non
         return None  # "Skips: 7, bins: 2" is a list, not a breakdown.
     if "(" not in gaps:  # "4: 2 skips (1 blue, 1 yellow) and 2 posts"
         parts = [q for q in parts if not text.in_brackets(q.start)]
+        if not parts:
+            return None
     lead = [word.text for word in text.words[max(0, whole.start - 3) : whole.start]]
     compares = any(word.text in ("more", "fewer", "less") for word in text.words[whole.end : parts[0].start])
     difference = "(" in gaps or compares or lead[-1:] == ["by"] or "difference" in lead
-    apart = abs(parts[0].value - parts[1].value) if len(parts) == 2 and difference else None
-    return whole.value in (sum(q.value for q in parts), apart)
+    gap = abs(parts[0].value - parts[1].value) if len(parts) == 2 and difference else None
+    return whole.value in (sum(q.value for q in parts), gap)
 
 
 def _is_range(text: AnswerText, numbers: Sequence[NumberMention]) -> bool:
     for one, two in pairwise(numbers):
-        if one.other or two.other or one.value == two.value:
+        if one.counts_other or two.counts_other or one.value == two.value:
             continue
         between = [w.text for w in text.words[one.end : two.start]]
         before = text.words[one.start - 1].text if one.start else ""
@@ -132,28 +134,28 @@ def _is_range(text: AnswerText, numbers: Sequence[NumberMention]) -> bool:
 
 def _is_absent(text: AnswerText, unit: Sequence[str], number: NumberMention) -> bool:
     """Return whether the answer counts absent things, as in "3 cones are missing"."""
-    near = [m for m in text.mentions({"own": unit}) if 0 <= m.start - number.end <= 4] if unit and number.own else []
-    return any(text.denied_after(m.end) for m in near[:1])
+    near = [m for m in text.mentions({"unit": unit}) if 0 <= m.start - number.end <= 4] if unit and number.counts_unit else []
+    return any(text.is_denied_after(m.end) for m in near[:1])
 
 
 def is_only_number_denied(text: AnswerText, mention: NameMention, unit: Sequence[str]) -> bool:
     """Return whether only a number of a thing is denied and not its presence: "not 5 cones", "5 cones are missing"."""
-    numbers = [q for q in find_numbers(text, unit) if q.own and 0 <= mention.start - q.end <= 4 and q.value > 0]
+    numbers = [q for q in find_numbers(text, unit) if q.counts_unit and 0 <= mention.start - q.end <= 4 and q.value > 0]
     return any(q.value > 1 or not q.denied for q in numbers)
 
 
 def _operands(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMention]:
     """Return the operands of a calculation: "seven minus four", "2 + 1", "3 on the left and 3 on the right"."""
-    found = list[NumberMention]()
+    operands = list[NumberMention]()
     for one, two in pairwise(numbers):
-        if text.words[one.start].clause != text.words[two.start].clause or one.other or two.other:
+        if text.words[one.start].clause != text.words[two.start].clause or one.counts_other or two.counts_other:
             continue
         between = [w.text for w in text.words[one.end : two.start]]
         signed = not between and _SIGN.fullmatch(text.words[two.start].gap) is not None
         twice = one.value == two.value > 0 and len(between) > 1 and between[-1] in ("and", "another", "plus") and not two.total
         if signed or twice or _ARITHMETIC.search(" ".join(between)):
-            found += [one, two]
-    return found
+            operands += [one, two]
+    return operands
 
 
 _SIGN = re.compile(r"\s*[-–+*/×·⋅÷^⁄]\s*")
@@ -163,9 +165,9 @@ _ARITHMETIC = re.compile(
 )
 
 
-def _single(text: AnswerText, unit: Sequence[str]) -> bool:
+def _names_exactly_one(text: AnswerText, unit: Sequence[str]) -> bool:
     """Return whether the answer names exactly one ("a dog", "only a bus") and not a row or a group of them."""
-    for mention in text.mentions({"own": unit}) if unit else ():
+    for mention in text.mentions({"unit": unit}) if unit else ():
         words = [text.words[i] for i in range(max(0, mention.start - 4), mention.start)]
         texts = [w.text for w in words if w.segment == text.words[mention.start].segment]
         is_singular = any(plain_words(u)[-1] == text.words[mention.end - 1].text for u in unit)

@@ -1,4 +1,4 @@
-"""Detect answers that say that there is none: "no", "none", "there are no cones at all"."""
+"""Detect answers that deny that anything is there: "no", "none", "there are no cones at all"."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _OF_OTHERS = re.compile(r"\b(others?|else|elsewhere)\b")
 
 
 def says_none(text: AnswerText) -> bool:
-    """Return whether a sentence says just "none": "No.", "There are none", "Nothing like that is visible"."""
+    """Return whether a part of the answer says only "none": "No.", "There are none", "Nothing like that is visible"."""
     parts = [" ".join(text.words[i].text for i in group) for group in (*text.segments(), *text.clauses())]
     return any(map(_is_none, parts))
 
@@ -30,31 +30,31 @@ def _is_none(part: str) -> bool:
 
 
 def says_yes(text: AnswerText) -> bool:
-    """Return whether the word "yes" occurs."""
+    """Return whether the answer contains "yes" or a variant of it."""
     return any(word.text in ("yes", "yeah", "yep", "yup") for word in text.words)
 
 
 def denies_entirely(text: AnswerText, subject: Sequence[str]) -> bool:
-    """Return whether a clause denies the subject as a whole, without a place ("at the gate") or a kind ("red ones")."""
+    """Return whether a clause denies the subject without restricting it to a place ("at the gate") or a kind ("red ones")."""
     mentions = text.mentions({"subject": subject}) if subject else []
     numbers = find_numbers(text, subject)
-    denials = {m.start for m in mentions if m.denied and not m.aside}
-    denials |= {n.start for n in numbers if n.value == 0 and not (n.other or n.bound or n.denied)}
+    denials = {m.start for m in mentions if m.denied and not m.contrast}
+    denials |= {n.start for n in numbers if n.value == 0 and not (n.counts_other or n.bound or n.denied)}
     covered = {i for m in mentions for i in range(m.start, m.end)} | {i for n in numbers for i in range(n.start, n.end)}
     return any(
         (denials.intersection(clause) or _says_none_in(text, clause))
-        and all(text.words[i].text in _UNRESTRICTING_WORDS for i in clause if i not in covered)
+        and all(text.words[i].text in _NEUTRAL_WORDS for i in clause if i not in covered)
         for clause in text.clauses()
     )
 
 
 def _says_none_in(text: AnswerText, clause: Sequence[int]) -> bool:
-    """Return whether a clause, or a segment that begins in it, says just "none"."""
+    """Return whether a clause, or a segment that begins in it, says only "none"."""
     groups = [*(group for group in text.segments() if group[0] in clause), clause]
     return any(_is_none(" ".join(text.words[i].text for i in group)) for group in groups)
 
 
-_UNRESTRICTING_WORDS = frozenset({
+_NEUTRAL_WORDS = frozenset({
     "no", "not", "none", "nothing", "nobody", "zero", "0", "never", "nope", "without", "neither", "nor", "there", "is", "are",
     "was", "were", "be", "been", "i", "we", "you", "it", "they", "them", "that", "this", "these", "those", "see", "sees", "saw",
     "seen", "can", "could", "do", "does", "did", "find", "found", "count", "counted", "visible", "present", "absent", "missing",
@@ -65,4 +65,4 @@ _UNRESTRICTING_WORDS = frozenset({
     "has", "have", "with", "makes", "sum", "nonetheless", "instead", "also", "then", "by", "for", "as", "my", "its", "sign",
     "such", "like",
 })  # fmt: skip
-"""Words that limit a denial neither to a place nor to a kind."""
+"""Words that do not restrict a denial to a place or a kind."""

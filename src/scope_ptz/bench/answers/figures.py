@@ -1,4 +1,4 @@
-"""Parse a price or another written figure, which must be the only number in an answer."""
+"""Parse a written figure, such as a price. It must be the only number in the answer."""
 
 from __future__ import annotations
 
@@ -24,9 +24,13 @@ def is_figure(accepted: Sequence[str]) -> bool:
 
 
 def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
-    """Parse the number of an answer, written with as many decimals as the expected figure; None if it has no number."""
-    found = _FIGURE.fullmatch(expected.accepted[0])
-    places = len(found.group(1) or "") if found else 0
+    """Parse the number in an answer and write it with as many decimals as the expected figure.
+
+    Returns:
+        The figure, ``Unreadable`` if it is unclear, or None if the answer contains no plain number.
+    """
+    figure = _FIGURE.fullmatch(expected.accepted[0])
+    places = len(figure.group(1) or "") if figure else 0
     text = clean(answer)
     if places:
         text = _PENCE.sub(lambda m: f"{int(m[1]) / 100:.2f}", text)

@@ -1,6 +1,6 @@
-"""Detect answers that only say in which half of the picture something is.
+"""Detect answers that only state in which half of the picture something is.
 
-Such an answer does not show whether it means the half that the question asks about.
+Such answers do not show whether they are about the half that the question asks about.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ _DEFINITE = re.compile(
 
 
 def is_half_unclear(text: AnswerText, subject: Sequence[str]) -> bool:
-    """Return whether it is unclear if an answer is about the half that the question asks about.
+    """Return whether it is unclear which half of the picture an answer is about.
 
-    Such an answer makes different statements about the two halves ("one on the left, none on the right"), or places everything in
-    one half.
+    This is so if the answer makes different statements about the two halves ("one on the left, none on the right"), or if it
+    places everything in one half.
     """
     mentions = text.mentions({"subject": subject}) if subject else []
     present, absent = False, False
     for group in text.segments():
         segment = " ".join(text.words[i].text for i in group)
-        own = [m for m in mentions if group[0] <= m.start <= group[-1]]
-        stated = [m for m in own if not m.denied]
+        inside = [m for m in mentions if group[0] <= m.start <= group[-1]]
+        stated = [m for m in inside if not m.denied]
         present = present or bool(stated)
         if not _AT_A_SIDE.search(segment):
             continue
         if any(_ONLY.search(segment) or _is_definite(text, group, m) for m in stated):
             return True
-        denied = len(stated) < len(own) or _NOT_AT_A_SIDE.search(segment) is not None
+        denied = len(stated) < len(inside) or _NOT_AT_A_SIDE.search(segment) is not None
         absent = absent or denied
         present = present or (not denied and _SOME_AT_A_SIDE.search(segment) is not None)
     return present and absent

@@ -11,20 +11,11 @@ from scope_ptz.bench.answers.text import answer_text
 def numbers_in(text: str) -> set[float]:
     """Return every number in a text that could be a count.
 
-    Args:
-        text: Any English text.
-
-    Returns:
-        The values of the numbers. Measures ("15 degrees"), ordinals and labels ("preset 3") are left out.
+    Measures ("15 degrees"), ordinals and labels ("preset 3") are left out.
     """
     return {number.value for number in find_numbers(answer_text(text), ())}
 
 
 def is_stated(text: str, wordings: Sequence[str]) -> bool:
-    """Return whether a text names something without denying it.
-
-    Args:
-        text: Any English text.
-        wordings: The wordings of the thing.
-    """
+    """Return whether a text contains one of the wordings of a thing and does not deny it."""
     return any(not mention.denied for mention in answer_text(text).mentions({"thing": wordings}))

@@ -1,4 +1,4 @@
-"""Find the numbers in a text that could be counts, and what each of them counts."""
+"""Find the numbers in a text that could be counts, and determine what each of them counts."""
 
 from __future__ import annotations
 
@@ -11,16 +11,19 @@ from scope_ptz.bench.answers.text import AnswerText
 from scope_ptz.bench.answers.tokenizer import Word, plain_words, same_word
 
 _MEASURES = ("degree", "percent", "x", "second", "minute", "metre", "kilometre", "px", "pixel", "time")
+"""Units of measurement. A number before one of them is not a count."""
 _LABELS = frozenset({
     "zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "reading",
     "marked", "labelled", "saying", "view", "picture", "image", "frame",
 })  # fmt: skip
+"""Words before digits that are a label, as in "preset 3"."""
 _BARE_AFTER = frozenset({
     "are", "is", "were", "was", "in", "on", "at", "of", "and", "or", "here", "there", "visible", "altogether", "overall",
-    "by", "near", "to", "from", "out", "all", "now", "currently", "seen", "found", "present", "so", "then", "as", "but",
+    "by", "near", "to", "from", "out", "all", "now", "currently", "seen", "mentions", "present", "so", "then", "as", "but",
     "around", "within", "along", "across", "each", "per", "that", "which", "when", "after", "before", "total", "with",
     "right", "behind", "under", "i", "we", "together", "more", "fewer", "others", "ones", "plus", "minus", "less", "for",
 })  # fmt: skip
+"""Words after a number that are not the noun that it counts."""
 _BOUNDS = re.compile(
     r"\b(at least|at most|more than|fewer than|less than|greater than|over|under|above|below|up to|a minimum of|a maximum of|"
     r"geq|leq|gt|lt|(half|twice|double|triple|thrice|times|x)( of)?( the)?|(half|third|quarter|root|square|multiple|fraction) of)$"
@@ -31,7 +34,7 @@ _COMPARED_BEFORE = re.compile(r"(<|(?<![-=])>|[≤≥≦≧≪≫≲≳⩽⩾±�
 _COMPARED_AFTER = re.compile(r"\s*(<|>|[≤≥≦≧≪≫≲≳⩽⩾±])")
 _BETWEEN_NOT_AND_NUMBER = frozenset({
     "a", "an", "the", "total", "of", "exactly", "quite", "really", "just", "even", "there", "is", "are", "be", "was", "were", "to",
-    "see", "seen", "count", "counted", "find", "found", "any", "answer", "number", "it", "that", "true", "correct", "right",
+    "see", "seen", "count", "counted", "find", "mentions", "any", "answer", "number", "it", "that", "true", "correct", "right",
     "about", "precisely", "as", "many",
 })  # fmt: skip
 """Words that may stand between "not" and the number that it denies."""
@@ -44,7 +47,7 @@ _ANNOUNCES_TOTAL = re.compile(
     r"\b(total( [^\W\d]\w*){0,2}|difference( (is|equals|makes|being|therefore|thus))*|(final )?answer( is)?|sum( is)?)$"
 )
 _GENERAL_NOUNS = frozenset({"object", "objects", "item", "items", "thing", "things"})
-"""General words for countable things. A total of "items" counts as a total of what was asked for."""
+"""General words for countable things. A total of "items" is taken as a total of what the question asks about."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +55,12 @@ class NumberMention:
     """A number in a text.
 
     Attributes:
-        value: Its value.
+        value: The number.
         start: Position of its first word.
         end: Position after its last word.
-        own: Whether it counts what was asked for.
-        other: Whether it counts something else.
-        bound: Whether it only limits the exact number ("at least 3", "<3", "3 and a half").
+        counts_unit: Whether it counts what the question asks about.
+        counts_other: Whether it counts something else.
+        bound: Whether it is not an exact count ("at least 3", "<3", "3 and a half").
         denied: Whether it is denied ("not 3").
         total: Whether the text states it as a total or a result.
     """
@@ -65,8 +68,8 @@ class NumberMention:
     value: float
     start: int
     end: int
-    own: bool = False
-    other: bool = False
+    counts_unit: bool = False
+    counts_other: bool = False
     bound: bool = False
     denied: bool = False
     total: bool = False
@@ -75,14 +78,14 @@ class NumberMention:
 def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
     """Return every number that could be a count, in order.
 
-    Ordinals, labels, numbers joined to letters ("0x3", "A4") and measures that were not asked for ("15 degrees", "2x") are left
-    out.
+    Ordinals, labels and numbers joined to letters ("0x3", "A4") are left out. Measures ("15 degrees", "2x") are left out unless the
+    question asks for them.
 
     Args:
         text: The text.
         unit: The wordings of what is counted.
     """
-    words, found, at = text.words, list[NumberMention](), 0
+    words, mentions, at = text.words, list[NumberMention](), 0
     while at < len(words):
         value, end = number_at(words, at)
         if value is None:
@@ -90,14 +93,14 @@ def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
             continue
         is_glued = at > 0 and words[at].gap == ""
         if not is_glued and (_followed_by(words, end, unit) or not _is_measure_or_label(words, at, end)):
-            found.append(_number_mention(text, value, at, end, unit))
+            mentions.append(_number_mention(text, value, at, end, unit))
         at = end
-    return found
+    return mentions
 
 
 def _number_mention(text: AnswerText, value: float, start: int, end: int, unit: Sequence[str]) -> NumberMention:
     words = text.words
-    owned = _followed_by(words, end, unit) or _preceded_by(words, start, unit)
+    counts_unit = _followed_by(words, end, unit) or _preceded_by(words, start, unit)
     after = words[end].text if end < len(words) and words[end].segment == words[end - 1].segment else ""
     ones = re.match(r"(\w+ ){0,2}(ones|others)\b", " ".join(w.text for w in words[end : end + 3]))
     bare = not after or ones is not None or after in _BARE_AFTER or number_at(words, end)[0] is not None or ")" in words[end].gap
@@ -109,11 +112,11 @@ def _number_mention(text: AnswerText, value: float, start: int, end: int, unit: 
         value=value,
         start=start,
         end=end,
-        own=owned,
-        other=not owned and not bare,
+        counts_unit=counts_unit,
+        counts_other=not counts_unit and not bare,
         bound=_is_bound(words, start, end),
         denied=_is_denied(words, start),
-        total="=" in words[start].gap or announced_total or (bool(_TOTALS.search(segment)) and (owned or bare)),
+        total="=" in words[start].gap or announced_total or (bool(_TOTALS.search(segment)) and (counts_unit or bare)),
     )
 
 

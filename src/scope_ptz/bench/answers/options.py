@@ -20,15 +20,15 @@ _ALLOWED_AFTER = frozenset({
     "stands", "takes", "being", "followed", "because", "since", "as", "while", "next", "last", "first", "second", "third", "by",
     "to",
 })  # fmt: skip
-"""Words that may follow a short form. Before any other word it names something else ("the Whitlock sign", "bus stop")."""
+"""Words that may follow a short form. Followed by any other word, the short form is part of another name ("bus stop")."""
 
 
 def option_mentions(text: AnswerText, options: Mapping[str, Sequence[str]]) -> list[NameMention]:
     """Return the mentions of options. "The bus" names the red double-decker bus if no other option is a bus."""
-    full_names = {name: all_wordings(name, further) for name, further in options.items()}
+    full_names = {name: all_wordings(name, other_wordings) for name, other_wordings in options.items()}
     short = _unambiguous_short_forms(full_names)
-    found = text.mentions({name: (*wordings, *short[name]) for name, wordings in full_names.items()})
-    return [m for m in found if _is_full_name(text, m, full_names[m.name]) or _stands_alone(text, m)]
+    mentions = text.mentions({name: (*wordings, *short[name]) for name, wordings in full_names.items()})
+    return [m for m in mentions if _is_full_name(text, m, full_names[m.name]) or _stands_alone(text, m)]
 
 
 def _is_full_name(text: AnswerText, mention: NameMention, wordings: Sequence[str]) -> bool:
@@ -46,20 +46,20 @@ def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
     words = text.words
     before = words[mention.start - 1 : mention.start] if mention.start else ()
     plural = words[mention.end - 1].text.endswith("s")
-    opens = (
+    valid_before = (
         not before
         or bool(words[mention.start].gap.strip())
         or before[0].text in _ALLOWED_BEFORE
         or (plural and before[0].text.isdigit())
     )
     after = words[mention.end : mention.end + 1]
-    closes = not after or bool(after[0].gap.strip()) or after[0].text in _ALLOWED_AFTER
-    if not closes:
-        closes = " ".join(w.text for w in words[mention.end : mention.end + 3]) in _PLACES
-    return opens and closes
+    valid_after = not after or bool(after[0].gap.strip()) or after[0].text in _ALLOWED_AFTER
+    if not valid_after:
+        valid_after = " ".join(w.text for w in words[mention.end : mention.end + 3]) in _PLACE_PHRASES
+    return valid_before and valid_after
 
 
-_PLACES = frozenset({"in the middle", "on the left", "on the right", "in the centre", "in between them"})
+_PLACE_PHRASES = frozenset({"in the middle", "on the left", "on the right", "in the centre", "in between them"})
 
 
 def _unambiguous_short_forms(full_names: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:
@@ -67,13 +67,13 @@ def _unambiguous_short_forms(full_names: Mapping[str, Sequence[str]]) -> dict[st
 
     A short form is the noun with some of the words before it, or the proper name at the beginning of the option.
     """
-    found = dict[str, tuple[str, ...]]()
+    short_forms = dict[str, tuple[str, ...]]()
     for name in full_names:
         others = [plain_words(wording) for other, wordings in full_names.items() if other != name for wording in wordings]
-        found[name] = tuple(
+        short_forms[name] = tuple(
             " ".join(words) for words in _short_forms(name) if not any(_is_within(words, other) for other in others)
         )
-    return found
+    return short_forms
 
 
 def _short_forms(name: str) -> list[tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""Find the numbers next to the items of an ordered list, and the place where the final order of an answer begins."""
+"""Find the numbers that an answer gives for the things it puts in order, and where its final order begins."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ _LINKING_WORDS = frozenset(
 def final_order_start(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
     """Return the position of the word where the final order of the answer begins.
 
-    It is the last concluding word ("so", "therefore") that all names follow, else the beginning of a list without numbers that
-    follows a list with numbers, else 0.
+    This is the last concluding word ("so", "therefore") after which all names occur. If there is none, it is the beginning of a
+    list without numbers that follows a list with numbers. If there is no such list, the position is 0.
     """
     last = 0
     for at, word in enumerate(text.words):
@@ -37,10 +37,10 @@ def final_order_start(text: AnswerText, mentions: Sequence[NameMention], names: 
 
 def _listed_after_numbers(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
     numbered = [bool(_numbers(text, [m])) for m in mentions]
-    begins = numbered.index(False) if False in numbered else 0
-    listed = mentions[begins : begins + len(names)]
+    start = numbered.index(False) if False in numbered else 0
+    listed = mentions[start : start + len(names)]
     clauses = {text.words[m.start].clause for m in listed}
-    if begins < len(names) or any(numbered[begins : begins + len(names)]) or {m.name for m in listed} != names or len(clauses) > 1:
+    if start < len(names) or any(numbered[start : start + len(names)]) or {m.name for m in listed} != names or len(clauses) > 1:
         return 0
     return next(at for at, word in enumerate(text.words) if word.clause in clauses)
 
@@ -50,7 +50,7 @@ def numbers_contradict(text: AnswerText, mentions: Sequence[NameMention], order:
 
     Args:
         text: The answer.
-        mentions: The places where things are named.
+        mentions: The mentions of things in the answer.
         order: The stated order.
         first: The words for the first place in the order, such as "most" or "nearest".
     """

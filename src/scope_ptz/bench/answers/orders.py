@@ -26,27 +26,27 @@ _OPPOSITE = {"forward": "backward", "backward": "forward"}
 
 
 def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
-    """Parse the order that an answer gives, reversed if the answer begins at the other end."""
-    everything = [m for m in option_mentions(text, expected.options) if not m.denied or _is_counted_as_zero(text, m)]
-    begins = final_order_start(text, everything, set(expected.options))
-    mentions = [m for m in everything if m.start >= begins]
+    """Parse the order that an answer gives. It is reversed if the answer begins at the other end."""
+    all_mentions = [m for m in option_mentions(text, expected.options) if not m.denied or _is_counted_as_zero(text, m)]
+    start = final_order_start(text, all_mentions, set(expected.options))
+    mentions = [m for m in all_mentions if m.start >= start]
     order = list(dict.fromkeys(m.name for m in mentions))
     if set(order) != set(expected.options):
         return Unreadable("not all of them are named" if order else "none of them is named")
-    ends = [m for m in text.mentions({"first": expected.first, "last": expected.last}) if m.start >= begins]
-    stated = _stated_order(text, mentions, ends, order, begins)
+    ends = [m for m in text.mentions({"first": expected.first, "last": expected.last}) if m.start >= start]
+    stated = _stated_order(text, mentions, ends, order, start)
     if isinstance(stated, str):
         return Unreadable(stated)
-    if numbers_contradict(text, everything, stated, expected.first):
+    if numbers_contradict(text, all_mentions, stated, expected.first):
         return Unreadable("its own numbers contradict the order")
     return ParsedValue(stated)
 
 
 def _stated_order(
-    text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention], order: list[str], begins: int
+    text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention], order: list[str], start: int
 ) -> tuple[str, ...] | str:
     """Return the stated order, or the reason why there is none."""
-    than_count = sum(w.text == "than" for w in text.words[begins:])
+    than_count = sum(w.text == "than" for w in text.words[start:])
     if 0 < than_count < len(order) - 1:
         return "only some of them are compared"
     placed = _placed(text, mentions, ends)
@@ -58,7 +58,7 @@ def _stated_order(
             between.reverse()
         return (str(placed["first"]), *between, str(placed["last"]))
     starts_at_last = placed.get("last") == order[0] or _announces_opposite_order(mentions, ends)
-    if starts_at_last or any("<" in w.gap for w in text.words[begins:]):
+    if starts_at_last or any("<" in w.gap for w in text.words[start:]):
         order.reverse()
     elif placed.get("first") not in (None, order[0]) or placed.get("last") not in (None, order[-1]):
         return "the order is ambiguous"
@@ -66,7 +66,7 @@ def _stated_order(
 
 
 def _is_counted_as_zero(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether a thing is counted as zero. "Cabinets (none)" takes its place in an order and is not a denial."""
+    """Return whether a thing is counted as zero. "Cabinets (none)" is an item of an order and not a denial."""
     after = text.words[mention.end] if mention.end < len(text.words) else None
     return after is not None and after.text in ("none", "0", "zero") and re.search(r"[(:=]", after.gap) is not None
 
@@ -74,8 +74,8 @@ def _is_counted_as_zero(text: AnswerText, mention: NameMention) -> bool:
 def _placed(text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> dict[str, str | None]:
     """Return the option that the answer places at each end.
 
-    In a segment it is the option named before the word for the end. If the segment names only one end, the option may also follow
-    that word.
+    In each segment this is the option named before the word for the end ("most", "fewest"). If the segment names only one end, the
+    option may also follow that word.
     """
     placed: dict[str, str | None] = {}
     for group in text.segments():
@@ -99,7 +99,7 @@ def _announces_opposite_order(mentions: Sequence[NameMention], ends: Sequence[Na
 
 
 def parse_relation(expected: Relation, text: AnswerText) -> ParsedAnswer:
-    """Parse the relation between subject and object. All clauses that state one must agree."""
+    """Parse the relation between subject and object. All comparisons in the answer must agree."""
     relations = set[str]()
     names = {"subject": expected.subject, "object": expected.object}
     directions = {"forward": expected.forward, "backward": expected.backward}

@@ -1,4 +1,4 @@
-"""The results of parsing an answer: a typed value, a declined answer, or an unreadable one."""
+"""The possible results of parsing an answer: a typed value, a declined answer or an unreadable answer."""
 
 from __future__ import annotations
 
@@ -19,12 +19,16 @@ class ParsedValue:
 
 @dataclass(frozen=True, slots=True)
 class Declined:
-    """An answer that says that it cannot tell."""
+    """An answer that declines to give a value, such as "I cannot tell"."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unreadable:
-    """An answer that does not state exactly one value, with the reason."""
+    """An answer that does not state exactly one value.
+
+    Attributes:
+        reason: Why no value could be parsed.
+    """
 
     reason: str
 

@@ -1,4 +1,4 @@
-"""Entry points of the answer parser: parse an answer as the type that a task expects, and compare the two."""
+"""Entry points of the answer parser: parse an answer as the type that a task expects, and compare it with the expected answer."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _EPSILON = 1e-9
 def parse_answer(expected: AnyExpected, answer: str) -> ParsedAnswer:
     """Parse an answer as a value of the type that a task expects.
 
-    The expected value itself is not used, so correct and wrong answers are parsed alike. The parser never guesses.
+    The expected value itself is not used, so correct and wrong answers are parsed alike. An ambiguous answer is unreadable.
 
     Args:
-        expected: The task's expected answer. Its type and its wordings are used.
+        expected: The task's expected answer. Only its type and its wordings are used.
         answer: The agent's final answer.
 
     Returns:
-        The parsed value, ``Declined`` if the answer says that it cannot tell, or ``Unreadable`` with the reason.
+        The parsed value, ``Declined`` if the answer declines to give one, or ``Unreadable`` with the reason.
     """
     text = answer_text(answer)
     parsed = _parse(expected, text, answer)
@@ -69,7 +69,7 @@ def _parse(expected: AnyExpected, text: AnswerText, answer: str) -> ParsedAnswer
         case NoneThere():
             return parse_none_there(expected, text)
         case ActionOnly():
-            return Unreadable("no answer is wanted")
+            return Unreadable("the task expects no answer")
 
 
 def _parse_number(expected: Number, text: AnswerText) -> ParsedAnswer:

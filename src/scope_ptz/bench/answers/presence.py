@@ -1,4 +1,4 @@
-"""Parse yes-or-no answers, and answers that say whether there is any of something."""
+"""Parse yes-or-no answers, and answers about whether something is present."""
 
 from __future__ import annotations
 
@@ -17,14 +17,13 @@ from scope_ptz.bench.tasks.expected import NoneThere, YesNo
 _YES = frozenset({"yes", "yeah", "yep", "yup", "correct", "affirmative", "true", "indeed"})
 _NO = frozenset({"no", "nope", "nah", "negative", "false", "incorrect"})
 _NO_LAST = frozenset({"no", "nope", "nah"})
-"""Words that are a verdict on their own at the end of a segment: "I say no", "it is a no"."""
+"""Words that are a verdict at the end of a segment: "I say no", "it is a no"."""
 
 
 def verdict_words(text: AnswerText) -> set[bool]:
-    """Return the verdicts of every yes or no that stands on its own: at the beginning of the answer, or as a whole segment.
+    """Return the verdicts that an answer gives with words such as "yes" and "no": True, False, or both if it contradicts itself.
 
-    Returns:
-        True for yes, False for no; both if the answer contradicts itself.
+    "No" counts only as a whole segment or at the end of one, because elsewhere it denies a thing ("no cones").
     """
     verdicts = {True} if says_yes(text) else set[bool]()
     for group in text.segments():
@@ -56,18 +55,19 @@ def _short_answers(text: AnswerText) -> set[bool]:
         piece = _text_of(text, group)
         if match := _ELLIPSIS.match(piece):
             verdicts.add(match["not"] is None)
+            verdicts |= {word == "yes" for word in piece.split() if word in ("yes", "no")}  # "No that is" contradicts itself
         elif _REFUTED.match(piece):
             verdicts.add(False)
     return verdicts
 
 
 def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
-    """Parse an answer as yes or no, from these words and from statements about the thing. Contradictions are unreadable."""
+    """Parse an answer as yes or no, from words such as "yes" and from statements. Contradictions are unreadable."""
     verdicts = verdict_words(text) | _short_answers(text)
     if not verdicts and is_half_unclear(text, expected.affirms):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
     mentions = text.mentions({"yes": expected.affirms, "no": expected.denies})
-    stated = {(mention.name == "yes") != (mention.denied or mention.aside) for mention in mentions}
+    stated = {(mention.name == "yes") != (mention.denied or mention.contrast) for mention in mentions}
     if len(stated) == 2 and len(verdicts) == 1 and (last := text.segments()[-1:]) and _CONCLUDED.match(_text_of(text, last[0])):
         return ParsedValue(verdicts.pop())  # "At the gate: no van. At the works: 1 van. So yes."
     verdicts |= stated
@@ -91,12 +91,13 @@ def _text_of(text: AnswerText, group: Sequence[int]) -> str:
 
 
 def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
-    """Parse whether an answer says that there is none.
+    """Parse whether an answer says that there is none of something.
 
-    The value is True if it says so and claims nothing that only a present thing could have. It is False if it says the opposite.
+    The value is True if the answer says so and does not also describe the thing as present, for example by a colour. It is False if
+    the answer says that there is one.
     """
     if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", text.joined()):
-        return Unreadable("an alternative")
+        return Unreadable("it states alternatives")
     verdicts = absence_verdicts(text, expected.subject)
     if not verdict_words(text) and is_half_unclear(text, expected.subject):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
@@ -110,12 +111,12 @@ def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
 
 
 def absence_verdicts(text: AnswerText, subject: Sequence[str]) -> set[bool]:
-    """Return what an answer says about absence of the subject: True for "there is none", False for "there is one", or both."""
+    """Return the answer's verdicts on the absence of the subject: True for "there is none", False for "there is one", or both."""
     mentions = text.mentions({"subject": subject})
     verdicts = {not v for v in verdict_words(text)}
     mentions = [m for m in mentions if m.denied or not _is_another_thing(text, m, subject)]
-    verdicts |= {m.denied for m in mentions if not (m.aside or (m.denied and _is_partial(text, m, subject)))}
-    numbers = [q for q in find_numbers(text, subject) if not (q.other or q.bound or q.denied)]
+    verdicts |= {m.denied for m in mentions if not (m.contrast or (m.denied and _is_partial(text, m, subject)))}
+    numbers = [q for q in find_numbers(text, subject) if not (q.counts_other or q.bound or q.denied)]
     verdicts |= {q.value == 0 for q in numbers if not mentions or q.value == 0}
     if says_none(text):
         verdicts.add(True)
@@ -141,7 +142,7 @@ def _counts_some(text: AnswerText, subject: Sequence[str]) -> bool:
     """Return whether an answer states a number above zero that could count the subject."""
     number = parse_number(text, subject)
     some = isinstance(number, float) and number > 0
-    return some or any(q.value > 0 and not (q.other or q.denied) for q in find_numbers(text, subject))
+    return some or any(q.value > 0 and not (q.counts_other or q.denied) for q in find_numbers(text, subject))
 
 
 def _claims(text: AnswerText, expected: NoneThere) -> bool:
@@ -149,7 +150,7 @@ def _claims(text: AnswerText, expected: NoneThere) -> bool:
     mentions = text.mentions({"claim": expected.claims, "subject": expected.subject})
     denials = [m for m in mentions if m.name == "subject" and m.denied]
     return any(
-        not (m.denied or m.aside or _is_of_another(text, m) or any(_limits_denial(text, m, denial) for denial in denials))
+        not (m.denied or m.contrast or _is_of_another(text, m) or any(_limits_denial(text, m, denial) for denial in denials))
         for m in mentions
         if m.name == "claim"
     )
@@ -159,7 +160,7 @@ def _is_of_another(text: AnswerText, claim: NameMention) -> bool:
     """Return whether a claim describes another thing in its segment: "a green van", "a van stands top left"."""
     segment = text.words[claim.start].segment
     before = "".join(f"{w.text} " for w in text.words[: claim.start] if w.segment == segment)
-    if _ANOTHER.search(before) and not _ITS_OWN.search(before):
+    if _ANOTHER.search(before) and not _REFERS_TO_SUBJECT.search(before):
         return True
     after = text.words[claim.end : claim.end + 1]
     if not after or after[0].segment != text.words[claim.end - 1].segment or re.search(r"[^\s-]", after[0].gap):
@@ -177,7 +178,7 @@ def _limits_denial(text: AnswerText, claim: NameMention, denial: NameMention) ->
 
 
 _ANOTHER = re.compile(r"\b(an?|two|three|four|five|some|several) (\w+ ){2,}")
-_ITS_OWN = re.compile(r"\b(it|its|they|this|that|one|ones|thing|object|colour|shade|hue|tone|tint)\b")
+_REFERS_TO_SUBJECT = re.compile(r"\b(it|its|they|this|that|one|ones|thing|object|colour|shade|hue|tone|tint)\b")
 _NEW_STATEMENT_WORDS = frozenset({"it", "they", "this", "that", "but", "and", "so", "its"})
 _OF_THE_SUBJECT = frozenset({
     "one", "ones", "thing", "things", "object", "item", "colour", "coloured", "shade", "in", "on", "at", "of", "and", "or",

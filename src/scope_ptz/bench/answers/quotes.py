@@ -1,4 +1,4 @@
-"""Find the quotes in a text, and select those that report lettering and are not names or denied readings."""
+"""Find the quotes in a text, and select those that report lettering. Names and denied readings are left out."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def quotes_of(text: str) -> list[Quote]:
 
     If a quoted sentence itself quotes lettering ("The sign reads 'STOP'"), the inner quotes are returned instead.
     """
-    opened, found = list[tuple[str, int]](), list[Quote]()
+    opened, quotes = list[tuple[str, int]](), list[Quote]()
     for at, mark in enumerate(text):
         if mark not in "\"'":
             continue
@@ -46,30 +46,30 @@ def quotes_of(text: str) -> list[Quote]:
         if not before.isspace() and not after.isalnum() and any(kind == mark for kind, _ in opened):
             while opened[-1][0] != mark:
                 opened.pop()
-            _close(text, opened.pop()[1], at + 1, found)
+            _close(text, opened.pop()[1], at + 1, quotes)
         elif not before.isalnum() and before not in ".,!?" and not after.isspace():
             opened.append((mark, at))
-    if found:
-        return sorted(found, key=lambda quote: quote.start)
+    if quotes:
+        return sorted(quotes, key=lambda quote: quote.start)
     return [Quote(m[1] or m[2], m.start(), m.end()) for m in _PLAIN.finditer(text)]
 
 
-def _close(text: str, start: int, end: int, found: list[Quote]) -> None:
-    """Add a quote in place of the quotes inside it, or keep those if the quote is a sentence about lettering."""
-    within = [quote for quote in found if quote.start > start]
+def _close(text: str, start: int, end: int, quotes: list[Quote]) -> None:
+    """Add a closed quote and drop the quotes inside it. If it is a sentence about lettering, keep the inner quotes instead."""
+    within = [quote for quote in quotes if quote.start > start]
     rest = text[start + 1 : end - 1]
     for quote in within:
         rest = rest.replace(text[quote.start : quote.end], " ")
     if within and _READING_WORDS.search(rest):
         return
-    found[:] = [quote for quote in found if quote not in within]
+    quotes[:] = [quote for quote in quotes if quote not in within]
     if text[start + 1 : end - 1].strip():
-        found.append(Quote(text[start + 1 : end - 1], start, end))
+        quotes.append(Quote(text[start + 1 : end - 1], start, end))
 
 
 def quoted_lettering(quotes: list[Quote], text: str) -> list[Quote]:
     """Return the quotes that report lettering. Denied readings, preset names and names of signs are left out."""
-    kept = list[Quote]()
+    readings = list[Quote]()
     for number, quote in enumerate(quotes):
         before = text[quotes[number - 1].end if number else 0 : quote.start]
         after = text[quote.end : quotes[number + 1].start if number + 1 < len(quotes) else len(text)]
@@ -79,5 +79,5 @@ def quoted_lettering(quotes: list[Quote], text: str) -> list[Quote]:
         is_place = _PLACE_AFTER.match(after) or _PLACE_BEFORE.search(before)
         is_name = _NAMED_AFTER.match(after) and not _INTRODUCED.search(before)
         if is_last or not (is_place or is_name):
-            kept.append(quote)
-    return kept
+            readings.append(quote)
+    return readings

@@ -26,7 +26,8 @@ _CUES = (
 )
 """Patterns that introduce a text, the most reliable first, each with the maximum number of words that may follow.
 
-Of the last pattern, the last match counts; of the others, the first one. An "IS" in capitals is lettering and does not match."""
+For the last pattern, the last match counts; for the others, the first match. An "IS" in capitals is lettering and does not match.
+"""
 _WRITTEN = re.compile(
     r"^\W*(?!it\b|what\b|the (?:text|words?)\b)(.{1,80}?)\s+(?:is|are)\s+(?:written|painted|printed|displayed)\b", re.IGNORECASE
 )
@@ -78,7 +79,8 @@ def normalized_text(text: str, ocr: bool) -> str:
 def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnswer:
     """Parse the lettering that an answer reports.
 
-    It is the quoted text, else the text after "reads", "says" or "is", else a short answer as a whole.
+    The lettering is the quoted text. Without quotes it is the text after "reads", "says" or "is", otherwise the whole of a short
+    answer.
     """
     text = clean(answer)
     quotes = quotes_of(text)
@@ -90,8 +92,8 @@ def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnsw
         return _from_quotes(quotes, text)
     if re.search(r"\b(?:no (?:text|letters|writing)|blank|nothing (?:is )?written)\b", text, re.IGNORECASE):
         return ParsedValue("")
-    begins = _WRITTEN.match(text)
-    candidate, max_words = (begins.group(1), _MAX_WORDS_ALONE) if begins else _after_cue(text)
+    written = _WRITTEN.match(text)
+    candidate, max_words = (written.group(1), _MAX_WORDS_ALONE) if written else _after_cue(text)
     if max_words == 0:
         return Unreadable("it only states what the text is not")
     candidate = _NEXT_SENTENCE.split(candidate)[0]
@@ -99,14 +101,14 @@ def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnsw
     candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", TEXT_SEPARATOR, candidate))
     words = [word for word in candidate.split() if word != TEXT_SEPARATOR.strip()]
     if candidate.isupper():
-        # Text in capitals is lettering and not prose.
+        # Text in capitals is taken as lettering and not as prose.
         max_words = max(max_words, _MAX_WORDS_IN_CAPITALS)
     if not candidate.isupper() and (_NO_LETTERING.match(candidate) or any(map(_FINISHED.fullmatch, (candidate, text)))):
         return Unreadable("no text is quoted")
     if len(words) > max_words:
         return Unreadable("no text is quoted")
     if "or" in [w.lower() for w in words] and not any("or" in a.lower().split() for a in expected.accepted):
-        return Unreadable("an alternative")
+        return Unreadable("it states alternatives")
     return ParsedValue(candidate)
 
 
@@ -116,11 +118,11 @@ def _after_cue(text: str) -> tuple[str, int]:
     Without a cue the whole text is returned. If every match of the cue is denied ("does not read"), the maximum is 0.
     """
     for cue, max_words in _CUES:
-        found = [match for match in cue.finditer(text) if match.end() < len(text)]
-        ends = [match.end() for match in found if not _DENIED.search(text[: match.start()])]
+        matches = [match for match in cue.finditer(text) if match.end() < len(text)]
+        ends = [match.end() for match in matches if not _DENIED.search(text[: match.start()])]
         if ends:
             return text[ends[-1] if cue is _CUES[-1][0] else ends[0] :], max_words
-        if found:
+        if matches:
             return "", 0
     return text, _MAX_WORDS_ALONE
 
@@ -133,6 +135,6 @@ def _from_quotes(quotes: list[Quote], text: str) -> ParsedAnswer:
     if len({normalized_text(q.text, ocr=False) for q in quotes}) > 1 and any(
         re.fullmatch(r"\s*,?\s+(?:or|and then)\s+", b) for b in between
     ):
-        return Unreadable("an alternative")
+        return Unreadable("it states alternatives")
     texts = {normalized_text(quote.text, ocr=False): quote.text for quote in reversed(readings)}
     return ParsedValue(TEXT_SEPARATOR.join(reversed(texts.values())))

@@ -1,4 +1,7 @@
-"""An answer as clauses of words. Denials are marked; questions, guesses and clauses that decline are left out."""
+"""The words of an answer that state something, and the things that they name or deny.
+
+Questions, guesses and clauses that decline to answer are left out.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,12 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from scope_ptz.bench.answers.absences import MARK, is_denied_jointly, is_listed_as_absent, replace_crosses
+from scope_ptz.bench.answers.absences import REMARK_SEPARATOR, is_denied_jointly, is_listed_as_absent, replace_crosses
 from scope_ptz.bench.answers.claims import Claim, claim_of
 from scope_ptz.bench.answers.tokenizer import Word, clean, plain_words, same_word, words_of
 
 NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
-_ASIDE = (
+_CONTRAST_PHRASES = (
     ("rather", "than"), ("instead", "of"), ("other", "than"), ("apart", "from"), ("as", "opposed", "to"), ("unlike",),
     ("except",), ("except", "for"), ("besides",), ("excluding",),
 )  # fmt: skip
@@ -67,14 +70,14 @@ class NameMention:
         start: Position of the first word.
         end: Position after the last word.
         denied: Whether the answer denies it or says that it is absent.
-        aside: Whether it is named only as a contrast ("unlike the van").
+        contrast: Whether it is named only as a contrast ("unlike the van").
     """
 
     name: str
     start: int
     end: int
     denied: bool
-    aside: bool
+    contrast: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +86,7 @@ class AnswerText:
 
     Attributes:
         words: The words, without questions and without declined or hedged clauses.
-        declined: Whether a clause said that it cannot tell.
+        declined: Whether a clause declined to answer, as in "I cannot tell".
         hedged: Whether a clause was only a guess.
     """
 
@@ -102,19 +105,19 @@ class AnswerText:
         """
         phrases = [(tuple(plain_words(w)), name) for name, wordings in names.items() for w in wordings]
         phrases.sort(key=lambda p: -len(p[0]))
-        found, taken = list[NameMention](), set[int]()
+        mentions, taken = list[NameMention](), set[int]()
         for start in range(len(self.words)):
             for phrase, name in phrases:
                 end = start + len(phrase)
                 if phrase and self._is_at(phrase, start) and not taken & set(range(start, end)):
                     taken |= set(range(start, end))
                     claim = claim_of(self.words, start, end)
-                    if claim is Claim.NOTHING or self._denied_twice(start, end):
+                    if claim is Claim.NOTHING or self._is_denied_twice(start, end):
                         break
-                    denied = self.denied(start, end) if claim is Claim.STATED else claim is Claim.MISSED
-                    found.append(NameMention(name, start, end, denied, self._aside(start)))
+                    denied = self.is_denied(start, end) if claim is Claim.STATED else claim is Claim.MISSED
+                    mentions.append(NameMention(name, start, end, denied, self._is_contrast(start)))
                     break
-        return found
+        return mentions
 
     def in_brackets(self, at: int) -> bool:
         """Return whether the word at a position is inside round brackets."""
@@ -135,17 +138,17 @@ class AnswerText:
         before, after = self.words[max(0, at - 1) : at], self.words[at + 1 : at + 2]
         return any(w.text in _BEFORE_VERB_CAN for w in before) or any(w.text in _AFTER_VERB_CAN for w in after)
 
-    def _aside(self, start: int) -> bool:
+    def _is_contrast(self, start: int) -> bool:
         before = [w.text for w in self.words[max(0, start - 4) : start] if w.clause == self.words[start].clause]
         while before and before[-1] in _ARTICLES:
             before.pop()
-        return any(tuple(before[-len(words) :]) == words for words in _ASIDE)
+        return any(tuple(before[-len(words) :]) == words for words in _CONTRAST_PHRASES)
 
-    def denied(self, start: int, end: int) -> bool:
+    def is_denied(self, start: int, end: int) -> bool:
         """Return whether the words from ``start`` to ``end`` are denied."""
-        return self._denied_before(start) or self.denied_after(end) or is_denied_jointly(self.words, start, end)
+        return self._is_denied_before(start) or self.is_denied_after(end) or is_denied_jointly(self.words, start, end)
 
-    def _denied_before(self, start: int) -> bool:
+    def _is_denied_before(self, start: int) -> bool:
         segment = self.words[start].segment
         at = start - 1
         while at >= 0 and self.words[at].segment == segment:
@@ -159,26 +162,26 @@ class AnswerText:
             at -= 1
         return at >= 0 and self._continues_list(segment) and self._opens_denied_list(at)
 
-    def _denied_twice(self, start: int, end: int) -> bool:
+    def _is_denied_twice(self, start: int, end: int) -> bool:
         """Return whether the words are part of a double negation, as in "no cone is missing"."""
         segment, clause = self.words[start].segment, self.words[end - 1].clause
         before = [w.text for w in self.words[max(0, start - 9) : start] if w.segment == segment]
         ends = [at for at in range(len(before) + 1) if before[at - 1 : at] and _NOT_NO.search(" ".join(before[:at]))]
         after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
-        return bool(ends) or (self._denied_before(start) and re.match(_ABSENT, after) is not None)
+        return bool(ends) or (self._is_denied_before(start) and re.match(_ABSENT, after) is not None)
 
     def _continues_list(self, segment: int) -> bool:
         """Return whether a segment continues a denied list, as in "no cars, vans or buses", which ends in "or"."""
         clause = next(w.clause for w in self.words if w.segment == segment)
         rest = [w.text for w in self.words if w.clause == clause and w.segment >= segment]
-        own = [w.text for w in self.words if w.segment == segment]
-        return ("or" in rest or "nor" in rest) and not (set(own) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
+        segment_words = [w.text for w in self.words if w.segment == segment]
+        return ("or" in rest or "nor" in rest) and not (set(segment_words) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
 
     def _opens_denied_list(self, at: int) -> bool:
         """Return whether the segment that ends at a word is denied and is more than a bare "no"."""
-        return at > 0 and self.words[at].text not in NEGATORS and self._denied_before(at)
+        return at > 0 and self.words[at].text not in NEGATORS and self._is_denied_before(at)
 
-    def denied_after(self, end: int) -> bool:
+    def is_denied_after(self, end: int) -> bool:
         """Return whether the words that follow ``end`` deny what ends there ("is not visible")."""
         clause = self.words[end - 1].clause
         after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
@@ -198,7 +201,7 @@ class AnswerText:
 
     def is_marked(self, end: int, marks: Sequence[str]) -> bool:
         """Return whether one of the marks follows ``end`` on its own, as in "drum (no)" and "drum: no"."""
-        if end >= len(self.words) or self.words[end].text not in marks or not MARK.search(self.words[end].gap):
+        if end >= len(self.words) or self.words[end].text not in marks or not REMARK_SEPARATOR.search(self.words[end].gap):
             return False
         alone = end + 1 == len(self.words) or self.words[end + 1].segment != self.words[end].segment
         return alone or self.words[end + 1].gap.lstrip()[:1] in (")", "(", "|")
@@ -224,14 +227,14 @@ def _grouped(labels: Sequence[int]) -> list[list[int]]:
 
 
 def answer_text(text: str) -> AnswerText:
-    """Split an answer into the words that state something.
+    """Return the words of an answer that state something.
 
-    Questions, withdrawn statements, guesses and clauses that decline are left out, because they claim nothing.
+    Questions, withdrawn statements, guesses and clauses that decline to answer are left out.
     """
     cleaned = re.sub(r"\s*\(with [^()]*\)", "", replace_crosses(clean(text)))  # "white (with black letters)" is white
     cleaned = cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
-    kept, declined, hedged = list[Word](), False, False
+    stating_words, declined, hedged = list[Word](), False, False
     for positions in _grouped([w.clause for w in words]):
         clause = " ".join(words[i].text for i in positions)
         clause_words = [words[i] for i in positions]
@@ -239,23 +242,23 @@ def answer_text(text: str) -> AnswerText:
         if ends_of_refusals and not re.search(r"\bbut\b", clause[ends_of_refusals[-1] :]):
             declined = True
             last_word = clause[: ends_of_refusals[-1]].count(" ")
-            kept += _premise(clause_words, last_word)
-            kept += _reason(clause_words, last_word + 1)
+            stating_words += _premise(clause_words, last_word)
+            stating_words += _reason(clause_words, last_word + 1)
         elif _HEDGES.search(clause):
             hedged = True
         else:
-            kept += clause_words
-    return AnswerText(tuple(kept), declined, hedged)
+            stating_words += clause_words
+    return AnswerText(tuple(stating_words), declined, hedged)
 
 
 def _premise(words: Sequence[Word], refusal: int) -> Sequence[Word]:
     """Return the words before ", so I cannot tell"; none if the refusal does not follow from them."""
     segment = words[refusal].segment
-    begins = next(at for at, word in enumerate(words) if word.segment == segment)
-    return words[:begins] if words[begins].text in ("so", "therefore", "thus", "hence") else ()
+    start = next(at for at, word in enumerate(words) if word.segment == segment)
+    return words[:start] if words[start].text in ("so", "therefore", "thus", "hence") else ()
 
 
 def _reason(words: Sequence[Word], start: int) -> Sequence[Word]:
     """Return the words after "I cannot tell:" or "because"; none if no reason is given."""
-    begins = (at for at in range(start, len(words)) if ":" in words[at].gap or words[at].text == "because")
-    return words[next(begins, len(words)) :]
+    reasons = (at for at in range(start, len(words)) if ":" in words[at].gap or words[at].text == "because")
+    return words[next(reasons, len(words)) :]

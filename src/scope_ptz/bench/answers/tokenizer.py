@@ -53,7 +53,7 @@ class Word:
 
 
 def clean(text: str) -> str:
-    """Return a text without markup and source notes, with plain quotation marks, dashes and spaces. Capitals are kept."""
+    """Return a text without markup and source notes, and with plain quotation marks, dashes and spaces. Its case is preserved."""
     text = unicodedata.normalize("NFKC", "".join(_plain_letter(letter) for letter in text))
     text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
     text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
@@ -66,7 +66,7 @@ def clean(text: str) -> str:
 
 
 def _plain_letter(letter: str) -> str:
-    """Return a character without formatting: digits of any script as 0 to 9, superscripts and fractions separated."""
+    """Return a character without formatting. Digits of any script become 0 to 9; superscripts and fractions are set apart."""
     kind = unicodedata.category(letter)
     if kind == "Cf":
         return ""
@@ -142,6 +142,6 @@ def same_word(one: str, other: str) -> bool:
     return one == other or one in _forms(other) or other in _forms(one)
 
 
-def all_wordings(name: str, further: Iterable[str]) -> tuple[str, ...]:
-    """Return all wordings of an option: its name, then its further wordings."""
-    return name, *further
+def all_wordings(name: str, other_wordings: Iterable[str]) -> tuple[str, ...]:
+    """Return all wordings of an option: its name and its other wordings."""
+    return name, *other_wordings

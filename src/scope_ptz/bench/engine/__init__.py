@@ -1,4 +1,4 @@
-"""The evaluation engine, which runs the agent loop on tasks with Inspect AI.
+"""The evaluation engine: it uses Inspect AI to run the agent loop on tasks.
 
-Apart from the plug-in, only modules in this package import ``inspect_ai``.
+Only the modules of this package and the Inspect plug-in import ``inspect_ai``.
 """

@@ -1,4 +1,4 @@
-"""The solver for Inspect: it runs the agent loop on a sample and stores the run in the sample."""
+"""The Inspect solver that runs the agent loop on a sample and stores the run in the sample."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from scope_ptz.bench.engine.recording.logged_planner import LoggedPlanner
 from scope_ptz.bench.engine.recording.logged_tools import ToolLog
 from scope_ptz.bench.engine.recording.picture_store import PictureStore
 from scope_ptz.bench.engine.recording.transcript import Record, conversation_of
-from scope_ptz.bench.engine.samples import STORE, Kept, sample_name
-from scope_ptz.bench.engine.trial_records import broken_by
+from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name
+from scope_ptz.bench.engine.trial_records import failure_at_end
 from scope_ptz.bench.program_runner import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.planner.base import Planner
@@ -30,7 +30,7 @@ WIDTH, HEIGHT = 1280, 720
 
 
 class BrokenRunError(Exception):
-    """A run that failed for a reason outside the agent. Inspect excludes it from scores and repeats it on resuming."""
+    """A run failed for a reason outside the agent. Inspect excludes the run from scores, and runs it again on resuming."""
 
 
 def agent_solver(
@@ -45,9 +45,9 @@ def agent_solver(
     """Return the solver that runs an agent on each sample.
 
     Args:
-        context: Provides scenes, models and the watcher.
+        context: The resources of the evaluation: scenes, models and the watcher.
         agent: "scope" for the built-in loop with its planner, or ``module:Class`` of an external agent.
-        pictures: Render frames and log them; without pictures, only ground-truth perception works.
+        pictures: Whether frames are rendered and logged. Without frames, only ground-truth perception works.
         max_steps: Planner steps after which a run ends (T_max).
         time_s: Wall-clock seconds after which a run ends.
         seed: Seed for every random choice.
@@ -59,7 +59,7 @@ def agent_solver(
     ) -> Solver:
         async def solve(state: TaskState, generate: Generate) -> TaskState:  # noqa: ARG001 - the engine's signature
             entry = Entry.of_metadata(state.metadata)
-            context.watcher.began(sample_name(entry.facts.id, state.epoch), entry)
+            context.watcher.run_began(sample_name(entry.facts.id, state.epoch), entry)
             planner: Planner = (
                 await LoggedPlanner.of(get_model(role="planner", required=True), context)
                 if agent == BUILT_IN_AGENT
@@ -74,9 +74,9 @@ def agent_solver(
                 await run.store(state)
             state.output = ModelOutput.from_content(planner.name, result.ended.text)
             state.completed = True
-            broken = broken_by(result.ended)
-            if broken is not None:
-                raise BrokenRunError(f"{broken}: {result.ended.text}")
+            failure = failure_at_end(result.ended)
+            if failure is not None:
+                raise BrokenRunError(f"{failure}: {result.ended.text}")
             return state
 
         return solve
@@ -115,18 +115,18 @@ class _SampleRun:
         return await loop.run(self.entry.facts.instruction, listener=self._records.append)
 
     async def store(self, state: TaskState) -> None:
-        """Store in the sample what checks and judges need, even if the run was interrupted."""
-        shown = dict[str, str]()
+        """Store the data that checks and judges need in the sample, even if the run was interrupted."""
+        urls = dict[str, str]()
         if self.pictures is not None:
-            await self.pictures.settle()
-            shown = self.pictures.kept
-        state.messages = conversation_of(self._records, shown) or state.messages
+            await self.pictures.encode_pending()
+            urls = self.pictures.urls
+        state.messages = conversation_of(self._records, urls) or state.messages
         presets = {p.name: p.viewpoint for p in self.scene.file.presets}
-        kept = Kept(
+        stored_run = StoredRun(
             trace="".join(record.model_dump_json() + "\n" for record in self._records),
             presets=presets,
             home=presets[self.scene.file.home_preset],
             sees=self.planner.sees,
-            pictures={name: attachment_reference(url) for name, url in shown.items()},
+            pictures={name: attachment_reference(url) for name, url in urls.items()},
         )
-        state.store.set(STORE, kept.as_store())
+        state.store.set(STORE, stored_run.to_store())

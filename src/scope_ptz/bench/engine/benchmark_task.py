@@ -1,4 +1,4 @@
-"""The benchmark as an Inspect task."""
+"""Define the benchmark as an Inspect task."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from scope_ptz.version import __version__
 __all__ = ["Task", "benchmark_task"]
 
 MAX_BROKEN_SHARE = 0.1
-"""Share of runs that infrastructure may break. Above it, the evaluation as a whole fails."""
+"""Maximum share of runs that infrastructure may break. If more runs break, the whole evaluation fails."""
 
 
 def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..., Task]:
-    """Return the Inspect task ``bench`` for a given context.
+    """Return the function that creates the Inspect task ``bench``.
 
     Args:
-        provide_context: Returns the context of an evaluation for a seed.
+        provide_context: Returns the context of an evaluation for a given seed.
     """
 
     @task
@@ -58,10 +58,10 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
             time_s: Wall-clock seconds after which a run ends.
             seed: Seed for every random choice.
             epochs: Number of runs of each task.
-            judgements: Judgements of each run by the model in the role "judge".
+            judgements: Number of judgements of each run by the model in the role "judge".
         """
         context = provide_context(seed)
-        entries = select(context.load_tasks(split), _names(category), _names(scene), limit)
+        entries = select(context.load_tasks(split), _name_list(category), _name_list(scene), limit)
         return Task(
             dataset=dataset_of(viewpoint_order(entries, context.open_scene), name=f"{datasets(entries)} {Path(split).name}"),
             solver=agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed),
@@ -77,10 +77,10 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
     return bench
 
 
-def _names(given: str | list[str] | None) -> list[str]:
-    if isinstance(given, str):
-        return given.split(",")
-    return given or []
+def _name_list(names: str | list[str] | None) -> list[str]:
+    if isinstance(names, str):
+        return names.split(",")
+    return names or []
 
 
 def _log_metadata(entries: Sequence[Entry], split: str, *, agent: str, max_steps: int, seed: int) -> dict[str, Any]:

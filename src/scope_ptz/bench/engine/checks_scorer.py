@@ -1,4 +1,7 @@
-"""The executable checks as an Inspect scorer. They read only what a run stored, so they can be repeated offline."""
+"""An Inspect scorer that applies the executable checks.
+
+It uses only the stored data of a run, so scoring can be repeated offline.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,7 @@ from inspect_ai.solver import TaskState
 
 from scope_ptz.bench.engine.context import EvalContext, TrueCount
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.samples import STORE, Kept, sample_name, trace_of
+from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name, trace_of
 from scope_ptz.bench.engine.trial_records import trial_of
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Trial
@@ -59,11 +62,11 @@ METRICS = (
 def checks_scorer(context: EvalContext | None = None) -> Scorer:
     """Return the scorer that applies the executable checks of a task.
 
-    A run that infrastructure broke has a score without a value, which no metric counts.
+    A run that failed because of infrastructure gets a score without a value, which metrics ignore.
 
     Args:
-        context: Its watcher receives the trial, and its ground truth distinguishes miscounts from wrong conclusions. If None,
-            the checks use only the contents of the log.
+        context: Its watcher is notified of each trial, and its ground truth distinguishes miscounts from wrong conclusions. If
+            None, the checks use only the contents of the log.
     """
 
     @scorer(metrics=list(METRICS), name=CHECKS)
@@ -77,37 +80,37 @@ def checks_scorer(context: EvalContext | None = None) -> Scorer:
 
 
 async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
-    """Return the trial of a sample. True counts of an incorrect run are looked up once and stored in the sample."""
+    """Return the trial of a sample. For an incorrect run, the true counts are computed once and stored in the sample."""
     entry = Entry.of_metadata(state.metadata)
-    where = Path(entry.facts.scene)
+    folder = Path(entry.facts.scene)
     stored = state.store.get(STORE)
-    kept = Kept.of_store(stored) if stored else Kept("", {}, "")
-    trial = trial_of(entry, kept, state.epoch, where)
-    if trial.headline == "incorrect" and context is not None and context.true_count is not None and not kept.truths:
-        kept = await _with_truths(entry, kept, context.true_count)
-        if kept.truths:
-            state.store.set(STORE, kept.as_store())
-            trial = trial_of(entry, kept, state.epoch, where)
+    stored_run = StoredRun.from_store(stored) if stored else StoredRun("", {}, "")
+    trial = trial_of(entry, stored_run, state.epoch, folder)
+    if trial.headline == "incorrect" and context is not None and context.true_count is not None and not stored_run.truths:
+        stored_run = await _with_truths(entry, stored_run, context.true_count)
+        if stored_run.truths:
+            state.store.set(STORE, stored_run.to_store())
+            trial = trial_of(entry, stored_run, state.epoch, folder)
     if context is not None:
-        context.watcher.ended(sample_name(entry.facts.id, state.epoch), trial)
+        context.watcher.run_ended(sample_name(entry.facts.id, state.epoch), trial)
     return trial
 
 
-async def _with_truths(entry: Entry, kept: Kept, true_count: TrueCount) -> Kept:
+async def _with_truths(entry: Entry, stored_run: StoredRun, true_count: TrueCount) -> StoredRun:
     """Return the data of a run with the true count for every counting call."""
-    trace = trace_of(kept.trace, Path(entry.facts.scene))
+    trace = trace_of(stored_run.trace, Path(entry.facts.scene))
     if trace is None:
-        return kept
+        return stored_run
     truths = dict[str, int | None]()
-    for number, call in enumerate(kept.episode(trace).calls):
+    for number, call in enumerate(stored_run.episode(trace).calls):
         for observation in call.observations:
             if observation.how == "count":
                 truths[str(number)] = await true_count(entry.world, observation)
-    return replace(kept, truths=truths)
+    return replace(stored_run, truths=truths)
 
 
 def score_of(trial: Trial) -> Score:
-    """Return a trial as an Inspect score, with the whole trial in its metadata."""
+    """Convert a trial to an Inspect score, with the whole trial in its metadata."""
     metadata = {
         "headline": trial.headline,
         "error_mode": trial.error_mode.value if trial.error_mode else None,

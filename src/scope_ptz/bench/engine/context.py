@@ -1,6 +1,6 @@
-"""The context that the caller of an evaluation provides to the engine: scenes, planners, perception, true counts, a watcher.
+"""The context that the caller of an evaluation passes to the engine: scenes, models, true counts and a watcher.
 
-Inspect creates solvers and scorers from names. The context gives them the objects that a name cannot describe.
+Inspect creates solvers and scorers from names. The context provides the objects that cannot be created from a name.
 """
 
 from __future__ import annotations
@@ -21,7 +21,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ModelRequest:
-    """A model requested by name. ``url`` is the address of its server; ``options`` are those of the engine's command line."""
+    """A model requested by name.
+
+    Attributes:
+        name: Name of the model.
+        url: Address of its server; None for the default.
+        options: Options of the model from the engine's command line.
+    """
 
     name: str
     url: str | None = None
@@ -29,19 +35,19 @@ class ModelRequest:
 
 
 TrueCount = Callable[[str, Observation], Awaitable[int | None]]
-"""Returns how many of the things that a perception call asked for are visible; None if the ground truth cannot tell."""
+"""Returns the true count for a perception call in the scene with the given name; None if the ground truth does not define it."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
-"""Returns the tasks of a split, given by its name, or of a file, given by its path."""
+"""Returns the entries of a split, given by its name, or of a task file, given by its path."""
 
 
 class Watcher:
     """Observer of an evaluation, notified when a run begins or ends. The default does nothing."""
 
-    def began(self, sample: str, entry: Entry) -> None:
+    def run_began(self, sample: str, entry: Entry) -> None:
         """Called when a run begins."""
 
-    def ended(self, sample: str, trial: Trial) -> None:
-        """Called when a run has ended and its checks were applied."""
+    def run_ended(self, sample: str, trial: Trial) -> None:
+        """Called when a run has ended and been scored by the checks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,14 +56,14 @@ class EvalContext:
 
     Attributes:
         open_scene: Opens a scene, or a variation of one, by name.
-        make_planner: Makes a planner by name.
-        make_perception: Makes perception by name.
-        make_judge: Connects to a judge for its judgement with the given index, from 0.
-        load_tasks: Loads tasks by split or file.
-        true_count: Ground truth for perception calls; None if there is none.
+        make_planner: Creates a planner by name.
+        make_perception: Creates a perception backend by name.
+        make_judge: Connects to a judge. Its second argument is the index of the judgement, from 0.
+        load_tasks: Loads the entries of a split or a task file.
+        true_count: Returns the true counts for perception calls; None if there is no ground truth.
         watcher: Notified when a run begins or ends.
-        perception_note: Note for the trace about the origin of the perception.
-        perception: The perception, if it was made in advance; its creator closes it.
+        perception_note: Note for the trace about the origin of the perception backend.
+        perception: A perception backend that was created in advance, if any. Its creator closes it.
     """
 
     open_scene: OpenScene

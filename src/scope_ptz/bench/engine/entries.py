@@ -1,6 +1,6 @@
-"""Entries of an evaluation: each is one instruction in one view of a scene, with the facts by which reports group runs.
+"""The entries of an evaluation: instructions to run, each with its scene, its preset and the facts by which reports group runs.
 
-Most entries have a task with executable checks. Entries imported from other formats have none, and only a judge can score them.
+Most entries have a task with executable checks. Imported entries have no check of the answer, so only a judge can score them.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from scope_ptz.simulator.pack import Scene
 
 OpenScene = Callable[[str], Scene]
 DIGEST_CHARS = 16
+"""Length of digests in logs, in hexadecimal characters."""
 
 
 class Entry(BaseModel):
@@ -30,8 +31,8 @@ class Entry(BaseModel):
 
     Attributes:
         facts: The facts about the task, by which reports group runs.
-        world: Name under which the scene, or its variation, is opened.
-        time_s: Scene time at the start.
+        world: Name of the scene to open, or of its variation.
+        time_s: Scene time at the start, in seconds.
         task: The task with its checks; None if only a judge can score the run.
         imported: The imported task, if it comes from a file of another format.
     """
@@ -45,7 +46,7 @@ class Entry(BaseModel):
     imported: ImportedTask | None = None
 
     def metadata(self) -> dict[str, Any]:
-        """Return the entry as a log stores it. Metrics and the log viewer group by its facts."""
+        """Return the entry as the metadata of a sample. Metrics and the log viewer group by its facts."""
         facts = self.facts.model_dump(mode="json")
         return {
             **facts,
@@ -58,18 +59,26 @@ class Entry(BaseModel):
 
     @classmethod
     def of_metadata(cls, metadata: dict[str, Any]) -> Entry:
-        """Return the entry that a log stores. Raises ``TraceError`` when there is none."""
+        """Return the entry that the metadata of a sample contains.
+
+        Raises:
+            TraceError: The metadata contains no entry.
+        """
         try:
             facts = {name: metadata[name] for name in TaskFacts.model_fields if name in metadata}
             return cls.model_validate(
                 {"facts": facts, **{name: metadata[name] for name in ("world", "time_s", "task", "imported")}}
             )
         except (KeyError, ValidationError) as error:
-            raise TraceError("A sample of this log names no task. The log is not one of this benchmark.") from error
+            raise TraceError("A sample of this log contains no task, so the log is not from this benchmark.") from error
 
 
 def entry_of(task: Task, scene: Scene) -> Entry:
-    """Return the entry of a benchmark task. Raises ``UnknownNameError`` when the scene lacks its preset."""
+    """Return the entry of a benchmark task.
+
+    Raises:
+        UnknownNameError: The scene has no preset with the name in the task.
+    """
     presets = {preset.name: preset.viewpoint for preset in scene.file.presets}
     if task.preset not in presets:
         raise UnknownNameError(f"preset in {task.scene} (of task {task.id})", task.preset, presets)
@@ -82,54 +91,64 @@ def entries_of(tasks: Iterable[Task], open_scene: OpenScene) -> tuple[Entry, ...
 
 
 def imported_entries(tasks: Iterable[ImportedTask]) -> tuple[Entry, ...]:
-    """Return the entries of imported tasks. A judge scores them; the only check is that of their expected calls."""
+    """Return the entries of imported tasks. A judge scores their answers; the only check is that of their expected calls."""
     return tuple(Entry(facts=t.facts, world=t.facts.scene, time_s=t.start_s, imported=t) for t in tasks)
 
 
 def select(
     entries: Sequence[Entry], categories: Sequence[str] = (), scenes: Sequence[str] = (), limit: int | None = None
 ) -> tuple[Entry, ...]:
-    """Return at most ``limit`` entries of the given categories and scenes; without categories or scenes, of all.
+    """Return the entries of the given categories and scenes. No categories means all categories; no scenes means all scenes.
 
-    They are sampled evenly across the selected categories, scenes and scopes. The sample is always the same.
+    If there are more than ``limit`` entries, they are sampled evenly across categories, scenes and scopes. The sampling is
+    deterministic.
 
     Raises:
         UnknownNameError: No entry has one of the categories or scenes.
         InputError: The selection is empty.
     """
-    for kind, names, have in (
+    for kind, names, available in (
         ("category", categories, {entry.facts.category for entry in entries}),
         ("scene", scenes, {entry.facts.scene for entry in entries}),
     ):
         for name in names:
-            if name not in have:
-                raise UnknownNameError(f"{kind} among these tasks", name, have)
-    kept = [e for e in entries if (not categories or e.facts.category in categories) and (not scenes or e.facts.scene in scenes)]
-    if not kept:
+            if name not in available:
+                raise UnknownNameError(f"{kind} among these tasks", name, available)
+    selected = [
+        e for e in entries if (not categories or e.facts.category in categories) and (not scenes or e.facts.scene in scenes)
+    ]
+    if not selected:
         raise InputError("No task matches the selection. Select other categories or scenes.")
-    if limit is None or limit >= len(kept):
-        return tuple(kept)
-    return _sample_evenly(kept, limit)
+    if limit is None or limit >= len(selected):
+        return tuple(selected)
+    return _sample_evenly(selected, limit)
 
 
 def _sample_evenly(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
-    """Sample entries evenly, keeping their order.
+    """Sample entries evenly, and return them in their original order.
 
-    Each step takes an entry from the group (category, scene, scope) that is least represented so far, relative to the numbers of
-    entries with its category, its scene and its scope. Within a group, entries are taken at equal distances.
+    Each step adds an entry to the group (category, scene, scope) that is least represented so far, relative to the numbers of
+    entries with its category, its scene and its scope. Within a group, the sampled entries are evenly spaced.
     """
     groups: dict[tuple[str, str, str], list[Entry]] = {}
     for entry in entries:
         groups.setdefault((entry.facts.category, entry.facts.scene, entry.facts.scope), []).append(entry)
-    there = Counter((place, name) for group, own in groups.items() for place, name in enumerate(group) for _ in own)
-    taken, used = Counter[tuple[int, str]](), Counter[tuple[str, str, str]]()
+    totals = Counter((field, name) for group, members in groups.items() for field, name in enumerate(group) for _ in members)
+    taken, group_sizes = Counter[tuple[int, str]](), Counter[tuple[str, str, str]]()
     for _ in range(limit):
-        open_ = [group for group, own in groups.items() if used[group] < len(own)]
-        # Ties go to the group with most entries left, so that they do not use up small groups.
-        least = min(open_, key=lambda s: (sum(Fraction(taken[f], there[f]) for f in enumerate(s)), used[s] - len(groups[s])))
-        used[least] += 1
+        candidates = [group for group, members in groups.items() if group_sizes[group] < len(members)]
+        # Ties go to the group with the most remaining entries, so that they do not exhaust small groups.
+        least = min(
+            candidates,
+            key=lambda g: (sum(Fraction(taken[f], totals[f]) for f in enumerate(g)), group_sizes[g] - len(groups[g])),
+        )
+        group_sizes[least] += 1
         taken.update(enumerate(least))
-    selected = {id(own[at * len(own) // used[group]]) for group, own in groups.items() for at in range(used[group])}
+    selected = {
+        id(members[index * len(members) // group_sizes[group]])
+        for group, members in groups.items()
+        for index in range(group_sizes[group])
+    }
     return tuple(entry for entry in entries if id(entry) in selected)
 
 

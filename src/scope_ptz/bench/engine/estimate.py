@@ -12,23 +12,23 @@ from scope_ptz.tools.registry import TOOLS
 
 _PERCEPTION_TOOLS = frozenset(TOOLS.perceiving)
 TYPICAL_CALLS = 2.0
-"""Tool calls assumed for a task without a reference program."""
+"""Assumed number of tool calls of a task without a reference program."""
 CHARS_PER_TOKEN = 4.0
-"""Assumed characters per token of a prompt, if nothing was measured."""
+"""Assumed characters per token of a prompt, if there are no measurements."""
 STEP_TOKENS = 100
-"""Assumed tokens of a call with its result in the history, if nothing was measured."""
+"""Assumed tokens of a call and its result in the history, if there are no measurements."""
 REPLY_TOKENS = 40
-"""Assumed tokens of a planner's reply, if nothing was measured."""
+"""Assumed tokens of a planner's reply, if there are no measurements."""
 
 
 @dataclass(frozen=True, slots=True)
 class Price:
-    """US dollars per million input and output tokens of the planner."""
+    """The price of the planner's tokens, in US dollars per million input tokens and per million output tokens."""
 
     input_usd: float
     output_usd: float
 
-    def of(self, input_tokens: float, output_tokens: float) -> float:
+    def cost_usd(self, input_tokens: float, output_tokens: float) -> float:
         """Return the cost of tokens in US dollars."""
         return (input_tokens * self.input_usd + output_tokens * self.output_usd) / 1e6
 
@@ -39,19 +39,19 @@ class Estimate:
 
     Attributes:
         runs: Number of runs.
-        decisions: Planner calls of the reference programs.
-        looks: Perception calls of the reference programs.
-        seconds: Duration at the requested concurrency.
-        input_tokens: Tokens that the planner reads.
-        output_tokens: Tokens that the planner writes.
-        cost_usd: Cost of these tokens.
+        planner_calls: Number of planner calls, from the reference programs.
+        perception_calls: Number of perception calls, from the reference programs.
+        seconds: Duration at the requested concurrency, in seconds.
+        input_tokens: Input tokens of the planner.
+        output_tokens: Output tokens of the planner.
+        cost_usd: Cost of these tokens in US dollars.
         measured_on: Number of earlier runs on which the estimate is based.
-        guessed: Whether tokens are guessed from the length of the prompt.
+        guessed: Whether the numbers of tokens are guessed from the length of the prompt.
     """
 
     runs: int
-    decisions: int
-    looks: int
+    planner_calls: int
+    perception_calls: int
     seconds: float | None = None
     input_tokens: int | None = None
     output_tokens: int | None = None
@@ -66,9 +66,11 @@ def estimate(
     concurrency: int,
     earlier: Sequence[Evaluation],
     price: Price | None = None,
-    opening_chars: int | None = None,
+    prompt_chars: int | None = None,
 ) -> Estimate:
-    """Estimate calls from the reference programs, and duration and tokens from earlier runs, scaled by the number of calls.
+    """Estimate the calls, duration, tokens and cost of an evaluation.
+
+    Calls are estimated from the reference programs. Duration and tokens are those of earlier runs, scaled by the number of calls.
 
     Args:
         entries: The entries to run.
@@ -76,42 +78,42 @@ def estimate(
         concurrency: Number of concurrent runs.
         earlier: Earlier evaluations of the same pair.
         price: Price of the planner's tokens.
-        opening_chars: Characters of prompt and tool schemas, with which every request begins; None if tokens cannot be guessed.
+        prompt_chars: Length of the system prompt and the tool schemas in characters; None if tokens cannot be guessed.
     """
-    calls = [_calls(entry) for entry in entries]
-    runs, decisions = len(entries) * epochs, round(sum(calls) + len(calls)) * epochs
-    looks = round(sum(_looks(entry) for entry in entries)) * epochs
+    calls = [_tool_calls(entry) for entry in entries]
+    runs, planner_calls = len(entries) * epochs, round(sum(calls) + len(calls)) * epochs
+    perception_calls = round(sum(_perception_calls(entry) for entry in entries)) * epochs
     trials = [trial for evaluation in earlier for trial in evaluation.trials if trial.headline != "infrastructure"]
     if not trials:
-        if opening_chars is None:
-            return Estimate(runs, decisions, looks)
-        read, written = _guess(calls, opening_chars)
-        tokens = round(read * epochs), round(written * epochs)
-        return Estimate(runs, decisions, looks, None, *tokens, price.of(*tokens) if price is not None else None, guessed=True)
+        if prompt_chars is None:
+            return Estimate(runs, planner_calls, perception_calls)
+        tokens_in, tokens_out = (round(count * epochs) for count in _guess_tokens(calls, prompt_chars))
+        cost_usd = price.cost_usd(tokens_in, tokens_out) if price is not None else None
+        return Estimate(runs, planner_calls, perception_calls, None, tokens_in, tokens_out, cost_usd, guessed=True)
     steps = sum(trial.steps for trial in trials) or 1
-    scale = decisions / steps
+    scale = planner_calls / steps
     tokens_in, tokens_out = (round(scale * sum(getattr(t, n) for t in trials)) for n in ("input_tokens", "output_tokens"))
-    # Concurrent runs slow each other down about in proportion to their number; the number of runs per second stays the same.
+    # Concurrent runs slow each other down roughly in proportion to their number, so the throughput does not change.
     measured_concurrency = fmean(evaluation.card.concurrency for evaluation in earlier)
     seconds = scale * sum(t.timings.total_s for t in trials) / min(measured_concurrency, concurrency)
     return Estimate(
-        runs, decisions, looks, seconds, tokens_in, tokens_out,
-        price.of(tokens_in, tokens_out) if price is not None else None, len(trials),
+        runs, planner_calls, perception_calls, seconds, tokens_in, tokens_out,
+        price.cost_usd(tokens_in, tokens_out) if price is not None else None, len(trials),
     )  # fmt: skip
 
 
-def _guess(calls: Sequence[float], opening_chars: int) -> tuple[float, float]:
-    """Guess input and output tokens of runs. Each step reads the prompt, the tools and all earlier steps."""
+def _guess_tokens(calls: Sequence[float], prompt_chars: int) -> tuple[float, float]:
+    """Guess the input and output tokens of runs. The input of each step is the prompt, the tools and all earlier steps."""
     steps = [count + 1 for count in calls]
-    read = sum(s * opening_chars / CHARS_PER_TOKEN + STEP_TOKENS * s * (s - 1) / 2 for s in steps)
-    return read, REPLY_TOKENS * sum(steps)
+    input_tokens = sum(s * prompt_chars / CHARS_PER_TOKEN + STEP_TOKENS * s * (s - 1) / 2 for s in steps)
+    return input_tokens, REPLY_TOKENS * sum(steps)
 
 
-def _calls(entry: Entry) -> float:
+def _tool_calls(entry: Entry) -> float:
     return float(len(entry.task.reference)) if entry.task is not None else TYPICAL_CALLS
 
 
-def _looks(entry: Entry) -> float:
+def _perception_calls(entry: Entry) -> float:
     if entry.task is None:
         return 1.0
     return float(sum(call.tool in _PERCEPTION_TOOLS for call in entry.task.reference))

@@ -10,42 +10,43 @@ from scope_ptz.bench.engine.estimate import Estimate
 def estimate_lines(
     estimate: Estimate, *, planner: str, perception: str, concurrency: int, agent: str | None = None, planner_is_free: bool
 ) -> Iterator[str]:
-    """Yield runs, calls, duration and cost, one per line.
+    """Yield the lines of the estimate: runs, calls, duration and cost.
 
     Args:
         estimate: The estimate.
         planner: Name of the planner.
         perception: Name of the perception backend.
         concurrency: Number of concurrent runs.
-        agent: External agent that replaces the planner, if any.
-        planner_is_free: Whether planning uses no paid server.
+        agent: Name of the external agent that replaces the planner, if any.
+        planner_is_free: Whether the planner uses no paid server.
     """
     runs, subject = f"{estimate.runs} run{'s' if estimate.runs != 1 else ''}", "this agent" if agent else "this pair"
     yield f"{runs} of {agent or planner} + {perception}, {concurrency} at a time"
+    perception_calls = f"{estimate.perception_calls} to perception, from the reference programs"
     if agent:
-        yield f"calls   about {estimate.looks} to perception, from the reference programs; the agent's own model calls are unknown"
+        yield f"calls   about {perception_calls}; the agent's own model calls are unknown"
     else:
-        yield f"calls   about {estimate.decisions} to the planner and {estimate.looks} to perception, from the reference programs"
+        yield f"calls   about {estimate.planner_calls} to the planner and {perception_calls}"
     if estimate.seconds is None:
-        yield f"time    unknown: there is no log of {subject} here yet; the table shows the time left after the first runs"
+        yield f"time    unknown: no log of {subject} in this folder; the table shows the remaining time after the first runs"
     else:
         measured = f"{estimate.measured_on} earlier run{'s' if estimate.measured_on != 1 else ''}"
         yield f"time    about {duration_text(estimate.seconds)}, measured on {measured} of {subject}"
     if agent:
         yield "cost    unknown: the agent's own model calls are not measured"
     elif planner_is_free:
-        yield "cost    no paid server is used for planning"
+        yield "cost    none for the planner, which uses no paid server"
     elif estimate.input_tokens is None or estimate.output_tokens is None:
-        yield "cost    unknown: a first run of this pair (--limit 10) measures tokens; give prices with --price IN,OUT"
+        yield "cost    unknown: run this pair once with --limit 10 to measure its tokens, and give prices with --price IN,OUT"
     else:
-        how = " (guessed from the length of the prompt)" if estimate.guessed else ""
-        tokens = f"about {tokens_text(estimate.input_tokens)} tokens in and {tokens_text(estimate.output_tokens)} out"
+        note = " (guessed from the length of the prompt)" if estimate.guessed else ""
+        tokens = f"about {tokens_text(estimate.input_tokens)} input and {tokens_text(estimate.output_tokens)} output tokens"
         price = (
             f", {estimate.cost_usd:.2f} US dollars"
             if estimate.cost_usd is not None
             else "; give prices with --price IN,OUT (dollars per million)"
         )
-        yield f"cost    {tokens} for the planner{how}{price}; the cost of perception is unknown"
+        yield f"cost    {tokens} for the planner{note}{price}; the cost of perception is unknown"
 
 
 def tokens_text(tokens: int) -> str:

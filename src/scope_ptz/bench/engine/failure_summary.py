@@ -1,4 +1,4 @@
-"""Summarize the runs of an evaluation that failures of model servers broke or affected, with a remedy for each."""
+"""Summarize the runs of an evaluation that infrastructure broke or failed perception calls affected, with remedies."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
 
 def failure_summary(trials: Sequence[Trial], card: RunCard) -> list[str]:
-    """Return a sentence for each reason for which runs broke, and one for failed perception calls in runs that still count."""
+    """Return a line for each reason for which runs broke, and a line for failed perception calls in the runs that were scored."""
     broken = [trial for trial in trials if trial.headline == "infrastructure"]
     lines = []
     for reason in dict.fromkeys(_without_kind(trial.reason) for trial in broken):
-        own = [trial for trial in broken if _without_kind(trial.reason) == reason]
-        ended = Counter(kind.value for trial in own if (kind := _kind_at_end(trial.reason)) is not None)
-        model = card.planner if any(trial.outcome == "planner_error" for trial in own) else card.perception
-        kinds = f" ({counts_text(ended)})" if ended else ""
-        advice = _advice(model, _most_frequent(ended or server_events(own)))
-        lines.append(f"{len(own)} of {_runs(len(trials))} broken: {reason}{kinds}.{advice}")
+        group = [trial for trial in broken if _without_kind(trial.reason) == reason]
+        counts = Counter(kind.value for trial in group if (kind := _kind_at_end(trial.reason)) is not None)
+        model = card.planner if any(trial.outcome == "planner_error" for trial in group) else card.perception
+        kinds = f" ({counts_text(counts)})" if counts else ""
+        advice = _advice(model, _most_frequent(counts or server_events(group)))
+        lines.append(f"{len(group)} of {_runs(len(trials))} broken: {reason}{kinds}.{advice}")
     affected = [trial for trial in trials if trial.headline != "infrastructure" and trial.perception_failures]
     if affected:
         failures, events = sum(trial.perception_failures for trial in affected), server_events(affected)
-        times = "1 perception call" if failures == 1 else f"{failures} perception calls"
+        calls = "1 perception call" if failures == 1 else f"{failures} perception calls"
         kinds = f" ({counts_text(events)})" if events else ""
-        still = "which still counts" if len(affected) == 1 else "which still count"
-        line = f"{times} failed in {len(affected)} of {_runs(len(trials))}, {still}{kinds}."
+        scored = "which was scored nevertheless" if len(affected) == 1 else "which were scored nevertheless"
+        line = f"{calls} failed in {len(affected)} of {_runs(len(trials))}, {scored}{kinds}."
         lines.append(f"{line}{_advice(card.perception, _most_frequent(events))}")
     return lines
 
@@ -45,7 +45,10 @@ def counts_text(events: Counter[str]) -> str:
 
 
 def _most_frequent(events: Counter[str]) -> FailureKind | None:
-    """Return the most frequent kind. An open circuit counts only if there is no other, because it follows from other failures."""
+    """Return the most frequent kind of failure.
+
+    An open circuit is returned only if there is no other kind, because other failures cause it.
+    """
     kinds = [kind for name, _ in events.most_common() if (kind := _kind(name)) is not None]
     return next((kind for kind in kinds if kind is not FailureKind.CIRCUIT_OPEN), kinds[0] if kinds else None)
 
@@ -67,7 +70,7 @@ def _kind(name: str) -> FailureKind | None:
 
 
 def _advice(model: ModelCard, kind: FailureKind | None) -> str:
-    """Return a sentence about the fault of a model's server and the remedy; empty if it has no server or the kind is unknown."""
+    """Return a sentence about the server's failure and its remedy; empty if the model has no server or the kind is unknown."""
     address = model.provider if "://" in model.provider else ""
     return f" {ServerFailure(kind, where=address)}" if kind is not None and address else ""
 

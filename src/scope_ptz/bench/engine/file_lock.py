@@ -1,4 +1,4 @@
-"""A lock on a file that works on every operating system. Closing the file, or the end of the process, releases it."""
+"""Lock a file on any operating system. The lock is released when the file is closed or the process ends."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ except ImportError:  # Windows
 
 
 def lock_file(file: IO[str] | IO[bytes]) -> bool:
-    """Lock an open file for this process alone, without waiting.
+    """Try to get an exclusive lock on an open file, without waiting.
 
     Returns:
-        False if another process holds the lock.
+        Whether the file is now locked. False if another process holds the lock.
     """
     try:
         if fcntl is not None:

@@ -1,15 +1,15 @@
 """Wrappers for the private functions of Inspect AI that this package uses.
 
-The version of Inspect AI is pinned exactly. Before raising it, check whether these reasons for each wrapper still apply:
+The version of Inspect AI is pinned exactly. Before upgrading it, check whether the reason for each wrapper still applies:
 
 - ``silence_display``: ``eval_async`` has no argument that turns off its display, and SCOPE draws its own table.
-- ``header_context``: pydantic must not give new ids to messages of a stored header. The public readers of logs replace parts of
-  asyncio for the whole program when an event loop runs.
+- ``header_context``: without it, pydantic gives new ids to the messages of a stored header. The public log readers cannot be used,
+  because they patch asyncio for the whole program when an event loop runs.
 - ``attachment_reference``: a sample stores each picture once, under the hash of its data URL.
-- ``recover_log``: the public ``recover_eval_log`` starts an event loop of its own.
-- ``resumed_task``: ``eval_async`` takes over samples of an earlier log only through a ``PreviousTask``; ``eval_retry`` would make
-  task and models from their names, without our context.
-- ``recorder``: the public functions hold a whole log in memory; the recorder reads and writes sample by sample.
+- ``recover_log``: the public ``recover_eval_log`` starts its own event loop.
+- ``resumed_task``: ``eval_async`` takes over samples of an earlier log only through a ``PreviousTask``. ``eval_retry`` would create
+  the task and the models from their names, without the evaluation context.
+- ``recorder``: the public functions load a whole log into memory; the recorder reads and writes one sample at a time.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ def silence_display() -> None:
 
 
 def header_context() -> dict[str, Any]:
-    """Return the validation context with which a stored header is read."""
+    """Return the pydantic validation context for reading a stored header."""
     return get_deserializing_context()
 
 
 def attachment_reference(content: str) -> str:
-    """Return the reference that a stored sample uses for a text or picture that it stores once for all its messages."""
+    """Return the reference by which a sample's messages refer to a text or picture that the sample stores only once."""
     return ATTACHMENT_PROTOCOL + mm3_hash(content)
 
 
 async def recover_log(path: Path) -> None:
-    """Write the finished samples of a killed evaluation, if there are any, into a log next to its own."""
+    """Write the finished samples of a killed evaluation, if any, to a new log in the same folder."""
     with suppress(RecoveryNotAvailable):
         await recover_eval_log_async(str(path), cleanup=True)
 
@@ -62,8 +62,8 @@ def resumed_task(task: Task, header: EvalLog, info: EvalLogInfo | None) -> Previ
 
     Args:
         task: The task to run.
-        header: The earlier log; its samples may be in memory.
-        info: Location of the earlier log, if its samples are not in memory.
+        header: The earlier log, with or without its samples.
+        info: Location of the earlier log; needed if ``header`` does not contain the samples.
     """
     return PreviousTask(
         id=header.eval.task_id, task=task, task_args=resolve_task_args(task), model=None, model_roles=None, sandbox=None,
@@ -72,5 +72,5 @@ def resumed_task(task: Task, header: EvalLog, info: EvalLogInfo | None) -> Previ
 
 
 def recorder(log: Path, folder: Path) -> Recorder:
-    """Return the recorder that reads or writes a log sample by sample."""
+    """Return a recorder that reads or writes a log one sample at a time."""
     return create_recorder_for_location(str(log), str(folder))

@@ -1,4 +1,4 @@
-"""The journal of a log: a file next to it that stores new judgements until the log contains them.
+"""The judgement journal of a log: a file in the same folder that stores new judgements until they are written to the log.
 
 An interrupted rescoring therefore loses no judgement.
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from scope_ptz.bench.judging.json_lines import append_line, whole_lines
+from scope_ptz.bench.judging.json_lines import append_line, complete_lines
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.errors import TraceError
@@ -22,60 +22,67 @@ def journal_file(log: Path) -> Path:
 
 
 class Journal:
-    """Judgements by run, judge and index. ``made`` lists the added ones. Without a path, the journal is in memory."""
+    """The judgements of the runs of a log, by sample, judge and index.
+
+    Attributes:
+        path: File of the journal; None for a journal in memory.
+        added: The judgements that were added to this object.
+    """
 
     def __init__(self, path: Path | None = None) -> None:
         self.path = path
-        self.made: list[Judgement] = []
-        self._known: dict[tuple[str, str, int], Judgement] = {}
-        self._waiting: dict[tuple[str, str, int], Judgement] = {}
-        for number, line in whole_lines(path) if path is not None else ():
+        self.added: list[Judgement] = []
+        self._judgements: dict[tuple[str, str, int], Judgement] = {}
+        self._unlogged: dict[tuple[str, str, int], Judgement] = {}
+        for number, line in complete_lines(path) if path is not None else ():
             try:
                 row = json.loads(line)
-                made = Judgement.model_validate(row["judgement"])
-                self._known[(row["sample"], made.judge, made.repeat)] = made
-                self._waiting[(row["sample"], made.judge, made.repeat)] = made
+                judgement = Judgement.model_validate(row["judgement"])
+                key = (row["sample"], judgement.judge, judgement.repeat)
+                self._judgements[key] = self._unlogged[key] = judgement
             except (ValueError, KeyError, TypeError, ValidationError) as error:
-                raise TraceError(f"{path}, line {number} is not a judgement ({error}). Remove the line or the file.") from error
+                raise TraceError(
+                    f"{path}, line {number} is not a valid judgement ({error}). Remove the line or the file."
+                ) from error
 
     @classmethod
-    def beside(cls, log: Path) -> Journal:
+    def of_log(cls, log: Path) -> Journal:
         """Return the journal of a log."""
         return cls(journal_file(log))
 
     def find(self, sample: str, judge: str, repeat: int) -> Judgement | None:
         """Return a judgement made with the current prompt; None if there is none or if it failed."""
-        made = self._known.get((sample, judge, repeat))
-        if made is None or made.prompt != prompt_version() or made.verdict == "failed":
+        judgement = self._judgements.get((sample, judge, repeat))
+        if judgement is None or judgement.prompt != prompt_version() or judgement.verdict == "failed":
             return None
-        self._waiting.pop((sample, judge, repeat), None)
-        return made
+        self._unlogged.pop((sample, judge, repeat), None)
+        return judgement
 
-    def know(self, sample: str, judgement: Judgement) -> None:
+    def register_logged(self, sample: str, judgement: Judgement) -> None:
         """Register a judgement that the log already contains."""
         key = (sample, judgement.judge, judgement.repeat)
-        self._known.setdefault(key, judgement)
-        if self._waiting.get(key) == judgement:
-            del self._waiting[key]
+        self._judgements.setdefault(key, judgement)
+        if self._unlogged.get(key) == judgement:
+            del self._unlogged[key]
 
     def add(self, sample: str, judgement: Judgement) -> None:
         """Add a new judgement, and write it to the file."""
         key = (sample, judgement.judge, judgement.repeat)
-        self._known[key] = judgement
-        self._waiting.pop(key, None)
-        self.made.append(judgement)
+        self._judgements[key] = judgement
+        self._unlogged.pop(key, None)
+        self.added.append(judgement)
         if self.path is not None:
             append_line(self.path, _line(sample, judgement))
 
-    def done(self) -> None:
-        """Remove from the file the judgements that the log now contains. Those of another judge's interrupted rescoring stay."""
+    def remove_logged(self) -> None:
+        """Remove the judgements that the log contains from the file. Judgements of other interrupted rescorings remain."""
         if self.path is None:
             return
-        left = [_line(sample, made) for (sample, _, _), made in self._waiting.items() if made.verdict != "failed"]
-        if left:
-            scratch = self.path.with_name(f"{self.path.name}.new")
-            scratch.write_text("".join(line + "\n" for line in left), "utf-8")
-            scratch.replace(self.path)
+        lines = [_line(sample, judgement) for (sample, _, _), judgement in self._unlogged.items() if judgement.verdict != "failed"]
+        if lines:
+            new_file = self.path.with_name(f"{self.path.name}.new")
+            new_file.write_text("".join(line + "\n" for line in lines), "utf-8")
+            new_file.replace(self.path)
         else:
             self.path.unlink(missing_ok=True)
 

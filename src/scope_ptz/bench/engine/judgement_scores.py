@@ -1,4 +1,4 @@
-"""Convert judgements to the scores of a sample and back. Each judgement is a score of its own."""
+"""Convert judgements to the scores of a sample and back. Each judgement is stored as a separate score."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ JUDGEMENT = "judgement"
 
 
 def score_of_judgement(judgement: Judgement) -> Score:
-    """Return a judgement as an Inspect score. A judgement without a verdict is unscored, and metrics ignore it."""
+    """Convert a judgement to an Inspect score. A judgement without a verdict is unscored, so metrics ignore it."""
     metadata = {"error_mode": judgement.error_mode, JUDGEMENT: judgement.model_dump(mode="json")}
     if judgement.verdict in ("correct", "incorrect"):
         value = CORRECT if judgement.verdict == "correct" else INCORRECT
@@ -27,11 +27,14 @@ def score_of_judgement(judgement: Judgement) -> Score:
 def judgements_in(scores: Mapping[str, Any]) -> tuple[Judgement, ...]:
     """Return the judgements among the scores of a sample, in the order in which they were made.
 
-    A failed judgement and its retry have the same index; only the retry is returned. Raises ``TraceError``.
+    A failed judgement and its retry have the same index. Only the retry is returned.
+
+    Raises:
+        TraceError: A judgement is damaged.
     """
     stored = (score["metadata"][JUDGEMENT] for score in scores.values() if JUDGEMENT in (score.get("metadata") or {}))
     try:
-        made = [Judgement.model_validate(row) for row in stored]
-        return tuple({(j.judge, j.prompt, j.repeat): j for j in made}.values())
+        judgements = [Judgement.model_validate(row) for row in stored]
+        return tuple({(j.judge, j.prompt, j.repeat): j for j in judgements}.values())
     except ValidationError as error:
         raise TraceError(f"A judgement in the log is damaged: {error.errors(include_url=False)[0]['msg']}.") from error

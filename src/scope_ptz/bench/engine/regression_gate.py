@@ -1,9 +1,9 @@
-"""A regression gate for continuous integration: compare an evaluation task by task with an earlier one."""
+"""A regression gate for continuous integration. It compares an evaluation with an earlier one, task by task."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import fmean
 
 from scope_ptz.bench.judging.judgement_tally import without_verdict
@@ -16,10 +16,17 @@ ALL = "all"
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Paired outcomes of a group of tasks.
+    """The paired outcomes of a group of tasks in two evaluations.
 
-    ``worse`` and ``better`` are tasks that are correct less or more often than before. ``p`` is the two-sided p value of McNemar's
-    exact test (with repeats, the sign test); categories are adjusted for multiple tests by Holm's method.
+    Attributes:
+        group: A category, or "all".
+        tasks: Number of tasks.
+        before: Share of correct runs in the earlier evaluation.
+        now: Share of correct runs in the new evaluation.
+        worse: The tasks that are correct less often than before.
+        better: The tasks that are correct more often than before.
+        p: Two-sided p value of McNemar's exact test; with repeats, of the sign test. For categories it is adjusted for multiple
+            tests by Holm's method.
     """
 
     group: str
@@ -56,29 +63,37 @@ class Gate:
 
 
 def gate(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> Gate:
-    """Compare two evaluations over the same tasks. Raises ``InputError`` when they cannot be compared."""
+    """Compare two evaluations of the same tasks.
+
+    Args:
+        evaluation: The new evaluation.
+        baseline: The earlier evaluation.
+        alpha: Significance level.
+
+    Raises:
+        InputError: The evaluations cannot be compared.
+    """
     for name, log in (("log", evaluation), ("baseline", baseline)):
         if not log.finished:
-            raise InputError(f"The {name} {log.log} has {len(log.trials)} of {log.wanted} runs: finish it first.")
+            raise InputError(f"The {name} {log.log} has {len(log.trials)} of {log.wanted} runs. Finish the evaluation first.")
     if (evaluation.card.dataset, evaluation.card.dataset_digest) != (baseline.card.dataset, baseline.card.dataset_digest):
         raise InputError(
-            f"The logs are of different tasks ({_tasks(evaluation)}; baseline {_tasks(baseline)}), so they cannot be compared. "
+            f"The logs contain different tasks ({_tasks(evaluation)}; baseline {_tasks(baseline)}), so they cannot be compared. "
             "Run both on the same split of the same dataset."
         )
     before, now = _shares(baseline.trials), _shares(evaluation.trials)
     both = sorted(before.keys() & now.keys())
     if not both:
         raise InputError(
-            "The logs have no scored task in common, so there is nothing to compare: infrastructure broke the runs, or no judge "
-            "gave a verdict on them."
+            "The logs cannot be compared, because no task is scored in both: infrastructure broke the runs, or no judge gave a "
+            "verdict on them. Run the evaluations again, or judge them with 'scope bench rescore'."
         )
     categories = {trial.task.id: trial.task.category for trial in baseline.trials}
     groups = {name: [task for task in both if categories[task] == name] for name in dict.fromkeys(categories.values())}
-    singles = [_compare(name, tasks, before, now) for name, tasks in groups.items() if tasks]
-    adjusted = holm([single.p for single in singles])
+    comparisons = [_compare(name, tasks, before, now) for name, tasks in groups.items() if tasks]
+    adjusted = holm([comparison.p for comparison in comparisons])
     by_category = tuple(
-        Comparison(s.group, s.tasks, s.before, s.now, s.worse, s.better, p if p is not None else 1.0)
-        for s, p in zip(singles, adjusted, strict=True)
+        replace(comparison, p=p if p is not None else 1.0) for comparison, p in zip(comparisons, adjusted, strict=True)
     )
     left_out = sorted({t.task.id for t in (*baseline.trials, *evaluation.trials)} - set(both))
     return Gate(_compare(ALL, both, before, now), by_category, tuple(left_out), alpha)
@@ -90,12 +105,12 @@ def _tasks(evaluation: Evaluation) -> str:
 
 
 def _shares(trials: Sequence[Trial]) -> dict[str, float]:
-    """Return each task's share of correct runs, excluding runs that are broken or await a judge."""
+    """Return the share of correct runs of each task. Broken runs and runs without a judge's verdict are excluded."""
     runs: dict[str, list[bool]] = {}
     for trial in trials:
         if trial.headline != "infrastructure" and not without_verdict(trial):
             runs.setdefault(trial.task.id, []).append(trial.headline == "correct")
-    return {task: fmean(right) for task, right in runs.items()}
+    return {task: fmean(correct) for task, correct in runs.items()}
 
 
 def _compare(group: str, tasks: Sequence[str], before: Mapping[str, float], now: Mapping[str, float]) -> Comparison:

@@ -1,4 +1,4 @@
-"""Rescore logs with checks and judges, without running the agent again. Earlier scores are kept."""
+"""Rescore logs with checks and judges, without running the agent again. Earlier scores remain in the log."""
 
 from __future__ import annotations
 
@@ -19,20 +19,22 @@ from scope_ptz.bench.engine.context import EvalContext
 from scope_ptz.bench.engine.inspect_internals import recorder, silence_display
 from scope_ptz.bench.engine.judge_scorer import judge_scorer
 from scope_ptz.bench.engine.judgement_journal import Journal
-from scope_ptz.bench.engine.logs import DECIDES, HEADER, kept_in, read_evaluation, read_header, reading, trials_by_sample
-from scope_ptz.bench.engine.samples import STORE
-from scope_ptz.bench.judging.deciding_judge import check_decides
+from scope_ptz.bench.engine.logs import DECIDES, HEADER, read_evaluation, read_header, trials_by_sample
+from scope_ptz.bench.engine.sample_files import reading, stored_run_in
+from scope_ptz.bench.engine.stored_run import STORE
+from scope_ptz.bench.judging.deciding_judge import check_can_decide
 from scope_ptz.bench.judging.judgement_tally import JudgementTally
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import InputError, OutputError
 
-AT_A_TIME = 8
+CONCURRENCY = 8
 """Default number of samples that are scored concurrently."""
-FLUSH_EVERY = 50
-"""Number of samples held in memory between two writes. Each write copies the whole new log."""
+SAMPLES_PER_FLUSH = 50
+"""Number of samples that are held in memory between two writes. Each write copies the whole new log."""
 
 Report = Callable[[int, int], None]
+"""Called with the number of written samples and the total number of samples."""
 
 
 async def rescore(
@@ -41,25 +43,26 @@ async def rescore(
     *,
     judge_model: Model | None,
     repeats: int = 1,
-    further: bool = True,
+    additional: bool = True,
     with_checks: bool = False,
-    at_a_time: int = AT_A_TIME,
+    concurrency: int = CONCURRENCY,
     report: Report,
 ) -> JudgementTally:
-    """Append scores to a log, and return the outcome of the new judgements. The log is replaced at the end, in one step.
+    """Append scores to a log, and return the tally of the new judgements. The log is replaced atomically at the end.
 
     Args:
         log: Log of a finished evaluation.
-        context: Provides the judge and ground truth.
+        context: The resources of the evaluation, which include the judge and ground truth.
         judge_model: The judge; None to apply only the checks.
         repeats: Number of judgements of each run.
-        further: Add ``repeats`` judgements to those in the log; otherwise complete the first ``repeats``.
-        with_checks: Apply the executable checks again.
-        at_a_time: Samples that are scored concurrently.
-        report: Called with the number of written samples and the number of all samples.
+        additional: Whether to add ``repeats`` judgements to those in the log. Otherwise only those of the first ``repeats``
+            judgements are made that the log does not contain.
+        with_checks: Whether to apply the executable checks again.
+        concurrency: Number of samples that are scored concurrently.
+        report: Called after each sample.
 
     Raises:
-        TraceError: There is no log, or it is damaged.
+        TraceError: The log does not exist or is damaged.
         InputError: The evaluation is not finished.
         OutputError: The log cannot be replaced.
     """
@@ -67,67 +70,76 @@ async def rescore(
     if header.status == "started":
         raise InputError(f"The evaluation in {log} is not finished. Resume it with the command that started it.")
     scorers: list[Scorer] = [checks_scorer(context)] if with_checks else []
-    journal = Journal.beside(log)
+    journal = Journal.of_log(log)
     if judge_model is not None:
-        before = trials_by_sample(log)
-        for sample, trial in before.items():
-            for made in trial.judgements:
-                journal.know(sample, made)
-        numbers = _further(before, judge_model.name, repeats) if further else range(repeats)
-        scorers += [judge_scorer(context, repeat, journal) for repeat in numbers]
+        trials = trials_by_sample(log)
+        for sample, trial in trials.items():
+            for judgement in trial.judgements:
+                journal.register_logged(sample, judgement)
+        indices = _additional_indices(trials, judge_model.name, repeats) if additional else range(repeats)
+        scorers += [judge_scorer(context, index, journal) for index in indices]
     silence_display()
-    scratch = log.with_name(f".{log.stem}.rescored.eval")
-    scratch.unlink(missing_ok=True)
+    new_log = log.with_name(f".{log.stem}.rescored.eval")
+    new_log.unlink(missing_ok=True)
     try:
         with reading(log):
-            await _append(log, scratch, scorers, judge_model, at_a_time, report)
-        scratch.replace(log)
+            await _write_rescored(log, new_log, scorers, judge_model, concurrency, report)
+        new_log.replace(log)
     except OSError as error:
         raise OutputError(f"The log {log} cannot be replaced: {error.strerror}.") from error
     finally:
-        scratch.unlink(missing_ok=True)
-    journal.done()
-    return JudgementTally.of(journal.made)
+        new_log.unlink(missing_ok=True)
+    journal.remove_logged()
+    return JudgementTally.of(journal.added)
 
 
-def let_decide(log: Path, judge: str) -> None:
-    """Record in a log which of its judges decides on runs that only a judge can score.
+def set_deciding_judge(log: Path, judge: str) -> None:
+    """Record in a log which of its judges decides the runs that only a judge can score.
 
-    Raises ``TraceError`` for a damaged log, and ``InputError`` when that judge has given no verdict on such a run.
+    Raises:
+        TraceError: The log does not exist or is damaged.
+        InputError: The judge has given no verdict on such a run, or the evaluation is not finished.
+        OutputError: The log cannot be replaced.
     """
-    check_decides(read_evaluation(log).trials, judge)
+    check_can_decide(read_evaluation(log).trials, judge)
     if read_header(log).status == "started":
         raise InputError(f"The evaluation in {log} is not finished. Resume it with the command that started it.")
-    scratch = log.with_name(f".{log.stem}.decided.eval")
+    new_log = log.with_name(f".{log.stem}.decided.eval")
     try:
-        with reading(log), ZipFile(log) as old, ZipFile(scratch, "w", ZIP_DEFLATED) as new:
-            for info in old.infolist():
-                content = old.read(info)
+        with reading(log), ZipFile(log) as source, ZipFile(new_log, "w", ZIP_DEFLATED) as target:
+            for info in source.infolist():
+                content = source.read(info)
                 if info.filename == HEADER:
                     header = json.loads(content)
                     header["eval"]["metadata"] = {**(header["eval"].get("metadata") or {}), DECIDES: judge}
                     content = json.dumps(header).encode()
-                new.writestr(info, content)
-        scratch.replace(log)
+                target.writestr(info, content)
+        new_log.replace(log)
     except OSError as error:
         raise OutputError(f"The log {log} cannot be replaced: {error.strerror}.") from error
     finally:
-        scratch.unlink(missing_ok=True)
+        new_log.unlink(missing_ok=True)
 
 
-def _further(before: Mapping[str, Trial], judge_name: str, repeats: int) -> range:
-    """Return the indices of the judgements to make. They begin after the last one by this judge and prompt, or at a failed one."""
-    own = [j for t in before.values() for j in t.judgements if (j.judge, j.prompt) == (judge_name, prompt_version())]
-    failed = [j.repeat for j in own if j.verdict == "failed"]
-    first = min(failed) if failed else max((j.repeat + 1 for j in own), default=0)
+def _additional_indices(trials: Mapping[str, Trial], judge_name: str, repeats: int) -> range:
+    """Return the indices of ``repeats`` new judgements.
+
+    They begin at the first failed judgement by this judge and prompt. If none failed, they begin after the last judgement.
+    """
+    judgements = [j for t in trials.values() for j in t.judgements if (j.judge, j.prompt) == (judge_name, prompt_version())]
+    failed = [j.repeat for j in judgements if j.verdict == "failed"]
+    first = min(failed) if failed else max((j.repeat + 1 for j in judgements), default=0)
     return range(first, first + repeats)
 
 
-async def _append(log: Path, scratch: Path, scorers: Sequence[Scorer], model: Model | None, at_a_time: int, report: Report) -> None:
+async def _write_rescored(
+    log: Path, new_log: Path, scorers: Sequence[Scorer], model: Model | None, concurrency: int, report: Report
+) -> None:
+    """Write a copy of a log with additional scores, one sample at a time."""
     header, reader = read_header(log), recorder(log, log.parent)
-    writer = recorder(scratch, log.parent)
+    writer = recorder(new_log, log.parent)
     names = await reader.read_log_sample_ids(str(log))
-    slots, written = anyio.Semaphore(at_a_time), 0
+    slots, written = anyio.Semaphore(concurrency), 0
 
     @asynccontextmanager
     async def sample_at(index: int) -> AsyncGenerator[EvalSample, None]:
@@ -135,16 +147,16 @@ async def _append(log: Path, scratch: Path, scorers: Sequence[Scorer], model: Mo
         async with slots:
             sample = await reader.read_log_sample(str(log), *names[index])
             if STORE not in sample.store:
-                kept = kept_in(sample.model_dump(mode="json"))
-                sample.store |= {STORE: kept.as_store()} if kept is not None else {}
+                stored_run = stored_run_in(sample.model_dump(mode="json"))
+                sample.store |= {STORE: stored_run.to_store()} if stored_run is not None else {}
             yield sample
             await writer.log_sample(header.eval, sample)
             written += 1
-            if written % FLUSH_EVERY == 0:
+            if written % SAMPLES_PER_FLUSH == 0:
                 await writer.flush(header.eval)
             report(written, len(names))
 
-    await writer.log_init(header.eval, location=str(scratch))
+    await writer.log_init(header.eval, location=str(new_log))
     await writer.log_start(header.eval, header.plan)
     scored = await score_async(
         header,

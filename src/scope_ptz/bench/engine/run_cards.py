@@ -1,4 +1,4 @@
-"""The run card of a log, which records the conditions of its runs."""
+"""Read the run card of a log. The card records the conditions of the runs."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ CARD = "card"
 SCOPE = "scope"
 PRICE = "price_usd_per_million_tokens"
 AGENT_SOURCE = "agent_source"
-"""Key, among the settings of a run, for the digest of an external agent's source."""
+"""Key in a card's ``sampling`` for the digest of an external agent's source."""
 
 
 def engine_version() -> str:
-    """Return the name and version of the installed engine, in the form that logs record."""
+    """Return the name and version of the installed engine, as recorded in logs."""
     return f"{ENGINE} {version(ENGINE.replace('-', '_'))}"
 
 
 def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
-    """Return the run card stored in a log. For a log that Inspect's own command wrote, derive it from the header.
+    """Return the run card of a log. If the log was written by Inspect's own command, derive the card from the header.
 
     Args:
         header: The header of the log.
-        trace: The trace of any run of the log, which describes the planner.
+        trace: The trace of any run of the log, from which the details of the planner are read; None if there is none.
 
     Raises:
         TraceError: The card is damaged.
@@ -43,18 +43,18 @@ def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
             return RunCard.model_validate(metadata[CARD])
         return _derived_card(header, metadata[SCOPE], trace.started.planner_details if trace is not None else {})
     except (ValidationError, KeyError) as error:
-        raise TraceError(f"The run card of {header.location} is damaged: {error}.") from error
+        raise TraceError(f"The run card in the log {header.location} is damaged: {error}.") from error
 
 
 def cost_usd(card: RunCard, input_tokens: int, output_tokens: int) -> float | None:
-    """Return the cost of a run's planner tokens; None if no prices were given."""
+    """Return the cost of a run's planner tokens in US dollars; None if the card contains no prices."""
     price = card.sampling.get(PRICE)
     return (input_tokens * price["input"] + output_tokens * price["output"]) / 1e6 if price else None
 
 
 def _derived_card(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:
     config = header.eval.config
-    known = {name: value for name, value in facts.items() if name != AGENT_SOURCE}
+    fields = {name: value for name, value in facts.items() if name != AGENT_SOURCE}
     source = {AGENT_SOURCE: facts[AGENT_SOURCE]} if AGENT_SOURCE in facts else {}
     return RunCard(
         run_id=header.eval.run_id,
@@ -67,21 +67,21 @@ def _derived_card(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[st
         sampling={**planner, **source},
         concurrency=config.max_samples or 1,
         contended=(config.max_samples or 0) != 1,
-        **known,
+        **fields,
     )
 
 
 def _model(header: EvalLog, role: str) -> ModelCard:
-    bound = (header.eval.model_roles or {}).get(role)
-    bound = bound[0] if isinstance(bound, list) else bound
-    if bound is None:
+    config = (header.eval.model_roles or {}).get(role)
+    config = config[0] if isinstance(config, list) else config
+    if config is None:
         return ModelCard(name="none")
-    provider, _, name = bound.model.partition("/")
-    own = provider == SCOPE + "_ptz"
-    deterministic = own and name in DETERMINISTIC
+    provider, _, name = config.model.partition("/")
+    is_scope_model = provider == SCOPE + "_ptz"
+    deterministic = is_scope_model and name in DETERMINISTIC
     return ModelCard(
         name=name or provider,
-        registry=name if own and not deterministic else None,
-        provider=bound.base_url or provider,
+        registry=name if is_scope_model and not deterministic else None,
+        provider=config.base_url or provider,
         deterministic=deterministic,
     )

@@ -16,7 +16,7 @@ CATEGORIES: tuple[str, ...] = get_args(Category)
 def accuracy(trials: Sequence[Trial]) -> float | None:
     """Return the share of correct runs; None if no run is scored.
 
-    Runs that infrastructure broke and runs that await a judge are excluded.
+    Runs that infrastructure broke and runs without a judge's verdict are excluded.
     """
     scored = [t for t in trials if t.headline != "infrastructure" and not without_verdict(t)]
     return sum(t.headline == "correct" for t in scored) / len(scored) if scored else None

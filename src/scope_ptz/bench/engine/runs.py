@@ -1,7 +1,7 @@
 """Run an evaluation, and resume it after interruptions.
 
-An interrupted evaluation is resumed from its log, which is found by its identity: a digest of everything that affects the results.
-The completed runs of the log are taken over, and only the others are run.
+An interrupted evaluation is resumed from its log. The log is found by the identity of the evaluation, which is a digest of
+everything that affects the results. The complete runs of the log are taken over, and only the other runs are executed.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from inspect_ai import Task, eval_async
 from inspect_ai.log import EvalLog, EvalLogInfo, read_eval_log_sample_async
 from inspect_ai.model import Model
 
-from scope_ptz.bench.engine.annotations import check_beside, put_away
+from scope_ptz.bench.engine.annotations import archive_logs, check_labels
 from scope_ptz.bench.engine.file_lock import lock_file
 from scope_ptz.bench.engine.inspect_internals import PreviousTask, recover_log, resumed_task, silence_display
 from scope_ptz.bench.engine.logs import DECIDES, read_evaluation, read_header, runs_in, uuids_in
 from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, CARD, card_of
-from scope_ptz.bench.engine.samples import sample_name
+from scope_ptz.bench.engine.stored_run import sample_name
 from scope_ptz.bench.scoring.trials import Evaluation, RunCard
 from scope_ptz.errors import InputError, OutputError, TraceError
 
@@ -32,41 +32,48 @@ SUPERSEDED = "superseded"
 """Folder for logs whose runs another log has taken over."""
 
 LOG_LEVEL = "error"
+"""Minimum level of Inspect's own log messages."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredLog:
-    """A log of the requested evaluation. ``runs`` maps task and epoch to whether the run is complete."""
+    """A log of the requested evaluation.
+
+    Attributes:
+        path: Path of the log.
+        header: Header of the log.
+        runs: Whether each run, by task and epoch, is complete.
+    """
 
     path: Path
     header: EvalLog
     runs: Mapping[tuple[str, int], bool]
 
     @property
-    def done(self) -> int:
+    def complete_runs(self) -> int:
         """Number of complete runs."""
         return sum(self.runs.values())
 
     @property
     def finished(self) -> bool:
-        """Whether nothing is left to run. Status "success" is not enough, because a log with it may contain broken runs."""
+        """Whether every run is complete. A log with the status "success" may nevertheless contain broken runs."""
         return self.header.status == "success" and all(self.runs.values())
 
 
 @dataclass(frozen=True, slots=True)
 class EngineSetup:
-    """How the engine runs a task.
+    """The settings with which the engine runs a task.
 
     Attributes:
         log_dir: Folder for the log.
-        planner: The planner's model; None for external agents.
-        perception: The perception's model.
-        judge: The judge's model; None to apply only the checks.
+        planner: Inspect model of the planner; None for external agents.
+        perception: Inspect model of the perception backend.
+        judge: Inspect model of the judge; None to apply only the checks.
         concurrency: Number of concurrent runs.
         identity: The identity of the evaluation.
         card: Run card for the log.
-        realtime: Record events while a run is in progress, so that a killed evaluation loses no finished run. This slows runs
-            down, so it is worthwhile only for expensive runs.
+        realtime: Whether events are recorded while a run is in progress, so that a killed evaluation loses no finished run. This
+            slows runs down, so it is worthwhile only for expensive runs.
     """
 
     log_dir: Path
@@ -87,12 +94,12 @@ def identity_of(*parts: Any) -> str:
 async def find_logs(log_dir: Path, identity: str) -> list[StoredLog]:
     """Return the logs of an evaluation in a folder, the most complete first.
 
-    Runs that a killed program had finished but not written are first recovered into a log of their own.
+    If a program was killed, the runs that it had finished but not written to its log are first recovered into a separate log.
     """
     for log in _logs_of(log_dir, identity):
         if log.header.status == "started":
             await recover_log(log.path)
-    return sorted(_logs_of(log_dir, identity), key=lambda log: (log.finished, log.done), reverse=True)
+    return sorted(_logs_of(log_dir, identity), key=lambda log: (log.finished, log.complete_runs), reverse=True)
 
 
 def _logs_of(log_dir: Path, identity: str) -> list[StoredLog]:
@@ -108,13 +115,13 @@ def _logs_of(log_dir: Path, identity: str) -> list[StoredLog]:
 
 
 def stored_log(path: Path) -> StoredLog:
-    """Return a log to resume. Raises ``TraceError``."""
+    """Return the log at a path. Raises ``TraceError``."""
     return StoredLog(path, read_header(path), runs_in(path))
 
 
 def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Evaluation]:
-    """Return the evaluations of a pair in a folder. A run that several logs contain is returned only once."""
-    found, seen = [], set[str]()
+    """Return the evaluations of a pair in a folder. A run that is in several logs is returned only once."""
+    evaluations, seen = [], set[str]()
     for path in sorted(log_dir.glob("*.eval")):
         try:
             card = card_of(read_header(path), None)
@@ -127,14 +134,18 @@ def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Ev
         new = tuple(t for t in evaluation.trials if names.get(t.sample) is None or names[t.sample] not in seen)
         seen |= {uuid for uuid in names.values() if uuid is not None}
         if new:
-            found.append(evaluation.model_copy(update={"trials": new}))
-    return found
+            evaluations.append(evaluation.model_copy(update={"trials": new}))
+    return evaluations
 
 
-def log_of_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> Path | None:
-    """Return the newest log of the same tasks and agent with another version of the agent's source; None if there is none.
+def log_with_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> Path | None:
+    """Return the newest log of the same tasks and agent whose agent source differs; None if there is none.
 
-    ``source`` and ``tasks`` are digests.
+    Args:
+        log_dir: Folder of the logs.
+        agent: Name of the external agent.
+        source: Digest of the agent's current source.
+        tasks: Digest of the tasks.
     """
     for path in sorted(log_dir.glob("*.eval"), reverse=True):
         try:
@@ -148,40 +159,52 @@ def log_of_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> P
 
 @contextmanager
 def exclusive(log_dir: Path, identity: str) -> Iterator[None]:
-    """Prevent a second program from running the same evaluation. Raises ``InputError`` or ``OutputError``."""
+    """Lock an evaluation, so that a second program cannot run it at the same time.
+
+    Raises:
+        InputError: Another program runs the evaluation.
+        OutputError: The log folder cannot be written.
+    """
     try:
         log_dir.mkdir(parents=True, exist_ok=True)
         lock = (log_dir / f".{identity}.lock").open("w")
     except OSError as error:
-        raise OutputError(f"The log folder {log_dir} cannot be written: {error.strerror}. Choose another with --out.") from error
+        raise OutputError(
+            f"The log folder {log_dir} cannot be written: {error.strerror}. Choose another folder with --out."
+        ) from error
     with lock:
         if not lock_file(lock):
-            raise InputError(f"This evaluation is running already and writes to {log_dir}.")
+            raise InputError(f"This evaluation is running already and writes to {log_dir}. Wait for it, or stop it first.")
         yield
 
 
-async def run(task: Task, setup: EngineSetup, before: Sequence[StoredLog]) -> Path:
-    """Run a task, take over the runs of earlier logs, and return the path of the log. A cancelled evaluation keeps its log.
+async def run(task: Task, setup: EngineSetup, earlier: Sequence[StoredLog]) -> Path:
+    """Run a task, take over the complete runs of earlier logs, and return the path of the log.
+
+    If the evaluation is cancelled, its log is returned as far as it was written.
 
     Args:
         task: The task.
-        setup: How to run it.
-        before: Logs of the same evaluation, the most complete first.
+        setup: The settings of the engine.
+        earlier: Logs of the same evaluation, the most complete first.
 
     Raises:
-        OutputError: The evaluation was stopped before there was a log.
-        TraceError: The evaluation failed as a whole.
+        OutputError: The evaluation was stopped before it wrote a log.
+        TraceError: The evaluation failed without completing a run.
     """
-    check_beside([old.path for old in before])
+    check_labels([log.path for log in earlier])
     silence_display()
-    stored_card = (before[0].header.eval.metadata or {}).get(CARD) if before else None
+    stored_card = (earlier[0].header.eval.metadata or {}).get(CARD) if earlier else None
     card = RunCard.model_validate(stored_card) if stored_card else setup.card
-    named = (before[0].header.eval.metadata or {}).get(DECIDES) if before else None
+    deciding_judge = (earlier[0].header.eval.metadata or {}).get(DECIDES) if earlier else None
+    metadata = {CARD: card.model_dump(mode="json"), IDENTITY: setup.identity}
+    if deciding_judge:
+        metadata[DECIDES] = deciding_judge
     logs = await eval_async(
-        await _resumed(task, before) if before else task,
+        await _resumed(task, earlier) if earlier else task,
         model=setup.planner or setup.perception,
         model_roles=_roles(setup),
-        metadata={CARD: card.model_dump(mode="json"), IDENTITY: setup.identity, **({DECIDES: named} if named else {})},
+        metadata=metadata,
         log_dir=str(setup.log_dir),
         log_format="eval",
         log_images=True,
@@ -193,30 +216,33 @@ async def run(task: Task, setup: EngineSetup, before: Sequence[StoredLog]) -> Pa
         ctl_server=False,
     )
     if not logs:  # The evaluation was cancelled.
-        left = _logs_of(setup.log_dir, setup.identity)
-        if not left:
+        partial_logs = _logs_of(setup.log_dir, setup.identity)
+        if not partial_logs:
             raise OutputError(f"The evaluation was stopped before it wrote a log to {setup.log_dir}.")
-        return max(left, key=lambda log: log.done).path
+        return max(partial_logs, key=lambda log: log.complete_runs).path
     (log,) = logs
     if log.error is not None and not (log.results and log.results.completed_samples):
         raise TraceError(f"The evaluation failed: {log.error.message}")
     written = Path(log.location)
     if log.status in ("success", "error"):
-        put_away([old.path for old in before if old.path.name != written.name], written, written.parent / SUPERSEDED)
+        archive_logs([old.path for old in earlier if old.path.name != written.name], written, written.parent / SUPERSEDED)
     return written
 
 
-async def _resumed(task: Task, before: Sequence[StoredLog]) -> PreviousTask:
-    """Return a task that takes over the complete runs of earlier logs. Runs of several logs are read into memory."""
-    best, *others = before
-    known = {run for run, complete in best.runs.items() if complete}
-    further = [(log, run) for log in others for run, complete in log.runs.items() if complete and run not in known]
+async def _resumed(task: Task, earlier: Sequence[StoredLog]) -> PreviousTask:
+    """Return a task that takes over the complete runs of earlier logs.
+
+    If the runs are in several logs, their samples are read into memory.
+    """
+    best, *others = earlier
+    best_runs = {run for run, complete in best.runs.items() if complete}
+    other_runs = [(log, run) for log in others for run, complete in log.runs.items() if complete and run not in best_runs]
     header, info = best.header, _info(best.path, best.header)
-    if further:
-        sources = dict([*((run, best) for run in known), *((run, log) for log, run in further)])
-        whole = [await read_eval_log_sample_async(str(log.path), name, epoch) for (name, epoch), log in sources.items()]
-        header = header.model_copy(update={"samples": whole})
-    return resumed_task(task, header, None if further else info)
+    if other_runs:
+        sources = dict([*((run, best) for run in best_runs), *((run, log) for log, run in other_runs)])
+        samples = [await read_eval_log_sample_async(str(log.path), name, epoch) for (name, epoch), log in sources.items()]
+        header = header.model_copy(update={"samples": samples})
+    return resumed_task(task, header, None if other_runs else info)
 
 
 def _roles(setup: EngineSetup) -> Mapping[str, Model | list[Model] | str | list[str]]:

@@ -10,88 +10,93 @@ from typing import Any
 from scope_ptz.agent.records import Ended
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.samples import Kept, sample_name, trace_of
+from scope_ptz.bench.engine.stored_run import StoredRun, sample_name, trace_of
 from scope_ptz.bench.judging.deciding_judge import verdict_by
 from scope_ptz.bench.scoring.episode import Episode, Observation
 from scope_ptz.bench.scoring.error_modes import error_mode
 from scope_ptz.bench.scoring.imported_check import check_imported_calls
 from scope_ptz.bench.scoring.trials import CheckRecord, Judgement, ObservationTime, Trial
-from scope_ptz.bench.scoring.verdict import AGENTS_OWN_FAILURES, score_episode
+from scope_ptz.bench.scoring.verdict import AGENT_FAILURES, score_episode
 
 _TIMED_TOOLS = ("count_objects", "query_answer")
 
 
-def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
-    """Return the trial of a run, scored by the checks of its task. Without checks, the first verdict of a judge decides.
+def trial_of(entry: Entry, stored_run: StoredRun, epoch: int, folder: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
+    """Return the trial of a run, scored by the checks of its task. If the task has no checks, the first verdict of a judge decides.
 
-    If a log has several judges, ``judging.deciding_judge`` selects the one that decides.
+    If a log has several judges, ``judging.deciding_judge`` later selects the one that decides.
+
+    Args:
+        entry: The entry that was run.
+        stored_run: The stored data of the run.
+        epoch: Number of the run of this entry, from 1.
+        folder: Folder to record in the trace, which error messages name.
+        judgements: The judgements of the run.
     """
     name = sample_name(entry.facts.id, epoch)
-    trace = trace_of(kept.trace, where)
+    trace = trace_of(stored_run.trace, folder)
     if trace is None:
         reason = "the run did not begin"
         return Trial(
             task=entry.facts, epoch=epoch, sample=name, headline="infrastructure", reason=reason, outcome=None, answer="",
             judgements=judgements,
         )  # fmt: skip
-    verdict = _by_checks(entry, kept, trace) if entry.task else _by_judge(trace, judgements)
+    verdict = _verdict_of_checks(entry, stored_run, trace) if entry.task else _verdict_of_judges(trace, judgements)
     if entry.imported is not None:
-        verdict["checks"] = (check_imported_calls(entry.imported, kept.episode(trace)),)
+        verdict["checks"] = (check_imported_calls(entry.imported, stored_run.episode(trace)),)
     return Trial.model_validate(
         {"task": entry.facts, "epoch": epoch, "sample": name, "judgements": judgements} | verdict | _trace_fields(trace)
     )
 
 
-def _by_checks(entry: Entry, kept: Kept, trace: Trace) -> dict[str, Any]:
+def _verdict_of_checks(entry: Entry, stored_run: StoredRun, trace: Trace) -> dict[str, Any]:
     assert entry.task is not None  # noqa: S101 - the caller has checked
-    episode = kept.episode(trace)
+    episode = stored_run.episode(trace)
     verdict = score_episode(entry.task, episode)
-    truth = _Truths(episode, kept.truths)
+    truth = _TrueCounts(episode, stored_run.truths)
     return {
         "headline": verdict.headline,
         "scored_by": "checks",
         "reason": verdict.reason,
-        "error_mode": error_mode(entry.task, episode, truth if kept.truths else None),
+        "error_mode": error_mode(entry.task, episode, truth if stored_run.truths else None),
         "checks": tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         "collateral": verdict.collateral,
     }
 
 
-class _Truths:
-    """The true counts of a run's perception calls, which were looked up after the run."""
+class _TrueCounts:
+    """Returns the true count for an observation of a run, from the stored counts of its calls."""
 
     def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
-        observations = [
+        self._counts = [
             (observation, truths.get(str(number))) for number, call in enumerate(episode.calls) for observation in call.observations
         ]
-        self._known = {id(observation): count for observation, count in observations}
-        self._observations = [observation for observation, _ in observations]
 
     def __call__(self, observation: Observation) -> int | None:
-        return next((self._known[id(own)] for own in self._observations if own == observation), None)
+        return next((count for counted, count in self._counts if counted == observation), None)
 
 
-def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]:
-    broken = broken_by(trace.ended)
-    if broken is not None:
-        return {"headline": "infrastructure", "scored_by": "judge", "reason": broken, "error_mode": None}
+def _verdict_of_judges(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]:
+    failure = failure_at_end(trace.ended)
+    if failure is not None:
+        return {"headline": "infrastructure", "scored_by": "judge", "reason": failure, "error_mode": None}
     return {"scored_by": "judge", **verdict_by(judgements)}
 
 
-def broken_by(ended: Ended | None) -> str | None:
-    """Return how infrastructure broke a run, as its last record shows; None if it did not."""
+def failure_at_end(ended: Ended | None) -> str | None:
+    """Return the failure of the infrastructure that ended a run, from the last record of its trace; None if there is none."""
     if ended is None:
         return "the run was cut off"
     if ended.outcome in ("camera_error", "cancelled"):
         return f"the run ended {ended.outcome}"
-    if ended.outcome == "planner_error" and ended.kind is not None and ended.kind not in AGENTS_OWN_FAILURES:
+    if ended.outcome == "planner_error" and ended.kind is not None and ended.kind not in AGENT_FAILURES:
         return f"the planner's server failed: {ended.kind}"
     return None
 
 
 def _observation_times(trace: Trace) -> tuple[ObservationTime, ...]:
     """Return the times of perception, camera and tool of each perception call."""
-    looked = [c for c in trace.calls if c.outcome.call.name in _TIMED_TOOLS and c.outcome.error is None]
+    calls = [c for c in trace.calls if c.outcome.call.name in _TIMED_TOOLS and c.outcome.error is None]
     return tuple(
         ObservationTime(
             view="full" if called.outcome.call.arguments.get("view") == "full" else "current",
@@ -99,7 +104,7 @@ def _observation_times(trace: Trace) -> tuple[ObservationTime, ...]:
             capture_s=max(called.timings.capture_s, 0.0),
             call_s=max(called.timings.total_s, 0.0),
         )
-        for called in looked
+        for called in calls
     )
 
 

@@ -1,1 +1,1 @@
-"""Judging of runs by language models, human labels, and the agreement of all raters."""
+"""Judge runs with language models and human labels, and measure the agreement of all raters."""

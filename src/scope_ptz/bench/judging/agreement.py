@@ -1,4 +1,7 @@
-"""Measure the agreement of raters of runs: executable checks, judges and their repeats, people, and gold runs with known faults."""
+"""Measure the agreement of the raters of runs.
+
+Raters are the executable checks, judges and their repeats, people, and gold runs with known faults.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ RaterKind = Literal["checks", "judge", "person", "gold"]
 
 @dataclass(frozen=True, slots=True)
 class Rating:
-    """A rating of a run. ``mode`` is the error mode of an incorrect run, None if the rater names none."""
+    """A rating of a run. ``mode`` is the error mode of an incorrect run; None if the rater did not assign one."""
 
     correct: bool
     mode: ErrorMode | None = None
@@ -31,7 +34,7 @@ class Rating:
 
 @dataclass(frozen=True, slots=True)
 class RatedRun:
-    """A run that is rated. ``cluster`` is its task, because runs of one task are not independent."""
+    """A run to be rated. ``cluster`` is its task, because runs of one task are not independent."""
 
     log: str
     sample: str
@@ -45,23 +48,23 @@ class Rater:
     Attributes:
         name: Name of the rater.
         kind: Kind of rater.
-        group: Name of the group. Repeats of one judge share it.
+        group: Name of the rater's group. The repeats of one judge form a group.
         ratings: The rating of each run.
-        apart: Number of verdicts that are not ratings, by verdict ("unscored", "failed", ...).
+        other_verdicts: Numbers of verdicts that are not ratings, by verdict ("unscored", "failed", ...).
     """
 
     name: str
     kind: RaterKind
     group: str
     ratings: dict[RatedRun, Rating] = field(default_factory=dict)
-    apart: Counter[str] = field(default_factory=Counter)
+    other_verdicts: Counter[str] = field(default_factory=Counter)
 
 
 @dataclass(frozen=True)
 class RaterPair:
     """The agreement of two raters on the runs that both rated.
 
-    ``modes`` covers the runs for which both name an error mode.
+    ``modes`` is their agreement on error modes, on the runs to which both assigned one.
     """
 
     first: str
@@ -74,11 +77,11 @@ class RaterPair:
 class RaterGroup:
     """The agreement of several raters on the runs that all of them rated.
 
-    ``what`` describes the group, such as "people". ``left_out`` is the number of runs that only some of them rated.
+    ``title`` describes the group, such as "people". ``left_out`` is the number of runs that only some of the raters rated.
     """
 
     raters: tuple[str, ...]
-    what: str
+    title: str
     verdicts: KappaResult
     left_out: int
 
@@ -100,7 +103,7 @@ class AgreementReport:
                     "kind": rater.kind,
                     "rated": len(rater.ratings),
                     "correct": sum(rating.correct for rating in rater.ratings.values()),
-                    "apart": dict(rater.apart),
+                    "apart": dict(rater.other_verdicts),
                 }
                 for rater in self.raters
             ],
@@ -109,7 +112,7 @@ class AgreementReport:
                 for p in self.pairs
             ],
             "groups": [
-                {"raters": list(g.raters), "what": g.what, "left_out": g.left_out, **g.verdicts.as_dict()} for g in self.groups
+                {"raters": list(g.raters), "what": g.title, "left_out": g.left_out, **g.verdicts.as_dict()} for g in self.groups
             ],
         }
 
@@ -117,24 +120,24 @@ class AgreementReport:
 def measure_agreement(raters: Sequence[Rater], seed: int = 1) -> AgreementReport:
     """Measure the agreement of raters in pairs and in groups.
 
-    Only the first repeat of a judge is compared with other raters. Its repeats are compared with one another.
+    Only the first repeat of a judge is compared with other raters. The repeats of a judge are compared with each other.
 
     Args:
         raters: The raters.
         seed: Seed of the bootstrap intervals.
     """
-    first = {rater.group: rater for rater in reversed(raters)}
-    leading = [rater for rater in raters if first[rater.group] is rater]
+    first_of_group = {rater.group: rater for rater in reversed(raters)}
+    first_raters = [rater for rater in raters if first_of_group[rater.group] is rater]
     repeats: dict[str, list[Rater]] = {}
     for rater in raters:
         repeats.setdefault(rater.group, []).append(rater)
-    pairs = [_pair(one, two, seed) for one, two in combinations(leading, 2)]
+    pairs = [_pair(one, two, seed) for one, two in combinations(first_raters, 2)]
     pairs += [_pair(one, two, seed) for group in repeats.values() for one, two in combinations(group, 2)]
     groups = [_group(group, f"repeats of {group[0].name}", seed) for group in repeats.values() if len(group) > 1]
-    for kind, what in (("judge", "judges"), ("person", "people")):
-        alike = [rater for rater in leading if rater.kind == kind]
-        if len(alike) > 1:
-            groups.append(_group(alike, what, seed))
+    for kind, title in (("judge", "judges"), ("person", "people")):
+        same_kind = [rater for rater in first_raters if rater.kind == kind]
+        if len(same_kind) > 1:
+            groups.append(_group(same_kind, title, seed))
     return AgreementReport(tuple(raters), tuple(p for p in pairs if p.verdicts.runs), tuple(g for g in groups if g.verdicts.runs))
 
 
@@ -150,22 +153,22 @@ def _pair(one: Rater, two: Rater, seed: int) -> RaterPair:
     )
 
 
-def _group(raters: Sequence[Rater], what: str, seed: int) -> RaterGroup:
+def _group(raters: Sequence[Rater], title: str, seed: int) -> RaterGroup:
     rated_by_any = {item for rater in raters for item in rater.ratings}
     shared = [item for item in raters[0].ratings if all(item in rater.ratings for rater in raters)]
     rows = [[rater.ratings[item].verdict for rater in raters] for item in shared]
-    agreed = fleiss(rows, [item.cluster for item in shared], seed)
-    return RaterGroup(tuple(rater.name for rater in raters), what, agreed, len(rated_by_any) - len(shared))
+    agreement = fleiss(rows, [item.cluster for item in shared], seed)
+    return RaterGroup(tuple(rater.name for rater in raters), title, agreement, len(rated_by_any) - len(shared))
 
 
 def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
     """Return the raters of evaluations: the checks first, then judges, then people."""
-    found = _RaterCollector()
+    collector = _RaterCollector()
     for evaluation in evaluations:
         for trial in evaluation.trials:
-            found.add(trial, evaluation.log or evaluation.card.run_id)
+            collector.add(trial, evaluation.log or evaluation.card.run_id)
     order = {"checks": 0, "judge": 1, "person": 2, "gold": 3}
-    return sorted(found.raters.values(), key=lambda rater: (order[rater.kind], rater.group, rater.name))
+    return sorted(collector.raters.values(), key=lambda rater: (order[rater.kind], rater.group, rater.name))
 
 
 class _RaterCollector:
@@ -194,16 +197,14 @@ def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | Non
     if verdict in (CORRECT, INCORRECT):
         rater.ratings[item] = Rating(verdict == CORRECT, mode)
     else:
-        rater.apart[verdict] += 1
+        rater.other_verdicts[verdict] += 1
 
 
 def judgements_with_raters(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
-    """Yield the judgements of one run with their raters.
-
-    One model with two prompts counts as two judges.
+    """Yield the judgements of one run with the names of their raters. One model with two prompts counts as two judges.
 
     Yields:
-        The rater ("gpt-oss-120b (judge-1) #2" for a second judgement), the judge, and the judgement.
+        The name of the rater, such as "gpt-oss-120b (judge-1) #2" for a second judgement; the name of the judge; the judgement.
     """
     times = Counter[str]()
     for judgement in judgements:

@@ -14,7 +14,16 @@ from scope_ptz.planner.base import ToolOutcome
 
 @dataclass(frozen=True, slots=True)
 class CaseCall:
-    """A tool call. ``pose`` and ``viewpoint`` (if known) are those after the call; ``error`` says why it failed."""
+    """A tool call.
+
+    Attributes:
+        name: Name of the tool.
+        arguments: Arguments of the call.
+        result: Result of the call; None if it failed.
+        error: Error message of the call; None if it succeeded.
+        pose: Pose of the camera after the call.
+        viewpoint: Viewpoint of the camera after the call; None if unknown.
+    """
 
     name: str
     arguments: Mapping[str, Any]
@@ -29,16 +38,16 @@ class JudgeCase:
     """A run to be judged.
 
     Attributes:
-        instruction: What the agent was asked to do.
-        start: The camera's first pose.
-        viewpoint: The viewpoint at the start, if known.
+        instruction: The instruction to the agent.
+        start: Pose of the camera at the start.
+        viewpoint: Viewpoint of the camera at the start; None if unknown.
         presets: Names of the presets.
         calls: The tool calls in order.
-        final: The camera's last pose.
+        final: Pose of the camera at the end.
         answer: The agent's final answer.
         outcome: How the run ended; None if it was interrupted.
         sees: Whether the agent was shown pictures and may answer from them.
-        preset_viewpoints: The viewpoints of the presets, if known.
+        preset_viewpoints: The viewpoints of the presets; None if unknown.
     """
 
     instruction: str
@@ -58,13 +67,13 @@ def case_of(trace: Trace, preset_viewpoints: PresetViewpoints | None = None) -> 
 
     Args:
         trace: The recorded run.
-        preset_viewpoints: The viewpoints of the presets. Without them the viewpoint is unknown after the first move to a preset.
+        preset_viewpoints: The viewpoints of the presets. Without them, the viewpoint is unknown after a move to a preset.
     """
     started, ended = trace.started, trace.ended
-    at, calls = started.viewpoint, list[CaseCall]()
+    viewpoint, calls = started.viewpoint, list[CaseCall]()
     for called in trace.calls:
         outcome = called.outcome
-        at = _viewpoint_after(outcome, at, preset_viewpoints, started.labels.home_viewpoint)
+        viewpoint = _viewpoint_after(outcome, viewpoint, preset_viewpoints, started.labels.home_viewpoint)
         calls.append(
             CaseCall(
                 name=outcome.call.name,
@@ -72,7 +81,7 @@ def case_of(trace: Trace, preset_viewpoints: PresetViewpoints | None = None) -> 
                 result=outcome.result,
                 error=outcome.error,
                 pose=called.pose.pose(),
-                viewpoint=at,
+                viewpoint=viewpoint,
             )
         )
     last = calls[-1].pose if calls else started.pose.pose()
@@ -97,7 +106,7 @@ def case_of_episode(episode: Episode, preset_viewpoints: PresetViewpoints) -> Ju
         start=episode.start.pose,
         viewpoint=episode.start.viewpoint,
         presets=tuple(preset_viewpoints.presets),
-        calls=tuple(_call(call.name, call.arguments, call.result, call.error, call.after) for call in episode.calls),
+        calls=tuple(_case_call(call.name, call.arguments, call.result, call.error, call.after) for call in episode.calls),
         final=episode.final.pose,
         answer=episode.answer,
         outcome=episode.outcome,
@@ -106,7 +115,7 @@ def case_of_episode(episode: Episode, preset_viewpoints: PresetViewpoints) -> Ju
     )
 
 
-def _call(
+def _case_call(
     name: str, arguments: Mapping[str, Any], result: Mapping[str, Any] | None, error: str | None, after: CameraPosition
 ) -> CaseCall:
     return CaseCall(name=name, arguments=arguments, result=result, error=error, pose=after.pose, viewpoint=after.viewpoint)

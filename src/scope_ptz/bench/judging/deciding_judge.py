@@ -1,7 +1,7 @@
-"""The deciding judge: the judge whose verdicts count if several judges have judged the runs that only a judge can score.
+"""Select the deciding judge: the judge whose verdicts count if several judges have judged the runs that only a judge can score.
 
-One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge requested by name, otherwise
-the judge that gave the first verdict on most of the runs. Judgements that another judge adds later do not change it.
+One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge requested by name, or
+otherwise the judge that gave the first verdict on most of the runs. Later judgements by other judges do not change the choice.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def judge_of(judgement: Judgement) -> str:
 
 
 def first_verdict(judgements: Iterable[Judgement]) -> Judgement | None:
-    """Return the first judgement that is a verdict."""
+    """Return the first judgement with a verdict."""
     return next((j for j in judgements if j.verdict in VERDICTS), None)
 
 
@@ -31,93 +31,93 @@ def deciding_judge(trials: Iterable[Trial], requested: str = "") -> str | None:
 
     Args:
         trials: The trials of the log.
-        requested: The requested judge, with or without its prompt. If this judge has given no verdict, another one decides.
+        requested: The requested judge, with or without its prompt. If this judge has given no verdict, another judge decides.
 
     Returns:
-        None if no judge has given a verdict on such a run.
+        The name of the judge, or None if no judge has given a verdict on such a run.
     """
-    first, further = Counter[str](), Counter[str]()
+    first_verdicts, verdicts = Counter[str](), Counter[str]()
     for trial in trials:
         if trial.scored_by == "judge":
             by_judge = list(dict.fromkeys(judge_of(j) for j in trial.judgements if j.verdict in VERDICTS))
-            first.update(by_judge[:1])
-            further.update(by_judge)
-    named = [judge for judge in further if requested and requested in (judge, judge.partition(" (")[0])]
-    candidates = named or list(further)
-    return max(candidates, key=lambda judge: (first[judge], further[judge]), default=None)
+            first_verdicts.update(by_judge[:1])
+            verdicts.update(by_judge)
+    matches = [judge for judge in verdicts if requested and requested in (judge, judge.partition(" (")[0])]
+    candidates = matches or list(verdicts)
+    return max(candidates, key=lambda judge: (first_verdicts[judge], verdicts[judge]), default=None)
 
 
 def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dict[str, Any]:
     """Return the headline, the reason and the error mode of a run that only a judge can score.
 
-    A later failure of the judge's server does not withdraw an earlier verdict.
+    The first verdict counts, even if a later judgement by the same judge failed.
 
     Args:
         judgements: The judgements of the run.
-        judge: The deciding judge; None for the judge of the first verdict.
+        judge: The deciding judge; None for the judge that gave the first verdict.
     """
-    own = [j for j in judgements if judge is None or judge_of(j) == judge]
-    verdict = first_verdict(own)
+    relevant = [j for j in judgements if judge is None or judge_of(j) == judge]
+    verdict = first_verdict(relevant)
     if verdict is not None:
         mode = (verdict.error_mode or ErrorMode.REASONING) if verdict.verdict == "incorrect" else None
-        return {"headline": verdict.verdict, "reason": verdict.reason or f"said {verdict.judge}", "error_mode": mode}
-    last = next((j for j in reversed(own) if j.verdict != "failed"), own[-1] if own else None)
+        return {"headline": verdict.verdict, "reason": verdict.reason or f"verdict of {verdict.judge}", "error_mode": mode}
+    last = next((j for j in reversed(relevant) if j.verdict != "failed"), relevant[-1] if relevant else None)
     if last is not None:
         reason = f"the judge {last.judge} gave no verdict ({last.verdict})"
     elif judgements:
-        reason = f"{judge} has given no verdict, and another judge does not count here"
+        reason = f"the deciding judge {judge} has given no verdict on this run"
     else:
-        reason = "no judge has said anything yet, and there are no checks of this answer"
+        reason = "no judge has given a verdict yet, and no check can score this answer"
     return {"headline": "unscored", "reason": reason, "error_mode": None}
 
 
 def decided_by_one_judge(trials: Sequence[Trial], requested: str = "") -> list[Trial]:
-    """Return the trials of a log with the verdicts of the deciding judge where only a judge can score them.
+    """Return the trials of a log. Those that only a judge can score have the verdict of the deciding judge.
 
-    In these trials the judgements of the deciding judge come first.
+    In these trials, the judgements of the deciding judge come first.
     """
     judge = deciding_judge(trials, requested)
     if judge is None:
         return list(trials)
-    return [_by(trial, judge) if trial.scored_by == "judge" else trial for trial in trials]
+    return [_with_verdict_by(trial, judge) if trial.scored_by == "judge" else trial for trial in trials]
 
 
-def _by(trial: Trial, judge: str) -> Trial:
+def _with_verdict_by(trial: Trial, judge: str) -> Trial:
     ordered = tuple(sorted(trial.judgements, key=lambda j: judge_of(j) != judge))
     verdict = {} if trial.headline == "infrastructure" else verdict_by(ordered, judge)
     return trial.model_copy(update={**verdict, "judgements": ordered})
 
 
-def check_decides(trials: Sequence[Trial], requested: str) -> None:
+def check_can_decide(trials: Sequence[Trial], requested: str) -> None:
     """Check that the requested judge can be the deciding judge.
 
     Raises:
         InputError: The judge has given no verdict on a run that only a judge can score.
     """
-    found = deciding_judge(trials, requested)
-    if found is None or requested not in (found, found.partition(" (")[0]):
-        known = dict.fromkeys(judge_of(j) for t in trials if t.scored_by == "judge" for j in t.judgements if j.verdict in VERDICTS)
+    judge = deciding_judge(trials, requested)
+    if judge is None or requested not in (judge, judge.partition(" (")[0]):
+        judges = dict.fromkeys(judge_of(j) for t in trials if t.scored_by == "judge" for j in t.judgements if j.verdict in VERDICTS)
         raise InputError(
             f"'{requested}' has given no verdict on a run that only a judge can score, so it cannot decide. "
-            f"Judges with such verdicts: {', '.join(known) or 'none'}."
+            f"Judges with such verdicts: {', '.join(judges) or 'none'}."
         )
 
 
-def decider_of(trials: Iterable[Trial]) -> str | None:
+def reported_judge(trials: Iterable[Trial]) -> str | None:
     """Return the judge whose verdicts are reported for the runs that only a judge can score."""
     rows = (t for t in trials if t.scored_by == "judge" and t.headline in VERDICTS)
     return next((judge_of(first) for trial in rows if (first := first_verdict(trial.judgements)) is not None), None)
 
 
 def other_judges_note(trials: Sequence[Trial]) -> str:
-    """Return a note about judges other than the deciding one; empty if there are none."""
-    judge = decider_of(trials)
+    """Return a note about the judges other than the deciding judge; empty if there are none."""
+    judge = reported_judge(trials)
     rows = [trial for trial in trials if trial.scored_by == "judge"]
     others = [o for o in dict.fromkeys(judge_of(j) for t in rows for j in t.judgements if j.verdict in VERDICTS) if o != judge]
     if judge is None or not others:
         return ""
     runs = f"the {len(rows)} runs that only a judge can score" if len(rows) > 1 else "the run that only a judge can score"
     return (
-        f"{judge} decides on {runs}; the verdicts of {', '.join(others)} are kept and do not change the accuracy "
-        "(to let another judge decide: scope bench rescore LOG --decides NAME)"
+        f"{judge} decides on {runs}; the verdicts of {', '.join(others)} do not affect the accuracy "
+        "(to select another judge, run scope bench rescore LOG --decides NAME)"
     )

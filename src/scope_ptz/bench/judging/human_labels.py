@@ -1,6 +1,6 @@
-"""Human labels of runs, stored as JSON lines in a file next to the log.
+"""Read and write the human labels of runs, which are stored as JSON lines in a file next to the log.
 
-A later line by the same person about the same run replaces an earlier one. Lines are only appended, so an interruption loses no
+A later label by the same person for the same run replaces an earlier one. Lines are only appended, so an interruption loses no
 label.
 """
 
@@ -14,7 +14,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from scope_ptz.bench.judging.json_lines import append_line, whole_lines
+from scope_ptz.bench.judging.json_lines import append_line, complete_lines
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Label
 from scope_ptz.errors import InputError
@@ -23,7 +23,7 @@ SUFFIX = ".labels.jsonl"
 
 
 class LabelRow(BaseModel):
-    """A label as a line of the file. ``sample`` is the name of the run in its log, ``at`` is the time of the label."""
+    """A label as stored in the file. ``sample`` is the name of the run's sample in the log; ``at`` is the time of the label."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -45,33 +45,34 @@ def labels_file(log: Path) -> Path:
 
 
 def read_labels(path: Path) -> tuple[LabelRow, ...]:
-    """Read the newest label of each person about each run; none if there is no file.
+    """Read the newest label of each person for each run. A missing file contains no labels.
 
     An incomplete last line is ignored.
 
     Raises:
-        InputError: The file is damaged in another way.
+        InputError: The file cannot be read, or one of its complete lines is not a valid label.
     """
     newest: dict[tuple[str, str], LabelRow] = {}
-    for number, line in whole_lines(path):
-        row = _row(line, path, number)
+    for number, line in complete_lines(path):
+        row = _parse_row(line, path, number)
         newest[row.sample, row.by] = row
     return tuple(newest.values())
 
 
-def _row(line: str, path: Path, number: int) -> LabelRow:
+def _parse_row(line: str, path: Path, number: int) -> LabelRow:
     try:
         return LabelRow.model_validate(json.loads(line))
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise InputError(f"{path}, line {number} is no label: {where}: {first['msg']}.") from error
+        first_error = error.errors(include_url=False)[0]
+        field = ".".join(str(part) for part in first_error["loc"])
+        problem = f"{field}: {first_error['msg']}" if field else first_error["msg"]
+        raise InputError(f"{path}, line {number} is not a valid label: {problem}. Correct or remove the line.") from error
     except ValueError as error:
-        raise InputError(f"{path}, line {number} is no label: {error}.") from error
+        raise InputError(f"{path}, line {number} is not a valid label: {error}. Correct or remove the line.") from error
 
 
 def add_label(path: Path, label: Label, sample: str) -> LabelRow:
-    """Append a label.
+    """Append a label to a file, and return its row.
 
     Raises:
         OutputError: The file cannot be written.
@@ -82,7 +83,7 @@ def add_label(path: Path, label: Label, sample: str) -> LabelRow:
 
 
 def with_labels(evaluation: Evaluation, rows: Iterable[LabelRow]) -> Evaluation:
-    """Return the evaluation with human labels in its trials."""
+    """Return a copy of an evaluation with human labels added to its trials."""
     by_sample: dict[str, list[Label]] = {}
     for row in rows:
         by_sample.setdefault(row.sample, []).append(row.label())

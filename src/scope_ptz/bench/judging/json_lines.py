@@ -1,4 +1,4 @@
-"""Append-only files of JSON lines. A line that an interruption left incomplete is ignored."""
+"""Read and append to files of JSON lines. A last line that an interruption left incomplete is ignored."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 from scope_ptz.errors import InputError, OutputError
 
 
-def whole_lines(path: Path) -> list[tuple[int, str]]:
-    """Return the complete lines of a file that are not blank, with their numbers; none if there is no file.
+def complete_lines(path: Path) -> list[tuple[int, str]]:
+    """Return the complete lines of a file with their numbers, without blank lines. A missing file has no lines.
 
     Raises:
         InputError: The file cannot be read.
@@ -42,12 +42,12 @@ def append_line(path: Path, line: str) -> None:
 def _complete_bytes(size: int, path: Path, step: int = 4096) -> int:
     """Return the size of the complete lines of a file, in bytes."""
     with path.open("rb") as file:
-        at = size
-        while at > 0:
-            start = max(0, at - step)
+        end = size
+        while end > 0:
+            start = max(0, end - step)
             file.seek(start)
-            found = file.read(at - start).rfind(b"\n")
-            if found != -1:
-                return start + found + 1
-            at = start
+            newline = file.read(end - start).rfind(b"\n")
+            if newline != -1:
+                return start + newline + 1
+            end = start
     return 0

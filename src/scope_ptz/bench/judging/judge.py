@@ -1,4 +1,4 @@
-"""The judge, which turns a run into a judgement. It needs only a completion function, no server and no evaluation engine."""
+"""Judge runs with a language model, through a completion function that the caller provides."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from scope_ptz.errors import ScopeError
 
 DEFAULT_JUDGE = "gpt-oss-120b"
 ATTEMPTS = 3
-"""Number of invalid replies after which a judgement counts as unparseable."""
+"""Default number of invalid replies after which a judgement is unparseable."""
 
 BUDGET_CHARS = 60_000
-"""Maximum length of the description of a run; about 15,000 tokens."""
+"""Default maximum length of the description of a run, in characters; about 15,000 tokens."""
 
 _ECHO_CHARS = 2_000
-"""Maximum length of an invalid reply that is sent back to the judge."""
+"""Maximum length of an invalid reply that is sent back to the judge, in characters. Longer replies are shortened."""
 JudgeMessage = dict[str, Any]
 
 
@@ -43,7 +43,7 @@ class Completion(BaseModel):
 
 
 class NoReplyError(ScopeError):
-    """A judge's server gave no usable reply. ``overflow`` is true if the messages exceed the model's context."""
+    """The server of a judge gave no usable reply. ``overflow`` is true if the messages exceed the model's context."""
 
     def __init__(self, message: str, *, overflow: bool = False) -> None:
         self.overflow = overflow
@@ -51,17 +51,17 @@ class NoReplyError(ScopeError):
 
 
 Complete = Callable[[list[JudgeMessage], dict[str, Any]], Awaitable[Completion]]
-"""Completes messages under the JSON schema of the reply. It raises only ``NoReplyError``."""
+"""Completes messages with a reply that follows a JSON schema. It raises only ``NoReplyError``."""
 
 
 class Judge:
-    """A judge. It may judge many runs concurrently and keeps no state between them.
+    """A judge. It keeps no state between judgements, so it can judge many runs concurrently.
 
     Args:
         name: Name of its model, as recorded in judgements.
-        complete: Completes messages.
+        complete: Function that completes messages.
         attempts: Maximum number of replies for one judgement.
-        budget_chars: Maximum length of the description of a run.
+        budget_chars: Maximum length of the description of a run, in characters.
     """
 
     def __init__(self, name: str, complete: Complete, *, attempts: int = ATTEMPTS, budget_chars: int = BUDGET_CHARS) -> None:
@@ -75,17 +75,18 @@ class Judge:
         Args:
             facts: The facts about the task.
             trace: The recorded run.
-            repeat: Index of the judgement, from 0, if the judge gives several.
-            preset_viewpoints: The viewpoints of the presets, so that the judge knows where the camera stood.
+            repeat: Index of the judgement, from 0, if the judge judges the run several times.
+            preset_viewpoints: The viewpoints of the presets. With them, the description states the camera's viewpoint after each
+                call.
         """
         return await self.judge_case(facts, case_of(trace, preset_viewpoints), repeat=repeat)
 
     async def judge_case(self, facts: TaskFacts, case: JudgeCase, *, repeat: int = 0) -> Judgement:
         """Judge a run. ``repeat`` is the index of the judgement, from 0."""
         session = _Session(self, repeat)
-        began = perf_counter()
+        start_s = perf_counter()
         judgement = await session.run(facts, case)
-        return judgement.model_copy(update={"latency_s": perf_counter() - began})
+        return judgement.model_copy(update={"latency_s": perf_counter() - start_s})
 
 
 class _Session:
@@ -93,15 +94,15 @@ class _Session:
 
     def __init__(self, judge: Judge, repeat: int) -> None:
         self.judge, self.repeat = judge, repeat
-        self.asked = self.input_tokens = self.output_tokens = 0
+        self.requests = self.input_tokens = self.output_tokens = 0
 
     async def run(self, facts: TaskFacts, case: JudgeCase) -> Judgement:
-        """Ask until a reply is valid, the attempts are used up, or the server fails."""
+        """Send requests until a reply is valid, the attempts are exhausted, or the server fails."""
         budget, problem = self.judge.budget_chars, ""
         opening = judge_messages(facts, case, budget)
-        messages, answers = opening, 0
-        while answers < self.judge.attempts:
-            self.asked += 1
+        messages, replies = opening, 0
+        while replies < self.judge.attempts:
+            self.requests += 1
             try:
                 reply = await self.judge.complete(messages, REPLY_SCHEMA)
             except NoReplyError as failure:
@@ -110,14 +111,14 @@ class _Session:
                     messages = opening = judge_messages(facts, case, budget)
                     continue
                 return self._judgement("failed", str(failure))
-            answers += 1
+            replies += 1
             self.input_tokens += reply.input_tokens
             self.output_tokens += reply.output_tokens
-            read = "it was cut off at the limit of tokens" if reply.cut_off else parse_judge_reply(reply.text)
-            if isinstance(read, JudgeReply):
-                judged = self._judgement(read.verdict, read.reason)
-                return judged.model_copy(update={"error_mode": read.error_mode})
-            problem = read
+            parsed = "it was cut off at the limit of tokens" if reply.cut_off else parse_judge_reply(reply.text)
+            if isinstance(parsed, JudgeReply):
+                judgement = self._judgement(parsed.verdict, parsed.reason)
+                return judgement.model_copy(update={"error_mode": parsed.error_mode})
+            problem = parsed
             messages = [*opening, *_correction(reply.text, problem)]
         return self._judgement("unparseable", problem)
 
@@ -129,7 +130,7 @@ class _Session:
                 "repeat": self.repeat,
                 "verdict": verdict,
                 "reason": reason,
-                "attempts": self.asked,
+                "attempts": self.requests,
                 "input_tokens": self.input_tokens,
                 "output_tokens": self.output_tokens,
             }
@@ -137,7 +138,7 @@ class _Session:
 
 
 def judge_messages(facts: TaskFacts, case: JudgeCase, budget_chars: int = BUDGET_CHARS) -> list[JudgeMessage]:
-    """Return the messages that a judge receives about a run."""
+    """Return the messages that ask a judge for a verdict on a run."""
     return [
         {"role": "system", "content": system_prompt(facts.category)},
         {"role": "user", "content": render(facts, case, budget_chars)},

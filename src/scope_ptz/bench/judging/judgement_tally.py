@@ -24,11 +24,11 @@ class JudgementTally:
     @classmethod
     def of(cls, judgements: Iterable[Judgement]) -> JudgementTally:
         """Count judgements."""
-        made = list(judgements)
-        failed = [judgement.reason for judgement in made if judgement.verdict == "failed"]
+        rows = list(judgements)
+        failed = [judgement.reason for judgement in rows if judgement.verdict == "failed"]
         return cls(
-            verdicts=sum(judgement.verdict in VERDICTS for judgement in made),
-            unparseable=sum(judgement.verdict == "unparseable" for judgement in made),
+            verdicts=sum(judgement.verdict in VERDICTS for judgement in rows),
+            unparseable=sum(judgement.verdict == "unparseable" for judgement in rows),
             failed=len(failed),
             failure=" ".join(failed[0].split())[:_MAX_FAILURE_CHARS] if failed else "",
         )
@@ -40,7 +40,7 @@ class JudgementTally:
         )  # fmt: skip
 
     @property
-    def made(self) -> int:
+    def total(self) -> int:
         """Number of all judgements."""
         return self.verdicts + self.unparseable + self.failed
 
@@ -58,7 +58,7 @@ def without_verdict(trial: Trial) -> bool:
 def not_judged(trial: Trial) -> bool:
     """Return whether a run without a verdict still needs a judgement.
 
-    This holds if it was not judged, if the judge's server failed, or if only judges other than the deciding one have judged it.
+    It does if it was not judged, if the judge's server failed, or if only judges other than the deciding judge have judged it.
     """
     return without_verdict(trial) and not any(judgement.verdict == "unparseable" for judgement in trial.judgements)
 
@@ -74,22 +74,22 @@ def requested_judgements(trials: Iterable[Trial], judge: str, repeats: int) -> l
         repeats: Number of judgements per run.
 
     Returns:
-        The judgements; None for each that is still missing.
+        One item per requested judgement; None for each judgement that is missing.
     """
-    found: list[Judgement | None] = []
+    judgements: list[Judgement | None] = []
     for trial in trials:
         if trial.headline != "infrastructure":
-            own = {j.repeat: j for j in trial.judgements if (j.judge, j.prompt) == (judge, prompt_version())}
-            found += [own.get(number) for number in range(repeats)]
-    return found
+            by_index = {j.repeat: j for j in trial.judgements if (j.judge, j.prompt) == (judge, prompt_version())}
+            judgements += [by_index.get(index) for index in range(repeats)]
+    return judgements
 
 
 def judged_by(trials: Iterable[Trial], judge: str, repeats: int) -> str | None:
-    """Return a judge that has judged every run ``repeats`` times without a failure; None if there is none.
+    """Return the name of a judge that has judged every run ``repeats`` times without a failure; None if there is none.
 
     Args:
         trials: The runs.
-        judge: The only judge to consider; empty for any.
+        judge: Name of the only judge to consider; empty to consider all judges.
         repeats: Number of judgements per run.
     """
     rows = list(trials)

@@ -1,4 +1,4 @@
-"""Agreement of raters beyond chance: Cohen's kappa for two raters (1960), Fleiss' kappa for more (1971), with bootstrap intervals.
+"""Measure the agreement of raters beyond chance: Cohen's kappa for two raters (1960), Fleiss' kappa for more (1971).
 
 Point estimates are computed by statsmodels. Intervals are percentile bootstraps over clusters (Efron and Tibshirani 1993, section
 13.3). Whole tasks are drawn, because ratings of runs of one task are not independent. kappa = (p_o - p_e) / (1 - p_e) is undefined
@@ -16,9 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 LEVEL = 0.95
+"""Confidence level of the intervals."""
 DRAWS = 2000
-_MIN_DEFINED = 0.5
-"""Minimum share of draws in which kappa must be defined. Below it, no interval is given."""
+"""Number of bootstrap draws."""
+_MIN_DEFINED_SHARE = 0.5
+"""Minimum share of draws in which kappa must be defined. If fewer are defined, there is no interval."""
 
 Numbers = NDArray[np.float64]
 
@@ -30,11 +32,11 @@ class KappaResult:
     Attributes:
         runs: Number of runs.
         raters: Number of raters.
-        raw: Share of runs on which two raters agree; for more raters, share of pairs of ratings.
+        raw: Share of runs on which two raters agree. For more raters, share of agreeing pairs of ratings of the same run.
         kappa: Agreement beyond chance; None if undefined.
-        low: Lower limit of the 95% interval of kappa.
-        high: Upper limit of the 95% interval of kappa.
-        confusion: For two raters, how often each combination of labels occurs.
+        low: Lower limit of the 95% interval of kappa; None if unknown.
+        high: Upper limit of the 95% interval of kappa; None if unknown.
+        confusion: For two raters, the number of runs with each combination of labels.
     """
 
     runs: int
@@ -64,19 +66,19 @@ def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashab
     if not first:
         return KappaResult(0, 2, None, None)
     labels = sorted({*first, *second})
-    place = {label: at for at, label in enumerate(labels)}
-    tables = _by_cluster(
-        clusters, [place[a] * len(labels) + place[b] for a, b in zip(first, second, strict=True)], len(labels) ** 2
+    index = {label: number for number, label in enumerate(labels)}
+    tables = _counts_by_cluster(
+        clusters, [index[a] * len(labels) + index[b] for a, b in zip(first, second, strict=True)], len(labels) ** 2
     )
     table = tables.sum(axis=0).reshape(len(labels), len(labels))
-    counted = Counter(zip(first, second, strict=True))
+    confusion = Counter(zip(first, second, strict=True))
     return KappaResult(
         runs=len(first),
         raters=2,
         raw=float(np.trace(table) / table.sum()),
         kappa=_statsmodels_cohen(table) if len(labels) > 1 else None,
         **_interval(tables, lambda sums: cohen_values(sums.reshape(-1, len(labels), len(labels))), seed),
-        confusion=tuple((a, b, number) for (a, b), number in sorted(counted.items())),
+        confusion=tuple((a, b, number) for (a, b), number in sorted(confusion.items())),
     )
 
 
@@ -84,12 +86,12 @@ def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed:
     """Measure the agreement of several raters by Fleiss' kappa.
 
     Args:
-        ratings: The labels of each run. Every run needs the same number of labels.
+        ratings: The labels of each run. Every run must have the same number of labels.
         clusters: The cluster of each run.
         seed: Seed of the bootstrap.
 
     Raises:
-        ValueError: Runs have different numbers of ratings, or fewer than two.
+        ValueError: Runs have different numbers of labels, or fewer than two.
     """
     if not ratings:
         return KappaResult(0, 0, None, None)
@@ -97,7 +99,7 @@ def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed:
     labels = sorted({label for row in ratings for label in row})
     counts = np.array([[row.count(label) for label in labels] for row in map(list, ratings)], dtype=float)
     if raters < 2 or not (counts.sum(axis=1) == raters).all():
-        raise ValueError("every run needs the same number of ratings, and at least two")
+        raise ValueError("every run must have the same number of labels, and at least two")
     pairs = (counts * (counts - 1)).sum(axis=1) / (raters * (raters - 1))
     rows = np.column_stack([counts, pairs, np.ones(len(ratings))])
     names = list(dict.fromkeys(clusters))
@@ -125,7 +127,8 @@ def fleiss_values(sums: Numbers) -> Numbers:
     """Return Fleiss' kappa of each row of sums.
 
     Args:
-        sums: Shape ``(n, k + 2)``: counts by label, the share of agreeing pairs and the number of runs, each summed over runs.
+        sums: Array of shape ``(n, k + 2)``. Its columns are the counts of the k labels, the share of agreeing pairs, and the number
+            of runs, each summed over runs.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         shares = sums[:, :-2] / sums[:, :-2].sum(axis=1, keepdims=True)
@@ -137,24 +140,30 @@ def _beyond_chance(observed: Numbers, by_chance: Numbers) -> Numbers:
     return np.where(above_chance > 1e-12, (observed - by_chance) / np.where(above_chance > 1e-12, above_chance, 1.0), np.nan)
 
 
-def _by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size: int) -> Numbers:
+def _counts_by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size: int) -> Numbers:
     """Return the counts of cells by cluster, of shape ``(clusters, size)``."""
-    known: dict[Hashable, int] = {}
-    rows = [known.setdefault(cluster, len(known)) for cluster in clusters]
-    counts = np.zeros((len(known), size))
+    indices: dict[Hashable, int] = {}
+    rows = [indices.setdefault(cluster, len(indices)) for cluster in clusters]
+    counts = np.zeros((len(indices), size))
     np.add.at(counts, (rows, list(cells)), 1.0)
     return counts
 
 
-def _interval(by_cluster: Numbers, value: Callable[[Numbers], Numbers], seed: int) -> dict[str, Any]:
-    """Return the percentile interval of a statistic of summed rows, with clusters drawn with replacement; limits may be None."""
-    clusters = len(by_cluster)
+def _interval(sums_by_cluster: Numbers, statistic: Callable[[Numbers], Numbers], seed: int) -> dict[str, Any]:
+    """Return the percentile interval of a statistic by a cluster bootstrap; its limits are None if it cannot be computed.
+
+    Args:
+        sums_by_cluster: The sums of each cluster, of shape ``(clusters, k)``.
+        statistic: Computes the statistic for each row of summed clusters.
+        seed: Seed of the draws.
+    """
+    clusters = len(sums_by_cluster)
     if clusters < 2:
         return {"low": None, "high": None}
     drawn = np.random.default_rng(seed).multinomial(clusters, np.full(clusters, 1 / clusters), size=DRAWS)
-    values = value(drawn @ by_cluster)
+    values = statistic(drawn @ sums_by_cluster)
     values = values[~np.isnan(values)]
-    if len(values) < DRAWS * _MIN_DEFINED:
+    if len(values) < DRAWS * _MIN_DEFINED_SHARE:
         return {"low": None, "high": None}
     tail = (1 - LEVEL) / 2
     low, high = np.quantile(values, (tail, 1 - tail))

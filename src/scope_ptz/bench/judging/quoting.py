@@ -15,29 +15,31 @@ _TOKENS = re.compile(
     re.IGNORECASE,
 )
 """Brackets of control tokens such as ``<|im_end|>``, ``</s>`` or ``[/INST]``."""
-_HEX_UP_TO = 0xFFFF
+_MAX_FOUR_DIGIT_CODE = 0xFFFF
+"""Largest character code that is escaped with four hexadecimal digits."""
 
 
 def quoted(text: str) -> str:
-    """Return a text with a bar before each line. The result is never empty. Unprintable characters are escaped."""
-    return "\n".join(BAR + _harmless(line) for line in _LINE_ENDS.split(text))
+    """Return a text with a bar before each line, and with unprintable characters escaped. An empty text becomes a bar."""
+    return "\n".join(BAR + _neutralize(line) for line in _LINE_ENDS.split(text))
 
 
 def inline(text: str, max_chars: int) -> str:
-    """Return a name of at most ``max_chars`` characters for use within a line, in quotation marks that it cannot close."""
-    line = _harmless(" ".join(_LINE_ENDS.sub(" ", text).split())).replace('"', "'")
+    """Return a name as one line of at most ``max_chars`` characters in double quotes. Double quotes in the name are replaced."""
+    line = _neutralize(" ".join(_LINE_ENDS.sub(" ", text).split())).replace('"', "'")
     return f'"{line if len(line) <= max_chars else line[: max_chars - 1] + "…"}"'
 
 
 def cut(text: str, max_chars: int) -> str:
-    """Return a text of at most about ``max_chars`` characters. A note replaces the middle of a longer text."""
+    """Shorten a text to about ``max_chars`` characters by replacing its middle with a note."""
     if len(text) <= max_chars:
         return text
     head, tail = max_chars * 2 // 3, max_chars // 3
     return f"{text[:head]} [... {len(text) - head - tail} characters left out ...] {text[len(text) - tail :]}"
 
 
-def _harmless(line: str) -> str:
+def _neutralize(line: str) -> str:
+    """Escape the unprintable characters of a line, and split its control tokens."""
     line = line.replace("\t", " ")
     if not line.isprintable():
         line = "".join(character if character.isprintable() else _escape(character) for character in line)
@@ -51,4 +53,4 @@ def _split_token(token: re.Match[str]) -> str:
 
 def _escape(character: str) -> str:
     code = ord(character)
-    return f"\\u{code:04x}" if code <= _HEX_UP_TO else f"\\U{code:08x}"
+    return f"\\u{code:04x}" if code <= _MAX_FOUR_DIGIT_CODE else f"\\U{code:08x}"

@@ -1,7 +1,7 @@
 """Describe a run to a judge within a budget of characters.
 
-The instruction, the expected answer and the final answer are always included. In a long run, long tool results are shortened first;
-then calls in the middle are replaced by their number for each tool.
+The instruction, the expected answer and the final answer are always included. If a run is long, first its tool results are
+shortened. If that is not enough, the calls in the middle are replaced with the number of calls of each tool.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.geometry import Pose
 
 MIN_CHARS = 6_000
-"""Minimum budget in characters. A shorter description could not be judged reliably."""
+"""Minimum budget in characters, because a shorter description cannot be judged reliably."""
 
 _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
 _RESULT_CHARS = (4_000, 1_200, 300)
-"""Maximum lengths of a tool result in characters. The first one with which all calls fit is used."""
+"""Maximum lengths of a tool result in characters, tried in this order until all calls fit into the budget."""
 
 _NAME_CHARS, _MAX_PRESETS, _NOTE_CHARS = 60, 40, 300
 _OMITTED_FIELDS = frozenset({"boxes", "box", "path", "frames", "source"})
@@ -50,7 +50,7 @@ def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:
     Args:
         facts: The facts about the task.
         case: The run.
-        budget: Maximum length in characters. A budget below ``MIN_CHARS`` counts as ``MIN_CHARS``.
+        budget: Maximum length in characters. A smaller budget than ``MIN_CHARS`` is raised to ``MIN_CHARS``.
     """
     head, tail = _task_part(facts, case), _end_part(case)
     budget_left = max(budget, MIN_CHARS) - len(head) - len(tail)
@@ -76,7 +76,7 @@ def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
         lines += ["", "What the run must have done:", quoted(cut("\n".join(facts.demands), _EXPECTED_CHARS))]
     lines += [
         "",
-        f"Start: preset {inline(facts.preset, _NAME_CHARS)}{where}, camera at {in_words(case.start)}.",
+        f"Start: preset {inline(facts.preset, _NAME_CHARS)}{where}, camera at {pose_text(case.start)}.",
         f"Presets of the camera: {presets}.",
     ]
     if case.sees:
@@ -85,9 +85,9 @@ def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
 
 
 def _preset(name: str, case: JudgeCase) -> str:
-    """Return a preset with its viewpoint, if known."""
-    at = case.preset_viewpoints.presets.get(name) if case.preset_viewpoints is not None else None
-    return inline(name, _NAME_CHARS) + (f" (viewpoint {inline(at, _NAME_CHARS)})" if at else "")
+    """Return the name of a preset, with its viewpoint if known."""
+    viewpoint = case.preset_viewpoints.presets.get(name) if case.preset_viewpoints is not None else None
+    return inline(name, _NAME_CHARS) + (f" (viewpoint {inline(viewpoint, _NAME_CHARS)})" if viewpoint else "")
 
 
 def _end_part(case: JudgeCase) -> str:
@@ -96,7 +96,7 @@ def _end_part(case: JudgeCase) -> str:
     return "\n".join(
         (
             f"How the run ended: {ending}.",
-            f"Final camera pose:{_at(viewpoint)} {in_words(case.final)}.",
+            f"Final camera pose:{_at(viewpoint)} {pose_text(case.final)}.",
             "",
             "What the agent said in the end:",
             quoted(cut(case.answer, _ANSWER_CHARS) if case.answer.strip() else "(nothing)"),
@@ -112,29 +112,29 @@ def _calls_part(calls: Sequence[CaseCall], budget_left: int) -> str:
         texts = _all_calls(calls, max_chars, budget_left)
         if texts is not None:
             return "\n".join((title, *texts))
-    return "\n".join((title, *_ends_kept(calls, budget_left)))
+    return "\n".join((title, *_first_and_last_calls(calls, budget_left)))
 
 
 def _all_calls(calls: Sequence[CaseCall], max_chars: int, budget_left: int) -> list[str] | None:
     """Return the text of every call, or None if they do not fit into ``budget_left`` characters."""
-    texts, left = list[str](), budget_left
+    texts = list[str]()
     for number, call in enumerate(calls, 1):
         texts.append(_call_text(number, call, max_chars))
-        left -= len(texts[-1]) + 1
-        if left < 0:
+        budget_left -= len(texts[-1]) + 1
+        if budget_left < 0:
             return None
     return texts
 
 
-def _ends_kept(calls: Sequence[CaseCall], budget_left: int) -> list[str]:
-    """Return as many calls from both ends as fit, taken alternately, and a note about the calls in the middle."""
+def _first_and_last_calls(calls: Sequence[CaseCall], budget_left: int) -> list[str]:
+    """Return the first and last calls, as many as fit, and a note about the calls in the middle."""
     front, back = list[str](), list[str]()
-    left = budget_left - _NOTE_CHARS
+    budget_left -= _NOTE_CHARS
     while len(front) + len(back) < len(calls):
-        at = len(front) if len(front) <= len(back) else len(calls) - 1 - len(back)
-        text = _call_text(at + 1, calls[at], _RESULT_CHARS[-1])
-        left -= len(text) + 1
-        if left < 0:
+        index = len(front) if len(front) <= len(back) else len(calls) - 1 - len(back)
+        text = _call_text(index + 1, calls[index], _RESULT_CHARS[-1])
+        budget_left -= len(text) + 1
+        if budget_left < 0:
             break
         (front if len(front) <= len(back) else back).append(text)
     first, last = len(front), len(calls) - len(back)
@@ -153,7 +153,7 @@ def _call_text(number: int, call: CaseCall, max_chars: int) -> str:
         else f"result: {cut(_json(_shown_fields(call.result or {})), max_chars)}"
     )
     body = quoted(f"{cut(call.name, 80)} {arguments}\n{result}")
-    return f"Call {number}:\n{body}\nCamera afterwards:{_at(call.viewpoint)} {in_words(call.pose)}."
+    return f"Call {number}:\n{body}\nCamera afterwards:{_at(call.viewpoint)} {pose_text(call.pose)}."
 
 
 def _at(viewpoint: str | None) -> str:
@@ -161,25 +161,25 @@ def _at(viewpoint: str | None) -> str:
 
 
 def _shown_fields(result: Mapping[str, Any]) -> dict[str, Any]:
-    kept = {name: value for name, value in result.items() if name not in _OMITTED_FIELDS and name != "pose"}
-    if isinstance(kept.get("message"), str):
-        kept["message"] = _PERCEPTION_NAME.sub("", kept["message"])
-    return kept
+    fields = {name: value for name, value in result.items() if name not in _OMITTED_FIELDS and name != "pose"}
+    if isinstance(fields.get("message"), str):
+        fields["message"] = _PERCEPTION_NAME.sub("", fields["message"])
+    return fields
 
 
 def _json(content: Mapping[str, Any]) -> str:
     return json.dumps(dict(content), ensure_ascii=False, default=str)
 
 
-def in_words(pose: Pose) -> str:
-    """Return a pose in words."""
+def pose_text(pose: Pose) -> str:
+    """Return a pose as text."""
     return f"pan {pose.pan_deg:.1f}, tilt {pose.tilt_deg:.1f} degrees, zoom {pose.zoom:.2f}x"
 
 
-def specimen() -> str:
+def layout_sample() -> str:
     """Return the description of an invented run that contains every part of the layout.
 
-    The prompt version includes it, so a change of the layout changes the version.
+    It is part of the digest in the prompt version, so a change of the layout changes the version.
     """
     pose = Pose(10.0, -5.0, 2.0)
     facts = TaskFacts(

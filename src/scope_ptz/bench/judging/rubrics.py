@@ -1,7 +1,7 @@
-"""The published prompt for judges, which is stored in a file.
+"""Load the published prompt for judges from its file.
 
-Put another wording into another file, because verdicts are comparable only under the same prompt. Every judgement records the name
-of the file and a digest of its text.
+Store a changed prompt in a new file, because verdicts are comparable only if they were given with the same prompt. Every judgement
+records the name of the file and a digest of its text.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from functools import cache
 from importlib.resources import files
 
 from scope_ptz.bench.judging.judge_replies import REPLY_SCHEMA
-from scope_ptz.bench.judging.rendering import specimen
+from scope_ptz.bench.judging.rendering import layout_sample
 from scope_ptz.bench.tasks.task import Category
 
 PROMPT = "judge-1"
@@ -29,14 +29,14 @@ def system_prompt(category: Category) -> str:
 
 
 def mode_lines() -> list[str]:
-    """Return the error modes with their definitions, numbered, in the order of precedence."""
+    """Return the numbered error modes with their definitions, in order of precedence."""
     return [line for line in _sections()["error modes"].splitlines() if line[:1].isdigit()]
 
 
 @cache
 def prompt_version() -> str:
-    """Return the name of the prompt and a digest of its text and of the layout of runs, as recorded in judgements."""
-    text = _text() + json.dumps(REPLY_SCHEMA) + specimen()
+    """Return the version that judgements record: the prompt's name, and a digest of its text, the reply schema and the layout."""
+    text = _text() + json.dumps(REPLY_SCHEMA) + layout_sample()
     return f"{PROMPT}:{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
 
@@ -47,5 +47,5 @@ def _text() -> str:
 
 @cache
 def _sections() -> dict[str, str]:
-    pieces = _HEADING.split(_text())[1:]
-    return {name: body.strip() for name, body in zip(pieces[::2], pieces[1::2], strict=True)}
+    parts = _HEADING.split(_text())[1:]
+    return {name: body.strip() for name, body in zip(parts[::2], parts[1::2], strict=True)}

@@ -1,4 +1,4 @@
-"""A judge's connection to an OpenAI-compatible server. Replies are constrained to the schema if the server supports it."""
+"""Connect a judge to an OpenAI-compatible server. Replies are constrained to the JSON schema if the server supports it."""
 
 from __future__ import annotations
 
@@ -17,12 +17,17 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.planner.chat.dialect import Dialect
 from scope_ptz.planner.chat.reasoning_text import separate_reasoning
 
-Form = Literal["json_schema", "json_object", "free"]
-_FORMS: tuple[Form, ...] = ("json_schema", "json_object", "free")
-_REFUSALS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
-_ABOUT_FORM = re.compile(r"response_format|json_?(schema|object)|schema|grammar|guided|structured|xgrammar|outlines", re.IGNORECASE)
+ResponseFormat = Literal["json_schema", "json_object", "free"]
+_RESPONSE_FORMATS: tuple[ResponseFormat, ...] = ("json_schema", "json_object", "free")
+"""Response formats in the order in which they are tried."""
+_REJECTION_KINDS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
+"""Kinds of failures with which servers reject an unsupported response format."""
+_FORMAT_WORDS = re.compile(
+    r"response_format|json_?(schema|object)|schema|grammar|guided|structured|xgrammar|outlines", re.IGNORECASE
+)
+"""Words in an error message that are about the response format."""
 _MAX_REQUESTS = 6
-"""Maximum number of requests for one reply. Each drops an option that the server refused."""
+"""Maximum number of requests for one reply. Each request leaves out an option that the server rejected."""
 
 
 class JudgeModelOptions(BaseModel):
@@ -44,74 +49,85 @@ class JudgeModelOptions(BaseModel):
 
 
 @dataclass
-class _Known:
-    """The options that a server accepts, as learned from its replies. All connections to the server share it."""
+class _ServerSupport:
+    """The options that a server accepts, as learned from its replies. Copies of a ``JudgeServer`` share it.
+
+    Attributes:
+        dialect: The dialect of requests.
+        format_index: Index of the first response format that was not rejected.
+    """
 
     dialect: Dialect = field(default_factory=lambda: Dialect("native", fixed=True))
-    form: int = 0
+    format_index: int = 0
 
 
 class JudgeServer:
-    """Completes a judge's messages on a server.
+    """Sends a judge's messages to a server.
 
-    Concurrent judgements may share it. It remembers which options the server refuses.
+    It can be used by concurrent judgements. It remembers which options the server rejects.
     """
 
     def __init__(self, endpoint: Endpoint, options: JudgeModelOptions | None = None) -> None:
-        self.options, self.client, self._known = options or JudgeModelOptions(), ChatClient(endpoint), _Known()
+        self.options, self.client, self._support = options or JudgeModelOptions(), ChatClient(endpoint), _ServerSupport()
 
-    def repeated(self, repeat: int) -> JudgeServer:
-        """Return the server for another judgement by the same judge, with another seed and the same connections."""
-        port = copy(self)
-        port.options = self.options.model_copy(update={"seed": self.options.seed + repeat})
-        return port
+    def for_repeat(self, repeat: int) -> JudgeServer:
+        """Return a copy for the judgement with index ``repeat``, which has its own seed and shares the connections."""
+        server = copy(self)
+        server.options = self.options.model_copy(update={"seed": self.options.seed + repeat})
+        return server
 
     async def __call__(self, messages: list[JudgeMessage], schema: dict[str, Any]) -> Completion:
-        """Complete messages under a JSON schema.
+        """Complete messages with a reply that follows a JSON schema.
 
         Raises:
-            NoReplyError: The server failed or refuses every form of request.
+            NoReplyError: The server failed, or it rejected every response format.
         """
-        form, after_empty, dialect = self._known.form, False, self._known.dialect
+        format_index, after_empty, dialect = self._support.format_index, False, self._support.dialect
         for _ in range(_MAX_REQUESTS):
             fields = dialect.fields(self.options.model_dump())
             try:
                 reply = await self.client.complete(
-                    dialect.messages(messages), extra={**fields, **_response_format(_FORMS[form], schema)}
+                    dialect.messages(messages), extra={**fields, **_format_fields(_RESPONSE_FORMATS[format_index], schema)}
                 )
             except ServerFailure as failure:
                 if dialect.adapt(failure, fields, with_tools=False):
                     continue
-                if form + 1 < len(_FORMS) and (failure.kind is FailureKind.EMPTY or _refuses_form(failure)):
-                    form, after_empty = form + 1, after_empty or failure.kind is FailureKind.EMPTY
+                is_empty = failure.kind is FailureKind.EMPTY
+                if format_index + 1 < len(_RESPONSE_FORMATS) and (is_empty or _rejects_format(failure)):
+                    format_index, after_empty = format_index + 1, after_empty or is_empty
                     continue
-                if failure.kind is FailureKind.EMPTY:
+                if is_empty:
                     return Completion(text="")
                 raise NoReplyError(str(failure), overflow=failure.kind is FailureKind.CONTEXT_OVERFLOW) from None
-            if not after_empty:  # An empty reply may be temporary; a refusal is not.
-                self._known.form = max(self._known.form, form)
-            return _read(reply)
-        raise NoReplyError(f"The judge's server at {self.client.endpoint.url} refuses every form of request.")
+            if not after_empty:  # A rejection is permanent, but an empty reply may be temporary.
+                self._support.format_index = max(self._support.format_index, format_index)
+            return _completion(reply)
+        raise NoReplyError(
+            f"The judge's server at {self.client.endpoint.url} rejected {_MAX_REQUESTS} requests with different options. "
+            "Use another server or model."
+        )
 
     async def close(self) -> None:
         """Close all connections."""
         await self.client.close()
 
 
-def _refuses_form(failure: ServerFailure) -> bool:
-    """Return whether a server may have refused the response format: it names it, or calls the request bad."""
-    return failure.kind in _REFUSALS and (failure.kind is FailureKind.BAD_REQUEST or _ABOUT_FORM.search(failure.detail) is not None)
+def _rejects_format(failure: ServerFailure) -> bool:
+    """Return whether a server may have rejected the response format: it mentions the format, or reports a bad request."""
+    is_about_format = failure.kind is FailureKind.BAD_REQUEST or _FORMAT_WORDS.search(failure.detail) is not None
+    return failure.kind in _REJECTION_KINDS and is_about_format
 
 
-def _response_format(form: Form, schema: dict[str, Any]) -> dict[str, Any]:
-    if form == "free":
+def _format_fields(response_format: ResponseFormat, schema: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a request that select a response format."""
+    if response_format == "free":
         return {}
-    if form == "json_object":
+    if response_format == "json_object":
         return {"response_format": {"type": "json_object"}}
     return {"response_format": {"type": "json_schema", "json_schema": {"name": "verdict", "strict": True, "schema": schema}}}
 
 
-def _read(reply: ChatReply) -> Completion:
+def _completion(reply: ChatReply) -> Completion:
     return Completion(
         text=separate_reasoning(reply.text, reply.reasoning).text,
         input_tokens=reply.input_tokens,

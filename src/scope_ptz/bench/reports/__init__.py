@@ -1,1 +1,1 @@
-"""Reports on evaluations, with tables, charts and pages of failed tasks, and submissions to the leaderboard."""
+"""Create reports on evaluations, with tables, charts and pages of failed tasks, and create and check submissions."""

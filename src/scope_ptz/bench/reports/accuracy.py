@@ -1,4 +1,4 @@
-"""The accuracy section: accuracy by category as in the paper's table, its bounds, and the judge's verdicts next to the checks'."""
+"""The accuracy section: accuracy by category as in the paper's table, its bounds, and a comparison of the judge with the checks."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, Report
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.clustered import IntervalEstimate, share
 
-KIND_WORDS = {
+KIND_TITLES = {
     "models": "models",
     "reference": "reference",
     "blind": "blind baseline",
     "person": "person",
 }
 ROUNDING = 1e-9
-"""Values that differ by less are equal."""
-INTERVALS = (
+"""Values that differ by less than this are treated as equal."""
+INTERVALS_NOTE = (
     "Each value has a 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree of freedom "
     "fewer than there are viewpoints, Wilson's form at the effective sample size). Repeats of a task count as one observation. "
     "With only one viewpoint the interval is unknown. “Without” lists categories with only one viewpoint. They are included in "
@@ -32,28 +32,28 @@ INTERVALS = (
 
 def accuracy_section(runs: Sequence[ReportRun]) -> Section:
     """Return the section on the accuracy of every run with core tasks. Model pairs and other runs have separate tables."""
-    having = [run for run in runs if run.scored_trials]
-    ranked, others = [r for r in having if r.ranked], [r for r in having if not r.ranked]
+    scored_runs = [run for run in runs if run.scored_trials]
+    ranked, others = [r for r in scored_runs if r.ranked], [r for r in scored_runs if not r.ranked]
     tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, rank=True)]
     if others:
         tables.append(category_table("accuracy_not_ranked", "Accuracy by category (%): not ranked", others, rank=False))
-    tables.append(_bounds(having))
-    if any(t.judgements for run in having for t in run.scored_trials):
-        tables.append(_by_judge(having))
+    tables.append(_outcome_table(scored_runs))
+    if any(t.judgements for run in scored_runs for t in run.scored_trials):
+        tables.append(_judge_table(scored_runs))
     text = [
         "The macro average is the unweighted mean over categories, which the paper calls average. The micro average is the share "
         "of all trials; a trial is one run of one task. Both count correct trials among those that infrastructure did not break. "
         "An unscored trial counts as not correct. Trials that only a judge can score are left out until a judge has given a "
         "verdict."
     ]
-    if len({(run.task_set, run.tasks) for run in having}) > 1:
+    if len({(run.task_set, run.tasks) for run in scored_runs}) > 1:
         text.append(
             "Not all runs cover the same tasks. The best values are marked among runs over exactly the same tasks. The chart shows "
             "the main task set."
             + (
-                " Runs over a different selection of its tasks are hollow and below the others; their labels give the number of "
-                "shared tasks."
-                if any(run.other_tasks for run in having)
+                " Runs over a different selection of its tasks have hollow markers and are below the others. Their labels state "
+                "the number of shared tasks."
+                if any(run.other_tasks for run in scored_runs)
                 else ""
             )
         )
@@ -71,12 +71,12 @@ def accuracy_section(runs: Sequence[ReportRun]) -> Section:
 def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: bool) -> ReportTable:
     """Return a table with one row per run, grouped by perception model.
 
-    The best value with a perception model is bold. The best value over the same tasks is also underlined.
+    With ``rank``, the best value of each perception model is bold, and the best value over the same tasks is underlined.
     """
     columns = [Column("run", "Run"), Column("macro", "Macro average", "share"), Column("micro", "Micro average", "share")]
     columns += [Column(name, words, "share") for name, words in CATEGORY_TITLES.items()]
     columns.append(Column("tasks", "Tasks", "count"))
-    raw = [(run, [run.macro, run.micro, *(_category(run, name) for name in CATEGORY_TITLES)]) for run in runs]
+    raw = [(run, [run.macro, run.micro, *(_category_share(run, name) for name in CATEGORY_TITLES)]) for run in runs]
     rows, groups = [], {}
     previous = None
     for number, (run, values) in enumerate(raw):
@@ -86,11 +86,11 @@ def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: boo
         cells = [_marked(value, index, run, raw) if rank else value for index, value in enumerate(values)]
         cells[0] = _partial_macro(cells[0], run)
         rows.append((run.label, *cells, len(run.tasks)))
-    notes = (INTERVALS, "Bold: the best value with this perception model. Underlined: the best value on these tasks.")
-    return ReportTable(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS,), groups)
+    notes = (INTERVALS_NOTE, "Bold: the best value with this perception model. Underlined: the best value on these tasks.")
+    return ReportTable(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS_NOTE,), groups)
 
 
-def _category(run: ReportRun, name: str) -> IntervalEstimate | None:
+def _category_share(run: ReportRun, name: str) -> IntervalEstimate | None:
     return share(scores_of([t for t in run.scored_trials if t.task.category == name]))
 
 
@@ -100,14 +100,14 @@ def _marked(
     if value is None:
         return None
     same_tasks = [(r, v[index]) for r, v in raw if r.task_set == run.task_set and r.tasks == run.tasks]
-    alike = [v.value for r, v in same_tasks if v and r.perception_name == run.perception_name]
-    every = [v.value for _, v in same_tasks if v]
-    return MarkedCell(value, _is_best(value.value, alike), _is_best(value.value, every))
+    same_perception = [v.value for r, v in same_tasks if v and r.perception_name == run.perception_name]
+    all_values = [v.value for _, v in same_tasks if v]
+    return MarkedCell(value, _is_best(value.value, same_perception), _is_best(value.value, all_values))
 
 
-def _is_best(value: float, among: Sequence[float]) -> bool:
-    """Return whether no other value is better. Values that differ only by rounding are equal."""
-    return len(among) > 1 and value > max(among) - ROUNDING
+def _is_best(value: float, values: Sequence[float]) -> bool:
+    """Return whether a value is the maximum of several values. Values that differ only by rounding are equal."""
+    return len(values) > 1 and value > max(values) - ROUNDING
 
 
 def _partial_macro(value: CellValue, run: ReportRun) -> CellValue:
@@ -119,7 +119,7 @@ def _partial_macro(value: CellValue, run: ReportRun) -> CellValue:
     return replace(marks, note=f"over {number} of {len(CATEGORY_TITLES)} categories")
 
 
-def _bounds(runs: Sequence[ReportRun]) -> ReportTable:
+def _outcome_table(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("run", "Run"), Column("trials", "Trials", "count"), Column("correct", "Correct", "count"),
         Column("incorrect", "Incorrect", "count"), Column("unscored", "Unscored", "count"),
@@ -128,23 +128,23 @@ def _bounds(runs: Sequence[ReportRun]) -> ReportTable:
     )  # fmt: skip
     notes = (
         "Unscored: no check failed, but the answer could not be parsed. Infrastructure: a server or the camera failed, so "
-        "the trial cannot be used to score the agent. At least and at most: the share if all of these trials were incorrect, or "
-        "all of them correct.",
+        "the trial cannot be used to score the agent. At least and at most: the share of correct trials if all unscored and "
+        "infrastructure trials were incorrect, or if all of them were correct.",
     )
-    return ReportTable("outcomes", "Outcomes of the trials, with bounds", columns, tuple(_counted(run) for run in runs), notes)
+    return ReportTable("outcomes", "Outcomes of the trials, with bounds", columns, tuple(_outcome_row(run) for run in runs), notes)
 
 
-def _counted(run: ReportRun) -> tuple[CellValue, ...]:
-    found = Counter(t.headline for t in run.main_trials)
+def _outcome_row(run: ReportRun) -> tuple[CellValue, ...]:
+    counts = Counter(t.headline for t in run.main_trials)
     total = len(run.main_trials)
-    ran = len(run.scored_trials)
+    scored = len(run.scored_trials)
     return (
-        run.label, total, found["correct"], found["incorrect"], found["unscored"], found["infrastructure"],
-        found["correct"] / ran if ran else None, found["correct"] / total, 1 - found["incorrect"] / total,
+        run.label, total, counts["correct"], counts["incorrect"], counts["unscored"], counts["infrastructure"],
+        counts["correct"] / scored if scored else None, counts["correct"] / total, 1 - counts["incorrect"] / total,
     )  # fmt: skip
 
 
-def _by_judge(runs: Sequence[ReportRun]) -> ReportTable:
+def _judge_table(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("run", "Run"), Column("judge", "Judge"), Column("judged", "Judged", "count"),
         Column("unparseable", "Unparseable", "count"), Column("failed", "Judge failed", "count"),
@@ -152,9 +152,9 @@ def _by_judge(runs: Sequence[ReportRun]) -> ReportTable:
         Column("agreement", "Same verdict (%)", "share"),
     )  # fmt: skip
     notes = (
-        "The paper reports accuracy by a judge. Both macro averages cover the trials with a verdict of the judge; unparseable and "
-        "failed judgements are left out. Trials without a check of the answer, which a judge scored, count neither in the macro "
-        "average by checks nor in the agreement.",
+        "The paper reports accuracy by a judge. Both macro averages cover the trials with a verdict of the judge, without "
+        "unparseable and failed judgements. Trials that only a judge can score are excluded from the macro average by checks and "
+        "from the share of same verdicts.",
     )
     return ReportTable("judge", "Verdicts of the judge and of the checks", columns, tuple(_judged_row(run) for run in runs), notes)
 
@@ -164,16 +164,16 @@ def _judged_row(run: ReportRun) -> tuple[CellValue, ...]:
     if name is None:
         return run.label, None, 0, 0, 0, None, None, None
     judged = verdicts(run.scored_trials, name)
-    states = Counter(judgement.verdict for _, judgement in judged)
-    clear = [(t, j.verdict == "correct") for t, j in judged if j.verdict in ("correct", "incorrect")]
-    trials = [t for t, _ in clear]
+    counts = Counter(judgement.verdict for _, judgement in judged)
+    decided = [(t, j.verdict == "correct") for t, j in judged if j.verdict in ("correct", "incorrect")]
+    trials = [t for t, _ in decided]
     checked = [t for t in trials if t.scored_by == "checks"]
-    own = [(t, right) for t, right in clear if t.scored_by == "checks" and t.headline != "unscored"]
-    alike = sum((t.headline == "correct") == right for t, right in own) / len(own) if own else None
-    by_judge = macro(scores_of(trials, [right for _, right in clear]))
-    return run.label, name, len(judged), states["unparseable"], states["failed"], by_judge, macro(scores_of(checked)), alike
+    both = [(t, correct) for t, correct in decided if t.scored_by == "checks" and t.headline != "unscored"]
+    agreement = sum((t.headline == "correct") == correct for t, correct in both) / len(both) if both else None
+    by_judge = macro(scores_of(trials, [correct for _, correct in decided]))
+    return run.label, name, len(judged), counts["unparseable"], counts["failed"], by_judge, macro(scores_of(checked)), agreement
 
 
 def share_correct(trials: Sequence[Trial]) -> float | None:
-    """Return the share of correct trials; None without trials."""
+    """Return the share of correct trials; None if there are no trials."""
     return sum(t.headline == "correct" for t in trials) / len(trials) if trials else None

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from scope_ptz.bench.reports.accuracy import KIND_WORDS, accuracy_section
+from scope_ptz.bench.reports.accuracy import KIND_TITLES, accuracy_section
 from scope_ptz.bench.reports.display_names import served_instead
-from scope_ptz.bench.reports.error_analysis import MODE_TITLES, by_rules, error_section, oracle_section
+from scope_ptz.bench.reports.error_analysis import MODE_TITLES, error_section, modes_by_rules, oracle_section
 from scope_ptz.bench.reports.latency import latency_section
 from scope_ptz.bench.reports.paired_comparison import compare, comparison_section, comparison_table
 from scope_ptz.bench.reports.paper import paper_section
@@ -61,31 +61,31 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     Args:
         evaluations: The evaluations.
         registry: The registry that describes the models.
-        pages: The page of each failed task, by the task's id.
+        pages: Link to the page of each failed task, by the task's id.
 
     Raises:
-        InputError: The evaluations have no trial.
+        InputError: The evaluations contain no trials.
     """
     runs = report_runs(evaluations, registry)
     if not any(run.evaluation.trials for run in runs):
         raise InputError("These logs contain no finished run of a task. Finish one with 'scope bench run' first.")
     main = of_main_set(runs)
     ranked = pairs_of(main)
-    alike = on_the_same_tasks(ranked)
+    comparable = on_the_same_tasks(ranked)
     exact = [run for run in main if run.is_exact_reference]
-    shown = [*ranked, *(run for run in main if run.kind == "reference")]
+    ranked_and_reference = [*ranked, *(run for run in main if run.kind == "reference")]
     links = pages or {}
     sections: list[Section | None] = [
         accuracy_section(runs),
         comparison_section(ranked),
         repeats_section(main),
-        error_section(shown) if shown else None,
-        oracle_section(alike, runs),
-        spread_section(alike),
-        scope_section(shown),
+        error_section(ranked_and_reference) if ranked_and_reference else None,
+        oracle_section(comparable, runs),
+        spread_section(comparable),
+        scope_section(ranked_and_reference),
         latency_section(runs),
-        design_section(alike, runs),
-        architecture_section(alike, runs),
+        design_section(comparable, runs),
+        architecture_section(comparable, runs),
         sensitivity_section(runs),
         reaction_section(runs),
         baseline_section(runs),
@@ -98,8 +98,8 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     ]
     return EvaluationReport(
         runs,
-        _summary(runs, ranked, alike),
-        _warnings(runs, ranked, alike),
+        _summary(runs, ranked, comparable),
+        _warnings(runs, ranked, comparable),
         tuple(_without_empty_tables(s) for s in sections if s is not None),
     )
 
@@ -145,10 +145,10 @@ def _overview(runs: Sequence[ReportRun]) -> Section:
 
 def _card_row(run: ReportRun) -> tuple[CellValue, ...]:
     card = run.evaluation.card
-    sampling = ", ".join(f"{key} {value}" for key, value in _flat(card.sampling))
+    sampling = ", ".join(f"{key} {value}" for key, value in _flattened(card.sampling))
     return (
         run.label,
-        KIND_WORDS[run.kind],
+        KIND_TITLES[run.kind],
         card.dataset,
         run.task_set[1],
         len(run.evaluation.trials),
@@ -172,34 +172,35 @@ def _card_row(run: ReportRun) -> tuple[CellValue, ...]:
     )
 
 
-def _flat(settings: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+def _flattened(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Yield nested settings with their full names, such as ``planner.temperature``."""
     for key, value in sorted(settings.items()):
         if isinstance(value, Mapping):
-            yield from _flat(value, f"{before}{key}.")
+            yield from _flattened(value, f"{prefix}{key}.")
         else:
-            yield f"{before}{key}", value
+            yield f"{prefix}{key}", value
 
 
 def _reported(reported: Mapping[str, str]) -> str | None:
     return ", ".join(f"{key} {value}" for key, value in sorted(reported.items())) or None
 
 
-def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Sequence[ReportRun]) -> tuple[str, ...]:
+def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable: Sequence[ReportRun]) -> tuple[str, ...]:
     warnings = [
         f"{run.label} is unfinished: {len(run.evaluation.trials)} of {run.evaluation.wanted} trials."
         for run in runs
         if not run.evaluation.finished
     ]
-    if left_out := [run.label for run in ranked if run not in alike]:
+    if left_out := [run.label for run in ranked if run not in comparable]:
         warnings.append(
-            f"These pairs ran different tasks than most: {'; '.join(left_out)}. Their averages are not comparable. They are left "
-            "out of the oracle setting, the spreads and the choice of a pair. Paired comparisons use the shared tasks."
+            f"These pairs were run on different tasks from most pairs: {'; '.join(left_out)}. Their averages are not comparable. "
+            "They are left out of the oracle setting, the spreads and the choice of a pair. Paired comparisons use the shared "
+            "tasks."
         )
-    if further := [run.label for run in runs if run.other_tasks and run not in ranked]:
+    if other_runs := [run.label for run in runs if run.other_tasks and run not in ranked]:
         warnings.append(
-            f"These reference runs, variants and baselines cover different tasks from the model pairs: {'; '.join(further)}. Their "
-            "labels say so. Their averages are not comparable with those of the pairs."
+            "These reference runs, variants and baselines cover different tasks from the model pairs, as their labels state: "
+            f"{'; '.join(other_runs)}. Their averages are not comparable with those of the pairs."
         )
     warnings += _served_models_warning(runs)
     if len({run.task_set for run in runs if run.main_trials}) > 1:
@@ -218,65 +219,67 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Seq
 
 def _served_models_warning(runs: Sequence[ReportRun]) -> list[str]:
     """Return a warning if a server reported a model other than the requested one."""
-    found: dict[str, str] = {}
+    differing: dict[str, None] = {}
     for run in runs:
         card = run.evaluation.card
-        for model, known in ((card.planner, run.planner), (card.perception, run.perception)):
-            served = served_instead(model, known)
+        for requested, registered in ((card.planner, run.planner), (card.perception, run.perception)):
+            served = served_instead(requested, registered)
             if served is not None:
-                found[f"{model.name} (served: {served})"] = model.name
-    if not found:
+                differing[f"{requested.name} (served: {served})"] = None
+    if not differing:
         return []
     return [
-        f"Servers reported a model other than the requested one: {'; '.join(found)}. The rows of these models say so. Size, "
-        "precision and memory are those of the requested model in the registry."
+        f"Servers reported a model other than the requested one: {'; '.join(differing)}. The rows of these models state this. "
+        "Size, precision and memory are those of the requested model in the registry."
     ]
 
 
-def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Sequence[ReportRun]) -> tuple[str, ...]:
+def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable: Sequence[ReportRun]) -> tuple[str, ...]:
     trials = sum(len(run.evaluation.trials) for run in runs)
     lines = [
         f"{_number(len(runs), 'run')} with {_number(trials, 'trial')} (a trial is one run of one task); "
-        f"{_number(len(alike), 'pair')} of models on the main task set"
-        + (f" ({_number(len(alike[0].tasks), 'task')})" if alike else "")
-        + (f"; {_number(len(ranked) - len(alike), 'more pair')} over other tasks." if len(ranked) > len(alike) else ".")
+        f"{_number(len(comparable), 'pair')} of models on the main task set"
+        + (f" ({_number(len(comparable[0].tasks), 'task')})" if comparable else "")
+        + (f"; {_number(len(ranked) - len(comparable), 'more pair')} over other tasks." if len(ranked) > len(comparable) else ".")
     ]
-    order = sorted((r for r in alike if r.macro), key=lambda r: -(r.macro.value if r.macro else 0.0))
+    order = sorted((r for r in comparable if r.macro), key=lambda r: -(r.macro.value if r.macro else 0.0))
     if order and order[0].macro:
         lines.append(f"Highest macro accuracy: {order[0].label}, {_percent(order[0])}.")
-    if len(order) > 1 and (found := compare(order[0], order[1])) is not None:
-        (row,) = comparison_table("x", "x", [found]).rows
-        shown = "is significant" if row[11] == "yes" else "is not significant"
-        lines.append(f"Second: {order[1].label}, {_percent(order[1])}. Tested alone, the difference between these two {shown}.")
+    if len(order) > 1 and (comparison := compare(order[0], order[1])) is not None:
+        (row,) = comparison_table("x", "x", [comparison]).rows
+        result = "is significant" if row[11] == "yes" else "is not significant"
+        lines.append(
+            f"Second: {order[1].label}, {_percent(order[1])}. In a single test, the difference between these two {result}."
+        )
     if not ranked:
         lines.append("These runs include no pair of models, so nothing is ranked.")
-    found_wrong = sum((by_rules(run) for run in alike), start=Counter[ErrorMode]())
-    if found_wrong:
-        mode, number = found_wrong.most_common(1)[0]
-        unscored = sum(trial.headline == "unscored" for run in alike for trial in run.scored_trials)
+    modes = sum((modes_by_rules(run) for run in comparable), start=Counter[ErrorMode]())
+    if modes:
+        mode, number = modes.most_common(1)[0]
+        unscored = sum(trial.headline == "unscored" for run in comparable for trial in run.scored_trials)
         lines.append(
             f"Most frequent error mode of model pairs: {MODE_TITLES[mode]}, {number} of "
-            f"{_number(found_wrong.total(), 'incorrect trial')}"
+            f"{_number(modes.total(), 'incorrect trial')}"
             + (f"; {_number(unscored, 'more is', 'more are')} unscored and have no error mode." if unscored else ".")
         )
     return tuple(lines)
 
 
 def _percent(run: ReportRun) -> str:
-    found = run.macro
-    if found is None:
+    macro = run.macro
+    if macro is None:
         return "not measured"
-    bounds, limits = interval(found, "share")
+    bounds, limits = interval(macro, "share")
     certainty = ", ".join(filter(None, (f"95% interval {bounds}" if bounds else "", limits)))
-    return f"{100 * found.value:.1f}% ({certainty})"
+    return f"{100 * macro.value:.1f}% ({certainty})"
 
 
-def _number(count: int, one: str, many: str = "") -> str:
-    return f"{count:,} {one if count == 1 else many or one + 's'}"
+def _number(count: int, singular: str, plural: str = "") -> str:
+    return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
 
 
 def _failed_tasks(runs: Sequence[ReportRun], pages: Mapping[str, str]) -> Section:
-    """Return the section with every task that at least one run failed, linked to its page."""
+    """Return the section on the tasks that failed in at least one run, with links to their pages."""
     columns = (
         Column("task", "Task"),
         Column("category", "Category"),
@@ -292,11 +295,11 @@ def _failed_tasks(runs: Sequence[ReportRun], pages: Mapping[str, str]) -> Sectio
         for trial in run.evaluation.trials:
             by_task[trial.task.id].append((run, trial))
     rows = []
-    for task, own in sorted(by_task.items()):
-        failed = [run.label for run, trial in own if trial.headline in ("incorrect", "unscored")]
-        unscored = sum(trial.headline == "unscored" for _, trial in own)
+    for task, task_trials in sorted(by_task.items()):
+        failed = [run.label for run, trial in task_trials if trial.headline in ("incorrect", "unscored")]
+        unscored = sum(trial.headline == "unscored" for _, trial in task_trials)
         if failed:
-            facts = own[0][1].task
+            facts = task_trials[0][1].task
             names = "; ".join(dict.fromkeys(failed))
             rows.append(
                 (
@@ -306,7 +309,7 @@ def _failed_tasks(runs: Sequence[ReportRun], pages: Mapping[str, str]) -> Sectio
                     facts.expected,
                     len(failed),
                     unscored,
-                    len(own),
+                    len(task_trials),
                     names,
                 )
             )

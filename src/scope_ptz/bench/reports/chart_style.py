@@ -1,4 +1,4 @@
-"""The style of charts: colours safe for colour blindness, and inline SVG with the colours and fonts of the page."""
+"""The style of charts: colour-blind-safe colours, and inline SVG with the colours and fonts of the page."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ HUES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E4
 """The colour-blind-safe palette of Okabe and Ito (2008)."""
 GREY = "#8a8f98"
 GREYS, HATCHES = ("#c9ccd1", "#9a9fa8", "#757b85", "#b3b7bd"), ("////", "....", "xxxx", "----", "\\\\\\\\")
-"""Fills of runs that are not ranked. Four greys and five hatches give twenty combinations."""
+"""Fills and hatches of runs that are not ranked. Four greys and five hatches give twenty combinations."""
 PX = 96.0
 """Pixels per inch."""
 _SETTINGS: Any = {
@@ -45,13 +45,13 @@ def canvas(width_px: int, height_px: int) -> Iterator[tuple[Figure, Axes]]:
 
 @contextmanager
 def panels(width_px: int, height_px: int, number: int) -> Iterator[tuple[Figure, Sequence[Axes]]]:
-    """Open a figure with several axes side by side that share their rows."""
+    """Open a figure with several axes side by side, which share the y axis."""
     import matplotlib as mpl
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
     with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph")  # Missing glyphs only affect estimated widths; the browser has them.
+        warnings.filterwarnings("ignore", "Glyph")  # Missing glyphs affect only estimated widths; the browser draws them.
         figure = Figure(figsize=(width_px / PX, height_px / PX), dpi=PX, layout="constrained")
         FigureCanvasSVG(figure)
         yield figure, list(figure.subplots(1, number, sharey=True, squeeze=False)[0])
@@ -73,18 +73,21 @@ def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
 
 
 def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
-    """Return a colour per run: a hue per perception model, lighter for smaller planners; grey for runs that are not ranked."""
+    """Return the colour of each run, by its label.
+
+    Runs with the same perception model have the same hue, which is darker for later runs. Runs that are not ranked are grey.
+    """
     perception = list(dict.fromkeys(run.perception_name for run in runs if run.ranked))
-    found = {}
+    colour_of_run = {}
     for run in runs:
         if not run.ranked:
-            found[run.label] = GREY
+            colour_of_run[run.label] = GREY
             continue
         name = run.perception_name
         same = [r for r in runs if r.ranked and r.perception_name == name]
-        place = (same.index(run) + 1) / len(same)
-        found[run.label] = _mixed(HUES[perception.index(name) % len(HUES)], 0.45 + 0.55 * place)
-    return found
+        rank = (same.index(run) + 1) / len(same)
+        colour_of_run[run.label] = _mixed(HUES[perception.index(name) % len(HUES)], 0.45 + 0.55 * rank)
+    return colour_of_run
 
 
 def _mixed(colour: str, share: float) -> str:
@@ -94,16 +97,16 @@ def _mixed(colour: str, share: float) -> str:
 
 
 def shades(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
-    """Return the fill and hatch of each run's bars. Runs that are not ranked have a grey and a hatch instead of a hue."""
-    tint, others = colours(runs), [run for run in runs if not run.ranked]
-    found: list[tuple[str, str | None]] = []
+    """Return the fill and the hatch of each run's bars. Runs that are not ranked have a grey and a hatch instead of a hue."""
+    colour_of_run, others = colours(runs), [run for run in runs if not run.ranked]
+    styles: list[tuple[str, str | None]] = []
     for run in runs:
         if run.ranked:
-            found.append((tint[run.label], None))
+            styles.append((colour_of_run[run.label], None))
         else:
-            place = others.index(run)
-            found.append((GREYS[place % len(GREYS)], HATCHES[place % len(HATCHES)]))
-    return found
+            index = others.index(run)
+            styles.append((GREYS[index % len(GREYS)], HATCHES[index % len(HATCHES)]))
+    return styles
 
 
 def shorten_label(label: str, max_chars: int = 46) -> str:
@@ -118,12 +121,12 @@ def wrap_label(label: str, max_chars: int = 42) -> str:
 
 
 def legend_columns(labels: Sequence[str], max_chars: int = 52) -> int:
-    """Return the number of legend columns: two if every label fits half the width, else one."""
+    """Return the number of legend columns: two if every label fits into half the width, otherwise one."""
     return 2 if len(labels) > 1 and max(map(len, labels)) <= max_chars else 1
 
 
 def legend_below(figure: Figure, labels: Sequence[str], keys: Sequence[Artist] = ()) -> None:
-    """Draw a legend below the axes. ``keys`` are its handles if the drawn artists have no labels."""
+    """Draw a legend below the axes. ``keys`` are the legend's handles; without them, the labelled artists are used."""
     columns = legend_columns(labels)
     loc: Any = "outside lower center" if columns == 2 else "outside lower left"
     figure.legend(**({"handles": keys} if keys else {}), loc=loc, ncols=columns, fontsize=9.5)
@@ -135,5 +138,5 @@ def legend_px(labels: Sequence[str]) -> int:
 
 
 def row_px(labels: Sequence[str], min_px: int = 26) -> int:
-    """Return the height in pixels of a row that fits every label."""
+    """Return the height of a row in pixels, so that every label fits."""
     return max([min_px, *(8 + 16 * (1 + words.count("\n")) for words in labels)])

@@ -42,20 +42,20 @@ if TYPE_CHECKING:
 def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
     """Draw macro accuracy with its intervals, best first.
 
-    Runs over other tasks have hollow markers and are below the others. Runs that are not ranked are grey and last.
+    Runs over other tasks have hollow markers and are below the others. Runs that are not ranked are grey and come last.
     """
     ordered = sorted(runs, key=lambda r: (r.ranked, not r.other_tasks, r.macro.value if r.macro else 0.0))
-    tint = colours(runs)
+    colour_of_run = colours(runs)
     labels = [wrap_label(r.label + ("" if r.ranked else " (not ranked)")) for r in ordered]
     with canvas(880, 110 + row_px(labels) * len(ordered)) as (figure, axes):
         for y, run in enumerate(ordered):
-            found = run.macro
-            if found is None:
+            macro, colour = run.macro, colour_of_run[run.label]
+            if macro is None:
                 continue
-            if found.low is not None and found.high is not None:
-                axes.plot([100 * found.low, 100 * found.high], [y, y], color=tint[run.label], lw=2.5, solid_capstyle="round")
-            face = PAPER if run.other_tasks else tint[run.label]
-            axes.plot(100 * found.value, y, "o" if run.ranked else "D", mec=tint[run.label], mfc=face, mew=2, ms=7, clip_on=False)
+            if macro.low is not None and macro.high is not None:
+                axes.plot([100 * macro.low, 100 * macro.high], [y, y], color=colour, lw=2.5, solid_capstyle="round")
+            face = PAPER if run.other_tasks else colour
+            axes.plot(100 * macro.value, y, "o" if run.ranked else "D", mec=colour, mfc=face, mew=2, ms=7, clip_on=False)
         axes.set_yticks(range(len(ordered)), labels)
         axes.set_xlim(0, 101)
         axes.set_ylim(-0.6, len(ordered) - 0.4)
@@ -69,10 +69,10 @@ def mode_chart(
     key: str,
     title: str,
     runs: Sequence[ReportRun],
-    counted: Mapping[str, Counter[ErrorMode]],
-    of: Mapping[str, int],
+    counts: Mapping[str, Counter[ErrorMode]],
+    trials: Mapping[str, int],
     titles: Mapping[ErrorMode, str],
-    among: Sequence[ReportRun],
+    all_runs: Sequence[ReportRun],
 ) -> Chart:
     """Draw grouped bars with one group per error mode.
 
@@ -80,24 +80,24 @@ def mode_chart(
         key: Key of the chart.
         title: Title of the chart.
         runs: The runs in the chart.
-        counted: The error modes of each run, by its label.
-        of: The number of trials of each run, by its label.
+        counts: The numbers of trials by error mode of each run, by the run's label.
+        trials: The number of trials of each run, by the run's label.
         titles: The titles of the error modes.
-        among: The runs of all such charts of a report, so that a run has the same fill in each chart.
+        all_runs: The runs of all charts of this kind in a report, so that a run has the same fill in each chart.
     """
     from matplotlib.patches import Patch
 
     keys: list[Artist] = []
-    fills = dict(zip((run.label for run in among), shades(among), strict=True))
+    fills = dict(zip((run.label for run in all_runs), shades(all_runs), strict=True))
     labels = [shorten_label(run.label + ("" if run.ranked else " (not ranked)"), 120) for run in runs]
     with canvas(980, 370 + legend_px(labels)) as (figure, axes):
         width = 0.84 / max(1, len(runs))
         for number, (run, words) in enumerate(zip(runs, labels, strict=True)):
-            heights = [100 * counted[run.label][mode] / max(1, of[run.label]) for mode in titles]
-            at = [group - 0.42 + (number + 0.5) * width for group in range(len(titles))]
+            heights = [100 * counts[run.label][mode] / max(1, trials[run.label]) for mode in titles]
+            positions = [group - 0.42 + (number + 0.5) * width for group in range(len(titles))]
             (fill, hatch), edge = fills[run.label], "none" if run.ranked else "#22262b"
             # Bars of zero height are left out, because their edges would appear as dashes on the axis.
-            bars = [(x, height) for x, height in zip(at, heights, strict=True) if height]
+            bars = [(x, height) for x, height in zip(positions, heights, strict=True) if height]
             axes.bar([x for x, _ in bars], [y for _, y in bars], width * 0.92, color=fill, hatch=hatch, edgecolor=edge, lw=0.6)
             keys.append(Patch(facecolor=fill, hatch=hatch, edgecolor=edge, lw=0.6, label=words))
         for group in range(1, len(titles)):
@@ -108,7 +108,7 @@ def mode_chart(
         axes.set_ylim(bottom=0)
         axes.set_ylabel("Incorrect trials per 100")
         legend_below(figure, labels, keys)
-        totals = ", ".join(f"{words} {sum(counted[r.label][mode] for r in runs)}" for mode, words in titles.items())
+        totals = ", ".join(f"{words} {sum(counts[r.label][mode] for r in runs)}" for mode, words in titles.items())
         alt = f"Bars: incorrect trials by error mode and run. Trials over all runs: {totals}. The table below has all values."
         return as_chart(f"chart-{key.replace('_', '-')}", title, alt, figure)
 
@@ -121,63 +121,71 @@ ORACLE_PANELS = (
     )),
     ("by the judge", (("macro_judge", "measured", MEASURED), ("oracle_judge", "VLM errors counted as correct", CORRECTED))),
 )  # fmt: skip
-"""The panels of the oracle chart. Each panel uses verdicts of one kind only."""
+"""The panels of the oracle chart: title, and for each series the column, the title, the marker and the colour.
+
+Each panel uses only the verdicts of the checks or only those of the judge.
+"""
 
 
 def oracle_chart(table: ReportTable) -> Chart:
-    """Draw measured accuracy next to accuracy with perfect perception, in one panel by the checks and one by the judge.
+    """Draw measured accuracy and accuracy with perfect perception, in one panel by the checks and one by the judge.
 
     Args:
-        table: The table of the oracle setting, without its rows of means.
+        table: The table of the oracle setting, without the rows of means.
     """
     names = [column.name for column in table.columns]
-    rows = [(str(row[0]), {name: _whole(cell) for name, cell in zip(names, row, strict=True)}) for row in reversed(table.rows)]
+    rows = [
+        (str(row[0]), {name: _complete_value(cell) for name, cell in zip(names, row, strict=True)}) for row in reversed(table.rows)
+    ]
     drawn = [(words, series) for words, series in ORACLE_PANELS if any(v[name] is not None for _, v in rows for name, *_ in series)]
-    labels, parts, known = [wrap_label(label) for label, _ in rows], [], dict[str, Any]()
+    labels, parts, handles = [wrap_label(label) for label, _ in rows], [], dict[str, Any]()
     with panels(1080, 150 + row_px(labels, 34) * len(rows), max(1, len(drawn))) as (figure, grid):
         for axes, (words, series) in zip(grid, drawn, strict=False):
             for y, (label, values) in enumerate(rows):
-                found = [(title, 100 * value) for name, title, _ in series if (value := values[name]) is not None]
-                if found:
-                    parts.append(f"{label} {words}: {', '.join(f'{title} {value:.1f}%' for title, value in found)}")
-                    axes.plot([min(v for _, v in found), max(v for _, v in found)], [y, y], color=GREY, lw=1.5, zorder=1)
+                shares = [(title, 100 * value) for name, title, _ in series if (value := values[name]) is not None]
+                if shares:
+                    parts.append(f"{label} {words}: {', '.join(f'{title} {value:.1f}%' for title, value in shares)}")
+                    axes.plot([min(v for _, v in shares), max(v for _, v in shares)], [y, y], color=GREY, lw=1.5, zorder=1)
             for name, title, (marker, colour) in series:
                 points = [(100 * value, y) for y, (_, values) in enumerate(rows) if (value := values[name]) is not None]
                 if points:
-                    known[title] = axes.plot(*zip(*points, strict=True), marker, color=colour, ms=9, alpha=0.9)[0]
+                    handles[title] = axes.plot(*zip(*points, strict=True), marker, color=colour, ms=9, alpha=0.9)[0]
             axes.set_title(f"Macro accuracy {words} (%)", fontsize=10.5, loc="left")
             axes.set_xlim(0, 102)
             axes.set_ylim(-0.6, len(rows) - 0.4)
         grid[0].set_yticks(range(len(rows)), labels)
-        figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=3, fontsize=9.5)
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3, fontsize=9.5)
         return as_chart("chart-oracle", "The oracle setting", f"Macro accuracy by pair. {'; '.join(parts)}.", figure)
 
 
-def _whole(cell: Any) -> float | None:
-    """Return a value that covers all tasks of its run; None for one with a note that it covers only some."""
+def _complete_value(cell: Any) -> float | None:
+    """Return the value of a cell; None if a note states that it does not cover all tasks of the run."""
     return None if isinstance(cell, MarkedCell) and cell.note else _value(cell)
 
 
 def _value(cell: Any) -> float | None:
-    found = unmarked(cell)
-    if isinstance(found, IntervalEstimate):
-        return found.value
-    return float(found) if isinstance(found, int | float) else None
+    value = unmarked(cell)
+    if isinstance(value, IntervalEstimate):
+        return value.value
+    return float(value) if isinstance(value, int | float) else None
 
 
 def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
-    """Draw the mean seconds of each stage, stacked, without the camera. The camera's seconds are written next to each bar."""
+    """Draw stacked bars of the mean seconds of each stage, without the camera.
+
+    The camera's seconds are written next to each bar.
+    """
     stages = ("planner_s", "perception_s", "tools_s")
     timed = [(run, [t.timings for t in run.scored_trials if t.timings.total_s > 0]) for run in runs]
-    rows = [(run, {s: fmean(getattr(t, s) for t in own) for s in titles}) for run, own in reversed(timed) if own]
+    rows = [(run, {s: fmean(getattr(t, s) for t in timings) for s in titles}) for run, timings in reversed(timed) if timings]
     notes = [("" if r.ranked else " (not ranked)") + (" (contended)" if r.evaluation.card.contended else "") for r, _ in rows]
     labels = [wrap_label(run.label + note) for (run, _), note in zip(rows, notes, strict=True)]
     with canvas(980, 150 + row_px(labels, 30) * len(rows)) as (figure, axes):
         left = [0.0] * len(rows)
         for stage, colour in zip(stages, (HUES[0], HUES[1], HUES[2]), strict=True):
-            wide = [mean[stage] for _, mean in rows]
-            axes.barh(range(len(rows)), wide, left=left, color=colour, height=0.62, label=titles[stage])
-            left = [a + b for a, b in zip(left, wide, strict=True)]
+            widths = [mean[stage] for _, mean in rows]
+            axes.barh(range(len(rows)), widths, left=left, color=colour, height=0.62, label=titles[stage])
+            left = [a + b for a, b in zip(left, widths, strict=True)]
         for y, (_, mean) in enumerate(rows):
             words = f"{left[y]:.2f} s + camera {mean['capture_s']:.2f} s"
             axes.annotate(words, (left[y], y), (5, 0), textcoords="offset points", va="center", fontsize=9.5)
@@ -191,27 +199,33 @@ def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
         return as_chart("chart-time", "Time of each pair by stage", alt, figure)
 
 
-def front_chart(found: Sequence[Candidate]) -> Chart:
-    """Draw accuracy against latency. The area of a ring is the memory of the pair; filled rings are on the Pareto front.
+def front_chart(candidates: Sequence[Candidate]) -> Chart:
+    """Draw accuracy against latency. The area of a ring shows the memory of the pair; filled rings are on the Pareto front.
 
-    Numbers in the rings refer to the legend. There is a gap between fill and ring, so that a dashed ring remains visible.
+    The numbers in the rings refer to the legend. A gap between fill and ring keeps a dashed ring visible.
     """
     from matplotlib.legend_handler import HandlerTuple
     from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
-    complete = [c for c in found if c.accuracy is not None and c.latency_s is not None and c.memory_gb is not None]
+    complete = [c for c in candidates if c.accuracy is not None and c.latency_s is not None and c.memory_gb is not None]
     complete.sort(key=lambda c: -(c.accuracy or 0.0))
-    tint = colours([c.run for c in found])
+    colour_of_run = colours([c.run for c in candidates])
     with canvas(980, max(460, 150 + 26 * len(complete))) as (figure, axes):
         keys, names = list[Any](), list[str]()
         for number, c in enumerate(complete, 1):
-            shade, at = tint[c.run.label], (c.latency_s or 0.0, 100 * (c.accuracy or 0.0))
+            colour, position = colour_of_run[c.run.label], (c.latency_s or 0.0, 100 * (c.accuracy or 0.0))
             area = max(280.0, 12.0 * (c.memory_gb or 0.0))
-            _point(axes, at, area, shade, c)
-            keys.append(_point(axes, (), 150.0, shade, c))
+            _draw_ring(axes, position, area, colour, c)
+            keys.append(_draw_ring(axes, (), 150.0, colour, c))
             names.append(wrap_label(f"{number}  {c.run.label}, {c.memory_gb:.0f} GB"))
             axes.annotate(
-                str(number), at, ha="center", va="center", fontsize=9.5, fontweight="bold", color="#000" if c.on_front else INK
+                str(number),
+                position,
+                ha="center",
+                va="center",
+                fontsize=9.5,
+                fontweight="bold",
+                color="#000" if c.on_front else INK,
             )
         axes.set_xscale("log")
         axes.margins(x=0.12, y=0.14)
@@ -220,27 +234,37 @@ def front_chart(found: Sequence[Candidate]) -> Chart:
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xlabel("Median wall-clock seconds per trial without the camera: planner, perception and tools (logarithmic)")
         axes.set_ylabel("Macro accuracy (%)")
-        one_on_the_other = {tuple: HandlerTuple(ndivide=1)}
-        figure.legend(keys, names, handler_map=one_on_the_other, loc="outside right upper", fontsize=9.5, labelspacing=0.9)
-        on = "; ".join(
+        overlaid = {tuple: HandlerTuple(ndivide=1)}
+        figure.legend(keys, names, handler_map=overlaid, loc="outside right upper", fontsize=9.5, labelspacing=0.9)
+        on_front = "; ".join(
             f"{c.run.label} {100 * (c.accuracy or 0):.1f}%, {c.latency_s:.2f} s, {c.memory_gb:.0f} GB"
             for c in complete
             if c.on_front
         )
-        alt = f"Scatter: accuracy against latency without the camera, area by memory. On the Pareto front: {on}."
+        alt = f"Scatter: accuracy against latency without the camera, area by memory. On the Pareto front: {on_front}."
         title = "Accuracy, latency and memory. Filled: on the Pareto front. Area: memory. Dashed ring: timed under contention"
         return as_chart("chart-front", title, alt, figure)
 
 
-def _point(axes: Axes, at: tuple[float, ...], area: float, shade: str, of: Candidate) -> tuple[PathCollection, ...]:
-    """Draw a ring, filled if it is on the Pareto front. ``area`` is in square points; ``at`` is empty for the legend."""
-    x, y = ([at[0]], [at[1]]) if at else ([], [])
+def _draw_ring(
+    axes: Axes, position: tuple[float, ...], area: float, colour: str, candidate: Candidate
+) -> tuple[PathCollection, ...]:
+    """Draw the ring of a candidate, filled if it is on the Pareto front.
+
+    Args:
+        axes: The axes.
+        position: Coordinates of the ring; empty for the legend.
+        area: Area of the ring in square points.
+        colour: Colour of the ring.
+        candidate: The candidate.
+    """
+    x, y = ([position[0]], [position[1]]) if position else ([], [])
     width = 2.0
-    broken = (0, (3.0, 1.8)) if of.contended else "-"
-    ring = axes.scatter(x, y, s=area, facecolor="none", edgecolor=shade, lw=width, linestyle=broken)
-    if not of.on_front:
+    line_style = (0, (3.0, 1.8)) if candidate.contended else "-"
+    ring = axes.scatter(x, y, s=area, facecolor="none", edgecolor=colour, lw=width, linestyle=line_style)
+    if not candidate.on_front:
         return (ring,)
-    return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=shade, edgecolor="none", alpha=0.85)
+    return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=colour, edgecolor="none", alpha=0.85)
 
 
 def repeats_chart(table: ReportTable, max_trials: int) -> Chart:

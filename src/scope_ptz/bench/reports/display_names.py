@@ -1,4 +1,4 @@
-"""The names of splits and models that reports show."""
+"""Determine the names of splits and models that reports show."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from scope_ptz.bench.scoring.trials import ModelCard
 from scope_ptz.registry import Model
 
 REPLY_KEY, LIST_KEYS = "model", ("/v1/models id", "/v1/models root")
-"""Keys of ``ModelCard.reported``: the model that replies name, and the entries of the server's list of models."""
+"""Keys of ``ModelCard.reported``: the model name in replies, and the names in the server's list of models."""
 
 
 def split_name(split: str) -> str:
-    """Return the name of a split. For a task file it is the file name without its folder."""
+    """Return the name of a split. The name of a task file is its file name without the folder."""
     return PurePath(split.replace("\\", "/")).name or split
 
 
 def served_instead(card: ModelCard, model: Model | None) -> str | None:
     """Return the name of the model that a server served instead of the requested one.
 
-    An alias is not another model if the server's list shows that it is an alias of the requested one.
+    If the server's list of models shows that the served name is an alias of the requested model, it is the same model.
 
     Returns:
-        None if the requested model was served or the served model is unknown.
+        The name, or None if the requested model was served or the served model is unknown.
     """
     reported = [card.reported[key] for key in (REPLY_KEY, *LIST_KEYS) if card.reported.get(key)]
     if model is None or not reported:
@@ -34,5 +34,5 @@ def served_instead(card: ModelCard, model: Model | None) -> str | None:
 
 
 def _plain(name: str) -> str:
-    """Return a model's name in lower case, without its maker or folder."""
+    """Return a model's name in lower case, without its organization or folder."""
     return PurePath(name.replace("\\", "/")).name.lower()

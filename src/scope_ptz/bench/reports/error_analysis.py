@@ -1,4 +1,4 @@
-"""The sections about failed trials: error modes by the rules and by the judge, and accuracy if perception never failed."""
+"""The sections on failed trials: error modes by the rules and by the judge, and accuracy if perception never failed."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ MODE_TITLES = {
     ErrorMode.SCOPE: "Scope", ErrorMode.TOOL_ROUTING: "Tool routing",
 }  # fmt: skip
 """Titles of the error modes, in the order of the paper's table."""
-BY_RULES = "Incorrect trials by error mode, by the rules"
-PERCEPTION = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
+RULES_TITLE = "Incorrect trials by error mode, by the rules"
+PERCEPTION_MODES = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
 
 
-def by_rules(run: ReportRun) -> Counter[ErrorMode]:
-    """Count incorrect trials by the error mode that the rules assign. Unscored trials and trials scored by a judge have none."""
+def modes_by_rules(run: ReportRun) -> Counter[ErrorMode]:
+    """Count incorrect trials by the error mode that the rules assigned. Unscored trials and trials scored by a judge have none."""
     return Counter(t.error_mode for t in run.checked_trials if t.error_mode is not None)
 
 
-def by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
-    """Count the trials that a judge found incorrect, by the error mode that it named."""
+def modes_by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
+    """Count the trials that a judge found incorrect by the error mode that it assigned."""
     judged = [j for _, j in verdicts(run.scored_trials, judge) if j.verdict == "incorrect"]
     return Counter(j.error_mode for j in judged if j.error_mode is not None)
 
@@ -41,13 +41,13 @@ def by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
 def error_section(runs: Sequence[ReportRun]) -> Section:
     """Return the section on the error modes of runs of the main task set."""
     checked = [run for run in runs if run.checked_trials]
-    rules = {run.label: by_rules(run) for run in checked}
-    tables = [_mode_table("error_modes", BY_RULES, rules)]
+    rules_modes = {run.label: modes_by_rules(run) for run in checked}
+    tables = [_mode_table("error_modes", RULES_TITLE, rules_modes)]
     totals = {run.label: len(run.checked_trials) for run in checked}
-    charts = [drawing.mode_chart("error_modes", BY_RULES, checked, rules, totals, MODE_TITLES, runs)] if checked else []
+    charts = [drawing.mode_chart("error_modes", RULES_TITLE, checked, rules_modes, totals, MODE_TITLES, runs)] if checked else []
     judge = judge_name(runs)
     if judge is not None:
-        judge_modes = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored_trials, judge)}
+        judge_modes = {run.label: modes_by_judge(run, judge) for run in runs if verdicts(run.scored_trials, judge)}
         judged = [run for run in runs if run.label in judge_modes]
         title = f"Incorrect trials by error mode, by the judge ({judge})"
         tables.append(_mode_table("error_modes_judge", title, judge_modes))
@@ -57,72 +57,73 @@ def error_section(runs: Sequence[ReportRun]) -> Section:
                 title,
                 judged,
                 judge_modes,
-                {run.label: len(_clear(run, judge)) for run in judged},
+                {run.label: len(_trials_with_verdict(run, judge)) for run in judged},
                 MODE_TITLES,
                 runs,
             )
         )
     text = (
-        "Rules in a published order assign exactly one error mode to every incorrect trial. The judge names an error mode for each "
-        "trial that it finds incorrect. Unscored trials, whose answers could not be parsed, are not correct but have no error mode."
-        + ("" if judge else " No judge took part, so its error modes are not measured."),
+        "Rules in a published order assign exactly one error mode to every incorrect trial. The judge assigns an error mode to "
+        "each trial that it finds incorrect. Unscored trials, whose answers could not be parsed, are not correct but have no "
+        "error mode." + ("" if judge else " No judge was used, so there are no error modes by a judge."),
     )
     return Section("errors", "Error modes", text, tuple(charts), tuple(tables))
 
 
-def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]]) -> ReportTable:
+def _mode_table(key: str, title: str, counts_by_run: Mapping[str, Counter[ErrorMode]]) -> ReportTable:
     columns = [Column("run", "Run"), *(Column(mode.value, words, "count") for mode, words in MODE_TITLES.items())]
     columns += [Column("failed", "All incorrect", "count"), Column("perception", "VLM query and counting (%)", "share")]
     rows = tuple(
         (
             label,
-            *(found[mode] for mode in MODE_TITLES),
-            found.total(),
-            sum(found[m] for m in PERCEPTION) / found.total() if found else None,
+            *(counts[mode] for mode in MODE_TITLES),
+            counts.total(),
+            _perception_share(counts),
         )
-        for label, found in counted.items()
+        for label, counts in counts_by_run.items()
     )
     return ReportTable(key, title, tuple(columns), rows)
 
 
-def oracle_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
+def oracle_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> Section:
     """Return the section on the oracle setting: accuracy if perception never failed.
 
     Args:
         ranked: The runs of model pairs over the same tasks.
-        every: All runs, among which runs with ground-truth perception are looked up.
+        all_runs: All runs of the report, including those with ground-truth perception.
     """
     judge = judge_name(ranked)
     columns = (
         Column("run", "Run"), Column("macro_judge", "Macro by judge (%)", "share"),
-        Column("oracle_judge", "Judge's VLM errors counted as correct (%)", "share"),
+        Column("oracle_judge", "VLM errors (by judge) counted as correct (%)", "share"),
         Column("perception_judge", "VLM share of errors, judge (%)", "share"),
         Column("macro_checks", "Macro by checks (%)", "share"),
-        Column("oracle_rules", "Rules' VLM errors counted as correct (%)", "share"),
+        Column("oracle_rules", "VLM errors (by rules) counted as correct (%)", "share"),
         Column("perception_rules", "VLM share of errors, rules (%)", "share"),
         Column("macro_rerun", "Rerun with ground-truth perception (%)", "share"),
         Column("gain_rerun", "Gain, paired (points)", "points"),
     )  # fmt: skip
     text = (
-        "How accurate the pairs would be if perception never failed, measured in three ways. As in the paper, failures that the "
-        "judge attributes to VLM counting or VLM query are counted as correct. The same is done with the error modes of the "
-        "rules. If a log with ground-truth perception was given, the planner was actually run again, and the tasks of both runs "
-        "are compared. Relabelling cannot show whether the planner would have continued correctly; a rerun can.",
-        "Each is compared with a baseline of its kind: the judge's oracle with the judge's verdicts, the rules' oracle and the "
-        "rerun with the verdicts of the checks.",
+        "This section estimates in three ways how accurate the pairs would be if perception never failed. As in the paper, "
+        "failures that the judge attributes to VLM counting or VLM query are counted as correct. The same is done with the error "
+        "modes of the rules. If the report includes a log of the planner with ground-truth perception, this rerun is compared "
+        "with the pair on the tasks of both runs. Counting failures as correct cannot show whether the planner would have "
+        "continued correctly; a rerun can.",
+        "Estimates by the judge are compared with the judge's verdicts. Estimates by the rules and reruns are compared with the "
+        "verdicts of the checks.",
     )
     names = [column.name for column in columns]
-    rows = [_oracle_row(run, _by_rules_oracle(run), _judge_oracle(run, judge), _rerun(run, every)) for run in ranked]
+    rows = [_oracle_row(run, _rules_oracle(run), _judge_oracle(run, judge), _rerun(run, all_runs)) for run in ranked]
     table = ReportTable("oracle", "The oracle setting", columns, tuple(rows))
     charts = (drawing.oracle_chart(table),) if rows else ()
     if len(rows) > 1:
-        table = replace(table, rows=(*rows, *_means(names, rows)), notes=(MEANS,))
+        table = replace(table, rows=(*rows, *_means(names, rows)), notes=(MEANS_NOTE,))
     return Section("oracle", "If perception never failed", text, charts, (table,))
 
 
-MEANS = (
+MEANS_NOTE = (
     "A mean covers the pairs that have both the measured value and the value with perfect perception. If these are not all pairs, "
-    "their number is given. The mean of the reruns is next to the mean of the same pairs by the checks."
+    "their number is stated. The mean of the reruns is shown with the mean by the checks of the same pairs."
 )
 
 
@@ -130,81 +131,88 @@ Oracle = tuple[IntervalEstimate | None, IntervalEstimate | None, float | None]
 """Measured macro accuracy, macro accuracy with errors of perception counted as correct, and their share of all errors."""
 
 
-def _by_rules_oracle(run: ReportRun) -> Oracle:
-    right = [t.headline == "correct" or t.error_mode in PERCEPTION for t in run.checked_trials]
-    return macro(scores_of(run.checked_trials)), macro(scores_of(run.checked_trials, right)), _perception_share(by_rules(run))
+def _rules_oracle(run: ReportRun) -> Oracle:
+    corrected = [t.headline == "correct" or t.error_mode in PERCEPTION_MODES for t in run.checked_trials]
+    perception_share = _perception_share(modes_by_rules(run))
+    return macro(scores_of(run.checked_trials)), macro(scores_of(run.checked_trials, corrected)), perception_share
 
 
 def _judge_oracle(run: ReportRun, judge: str | None) -> Oracle:
-    judged = _clear(run, judge)
+    judged = _trials_with_verdict(run, judge)
     trials = [t for t, _ in judged]
-    plain = macro(scores_of(trials, [j.verdict == "correct" for _, j in judged]))
-    lifted = macro(scores_of(trials, [j.verdict == "correct" or j.error_mode in PERCEPTION for _, j in judged]))
-    return plain, lifted, _perception_share(by_judge(run, judge) if judge else Counter())
+    measured = macro(scores_of(trials, [j.verdict == "correct" for _, j in judged]))
+    corrected = macro(scores_of(trials, [j.verdict == "correct" or j.error_mode in PERCEPTION_MODES for _, j in judged]))
+    return measured, corrected, _perception_share(modes_by_judge(run, judge) if judge else Counter())
 
 
-def _clear(run: ReportRun, judge: str | None) -> list[tuple[Trial, Judgement]]:
-    """Return the trials on which the judge gave a verdict."""
+def _trials_with_verdict(run: ReportRun, judge: str | None) -> list[tuple[Trial, Judgement]]:
+    """Return the trials on which the judge gave a verdict, with their judgements."""
     return [(t, j) for t, j in verdicts(run.scored_trials, judge or "") if j.verdict in ("correct", "incorrect")]
 
 
-def _perception_share(failed: Counter[ErrorMode]) -> float | None:
-    return sum(failed[mode] for mode in PERCEPTION) / failed.total() if failed else None
+def _perception_share(modes: Counter[ErrorMode]) -> float | None:
+    """Return the share of perception errors among all errors; None if there are no errors."""
+    return sum(modes[mode] for mode in PERCEPTION_MODES) / modes.total() if modes else None
 
 
-def _rerun(run: ReportRun, every: Sequence[ReportRun]) -> tuple[ReportRun, PairedComparison | None] | None:
-    """Return the run of the same planner with ground-truth perception that shares most tasks with a run, and their comparison."""
+def _rerun(run: ReportRun, all_runs: Sequence[ReportRun]) -> tuple[ReportRun, PairedComparison | None] | None:
+    """Return the rerun of a run's planner with ground-truth perception, and the comparison of the two runs.
+
+    If there are several reruns, the one that shares the most tasks is returned.
+    """
     planner, _, agent, variant = run.system
-    found = []
-    for other in every:
-        own, _, *further = other.system
-        same = (own, *further) == (planner, agent, variant) and other.task_set == run.task_set and other.tasks & run.tasks
-        if same and other.uses_exact_ground_truth and not other.evaluation.card.planner.deterministic:
-            found.append(other)
-    best = max(found, key=lambda other: len(other.tasks & run.tasks), default=None)
+    reruns = []
+    for other in all_runs:
+        other_planner, _, *other_setup = other.system
+        is_same_system = (other_planner, *other_setup) == (planner, agent, variant)
+        shares_tasks = other.task_set == run.task_set and other.tasks & run.tasks
+        is_model = not other.evaluation.card.planner.deterministic
+        if is_same_system and shares_tasks and other.uses_exact_ground_truth and is_model:
+            reruns.append(other)
+    best = max(reruns, key=lambda other: len(other.tasks & run.tasks), default=None)
     return None if best is None else (best, compare(best, run))
 
 
 def _oracle_row(
-    run: ReportRun, rules: Oracle, judged: Oracle, again: tuple[ReportRun, PairedComparison | None] | None
+    run: ReportRun, rules: Oracle, judged: Oracle, rerun: tuple[ReportRun, PairedComparison | None] | None
 ) -> tuple[CellValue, ...]:
-    gain = again[1].macro if again and again[1] else None
-    return run.label, judged[0], judged[1], judged[2], rules[0], rules[1], rules[2], _shared_macro(run, again), gain
+    gain = rerun[1].macro if rerun and rerun[1] else None
+    return run.label, judged[0], judged[1], judged[2], rules[0], rules[1], rules[2], _shared_macro(run, rerun), gain
 
 
-def _shared_macro(run: ReportRun, again: tuple[ReportRun, PairedComparison | None] | None) -> CellValue:
-    """Return the macro accuracy of a rerun on the shared tasks, with a note if these are not all tasks."""
-    if again is None:
+def _shared_macro(run: ReportRun, rerun: tuple[ReportRun, PairedComparison | None] | None) -> CellValue:
+    """Return the macro accuracy of a rerun on the shared tasks, with a note if these are not all tasks of the run."""
+    if rerun is None:
         return None
-    found = macro(scores_of([t for t in again[0].scored_trials if t.task.id in run.tasks]))
-    shared = len(again[0].tasks & run.tasks)
-    return found if shared == len(run.tasks) else MarkedCell(found, note=f"on {shared} of its {len(run.tasks)} tasks")
+    estimate = macro(scores_of([t for t in rerun[0].scored_trials if t.task.id in run.tasks]))
+    shared = len(rerun[0].tasks & run.tasks)
+    return estimate if shared == len(run.tasks) else MarkedCell(estimate, note=f"on {shared} of its {len(run.tasks)} tasks")
 
 
 def _means(names: Sequence[str], rows: Sequence[tuple[CellValue, ...]]) -> list[tuple[CellValue, ...]]:
-    """Return rows of means over pairs. Both sides of a comparison cover the same pairs; other cells are blank."""
-    values = [{name: _complete(cell) for name, cell in zip(names, row, strict=True)} for row in rows]
+    """Return rows of means over pairs. Both values of a comparison cover the same pairs; other cells are blank."""
+    values = [{name: _complete_value(cell) for name, cell in zip(names, row, strict=True)} for row in rows]
 
     def means(title: str, *groups: tuple[str, ...]) -> tuple[CellValue, ...]:
         cells: dict[str, CellValue] = {**dict.fromkeys(names, ""), "run": title}
         for group in groups:
-            having = [row for row in values if all(row[name] is not None for name in group[:2])]
-            note = f"of {len(having)} of {len(values)} pairs" if len(having) < len(values) else ""
+            complete = [row for row in values if all(row[name] is not None for name in group[:2])]
+            note = f"over {len(complete)} of {len(values)} pairs" if len(complete) < len(values) else ""
             for name in group:
-                known = [value for row in having if (value := row[name]) is not None]
-                cells[name] = MarkedCell(fmean(known), note=note) if known else None
+                numbers = [value for row in complete if (value := row[name]) is not None]
+                cells[name] = MarkedCell(fmean(numbers), note=note) if numbers else None
         return tuple(cells[name] for name in names)
 
     by_judge, by_rules = (("macro_judge", "oracle_judge", "perception_judge"), ("macro_checks", "oracle_rules", "perception_rules"))
-    found = [means("Mean of the pairs", by_judge, by_rules)]
+    mean_rows = [means("Mean of the pairs", by_judge, by_rules)]
     if any(row["macro_rerun"] is not None for row in values):
-        found.append(means("Mean of the pairs run again", ("macro_checks", "macro_rerun", "gain_rerun")))
-    return found
+        mean_rows.append(means("Mean of the pairs run again", ("macro_checks", "macro_rerun", "gain_rerun")))
+    return mean_rows
 
 
-def _complete(cell: CellValue) -> float | None:
-    """Return a value that covers all tasks of its run; None for one with a note that it covers only some."""
-    plain = unmarked(cell)
+def _complete_value(cell: CellValue) -> float | None:
+    """Return the value of a cell; None if a note states that it does not cover all tasks of the run."""
+    value = unmarked(cell)
     if isinstance(cell, MarkedCell) and cell.note:
         return None
-    return plain.value if isinstance(plain, IntervalEstimate) else plain if isinstance(plain, float) else None
+    return value.value if isinstance(value, IntervalEstimate) else value if isinstance(value, float) else None

@@ -1,4 +1,4 @@
-"""Paired comparisons of model pairs on their shared tasks, and the smallest detectable differences."""
+"""The comparison section: paired comparisons of model pairs on their shared tasks, and the smallest detectable differences."""
 
 from __future__ import annotations
 
@@ -13,11 +13,20 @@ import numpy as np
 from scope_ptz.bench.reports.report_runs import ReportRun, viewpoint
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, ReportTable
-from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, detectable, difference, macro_weights, two_sided_p
+from scope_ptz.bench.statistics.clustered import (
+    IntervalEstimate,
+    Scores,
+    detectable_difference,
+    difference,
+    macro_weights,
+    two_sided_p,
+)
 from scope_ptz.bench.statistics.paired import cluster_bootstrap, holm, mcnemar_exact
 
 ALPHA = 0.05
+"""Significance level of the tests."""
 SEED = 0
+"""Seed of the bootstrap."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +43,7 @@ class PairedComparison:
         only_second: Tasks on which the second run is better.
         p_mcnemar: P value of McNemar's exact test.
         p_clustered: P value of the clustered test.
-        least: The smallest true difference that is detected with 80% power.
+        least: The smallest true difference that the clustered test detects with 80% power; None if unknown.
     """
 
     first: str
@@ -50,41 +59,49 @@ class PairedComparison:
 
 
 def compare(first: ReportRun, second: ReportRun) -> PairedComparison | None:
-    """Compare two runs of one dataset on their shared tasks; None if they share none."""
+    """Compare two runs of the same dataset on their shared tasks; return None if they share no tasks."""
     return compare_scores(first.label, second.label, _task_means(first), _task_means(second))
 
 
 TaskMeans = dict[str, tuple[str, str, float]]
+"""Category, viewpoint and mean outcome of each task, by its id."""
 
 
 def _task_means(run: ReportRun) -> TaskMeans:
-    """Return category, viewpoint and mean outcome of each task. Repeats of a task count as one observation."""
-    found: dict[str, list[bool]] = {}
-    about = {t.task.id: (t.task.category, viewpoint(t)) for t in run.scored_trials}
+    """Return the category, viewpoint and mean outcome of each task. Repeats of a task count as one observation."""
+    outcomes: dict[str, list[bool]] = {}
+    groups = {t.task.id: (t.task.category, viewpoint(t)) for t in run.scored_trials}
     for trial in run.scored_trials:
-        found.setdefault(trial.task.id, []).append(trial.headline == "correct")
-    return {task: (*about[task], sum(values) / len(values)) for task, values in found.items()}
+        outcomes.setdefault(trial.task.id, []).append(trial.headline == "correct")
+    return {task: (*groups[task], sum(values) / len(values)) for task, values in outcomes.items()}
 
 
 def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) -> PairedComparison | None:
-    """Compare two runs, each given by the category, the viewpoint and the mean outcome of each task."""
+    """Compare two runs on their shared tasks; return None if they share no tasks.
+
+    Args:
+        first: Label of the first run.
+        second: Label of the second run.
+        one: Task means of the first run.
+        other: Task means of the second run.
+    """
     shared = sorted(one.keys() & other.keys())
     if not shared:
         return None
     values = np.array([one[task][2] - other[task][2] for task in shared])
     scores = Scores(values, tuple(one[task][0] for task in shared), tuple(one[task][1] for task in shared))
-    found = difference(scores, macro_weights(scores))
-    if found is None:
+    estimate = difference(scores, macro_weights(scores))
+    if estimate is None:
         return None
     better, worse = int(np.sum(values > 0)), int(np.sum(values < 0))
-    least = None if not found.se else detectable(found.se, found.clusters)
-    drawn = cluster_bootstrap(scores, seed=SEED)
-    p_mcnemar, p_clustered = mcnemar_exact(better, worse), two_sided_p(found)
-    return PairedComparison(first, second, len(shared), found, drawn, better, worse, p_mcnemar, p_clustered, least)
+    least = None if not estimate.se else detectable_difference(estimate.se, estimate.clusters)
+    bootstrap = cluster_bootstrap(scores, seed=SEED)
+    p_mcnemar, p_clustered = mcnemar_exact(better, worse), two_sided_p(estimate)
+    return PairedComparison(first, second, len(shared), estimate, bootstrap, better, worse, p_mcnemar, p_clustered, least)
 
 
-def comparison_table(key: str, title: str, found: Sequence[PairedComparison], notes: tuple[str, ...] = ()) -> ReportTable:
-    """Return a table with one row per comparison. P values are adjusted for all of them together."""
+def comparison_table(key: str, title: str, comparisons: Sequence[PairedComparison], notes: tuple[str, ...] = ()) -> ReportTable:
+    """Return a table with one row per comparison. P values are adjusted for the number of comparisons in the table."""
     columns = (
         Column("first", "First"),
         Column("second", "Second"), Column("tasks", "Shared tasks", "count"),
@@ -94,20 +111,20 @@ def comparison_table(key: str, title: str, found: Sequence[PairedComparison], no
         Column("p_clustered", "Clustered p", "p"), Column("p_clustered_holm", "Holm", "p"),
         Column("differ", "Differ"), Column("least", "Smallest detectable difference (points)", "width"),
     )  # fmt: skip
-    mcnemar, clustered = holm([c.p_mcnemar for c in found]), holm([c.p_clustered for c in found])
+    mcnemar, clustered = holm([c.p_mcnemar for c in comparisons]), holm([c.p_clustered for c in comparisons])
     rows = tuple(
         (
             c.first,
             c.second, c.shared, c.macro, _interval(c.bootstrap), c.only_first, c.only_second,
             c.p_mcnemar, mcnemar[n], c.p_clustered, clustered[n], differ(mcnemar[n], clustered[n]), c.least,
         )
-        for n, c in enumerate(found)
+        for n, c in enumerate(comparisons)
     )  # fmt: skip
     return ReportTable(key, title, columns, rows, notes)
 
 
 def differ(*adjusted: float | None) -> str:
-    """Return "yes" if every adjusted p value is below 0.05, else "not shown"."""
+    """Return "yes" if every adjusted p value is below 0.05, otherwise "not shown"."""
     return "yes" if all(p is not None and p < ALPHA for p in adjusted) else "not shown"
 
 
@@ -116,56 +133,55 @@ def _interval(bounds: tuple[float, float] | None) -> str | None:
 
 
 def comparison_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the section that compares every two of the runs."""
-    found = [c for one, two in combinations(runs, 2) if (c := compare(one, two)) is not None]
+    """Return the section that compares each pair of runs."""
+    comparisons = [c for one, two in combinations(runs, 2) if (c := compare(one, two)) is not None]
     text = [
-        "Two runs are compared task by task on their shared tasks; repeats of a task are averaged first. McNemar's exact test asks "
-        "whether the tasks on which they differ favour one of them (with repeats it is the sign test of the tasks' means). The "
-        "clustered test also accounts for the similarity of tasks at one viewpoint. P values are adjusted for the number of "
-        "comparisons by Holm's method. Two runs differ only if both adjusted p values are below 0.05."
+        "Two runs are compared task by task on their shared tasks; repeats of a task are averaged first. McNemar's exact test "
+        "checks whether one run is better on significantly more tasks than the other (with repeats it is the sign test of the "
+        "tasks' means). The clustered test also accounts for the similarity of tasks at one viewpoint. P values are adjusted for "
+        "the number of comparisons by Holm's method. Two runs are reported to differ only if both adjusted p values are below 0.05."
     ]
-    single = _resolution(runs)
-    if not found:
+    unpaired = _unpaired_table(runs)
+    if not comparisons:
         return Section(
             "comparison",
             "Differences between model pairs",
             (*text, "There are fewer than two model pairs, so this is not measured."),
             (),
-            (single,),
+            (unpaired,),
         )
-    number = sum(row[11] == "yes" for row in comparison_table("x", "x", found).rows)
-    smallest = [c.least for c in found if c.least is not None]
-    resolved = (
+    number = sum(row[11] == "yes" for row in comparison_table("x", "x", comparisons).rows)
+    smallest = [c.least for c in comparisons if c.least is not None]
+    power = (
         f" With 80% power, differences of {100 * median(smallest):.1f} points (median of the comparisons) are detectable."
         if smallest
         else ""
     )
-    text.append(f"{number} of {len(found)} comparisons show a difference.{resolved}")
+    text.append(f"{number} of {len(comparisons)} comparisons show a difference.{power}")
     notes = (
-        f"Bootstrap: 10,000 draws of viewpoints with replacement, percentile interval, seed {SEED}; it cross-checks the other "
-        "interval. Better: number of tasks on which one run is better. Smallest detectable difference: the true difference that "
-        "the clustered test detects with 80% power, (t at 97.5% + t at 80%) times the standard error, before adjustment for many "
-        "tests.",
+        f"Bootstrap: percentile interval of 10,000 draws of viewpoints with replacement (seed {SEED}), as a check of the other "
+        "interval. Better: number of tasks on which one run is better. Smallest detectable difference: the smallest true "
+        "difference that the clustered test detects with 80% power, (t at 97.5% + t at 80%) times the standard error, before "
+        "adjustment for multiple tests.",
     )
-    table = comparison_table("comparisons", "Paired comparisons", found, notes)
-    folded = frozenset({"comparisons"}) if len(found) > 12 else frozenset[str]()
-    return Section("comparison", "Differences between model pairs", tuple(text), (), (table, single), folded)
+    table = comparison_table("comparisons", "Paired comparisons", comparisons, notes)
+    folded = frozenset({"comparisons"}) if len(comparisons) > 12 else frozenset[str]()
+    return Section("comparison", "Differences between model pairs", tuple(text), (), (table, unpaired), folded)
 
 
-def _resolution(runs: Sequence[ReportRun]) -> ReportTable:
-    """Return the smallest difference that each run can show in an unpaired comparison with an equally precise run."""
+def _unpaired_table(runs: Sequence[ReportRun]) -> ReportTable:
+    """Return a table of the smallest difference that each run can show in an unpaired comparison with an equally precise run."""
     columns = (
         Column("run", "Run"), Column("se", "Standard error of macro (points)", "width"),
         Column("viewpoints", "Viewpoints", "count"), Column("least", "Smallest detectable difference, unpaired (points)", "width"),
     )  # fmt: skip
     rows = []
     for run in runs:
-        found = run.macro
-        se = found.se if found else None
-        clusters = found.clusters if found else 0
-        rows.append((run.label, se, clusters, None if not se else detectable(sqrt(2) * se, clusters)))
+        se = run.macro.se if run.macro else None
+        clusters = run.macro.clusters if run.macro else 0
+        rows.append((run.label, se, clusters, None if not se else detectable_difference(sqrt(2) * se, clusters)))
     notes = (
-        "The difference to an equally precise run over other tasks that is detected with 80% power. Pairing by task usually "
-        "detects smaller differences.",
+        "The smallest difference from an equally precise run over other tasks that is detected with 80% power. Paired comparisons "
+        "usually detect smaller differences.",
     )
     return ReportTable("resolution", "Smallest detectable difference", columns, tuple(rows), notes)

@@ -54,7 +54,10 @@ class PaperModel(_Row):
 
 
 class PaperAccuracy(_Row):
-    """The accuracy of a pair in percent. ``planner`` and ``eyes`` (the perception model) are names in the registry."""
+    """The accuracy of a pair in percent.
+
+    ``planner`` and ``eyes`` (the perception model) are names in the registry. The other fields are categories and their average.
+    """
 
     planner: str
     eyes: str
@@ -69,7 +72,7 @@ class PaperAccuracy(_Row):
     single_call: float
 
     def category(self, name: str) -> float:
-        """Return the accuracy in a category."""
+        """Return the accuracy in a category in percent."""
         return float(getattr(self, name))
 
 
@@ -102,14 +105,14 @@ class Paper(BaseModel):
     figures: tuple[PaperFigure, ...]
 
     def micro(self, row: PaperAccuracy) -> float:
-        """Compute the micro average of a row in percent. The paper gives only the macro average."""
-        right = sum(round(row.category(c.category) * c.tasks / 100) for c in self.categories)
-        return 100 * right / sum(c.tasks for c in self.categories)
+        """Compute the micro average of a row in percent. The paper states only the macro average."""
+        correct = sum(round(row.category(c.category) * c.tasks / 100) for c in self.categories)
+        return 100 * correct / sum(c.tasks for c in self.categories)
 
 
 @cache
 def load_paper() -> Paper:
-    """Load the paper's results, which are part of the package."""
+    """Load the paper's results from the package data."""
     import yaml
 
     text = files("scope_ptz").joinpath("data", "paper.yaml").read_text(encoding="utf-8")
@@ -120,9 +123,9 @@ def paper_section() -> Section:
     """Return the section with the paper's results."""
     paper = load_paper()
     text = (
-        f"All values in this panel are copied from the paper ({paper.paper.title}, doi {paper.paper.doi}). None was measured here. "
-        "They are a point of reference and not comparable task by task: the paper's 536 tasks, scenes and servers are different, "
-        f"and its verdicts are those of a judge ({paper.paper.judge}), not of checks.",
+        f"All values in this section are copied from the paper ({paper.paper.title}, doi {paper.paper.doi}). None was measured in "
+        "these runs. They are a point of reference and are not comparable task by task: the paper's 536 tasks, scenes and servers "
+        f"are different, and its verdicts were given by a judge ({paper.paper.judge}), not by checks.",
     )
     tables = (_accuracy(paper), _latency(paper), _figures(paper), _models(paper), _categories(paper), _modes(paper))
     return Section(
@@ -138,12 +141,12 @@ def _accuracy(paper: Paper) -> ReportTable:
     for number, row in enumerate(paper.accuracy):
         if row.eyes != previous:
             groups[number] = previous = row.eyes
-        own = [other for other in paper.accuracy if other.eyes == row.eyes]
+        same_perception = [other for other in paper.accuracy if other.eyes == row.eyes]
         names = (*CATEGORY_TITLES, "average")
         cells: list[CellValue] = [
             MarkedCell(
                 float(getattr(row, name)) / 100,
-                best=getattr(row, name) >= max(getattr(other, name) for other in own),
+                best=getattr(row, name) >= max(getattr(other, name) for other in same_perception),
                 best_of_all=getattr(row, name) >= max(getattr(other, name) for other in paper.accuracy),
             )
             for name in names
@@ -162,7 +165,7 @@ def _latency(paper: Paper) -> ReportTable:
         Column("tool_calls", "Tool calls, mean", "number"), Column("line", "Line", "count"),
     )  # fmt: skip
     rows = tuple((row.name, row.role, row.median_s, row.tool_calls, row.line) for row in paper.latency)
-    notes = ("Inference latency in the paper's serving set-up, partly under contention, as the paper's limitations state.",)
+    notes = ("Inference latency in the paper's serving setup, partly under contention, as the paper states in its limitations.",)
     return ReportTable("paper_latency", "The paper: latency and tool calls", columns, rows, notes)
 
 

@@ -1,4 +1,4 @@
-"""The sections that help to choose a pair: Pareto front, memory, spreads, scopes, mixtures of experts and quantisation."""
+"""The sections that help to choose a pair: Pareto front, memory, spreads, scopes, mixtures of experts, and quantisation."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
 SIZES_GB = (8, 16, 24, 48, 80, 160)
-"""Common sizes of accelerator memory. The last one is two accelerators of 80 GB."""
+"""Common sizes of accelerator memory in GB. The last size is that of two accelerators of 80 GB."""
 
 
-def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
+def design_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> Section:
     """Return the section on accuracy, latency and memory of each pair, with the best pair for each memory size."""
-    found = candidates(ranked, every)
+    pairs = candidates(ranked, all_runs)
     columns = (
         Column("run", "Run"),
         Column("macro", "Macro (%)", "share"),
@@ -39,26 +39,25 @@ def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> S
             c.memory_gb,
             ("yes" if c.on_front else "no") if c.complete else None,
         )
-        for c in sorted(found, key=lambda c: -(c.accuracy or 0.0))
+        for c in sorted(pairs, key=lambda c: -(c.accuracy or 0.0))
     )
     notes = (
         "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each server), "
-        "not measured. A pair is on the front if no other pair is at least as accurate, as fast and as small, and better in one "
-        "of these.",
+        "not measured. A pair is on the Pareto front if no other pair is at least as good in accuracy, latency and memory, and "
+        "better in one of them.",
     )
     text = (
-        "Choose a pair that no other pair beats in accuracy, latency and memory at once. A difference in accuracy that was not "
-        "shown (see the comparisons) is no reason to prefer the larger pair. Latencies are comparable only if all of them were "
-        "measured alone on the same machine.",
-        "Latency is the time of planner, perception and tools without the camera. The time for rendering frames belongs to the "
-        "simulator and would rank pairs by the views that they asked for.",
+        "Choose a pair on the Pareto front. If the comparisons do not show a difference in accuracy between two pairs, there is no "
+        "reason to prefer the larger one. Latencies are comparable only if all of them were measured alone on the same machine.",
+        "Latency is the time of planner, perception and tools, without the camera. It excludes the time for rendering, because "
+        "that depends on the simulator and on the views that a pair requests.",
     )
-    charts = (drawing.front_chart(found),) if any(c.complete for c in found) else ()
-    tables = (ReportTable("design_points", "Accuracy, latency and memory", columns, rows, notes), _fitting(found))
+    charts = (drawing.front_chart(pairs),) if any(c.complete for c in pairs) else ()
+    tables = (ReportTable("design_points", "Accuracy, latency and memory", columns, rows, notes), _memory_table(pairs))
     return Section("design", "Accuracy, latency, memory", text, charts, tables)
 
 
-def _fitting(found: Sequence[Candidate]) -> ReportTable:
+def _memory_table(pairs: Sequence[Candidate]) -> ReportTable:
     columns = (
         Column("memory", "Memory"),
         Column("run", "Most accurate pair that fits"),
@@ -68,11 +67,11 @@ def _fitting(found: Sequence[Candidate]) -> ReportTable:
     )
     rows: list[tuple[CellValue, ...]] = []
     for size in SIZES_GB:
-        fitting = [c for c in found if c.memory_gb is not None and c.memory_gb <= size and c.accuracy is not None]
-        if fitting:
-            best = max(fitting, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
+        candidates_that_fit = [c for c in pairs if c.memory_gb is not None and c.memory_gb <= size and c.accuracy is not None]
+        if candidates_that_fit:
+            best = max(candidates_that_fit, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
             rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
-    notes = (f"Sizes: {', '.join(map(str, SIZES_GB))} GB. Sizes into which no pair fits are left out.",)
+    notes = (f"Memory sizes of {', '.join(map(str, SIZES_GB))} GB. Sizes into which no pair fits are left out.",)
     return ReportTable("memory_fits", "Best pair by memory size", columns, tuple(rows), notes)
 
 
@@ -97,8 +96,8 @@ def spread_section(ranked: Sequence[ReportRun]) -> Section:
         ),
     )
     text = (
-        "The spread is the highest macro accuracy minus the lowest while one model of the pair is fixed. It grows with the number "
-        "of pairs and with noise; the comparisons say which differences were shown.",
+        "The spread is the highest macro accuracy minus the lowest while one model of the pair is fixed. It increases with the "
+        "number of pairs and with noise. The paired comparisons state which differences are significant.",
     )
     return Section("spread", "Spread by planner and by perception model", text, (), tables)
 
@@ -106,13 +105,13 @@ def spread_section(ranked: Sequence[ReportRun]) -> Section:
 def _spread(
     key: str,
     title: str,
-    held_title: str,
+    fixed_title: str,
     runs: Sequence[ReportRun],
-    held: Callable[[ReportRun], str],
+    fixed: Callable[[ReportRun], str],
     changed: Callable[[ReportRun], str],
 ) -> ReportTable:
     columns = (
-        Column("held", held_title),
+        Column("held", fixed_title),
         Column("pairs", "Pairs", "count"),
         Column("lowest", "Lowest"),
         Column("low", "Macro (%)", "share"),
@@ -121,16 +120,17 @@ def _spread(
         Column("spread", "Spread (points)", "points"),
     )
     rows: list[tuple[CellValue, ...]] = []
-    for name in dict.fromkeys(held(run) for run in runs):
-        own = [
-            (run.macro.value, changed(run)) for run in runs if held(run) == name and run.macro and run.system[2:] == ("scope", "")
+    for name in dict.fromkeys(fixed(run) for run in runs):
+        values = [
+            (run.macro.value, changed(run)) for run in runs if fixed(run) == name and run.macro and run.system[2:] == ("scope", "")
         ]
-        if len({model for _, model in own}) > 1:
-            (low, worst), (high, best) = min(own), max(own)
-            rows.append((name, len(own), worst, low, best, high, high - low))
+        if len({model for _, model in values}) > 1:
+            (low, worst), (high, best) = min(values), max(values)
+            rows.append((name, len(values), worst, low, best, high, high - low))
         else:
-            rows.append((name, len(own), None, None, None, None, None))
-    return ReportTable(key, title, columns, tuple(rows), ("Only runs of SCOPE's own agent loop with its standard prompt.",))
+            rows.append((name, len(values), None, None, None, None, None))
+    notes = ("This table covers only runs of SCOPE's own agent loop with its standard prompt.",)
+    return ReportTable(key, title, columns, tuple(rows), notes)
 
 
 def scope_section(runs: Sequence[ReportRun]) -> Section:
@@ -149,9 +149,9 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
         counts = [sum(int(str(row[index])) for row in ranked) for index in (1, 3)]
         rows.append(("Mean of the model pairs", counts[0], _mean(ranked, 2), counts[1], _mean(ranked, 4), _mean(ranked, 5)))
     text = (
-        "Micro accuracy by the scope of the task. Tasks of the two scopes also differ in category, so the panorama is not the only "
-        "cause of the difference. The interval of the difference combines the intervals of both sides (Newcombe 1998). It is "
-        "unknown if one of them is unknown.",
+        "This section compares the micro accuracy of tasks about the current view and about the full scene. These tasks also "
+        "differ in category, so the panorama is not the only cause of the difference. The interval of the difference combines the "
+        "intervals of the two shares (Newcombe 1998). It is unknown if one of these is unknown.",
     )
     return Section("scope", "Current view against full scene", text, (), (ReportTable("scope", "By scope", columns, tuple(rows)),))
 
@@ -163,67 +163,73 @@ def _scope_row(run: ReportRun) -> tuple[CellValue, ...]:
 
 
 def _mean(rows: Sequence[tuple[CellValue, ...]], index: int) -> float | None:
-    known = [v for row in rows if (v := getattr(row[index], "value", None)) is not None]
-    return fmean(known) if known else None
+    values = [v for row in rows if (v := getattr(row[index], "value", None)) is not None]
+    return fmean(values) if values else None
 
 
-def architecture_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
+def architecture_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> Section:
     """Return the section that compares mixtures of experts with dense models, and quantised models with full precision."""
-    pairs = [(q, f) for q in ranked for f in ranked if _is_quantised_of(q, f)]
-    found = [c for quantised, full in pairs if (c := compare(quantised, full)) is not None]
+    pairs = [(q, f) for q in ranked for f in ranked if _is_quantised_pair(q, f)]
+    comparisons = [c for quantised, full in pairs if (c := compare(quantised, full)) is not None]
     notes = (
-        "Models of one family, size and number of active parameters in the registry, with the rest of the pair unchanged. Latency "
-        "and memory of these pairs are in the table of accuracy, latency and memory.",
+        "The models have the same family, size and number of active parameters in the registry, and the rest of the pair is the "
+        "same. The latency and memory of these pairs are in the table of accuracy, latency and memory.",
     )
-    precision = comparison_table("quantised", "Quantised minus full precision", found, notes)
-    text = ["The registry says which models are mixtures of experts or quantised. Models that it does not contain are left out."]
-    if not found:
+    precision = comparison_table("quantised", "Quantised minus full precision", comparisons, notes)
+    text = [
+        "The registry states which models are mixtures of experts or quantised. Models that are not in the registry are left out."
+    ]
+    if not comparisons:
         text.append("No two pairs differ only in precision, so quantisation is not measured.")
-    tables = (_mixtures(ranked, every), *((precision,) if found else ()))
+    tables = (_mixture_table(ranked, all_runs), *((precision,) if comparisons else ()))
     return Section("architecture", "Mixtures of experts and quantisation", tuple(text), (), tables)
 
 
-def _is_quantised_of(one: ReportRun, other: ReportRun) -> bool:
-    """Return whether a pair equals another one except that one of its models is quantised."""
+def _is_quantised_pair(one: ReportRun, other: ReportRun) -> bool:
+    """Return whether the pair of ``one`` is that of ``other`` with one model quantised."""
     if one.task_set != other.task_set or one.system[2:] != other.system[2:]:
         return False
     if one.system[1] == other.system[1]:
-        return _quantised_of(one.planner, other.planner)
-    return one.system[0] == other.system[0] and _quantised_of(one.perception, other.perception)
+        return _is_quantised_model(one.planner, other.planner)
+    return one.system[0] == other.system[0] and _is_quantised_model(one.perception, other.perception)
 
 
-def _quantised_of(one: Model | None, other: Model | None) -> bool:
+def _is_quantised_model(one: Model | None, other: Model | None) -> bool:
+    """Return whether ``one`` is the quantised form of the full-precision model ``other``."""
     if one is None or other is None or (one.family, one.size_b, one.active_b) != (other.family, other.size_b, other.active_b):
         return False
     return bool(one.family) and one.precision not in FULL_PRECISION and other.precision in FULL_PRECISION
 
 
-def _mixtures(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> ReportTable:
+def _mixture_table(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> ReportTable:
     """Return a table with a row for each model that is paired with both mixtures of experts and dense models."""
     columns = [Column("held", "Fixed model"), Column("changed", "Changed model")]
-    for key, words in (("moe", "Mixtures"), ("dense", "Dense")):
+    for key, title in (("moe", "Mixtures"), ("dense", "Dense")):
         columns += [
-            Column(f"{key}_pairs", f"{words}: pairs", "count"),
-            Column(f"{key}_macro", f"{words}: macro, mean (%)", "share"),
-            Column(f"{key}_latency_s", f"{words}: {LATENCY}", "seconds"),
-            Column(f"{key}_memory_gb", f"{words}: memory (GB, computed)", "gb"),
+            Column(f"{key}_pairs", f"{title}: pairs", "count"),
+            Column(f"{key}_macro", f"{title}: macro, mean (%)", "share"),
+            Column(f"{key}_latency_s", f"{title}: {LATENCY}", "seconds"),
+            Column(f"{key}_memory_gb", f"{title}: memory (GB, computed)", "gb"),
         ]
     columns.append(Column("difference", "Mixtures minus dense (points)", "points"))
-    found = candidates(ranked, every)
+    pairs = candidates(ranked, all_runs)
     rows: list[tuple[CellValue, ...]] = []
-    for side, other in (("planner", 1), ("perception", 0)):
-        for name in dict.fromkeys(c.run.system[other] for c in found):
-            own = [c for c in found if c.run.system[other] == name and getattr(c.run, side)]
-            kinds = [[c for c in own if is_mixture(getattr(c.run, side)) is mixture] for mixture in (True, False)]
+    for role, other_role in (("planner", 1), ("perception", 0)):
+        for name in dict.fromkeys(c.run.system[other_role] for c in pairs):
+            same = [c for c in pairs if c.run.system[other_role] == name and getattr(c.run, role)]
+            kinds = [[c for c in same if is_mixture(getattr(c.run, role)) is mixture] for mixture in (True, False)]
             if all(kinds):
-                cells = [v for k in kinds for v in (len(k), *(_average(k, w) for w in ("accuracy", "latency_s", "memory_gb")))]
+                cells = [v for k in kinds for v in (len(k), *(_average(k, f) for f in ("accuracy", "latency_s", "memory_gb")))]
                 moe, dense = (_average(kind, "accuracy") for kind in kinds)
-                apart = None if moe is None or dense is None else moe - dense
-                rows.append((name, "planners" if side == "planner" else "perception models", *cells, apart))
-    notes = ("Means over the pairs of each kind. A fixed model that was paired with only one kind is left out.",)
+                gain = None if moe is None or dense is None else moe - dense
+                rows.append((name, "planners" if role == "planner" else "perception models", *cells, gain))
+    notes = (
+        "Values are means over the pairs with mixtures and over the pairs with dense models. Fixed models that were paired with "
+        "only one kind are left out.",
+    )
     return ReportTable("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
 
 
-def _average(found: Sequence[Candidate], what: str) -> float | None:
-    known = [value for c in found if (value := getattr(c, what)) is not None]
-    return fmean(known) if known else None
+def _average(pairs: Sequence[Candidate], field: str) -> float | None:
+    values = [value for c in pairs if (value := getattr(c, field)) is not None]
+    return fmean(values) if values else None

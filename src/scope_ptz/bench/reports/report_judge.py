@@ -1,4 +1,4 @@
-"""The judge whose verdicts a report shows."""
+"""Select the judge whose verdicts a report shows."""
 
 from __future__ import annotations
 
@@ -12,26 +12,29 @@ from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 
 def judge_name(runs: Sequence[ReportRun]) -> str | None:
-    """Return the judge whose verdicts a report shows; None if there is no judge.
+    """Return the judge whose verdicts a report shows; None if no run was judged.
 
-    It is the judge that decides most of the trials that only a judge can score, else the judge with verdicts on most trials. Ties
-    are resolved by name. A judge whose server always failed is chosen only if there is no other.
+    This is the judge that decides most of the trials that only a judge can score. If there are no such trials, it is the judge with
+    verdicts on the most trials. Ties are resolved by name. A judge without any verdict is selected only if there is no other judge.
     """
-    decides, gave, asked = Counter[str](), Counter[str](), Counter[str]()
+    deciding, with_verdict, judged = Counter[str](), Counter[str](), Counter[str]()
     for trial in (trial for run in runs for trial in run.scored_trials):
         first = first_verdict(trial.judgements)  # The deciding judge comes first in a log.
         if trial.scored_by == "judge" and first is not None:
-            decides[first.judge] += 1
-        gave.update({j.judge for j in trial.judgements if j.verdict in VERDICTS})
-        asked.update({j.judge for j in trial.judgements})
-    return min(asked, key=lambda name: (-decides[name], -gave[name], -asked[name], name)) if asked else None
+            deciding[first.judge] += 1
+        with_verdict.update({j.judge for j in trial.judgements if j.verdict in VERDICTS})
+        judged.update({j.judge for j in trial.judgements})
+    return min(judged, key=lambda name: (-deciding[name], -with_verdict[name], -judged[name], name), default=None)
 
 
 def verdicts(trials: Sequence[Trial], judge: str) -> list[tuple[Trial, Judgement]]:
-    """Return each trial that a judge judged, with its first verdict, or with its first judgement if none is a verdict."""
-    found = []
+    """Return the trials that a judge judged, each with one judgement.
+
+    This is the first judgement with a verdict. If no judgement has a verdict, it is the first judgement.
+    """
+    rows = []
     for trial in trials:
-        own = sorted((j for j in trial.judgements if j.judge == judge), key=lambda j: j.repeat)
-        if own:
-            found.append((trial, first_verdict(own) or own[0]))
-    return found
+        judgements = sorted((j for j in trial.judgements if j.judge == judge), key=lambda j: j.repeat)
+        if judgements:
+            rows.append((trial, first_verdict(judgements) or judgements[0]))
+    return rows

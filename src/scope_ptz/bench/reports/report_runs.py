@@ -1,4 +1,4 @@
-"""The runs of a report: labelled, joined with the registry's models, and grouped into comparable task sets."""
+"""The runs of a report. Each has a label, the models of the registry that it used, and a set of tasks."""
 
 from __future__ import annotations
 
@@ -19,11 +19,15 @@ from scope_ptz.errors import UnknownNameError
 from scope_ptz.registry import Model, Registry
 
 RunKind = Literal["models", "reference", "blind", "person"]
-"""Kinds of runs. "reference": with the grammar planner or ground-truth perception; "blind": without perception; "person": human."""
+"""Kinds of runs.
+
+"models": by a pair of models; "reference": with the grammar planner or ground-truth perception; "blind": without perception;
+"person": by a person.
+"""
 PERSON = "person"
-"""Provider of the planner in the run card of a person."""
+"""Provider of the planner in the run card of a human run."""
 MAIN_STRATA = ("core", "imported")
-"""Strata of the tasks that accuracy covers."""
+"""Strata whose tasks are included in accuracy."""
 FULL_PRECISION = ("fp32", "fp16", "bf16")
 CATEGORY_TITLES = {
     "comparative": "Comparative", "counting": "Counting", "descriptor": "Descriptor", "location": "Location",
@@ -40,10 +44,10 @@ class ReportRun:
     Attributes:
         number: Position in the report, from 1.
         evaluation: The evaluation.
-        label: Unique name in the report, which shows how the run differs from others.
+        label: Unique name in the report. It states how the run differs from other runs.
         planner: The planner's model; None if it is not in the registry.
         perception: The perception model; None if it is not in the registry.
-        other_tasks: How its tasks differ from those of most pairs of the main task set; empty if they do not.
+        other_tasks: Description of how its tasks differ from those of most pairs of the main task set; empty if they do not differ.
     """
 
     number: int
@@ -82,17 +86,17 @@ class ReportRun:
 
     @property
     def planner_name(self) -> str:
-        """Name of the planner, and of the model that its server served instead, if any."""
-        return _named(self.evaluation.card.planner, self.planner)
+        """Name of the planner. If its server served another model, the name of that model is added."""
+        return _name_with_served(self.evaluation.card.planner, self.planner)
 
     @property
     def perception_name(self) -> str:
-        """Name of the perception model, and of the model that its server served instead, if any."""
-        return _named(self.evaluation.card.perception, self.perception)
+        """Name of the perception model. If its server served another model, the name of that model is added."""
+        return _name_with_served(self.evaluation.card.perception, self.perception)
 
     @property
     def system(self) -> tuple[str, str, str, str]:
-        """The evaluated system: planner, perception, agent, variant."""
+        """The evaluated system: planner, perception model, agent and variant."""
         card = self.evaluation.card
         return self.planner_name, self.perception_name, card.agent, card.variant
 
@@ -103,7 +107,10 @@ class ReportRun:
 
     @property
     def memory_gb(self) -> float | None:
-        """Computed memory to serve both models at the registry's precision. A model in both roles counts once."""
+        """Computed memory in GB to serve both models at the registry's precision. A model in both roles counts once.
+
+        None if a model is not in the registry.
+        """
         if self.planner is None or self.perception is None:
             return None
         return sum(model.memory_for() for model in {m.name: m for m in (self.planner, self.perception)}.values())
@@ -115,12 +122,15 @@ class ReportRun:
 
     @cached_property
     def scored_trials(self) -> tuple[Trial, ...]:
-        """Main trials that are neither broken by infrastructure nor awaiting a judge. Unscored trials count as not correct."""
+        """Main trials without those that infrastructure broke or that lack a judge's verdict.
+
+        Unscored trials count as not correct.
+        """
         return tuple(t for t in self.main_trials if t.headline != "infrastructure" and not without_verdict(t))
 
     @cached_property
     def tasks(self) -> frozenset[str]:
-        """Ids of the tasks that its accuracy covers."""
+        """Ids of the tasks that are included in its accuracy."""
         return frozenset(t.task.id for t in self.main_trials)
 
     @cached_property
@@ -130,7 +140,7 @@ class ReportRun:
 
     @cached_property
     def macro(self) -> IntervalEstimate | None:
-        """Macro accuracy: the unweighted mean over the categories that occur."""
+        """Macro accuracy: the unweighted mean over the categories that have trials."""
         return macro(scores_of(self.scored_trials)) if self.scored_trials else None
 
     @cached_property
@@ -139,14 +149,14 @@ class ReportRun:
         return share(scores_of(self.scored_trials))
 
 
-def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> Scores:
-    """Return outcomes grouped by category, viewpoint and task.
+def scores_of(trials: Sequence[Trial], correct: Iterable[bool] | None = None) -> Scores:
+    """Return the outcomes of trials, with the category as stratum, the viewpoint as cluster and the task as unit.
 
     Args:
         trials: The trials.
-        right: Whether each trial counts as correct; by default its headline decides.
+        correct: Whether each trial counts as correct. By default its headline decides.
     """
-    values = [t.headline == "correct" for t in trials] if right is None else list(right)
+    values = [t.headline == "correct" for t in trials] if correct is None else list(correct)
     return Scores(
         np.array(values, dtype=np.float64),
         tuple(t.task.category for t in trials),
@@ -156,7 +166,7 @@ def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> S
 
 
 def macro(scores: Scores) -> IntervalEstimate | None:
-    """Return macro accuracy with its interval; None without data."""
+    """Return macro accuracy with its interval; None if there are no outcomes."""
     return share(scores, macro_weights(scores)) if len(scores.values) else None
 
 
@@ -168,38 +178,40 @@ def viewpoint(trial: Trial) -> str:
 def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[ReportRun, ...]:
     """Return the runs of a report in the order of the paper's table.
 
-    They are ordered by perception model, then by the size of the planner. Runs of other splits than core and runs that are not
-    ranked come last.
+    They are ordered by perception model, then by the size of the planner. Runs of splits other than core come later, and runs that
+    are not ranked come last.
     """
     splits = {split_name(e.card.split) for e in evaluations}
-    bare = [ReportRun(0, e, "", _known(e.card.planner, registry), _known(e.card.perception, registry)) for e in evaluations]
-    labels = [_label(run, with_split=len(splits) > 1) for run in bare]
+    unlabelled = [
+        ReportRun(0, e, "", _registered(e.card.planner, registry), _registered(e.card.perception, registry)) for e in evaluations
+    ]
+    labels = [_label(run, with_split=len(splits) > 1) for run in unlabelled]
     shared = {label for label, number in Counter(labels).items() if number > 1}
     labels = [
         f"{label}, timed alone" if label in shared and not e.card.contended else label
         for label, e in zip(labels, evaluations, strict=True)
     ]
-    times, seen = Counter(labels), Counter[str]()
+    counts, seen = Counter(labels), Counter[str]()
     runs = []
-    for run, label in zip(bare, labels, strict=True):
+    for run, label in zip(unlabelled, labels, strict=True):
         seen[label] += 1
-        runs.append(replace(run, label=f"{label} #{seen[label]}" if times[label] > 1 else label))
-    ordered = sorted(runs, key=_order)
+        runs.append(replace(run, label=f"{label} #{seen[label]}" if counts[label] > 1 else label))
+    ordered = sorted(runs, key=_sort_key)
     common = main_tasks(ordered)
-    apart = [_other_tasks(run, common) if run in of_main_set(ordered) else "" for run in ordered]
+    notes = [_other_tasks(run, common) if run in of_main_set(ordered) else "" for run in ordered]
     return tuple(
-        replace(run, number=number, other_tasks=words, label=f"{run.label} [{words}]" if words else run.label)
-        for number, (run, words) in enumerate(zip(ordered, apart, strict=True), 1)
+        replace(run, number=number, other_tasks=note, label=f"{run.label} [{note}]" if note else run.label)
+        for number, (run, note) in enumerate(zip(ordered, notes, strict=True), 1)
     )
 
 
-def _named(card: ModelCard, model: Model | None) -> str:
+def _name_with_served(card: ModelCard, model: Model | None) -> str:
     served = served_instead(card, model)
     return card.name if served is None else f"{card.name} (served: {served})"
 
 
 def _other_tasks(run: ReportRun, common: frozenset[str]) -> str:
-    """Describe how the tasks of a run differ from the common tasks; empty if they do not."""
+    """Describe how the tasks of a run differ from the common tasks; return an empty text if they do not differ."""
     if run.tasks == common:
         return ""
     if run.tasks < common:
@@ -217,14 +229,14 @@ def _label(run: ReportRun, *, with_split: bool) -> str:
     return ", ".join(parts)
 
 
-def _known(card: ModelCard, registry: Registry) -> Model | None:
+def _registered(card: ModelCard, registry: Registry) -> Model | None:
     try:
         return registry.model(card.registry) if card.registry else None
     except UnknownNameError:
         return None
 
 
-def _order(run: ReportRun) -> tuple[bool, bool, str, str, float, str, str]:
+def _sort_key(run: ReportRun) -> tuple[bool, bool, str, str, float, str, str]:
     card = run.evaluation.card
     size = run.planner.size_b if run.planner else 0.0
     return not run.ranked, card.split != "core", card.split, run.perception_name, size, run.planner_name, run.label
@@ -232,12 +244,12 @@ def _order(run: ReportRun) -> tuple[bool, bool, str, str, float, str, str]:
 
 def main_task_set(runs: Sequence[ReportRun]) -> tuple[str, str] | None:
     """Return the task set with the most ranked runs. Ties are resolved by the number of trials."""
-    having = [run for run in runs if run.main_trials]
-    weight: dict[tuple[str, str], tuple[int, int]] = {}
-    for run in having:
-        ranked, trials = weight.get(run.task_set, (0, 0))
-        weight[run.task_set] = (ranked + run.ranked, trials + len(run.main_trials))
-    return max(weight, key=lambda key: weight[key]) if weight else None
+    counts: dict[tuple[str, str], tuple[int, int]] = {}
+    for run in runs:
+        if run.main_trials:
+            ranked, trials = counts.get(run.task_set, (0, 0))
+            counts[run.task_set] = (ranked + run.ranked, trials + len(run.main_trials))
+    return max(counts, key=lambda task_set: counts[task_set]) if counts else None
 
 
 def of_main_set(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
@@ -247,14 +259,14 @@ def of_main_set(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
 
 
 def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
-    """Return the tasks that most model pairs of the main task set cover; without pairs, those that most runs cover."""
+    """Return the ids of the tasks that most model pairs of the main task set cover; without pairs, those that most runs cover."""
     main = of_main_set(runs)
-    alike = on_the_same_tasks(pairs_of(main)) or on_the_same_tasks(main)
-    return alike[0].tasks if alike else frozenset()
+    comparable = on_the_same_tasks(pairs_of(main)) or on_the_same_tasks(main)
+    return comparable[0].tasks if comparable else frozenset()
 
 
 def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """Return one run per system: the first of those with the most scored trials."""
+    """Return one run per system: the run with the most scored trials. Ties are resolved by order."""
     best: dict[tuple[str, str, str, str], ReportRun] = {}
     for run in runs:
         if run.system not in best or len(run.scored_trials) > len(best[run.system].scored_trials):
@@ -265,26 +277,29 @@ def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
 def pairs_of(main: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
     """Return one run per ranked system. Variants are left out if the unchanged pair is present."""
     ranked = [run for run in main if run.ranked]
-    plain = {run.system[:3] for run in ranked if not run.system[3]}
-    return primary([run for run in ranked if not run.system[3] or run.system[:3] not in plain])
+    unchanged = {run.system[:3] for run in ranked if not run.system[3]}
+    return primary([run for run in ranked if not run.system[3] or run.system[:3] not in unchanged])
 
 
 def on_the_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """Return the runs over the most common selection of tasks. Ties are resolved by the number of tasks."""
+    """Return the runs that cover the most common set of tasks. Ties are resolved by the number of tasks."""
     if not ranked:
         return ()
-    counted = Counter(run.tasks for run in ranked)
-    common = max(counted, key=lambda tasks: (counted[tasks], len(tasks)))
+    counts = Counter(run.tasks for run in ranked)
+    common = max(counts, key=lambda tasks: (counts[tasks], len(tasks)))
     return tuple(run for run in ranked if run.tasks == common)
 
 
 def timing_run(run: ReportRun, runs: Sequence[ReportRun]) -> ReportRun:
-    """Return the run that gives a system's latency: the longest finished run without contention, if there is one."""
+    """Return the run from which a system's latency is taken.
+
+    This is the finished run without contention that has the most trials; if there is none, ``run`` itself.
+    """
     same = [other for other in runs if other.system == run.system and other.main_trials]
     alone = [other for other in same if not other.evaluation.card.contended and other.evaluation.finished]
     return max(alone, key=lambda other: len(other.main_trials)) if alone else run
 
 
 def is_mixture(model: Model) -> bool:
-    """Return whether a model is a mixture of experts, with fewer active parameters than parameters."""
+    """Return whether a model is a mixture of experts, which has fewer active parameters than parameters."""
     return model.active_b < model.size_b

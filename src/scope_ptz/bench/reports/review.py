@@ -1,4 +1,4 @@
-"""The sections on tasks that nearly all pairs fail, on costs, and on side effects and incidents."""
+"""The sections on tasks that nearly every pair fails, on costs, and on side effects and incidents."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, Report
 from scope_ptz.bench.scoring.trials import Trial
 
 MAX_SUCCESS = 0.25
-"""Tasks with at most this success rate are listed in the audit."""
+"""Maximum success rate of the tasks that the audit lists."""
 MAX_LISTED = 60
 """Maximum number of tasks in the audit."""
 
@@ -24,20 +24,20 @@ def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], p
     Args:
         ranked: The runs of model pairs.
         reference: Runs of the grammar planner with exact ground-truth perception.
-        pages: The page of each failed task, by the task's id.
+        pages: Link to the page of each failed task, by the task's id.
     """
     text = [
-        f"The tasks on which all pairs together succeed in at most {MAX_SUCCESS:.0%} of their trials. Such a task is hard or "
-        "wrong, so an audit of the benchmark starts here. The last column is the result of the grammar planner with ground-truth "
-        "perception. A task that they pass can be done as it is worded. They understand only a limited language, so their failure "
-        "alone proves nothing."
+        f"This section lists the tasks on which at most {MAX_SUCCESS:.0%} of the trials of all pairs succeed. Such a task is hard "
+        "or wrong, so check these tasks first in an audit of the benchmark. The last column is the result of the grammar planner "
+        "with ground-truth perception. If they pass a task, it can be done as it is worded. Their failure does not show that a "
+        "task is wrong, because they understand only a limited language."
     ]
     if len(ranked) < 2:
         text.append("There are fewer than two model pairs, so this is not measured.")
         return Section("audit", "Tasks that nearly every pair fails", tuple(text))
     by_task = _by_task(ranked)
-    low = sorted((fmean(t.headline == "correct" for _, t in runs), task) for task, runs in by_task.items())
-    chosen = [(value, task) for value, task in low if value <= MAX_SUCCESS]
+    rates = sorted((fmean(t.headline == "correct" for _, t in trials), task) for task, trials in by_task.items())
+    selected = [(rate, task) for rate, task in rates if rate <= MAX_SUCCESS]
     exact = _by_task(reference)
     columns = (
         Column("task", "Task"),
@@ -51,9 +51,10 @@ def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], p
         Column("modes", "Error modes (rules)"),
         Column("reference", "Grammar planner, ground-truth perception (%)", "share"),
     )
-    rows = tuple(_audit_row(task, value, by_task[task], exact.get(task, []), pages) for value, task in chosen[:MAX_LISTED])
+    rows = tuple(_audit_row(task, rate, by_task[task], exact.get(task, []), pages) for rate, task in selected[:MAX_LISTED])
     text.append(
-        f"{len(chosen)} of {len(by_task)} tasks." + (f" The first {MAX_LISTED} are listed." if len(chosen) > MAX_LISTED else "")
+        f"{len(selected)} of {len(by_task)} tasks have such a low success rate."
+        + (f" The {MAX_LISTED} with the lowest rates are listed." if len(selected) > MAX_LISTED else "")
     )
     return Section(
         "audit", "Tasks that nearly every pair fails", tuple(text), (), (ReportTable("audit", "Tasks to audit", columns, rows),)
@@ -61,25 +62,26 @@ def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], p
 
 
 def _by_task(runs: Sequence[ReportRun]) -> dict[str, list[tuple[ReportRun, Trial]]]:
-    found: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
+    """Return the scored trials of each task with their runs, by the task's id."""
+    trials: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
         for trial in run.scored_trials:
-            found[trial.task.id].append((run, trial))
-    return found
+            trials[trial.task.id].append((run, trial))
+    return trials
 
 
 def _audit_row(
     task: str,
     success: float,
-    own: Sequence[tuple[ReportRun, Trial]],
-    exact: Sequence[tuple[ReportRun, Trial]],
+    trials: Sequence[tuple[ReportRun, Trial]],
+    reference_trials: Sequence[tuple[ReportRun, Trial]],
     pages: Mapping[str, str],
 ) -> tuple[CellValue, ...]:
-    facts = own[0][1].task
-    passed = list(dict.fromkeys(run.label for run, trial in own if trial.headline == "correct"))
-    modes = Counter(trial.error_mode for _, trial in own if trial.error_mode)
-    named = ", ".join(f"{MODE_TITLES[mode]} {number}" for mode, number in modes.most_common())
-    reference = fmean(trial.headline == "correct" for _, trial in exact) if exact else None
+    facts = trials[0][1].task
+    passed_by = list(dict.fromkeys(run.label for run, trial in trials if trial.headline == "correct"))
+    modes = Counter(trial.error_mode for _, trial in trials if trial.error_mode)
+    mode_counts = ", ".join(f"{MODE_TITLES[mode]} {number}" for mode, number in modes.most_common())
+    reference = fmean(trial.headline == "correct" for _, trial in reference_trials) if reference_trials else None
     return (
         MarkedCell(task, link=pages.get(task, "")),
         CATEGORY_TITLES[facts.category],
@@ -87,9 +89,9 @@ def _audit_row(
         facts.instruction,
         facts.expected,
         success,
-        len(own),
-        "; ".join(passed) or "nobody",
-        named or "none",
+        len(trials),
+        "; ".join(passed_by) or "nobody",
+        mode_counts or "none",
         reference,
     )
 
@@ -109,8 +111,8 @@ def costs_section(runs: Sequence[ReportRun]) -> Section:
         Column("judge_tokens", "Tokens of judges", "count"),
     )
     notes = (
-        "Tokens are those of the planner, as its server reports them. Tokens of the perception model are not counted. The cost is "
-        "that of the planner's tokens and is given only if the log contains it.",
+        "Tokens are those of the planner, as reported by its server. The tokens of the perception model are not counted. The cost "
+        "is that of the planner's tokens. It is stated only if the log contains prices.",
     )
     return Section(
         "costs", "Cost", (), (), (ReportTable("costs", "Tokens and cost", columns, tuple(_cost_row(r) for r in runs), notes),)
@@ -119,22 +121,22 @@ def costs_section(runs: Sequence[ReportRun]) -> Section:
 
 def _cost_row(run: ReportRun) -> tuple[CellValue, ...]:
     trials = run.evaluation.trials
-    sent, received = sum(t.input_tokens for t in trials), sum(t.output_tokens for t in trials)
-    counted = sent + received > 0
+    input_tokens, output_tokens = sum(t.input_tokens for t in trials), sum(t.output_tokens for t in trials)
+    tokens = input_tokens + output_tokens
     priced = [t for t in trials if t.cost_usd is not None]
     cost = sum(t.cost_usd or 0.0 for t in priced) if priced else None
-    right = sum(t.headline == "correct" for t in priced)
+    correct = sum(t.headline == "correct" for t in priced)
     judge = sum(j.input_tokens + j.output_tokens for t in trials for j in t.judgements)
     return (
         run.label,
         len(trials),
-        sent if counted else None,
-        received if counted else None,
-        (sent + received) / len(trials) if counted else None,
+        input_tokens if tokens else None,
+        output_tokens if tokens else None,
+        tokens / len(trials) if tokens else None,
         len(priced),
         cost,
         cost / len(priced) if cost is not None else None,
-        cost / right if cost is not None and right else None,
+        cost / correct if cost is not None and correct else None,
         judge or None,
     )
 
@@ -151,11 +153,10 @@ def conduct_section(runs: Sequence[ReportRun]) -> Section:
         Column("server_events", "Server failures, including recovered ones"),
     )
     notes = (
-        "Collateral change: the camera ended elsewhere although neither the instruction nor finding the answer required a move. "
-        "It does not affect accuracy.",
+        "Collateral change: the camera ended at another pose although neither the instruction nor the answer required a move. It "
+        "does not affect accuracy.",
     )
-    having = [run for run in runs if run.evaluation.trials]
-    rows = tuple(_conduct_row(run) for run in having)
+    rows = tuple(_conduct_row(run) for run in runs if run.evaluation.trials)
     return Section(
         "conduct",
         "Side effects and incidents",

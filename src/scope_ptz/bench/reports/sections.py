@@ -9,7 +9,7 @@ from scope_ptz.bench.reports.tables import ReportTable
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """A chart as SVG. ``alt`` is its text alternative. It scrolls in windows narrower than ``width_px``."""
+    """A chart as inline SVG. ``alt`` is its text alternative. A window that is narrower than ``width_px`` scrolls the chart."""
 
     key: str
     title: str
@@ -20,7 +20,16 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A section. ``text`` are the paragraphs before charts and tables; ``folded`` are the keys of collapsed tables."""
+    """A section of a report.
+
+    Attributes:
+        key: Key of the section.
+        title: Title of the section.
+        text: The paragraphs before charts and tables.
+        charts: The charts.
+        tables: The tables.
+        folded: Keys of the tables that are collapsed.
+    """
 
     key: str
     title: str

@@ -21,8 +21,8 @@ System = tuple[str, str, str, str]
 def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
     """Return the section on sensitivity to paraphrases and to prompts."""
     text = ["A scenario is a task with all its wordings. It succeeds if every wording succeeds in its first trial."]
-    paraphrases = _wordings(runs)
-    variants = _variants(runs)
+    paraphrases = _wording_table(runs)
+    variants = _variant_table(runs)
     if not paraphrases.rows:
         text.append("No run contains both paraphrases and their originals, so sensitivity to wording is not measured.")
     if not variants.rows:
@@ -32,25 +32,25 @@ def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
 
 
 def _by_system(runs: Sequence[ReportRun]) -> dict[System, list[Trial]]:
-    """Return each system's first trial of each task over all logs, without trials that infrastructure broke."""
-    found: dict[System, dict[str, Trial]] = defaultdict(dict)
+    """Return the first trial of each task in all logs of a system, by system. Trials that infrastructure broke are left out."""
+    by_system: dict[System, dict[str, Trial]] = defaultdict(dict)
     for run in runs:
         for trial in run.evaluation.trials:
             if trial.epoch == 1 and trial.headline != "infrastructure":
-                found[run.system].setdefault(trial.task.id, trial)
-    return {system: list(trials.values()) for system, trials in found.items()}
+                by_system[run.system].setdefault(trial.task.id, trial)
+    return {system: list(trials.values()) for system, trials in by_system.items()}
 
 
 def _scenarios(trials: Sequence[Trial]) -> list[list[bool]]:
-    """Return the outcomes of the wordings of each scenario whose original and at least one paraphrase were run."""
+    """Return the outcomes of the wordings of each scenario. Scenarios without the original or without a paraphrase are left out."""
     groups: dict[str, list[Trial]] = defaultdict(list)
     for trial in trials:
         groups[trial.task.paraphrase_of or trial.task.id].append(trial)
-    whole = [g for origin, g in groups.items() if len(g) > 1 and any(t.task.id == origin for t in g)]
-    return [[t.headline == "correct" for t in group] for group in whole]
+    complete = [g for original, g in groups.items() if len(g) > 1 and any(t.task.id == original for t in g)]
+    return [[t.headline == "correct" for t in group] for group in complete]
 
 
-def _wordings(runs: Sequence[ReportRun]) -> ReportTable:
+def _wording_table(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("system", "Pair"),
         Column("scenarios", "Scenarios", "count"),
@@ -62,11 +62,11 @@ def _wordings(runs: Sequence[ReportRun]) -> ReportTable:
     )
     rows: list[tuple[CellValue, ...]] = []
     for system, trials in _by_system(runs).items():
-        found = _scenarios(trials)
-        if found:
-            every, some = fmean(all(g) for g in found), fmean(any(g) for g in found)
-            mean = fmean(fmean(g) for g in found)
-            rows.append((_name(system), len(found), sum(map(len, found)), mean, every, some, some - every))
+        scenarios = _scenarios(trials)
+        if scenarios:
+            every, some = fmean(all(s) for s in scenarios), fmean(any(s) for s in scenarios)
+            mean = fmean(fmean(s) for s in scenarios)
+            rows.append((_name(system), len(scenarios), sum(map(len, scenarios)), mean, every, some, some - every))
     return ReportTable("wording", "Other wordings of the same task", columns, tuple(rows))
 
 
@@ -77,14 +77,14 @@ def _name(system: System) -> str:
     )
 
 
-def _variants(runs: Sequence[ReportRun]) -> ReportTable:
-    """Compare every variant of a pair with the unchanged pair."""
-    found = []
+def _variant_table(runs: Sequence[ReportRun]) -> ReportTable:
+    """Return a table that compares each variant of a pair with the unchanged pair."""
+    comparisons = []
     for run in runs:
         if run.evaluation.card.variant and run.kind != "blind":
-            plain = [r for r in runs if r.system == (*run.system[:3], "") and r.task_set == run.task_set]
-            found += [c for base in plain[:1] if (c := compare(run, base)) is not None]
-    return comparison_table("prompts", "Prompts and settings: each variant minus the unchanged pair", found)
+            unchanged = [r for r in runs if r.system == (*run.system[:3], "") and r.task_set == run.task_set]
+            comparisons += [c for base in unchanged[:1] if (c := compare(run, base)) is not None]
+    return comparison_table("prompts", "Prompts and settings: each variant minus the unchanged pair", comparisons)
 
 
 def repeats_section(runs: Sequence[ReportRun]) -> Section:
@@ -97,33 +97,34 @@ def repeats_section(runs: Sequence[ReportRun]) -> Section:
     columns += [Column(f"pass_{k}", f"pass^{k} (%)", "share") for k in range(1, max_trials + 1)]
     rows = []
     for run in repeated:
-        tasks = _passed(run)
+        tasks = _trials_by_task(run)
         rows.append((run.label, len(tasks), *(mean_pass_all(tasks, k)[0] for k in range(1, max_trials + 1))))
     text = (
-        "pass^k is the probability that k trials of a task all succeed. It is C(c, k) / C(n, k) for c correct of n trials, "
-        "averaged over the tasks with at least k trials that infrastructure did not break. pass^1 is the mean over tasks. Runs "
-        "without repeats are left out.",
+        "pass^k is the probability that k trials of a task all succeed. For a task with c correct of n trials it is C(c, k) / "
+        "C(n, k). The table shows the mean over the tasks with at least k trials that infrastructure did not break. Runs without "
+        "repeats are left out.",
     )
     table = ReportTable("repeats", "pass^k", tuple(columns), tuple(rows))
     return Section("repeats", "Repeats", text, (drawing.repeats_chart(table, max_trials),), (table,))
 
 
-def _passed(run: ReportRun) -> list[tuple[int, int]]:
-    """Return the numbers of trials and of correct trials of each task."""
-    found: dict[str, list[bool]] = defaultdict(list)
+def _trials_by_task(run: ReportRun) -> list[tuple[int, int]]:
+    """Return the number of trials and the number of correct trials of each task."""
+    outcomes: dict[str, list[bool]] = defaultdict(list)
     for trial in run.scored_trials:
-        found[trial.task.id].append(trial.headline == "correct")
-    return [(len(values), sum(values)) for values in found.values()]
+        outcomes[trial.task.id].append(trial.headline == "correct")
+    return [(len(values), sum(values)) for values in outcomes.values()]
 
 
 def _max_trials(run: ReportRun) -> int:
-    return max((runs for runs, _ in _passed(run)), default=0)
+    """Return the largest number of trials of a task."""
+    return max((trials for trials, _ in _trials_by_task(run)), default=0)
 
 
 def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
-    """Return the section on requests that call for a question or a refusal; None if no run contains any."""
-    having = [(run, own) for run in runs if (own := _reactions(run))]
-    if not having:
+    """Return the section on requests that the agent should question or refuse; None if no run contains such requests."""
+    reacting = [(run, trials) for run in runs if (trials := _reaction_trials(run))]
+    if not reacting:
         return None
     columns = (
         Column("run", "Run"),
@@ -136,28 +137,28 @@ def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
     rows = tuple(
         (
             run.label,
-            len(own),
-            share_correct(own),
-            *(fmean(t.outcome == o for t in own) for o in ("answered", "clarification", "refused")),
+            len(trials),
+            share_correct(trials),
+            *(fmean(t.outcome == o for t in trials) for o in ("answered", "clarification", "refused")),
         )
-        for run, own in having
+        for run, trials in reacting
     )
     text = (
-        "These requests are unclear, impossible or forbidden. The correct reaction is a question or a refusal without moving the "
-        "camera. They do not count towards accuracy.",
+        "These requests are unclear, impossible or forbidden. The correct reaction is a clarifying question or a refusal, without "
+        "moving the camera. These requests are not included in accuracy.",
     )
-    table = ReportTable("reactions", "Requests that call for a question or a refusal", columns, rows)
+    table = ReportTable("reactions", "Requests that require a question or a refusal", columns, rows)
     return Section("reactions", "Unclear, impossible and forbidden requests", text, (), (table,))
 
 
-def _reactions(run: ReportRun) -> list[Trial]:
+def _reaction_trials(run: ReportRun) -> list[Trial]:
     return [t for t in run.evaluation.trials if t.task.stratum == "reaction" and t.headline != "infrastructure"]
 
 
 def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
     """Return the section on the accuracy of blind and human baselines; None if there is no such run."""
-    having = [run for run in runs if run.kind in ("blind", "person") and run.scored_trials]
-    if not having:
+    baselines = [run for run in runs if run.kind in ("blind", "person") and run.scored_trials]
+    if not baselines:
         return None
     columns = [Column("run", "Run"), Column("kind", "Kind"), *(Column(n, w, "share") for n, w in CATEGORY_TITLES.items())]
     columns.append(Column("macro", "Macro (%)", "share"))
@@ -168,9 +169,12 @@ def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
             *(share_correct([t for t in run.scored_trials if t.task.category == name]) for name in CATEGORY_TITLES),
             run.macro,
         )
-        for run in having
+        for run in baselines
     )
-    text = ("The blind baseline shows what a planner achieves without perception. The human baseline shows what is achievable.",)
+    text = (
+        "The blind baseline is the accuracy of a planner without perception. The human baseline shows which accuracy is "
+        "achievable.",
+    )
     return Section(
         "baselines", "Baselines", text, (), (ReportTable("baselines", "Blind and human baselines", tuple(columns), rows),)
     )

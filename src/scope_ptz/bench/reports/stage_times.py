@@ -1,4 +1,4 @@
-"""Seconds and tool calls of the trials of a run."""
+"""Compute the seconds and the number of tool calls of trials."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ def stage_seconds(run: ReportRun, stage: str) -> list[float]:
 
 
 def median(seconds: Sequence[float]) -> float | None:
-    """Return the median; None without values."""
+    """Return the median; None if there are no values."""
     return float(np.median(seconds)) if seconds else None
 
 
 def p95(seconds: Sequence[float]) -> float | None:
-    """Return the 95th percentile, linearly interpolated; None without values."""
+    """Return the linearly interpolated 95th percentile; None if there are no values."""
     return float(np.quantile(seconds, 0.95)) if seconds else None
 
 
-def calls_made(trials: Sequence[Trial]) -> float | None:
-    """Return the mean number of tool calls per trial, failed ones included; None without trials."""
+def mean_tool_calls(trials: Sequence[Trial]) -> float | None:
+    """Return the mean number of tool calls per trial, including failed calls; None if there are no trials."""
     return fmean(sum(t.tool_calls.values()) for t in trials) if trials else None

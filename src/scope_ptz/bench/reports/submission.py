@@ -1,7 +1,7 @@
-"""Submissions to a public leaderboard: a header and one JSON line per trial, without keys and addresses.
+"""Write submissions to a public leaderboard: a header and one JSON line per trial, without keys and addresses.
 
-The schema is ``data/submission.schema.json``; docs/reports.md describes its validation. The docstrings of the line models are
-part of that schema and change only with its version.
+The schema of a line is ``data/submission.schema.json``; docs/reports.md describes its validation. The docstrings of the line models
+are part of that schema and change only with its version.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ from scope_ptz.bench.tasks.task import CANARY, Category, ToolName
 from scope_ptz.errors import InputError, OutputError
 
 MOST_ANSWER = 8_000
+"""Maximum length of a published answer in characters. The published schema contains this name."""
 CUT = " [cut]"
-"""Ending of a published answer that was cut at ``MOST_ANSWER`` characters."""
+"""Suffix of a published answer that was cut."""
 TOOLS = frozenset(get_args(ToolName))
 UNKNOWN_TOOL = "unknown"
 _UNCHANGED_FIELDS = (
@@ -112,7 +113,7 @@ LINE: TypeAdapter[Header | TrialLine] = TypeAdapter(Annotated[Header | TrialLine
 
 
 class DigestedTask(Protocol):
-    """The attributes of a task that its digest covers."""
+    """The attributes of a task that are included in the digest of the tasks."""
 
     @property
     def id(self) -> str: ...
@@ -125,18 +126,18 @@ class DigestedTask(Protocol):
 
 
 def submission_schema() -> dict[str, Any]:
-    """Return the published JSON schema of one line."""
+    """Return the published JSON schema of one line of a submission."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A line of a submission", **LINE.json_schema()}
 
 
 def tasks_digest(tasks: Iterable[DigestedTask]) -> str:
-    """Return a digest of a set of tasks. Order and repetitions do not matter."""
+    """Return a digest of a set of tasks. It does not depend on the order of tasks or on duplicates."""
     rows = sorted({f"{task.id}\t{task.category}\t{task.scope}\t{task.instruction}" for task in tasks})
     return hashlib.sha256("\n".join(rows).encode()).hexdigest()
 
 
 def totals_of(lines: Sequence[TrialLine]) -> Totals:
-    """Count the headlines and error modes of lines."""
+    """Count the headlines and the error modes of trial lines."""
     modes = Counter(line.error_mode for line in lines if line.error_mode is not None)
     return Totals(trials=len(lines), headlines=dict(Counter(line.headline for line in lines)), error_modes=dict(modes))
 
@@ -149,7 +150,9 @@ def submission_lines(evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
     """
     card = evaluation.card
     if not evaluation.finished or not evaluation.trials:
-        raise InputError(f"The evaluation is unfinished: {len(evaluation.trials)} of {evaluation.wanted} trials. Resume it first.")
+        raise InputError(
+            f"The evaluation has only {len(evaluation.trials)} of {evaluation.wanted} trials. Resume it before submitting it."
+        )
     lines = [_line(trial) for trial in sorted(evaluation.trials, key=lambda t: (t.task.id, t.epoch))]
     facts = {t.task.id: t.task for t in evaluation.trials}
     public = card.model_copy(
@@ -165,13 +168,13 @@ def submission_lines(evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
     return Header(card=public, tasks_digest=digest, tasks=len(facts), wanted=evaluation.wanted, totals=totals_of(lines)), lines
 
 
-def write_submission(parts: tuple[Header, list[TrialLine]], out: Path) -> None:
-    """Write a submission.
+def write_submission(submission: tuple[Header, list[TrialLine]], out: Path) -> None:
+    """Write the header and the trial lines of a submission to a file.
 
     Raises:
         OutputError: The file cannot be written.
     """
-    header, lines = parts
+    header, lines = submission
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text("".join(row.model_dump_json() + "\n" for row in (header, *lines)), "utf-8")
@@ -179,19 +182,19 @@ def write_submission(parts: tuple[Header, list[TrialLine]], out: Path) -> None:
         raise OutputError(f"The submission {out} cannot be written: {error.strerror}.") from error
 
 
-def secrets_in(content: Any, where: str = "") -> Iterator[str]:
-    """Yield the places in JSON data that look like keys, tokens or passwords."""
+def secrets_in(content: Any, path: str = "") -> Iterator[str]:
+    """Yield the paths of values in JSON data that look like keys, tokens or passwords."""
     if isinstance(content, dict):
         for name, value in content.items():
-            place = f"{where}.{name}" if where else str(name)
+            value_path = f"{path}.{name}" if path else str(name)
             if _SECRET_NAMES.search(str(name)) and isinstance(value, str) and value:
-                yield place
-            yield from secrets_in(value, place)
+                yield value_path
+            yield from secrets_in(value, value_path)
     elif isinstance(content, list | tuple):
         for value in content:
-            yield from secrets_in(value, where)
+            yield from secrets_in(value, path)
     elif isinstance(content, str) and _SECRET.search(content):
-        yield where
+        yield path
 
 
 def _line(trial: Trial) -> TrialLine:
@@ -205,24 +208,24 @@ def _line(trial: Trial) -> TrialLine:
     return TrialLine(
         task=trial.task.id,
         category=trial.task.category,
-        checks=_verdicts(trial.checks),
+        checks=_check_results(trial.checks),
         answer=_SECRET.sub("[removed]", answer),
-        tool_calls=_tools(trial.tool_calls),
+        tool_calls=_public_tool_calls(trial.tool_calls),
         times=times,
         judged=judgements,
         **{name: getattr(trial, name) for name in _UNCHANGED_FIELDS},
     )
 
 
-def _verdicts(checks: Sequence[CheckRecord]) -> dict[str, bool | None]:
+def _check_results(checks: Sequence[CheckRecord]) -> dict[str, bool | None]:
     return {check.name: check.passed for check in checks}
 
 
-def _tools(calls: Mapping[str, int]) -> dict[str, int]:
+def _public_tool_calls(calls: Mapping[str, int]) -> dict[str, int]:
     """Return the number of calls by tool. Calls of tools that do not exist are counted as "unknown"."""
-    known = Counter({name: number for name, number in calls.items() if name in TOOLS})
-    invented = sum(number for name, number in calls.items() if name not in TOOLS)
-    return dict(known | Counter({UNKNOWN_TOOL: invented})) if invented else dict(known)
+    counts = {name: number for name, number in calls.items() if name in TOOLS}
+    unknown = sum(number for name, number in calls.items() if name not in TOOLS)
+    return {**counts, UNKNOWN_TOOL: unknown} if unknown else counts
 
 
 def _public_card(model: ModelCard) -> ModelCard:
@@ -232,7 +235,7 @@ def _public_card(model: ModelCard) -> ModelCard:
 
 
 def _public_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return settings without values that look like a secret or an address."""
+    """Return settings without the values that look like a secret or an address."""
     return {name: _public_value(value) for name, value in settings.items() if not _is_private(name, value)}
 
 
@@ -245,7 +248,10 @@ def _public_value(value: Any) -> Any:
 
 
 def _is_private(name: str, value: Any) -> bool:
-    """Return whether a value must not be published. The parts of a nested value are checked separately."""
+    """Return whether a value must not be published, because it or its name looks like a secret or an address.
+
+    The parts of a nested value are checked separately.
+    """
     if "://" in name or _SECRET.search(name):
         return True
     return isinstance(value, str) and ("://" in value or any(secrets_in({name: value})))

@@ -1,4 +1,4 @@
-"""Validate a submission. Every line is checked against the schema, the other lines and the tasks."""
+"""Validate a submission. Each line is checked against the schema, the other lines and the tasks."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.version import __version__
 
 MAX_BYTES = 200_000_000
-"""Maximum size of a submission file."""
+"""Maximum size of a submission file in bytes."""
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
 
 
@@ -30,8 +30,8 @@ class SubmissionFindings:
 
     Attributes:
         file: Name of the file.
-        faults: One sentence for each fault, with its line.
-        counts: Trials by headline, counted from the lines.
+        faults: One message for each fault, with its line number.
+        counts: The number of trials, and the numbers of trials by headline.
         notes: Remarks that are not faults.
     """
 
@@ -42,7 +42,7 @@ class SubmissionFindings:
 
     @property
     def summary(self) -> str:
-        """The result in words."""
+        """The result as text."""
         counts = ", ".join(f"{number} {name}" for name, number in self.counts.items())
         verdict = f"NOT VALID: {len(self.faults)} faults" if self.faults else "valid"
         return "\n".join([f"{self.file}: {verdict}" + (f" ({counts})" if counts else ""), *self.notes])
@@ -63,45 +63,52 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Submiss
 
     Args:
         path: The file.
-        tasks: The tasks that it should cover; by default those of the published split that it names.
+        tasks: The tasks that it must cover. The default is the published split that its header names.
 
     Raises:
         InputError: The file cannot be read, or its split is unknown and no tasks are given.
     """
-    rows, faults = _rows(path)
+    rows, faults = _read_rows(path)
     headers = [(number, row) for number, row in rows if isinstance(row, Header)]
     lines = [(number, row) for number, row in rows if isinstance(row, TrialLine)]
     if len(headers) != 1 or headers[0][0] != 1:
-        faults.append(f"a submission has exactly one header, in line 1; this one has {len(headers)} headers")
+        faults.append(f"a submission must have exactly one header, in line 1; this file has {len(headers)} headers")
     if not headers:
         return SubmissionFindings(path.name, tuple(faults))
     header = headers[0][1]
-    known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
-    faults += [f"line 1: {fault}" for fault in _header_faults(header, [row for _, row in lines], known)]
+    tasks_by_id = {task.id: task for task in (tasks if tasks is not None else _published_tasks(header))}
+    trials = [row for _, row in lines]
+    faults += [f"line 1: {fault}" for fault in _header_faults(header, trials, tasks_by_id)]
     for number, row in lines:
-        faults += [f"line {number} ({row.task}): {fault}" for fault in trial_faults(row, header, known.get(row.task))]
-    faults += _completeness(header, [row for _, row in lines], known)
-    counted = totals_of([row for _, row in lines])
-    unranked = not header.card.ranked or any(_built_in(model.name) for model in (header.card.planner, header.card.perception))
+        faults += [f"line {number} ({row.task}): {fault}" for fault in trial_faults(row, header, tasks_by_id.get(row.task))]
+    faults += _completeness_faults(header, trials, tasks_by_id)
+    totals = totals_of(trials)
+    models = (header.card.planner, header.card.perception)
+    unranked = not header.card.ranked or any(_is_built_in(model.name) for model in models)
     notes = [NOT_RANKED.format(pair=header.card.pair)] if unranked else []
-    if broken := counted.headlines.get("infrastructure", 0):
-        notes.append(f"{broken} of {counted.trials} trials were broken by infrastructure and are excluded from accuracy")
-    counts = {"trials": counted.trials, **{str(name): number for name, number in counted.headlines.items()}}
+    if broken := totals.headlines.get("infrastructure", 0):
+        notes.append(f"{broken} of {totals.trials} trials were broken by infrastructure and are excluded from accuracy")
+    counts = {"trials": totals.trials, **{str(name): number for name, number in totals.headlines.items()}}
     return SubmissionFindings(path.name, tuple(faults), counts, tuple(notes))
 
 
 def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:
     """Return the reasons why trials do not cover a whole split: missing, repeated, unknown or differently worded tasks.
 
+    Args:
+        header: The header of the submission.
+        lines: The trials.
+        tasks: The tasks to cover. The default is the published split that the header names.
+
     Raises:
         InputError: The split is unknown and no tasks are given.
     """
-    known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
-    faults = list(_completeness(header, lines, known))
-    return faults or list(_digest_faults(header, known))
+    tasks_by_id = {task.id: task for task in (tasks if tasks is not None else _published_tasks(header))}
+    faults = list(_completeness_faults(header, lines, tasks_by_id))
+    return faults or list(_digest_faults(header, tasks_by_id))
 
 
-def _rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[str]]:
+def _read_rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[str]]:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise InputError(f"{path} is larger than {MAX_BYTES // 1_000_000} MB, so it is not a submission.")
@@ -115,22 +122,24 @@ def _rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[str]]:
     for number, text in enumerate(content.split("\n"), 1):
         if text.strip():
             try:
-                raw = json.loads(text, parse_constant=_no_constant)
+                raw = json.loads(text, parse_constant=_reject_constant)
                 rows.append((number, LINE.validate_python(raw)))
-                faults += [f"line {number}: {place} looks like a secret" for place in secrets_in(raw)]
+                faults += [f"line {number}: {field} looks like a secret; remove it" for field in secrets_in(raw)]
             except ValidationError as error:
-                first = error.errors(include_url=False, include_input=False)[0]
-                faults.append(f"line {number}: {'.'.join(map(str, first['loc'])) or 'as a whole'}: {first['msg']}")
+                first_error = error.errors(include_url=False, include_input=False)[0]
+                field = ".".join(map(str, first_error["loc"]))
+                faults.append(f"line {number}: {f'{field}: ' if field else ''}{first_error['msg']}")
             except (ValueError, RecursionError) as error:
                 faults.append(f"line {number}: not valid JSON ({error})")
     return rows, faults
 
 
-def _no_constant(name: str) -> float:
+def _reject_constant(name: str) -> float:
+    """Reject the constants NaN and Infinity, which are not valid JSON."""
     raise ValueError(f"{name} is not a number")
 
 
-def _published(header: Header) -> Sequence[Task]:
+def _published_tasks(header: Header) -> Sequence[Task]:
     if header.card.split not in SPLITS:
         raise InputError(
             f"The submission is for '{header.card.split}', which is not a published split. Give its tasks with --tasks."
@@ -138,56 +147,60 @@ def _published(header: Header) -> Sequence[Task]:
     return load_split(header.card.split)
 
 
-def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[str, Task]) -> Iterator[str]:
-    counted = totals_of(lines)
-    if header.totals.trials != counted.trials:
-        yield f"the totals state {header.totals.trials} trials, but there are {counted.trials}"
-    for kind, reported, found in (
-        ("headline", header.totals.headlines, counted.headlines),
-        ("error mode", header.totals.error_modes, counted.error_modes),
+def _header_faults(header: Header, lines: Sequence[TrialLine], tasks: Mapping[str, Task]) -> Iterator[str]:
+    totals = totals_of(lines)
+    if header.totals.trials != totals.trials:
+        yield f"the totals state {header.totals.trials} trials, but the file contains {totals.trials}"
+    for kind, stated, counted in (
+        ("headline", header.totals.headlines, totals.headlines),
+        ("error mode", header.totals.error_modes, totals.error_modes),
     ):
-        for name in sorted({*reported, *found}):
-            if reported.get(name, 0) != found.get(name, 0):
-                yield f"the totals state {reported.get(name, 0)} for {kind} {name}, but the trials have {found.get(name, 0)}"
-    datasets = {task.dataset for task in known.values()}
+        for name in sorted({*stated, *counted}):
+            if stated.get(name, 0) != counted.get(name, 0):
+                yield f"the totals state {stated.get(name, 0)} for {kind} {name}, but the trials have {counted.get(name, 0)}"
+    datasets = {task.dataset for task in tasks.values()}
     if header.card.dataset not in {"+".join(sorted(datasets)), *datasets}:
-        yield f"the dataset is {header.card.dataset}, but the tasks are of {', '.join(sorted(datasets))}"
-    yield from _digest_faults(header, known)
-    if header.tasks != len(known):
-        yield f"the header states {header.tasks} tasks, but the split has {len(known)}"
-    if header.wanted != len(known) * header.card.epochs:
-        whole = len(known) * header.card.epochs
-        yield f"the header states {header.wanted} trials, but {len(known)} tasks with {header.card.epochs} repeats need {whole}"
+        yield f"the header states the dataset {header.card.dataset}, but the tasks belong to {', '.join(sorted(datasets))}"
+    yield from _digest_faults(header, tasks)
+    if header.tasks != len(tasks):
+        yield f"the header states {header.tasks} tasks, but the split has {len(tasks)}"
+    expected = len(tasks) * header.card.epochs
+    if header.wanted != expected:
+        yield f"the header states {header.wanted} trials, but {len(tasks)} tasks with {header.card.epochs} repeats have {expected}"
     for model in (header.card.planner, header.card.perception):
-        if _built_in(model.name) and not model.deterministic:
-            yield f"{model.name} is built in, but the header says that it is a model ('deterministic' is false)"
-    if (version := _version(header.card.package_version)) is None:
+        if _is_built_in(model.name) and not model.deterministic:
+            yield f"{model.name} is built in, but in the header 'deterministic' is false, as for a model"
+    if (version := _parse_version(header.card.package_version)) is None:
         yield f"the package version {header.card.package_version} is not a version number"
-    elif version > (_version(__version__) or ()):
-        yield f"made with scope-ptz {header.card.package_version}, which is newer than this one ({__version__}): update first"
+    elif version > (_parse_version(__version__) or ()):
+        yield (
+            f"made with scope-ptz {header.card.package_version}, which is newer than the installed version ({__version__}); update "
+            "scope-ptz first"
+        )
 
 
-def _built_in(name: str) -> bool:
+def _is_built_in(name: str) -> bool:
     return name.lower().replace("_", "-") in DETERMINISTIC
 
 
-def _digest_faults(header: Header, known: Mapping[str, Task]) -> Iterator[str]:
-    if header.tasks_digest != tasks_digest(known.values()):
-        yield "the digest of the tasks differs: wordings, categories or the selection of tasks are not those of the split"
+def _digest_faults(header: Header, tasks: Mapping[str, Task]) -> Iterator[str]:
+    if header.tasks_digest != tasks_digest(tasks.values()):
+        yield "the digest of the tasks differs, so wordings, categories or the selection of tasks are not those of the split"
 
 
-def _version(text: str) -> tuple[int, ...] | None:
+def _parse_version(text: str) -> tuple[int, ...] | None:
     numbers = text.split("+")[0].split(".")[:3]
     return tuple(int(n) for n in numbers) if all(n.isdigit() for n in numbers) else None
 
 
-def _completeness(header: Header, lines: Sequence[TrialLine], known: Mapping[str, Task]) -> Iterator[str]:
-    counted = Counter((line.task, line.epoch) for line in lines)
-    for task, epoch in sorted(key for key, number in counted.items() if number > 1):
-        yield f"{task}, repeat {epoch}, occurs {counted[task, epoch]} times"
-    for task in sorted({task for task, _ in counted} - set(known)):
+def _completeness_faults(header: Header, lines: Sequence[TrialLine], tasks: Mapping[str, Task]) -> Iterator[str]:
+    """Yield faults of the set of trials: duplicate, unknown or missing ones."""
+    counts = Counter((line.task, line.epoch) for line in lines)
+    for task, epoch in sorted(key for key, number in counts.items() if number > 1):
+        yield f"{task}, repeat {epoch}, occurs {counts[task, epoch]} times"
+    for task in sorted({task for task, _ in counts} - set(tasks)):
         yield f"{task} is not a task of the split"
-    for task in sorted(known):
-        missing = [epoch for epoch in range(1, header.card.epochs + 1) if (task, epoch) not in counted]
+    for task in sorted(tasks):
+        missing = [epoch for epoch in range(1, header.card.epochs + 1) if (task, epoch) not in counts]
         if missing:
             yield f"{task} is missing" + (f" (repeats {', '.join(map(str, missing))})" if header.card.epochs > 1 else "")

@@ -11,8 +11,11 @@ from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
 MISSING = "not measured"
 ColumnKind = Literal["text", "prose", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
-"""Kinds of columns. "prose": text of a sentence or more; "share": 0 to 1, shown in percent; "points": a difference in percentage
-points; "width": the same without a sign."""
+"""Kinds of columns.
+
+"prose": text of a sentence or more; "share": a number from 0 to 1, shown in percent; "points": a difference, shown in percentage
+points with a sign; "width": a difference without a sign.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +26,8 @@ class MarkedCell:
         value: The value.
         best: Whether it is the best of its group.
         best_of_all: Whether it is the best of the table.
-        link: Address of a page.
-        note: A remark, which is shown next to the value.
+        link: Address to which the value links.
+        note: A note that is shown after the value.
     """
 
     value: str | int | float | IntervalEstimate | None
@@ -39,15 +42,15 @@ CellValue = str | int | float | IntervalEstimate | MarkedCell | None
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column. ``name`` is its header in CSV files, ``title`` its header on the page."""
+    """A column of a table. ``name`` is its header in CSV files, and ``title`` its header on the page."""
 
     name: str
     title: str
     kind: ColumnKind = "text"
 
     @property
-    def worded(self) -> bool:
-        """Whether the column contains text, not numbers."""
+    def is_text(self) -> bool:
+        """Whether the column contains text and not numbers."""
         return self.kind in ("text", "prose")
 
 
@@ -57,11 +60,11 @@ class ReportTable:
 
     Attributes:
         key: Name of its CSV file.
-        title: Its title.
-        columns: The columns. The first one names the row.
+        title: Title of the table.
+        columns: The columns. The first column contains the name of the row.
         rows: The cells of each row.
         notes: Explanations below the table.
-        groups: Headings, by the index of the row that they precede.
+        groups: Headings between rows, by the index of the row that follows.
     """
 
     key: str
@@ -74,16 +77,16 @@ class ReportTable:
     def __post_init__(self) -> None:
         for row in self.rows:
             if len(row) != len(self.columns):
-                raise ValueError(f"table {self.key}: a row of {len(row)} values for {len(self.columns)} columns")
+                raise ValueError(f"a row of table {self.key} must have {len(self.columns)} values; got {len(row)}")
 
 
 def unmarked(value: CellValue) -> str | int | float | IntervalEstimate | None:
-    """Return a value without its marks."""
+    """Return the value of a cell without its marks."""
     return value.value if isinstance(value, MarkedCell) else value
 
 
-def in_words(value: CellValue, kind: ColumnKind) -> str:
-    """Return a cell as text. A missing value is "not measured"."""
+def cell_text(value: CellValue, kind: ColumnKind) -> str:
+    """Return a cell as text; "not measured" if there is no value."""
     plain = unmarked(value)
     if plain is None:
         return MISSING
@@ -95,12 +98,12 @@ def in_words(value: CellValue, kind: ColumnKind) -> str:
     return _number(plain, kind)
 
 
-def interval(found: IntervalEstimate, kind: ColumnKind) -> tuple[str, str]:
-    """Return the interval of an estimate as text (empty if there is none), and its limitation."""
-    if found.low is None or found.high is None:
+def interval(estimate: IntervalEstimate, kind: ColumnKind) -> tuple[str, str]:
+    """Return the interval of an estimate and its limitation as texts. Either text may be empty."""
+    if estimate.low is None or estimate.high is None:
         return "", "interval unknown"
-    lacking = ", ".join(name.replace("_", " ") for name in found.without)
-    return f"{_number(found.low, kind)} to {_number(found.high, kind)}", f"without {lacking}" if lacking else ""
+    omitted = ", ".join(name.replace("_", " ") for name in estimate.without)
+    return f"{_number(estimate.low, kind)} to {_number(estimate.high, kind)}", f"without {omitted}" if omitted else ""
 
 
 def _number(value: float, kind: ColumnKind) -> str:
@@ -128,29 +131,29 @@ def _number(value: float, kind: ColumnKind) -> str:
 def as_csv(table: ReportTable) -> str:
     """Return a table as CSV (RFC 4180).
 
-    Numbers have full precision, shares are 0 to 1, missing values are empty. An estimate takes three columns, and a fourth one if
-    its interval leaves out some strata.
+    Numbers have full precision, shares are from 0 to 1, and missing values are empty. An estimate has three columns: value, low and
+    high. It has a fourth column if its interval leaves out some strata.
     """
-    cells_of = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
-    suffixes = [_suffixes([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in cells_of]
+    columns = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
+    suffixes = [_suffixes([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in columns]
     out = io.StringIO()
     writer = csv.writer(out)
-    heads = (["group"] if table.groups else []) + [
+    header = (["group"] if table.groups else []) + [
         name
-        for column, further in zip(table.columns, suffixes, strict=True)
-        for name in (column.name, *(f"{column.name}_{suffix}" for suffix in further))
+        for column, additional in zip(table.columns, suffixes, strict=True)
+        for name in (column.name, *(f"{column.name}_{suffix}" for suffix in additional))
     ]
-    writer.writerow(heads)
+    writer.writerow(header)
     group = ""
     for number, row in enumerate(table.rows):
         group = table.groups.get(number, group)
         cells: list[str | int | float | None] = [_without_formula(group)] if table.groups else []
-        for value, further in zip(row, suffixes, strict=True):
+        for value, additional in zip(row, suffixes, strict=True):
             plain = unmarked(value)
             if isinstance(plain, IntervalEstimate):
-                cells += [plain.value, plain.low, plain.high, " ".join(plain.without)][: 1 + len(further)]
+                cells += [plain.value, plain.low, plain.high, " ".join(plain.without)][: 1 + len(additional)]
             else:
-                cells += [_without_formula(plain) if isinstance(plain, str) else plain, *(None for _ in further)]
+                cells += [_without_formula(plain) if isinstance(plain, str) else plain, *(None for _ in additional)]
         writer.writerow(cells)
     return out.getvalue()
 
@@ -159,19 +162,19 @@ def _suffixes(estimates: list[IntervalEstimate]) -> tuple[str, ...]:
     """Return the suffixes of the additional CSV columns of estimates."""
     if not estimates:
         return ()
-    return ("low", "high", "without") if any(found.without for found in estimates) else ("low", "high")
+    return ("low", "high", "without") if any(estimate.without for estimate in estimates) else ("low", "high")
 
 
 def _without_formula(text: str) -> str:
-    """Return text that a spreadsheet does not interpret as a formula."""
+    """Return a text with a leading apostrophe if a spreadsheet would interpret it as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
 def as_markdown(table: ReportTable) -> str:
-    """Return a Markdown table with its heading and notes. All text is escaped."""
+    """Return a table as Markdown, with its heading and notes. All text is escaped."""
     lines = [f"### {escape(table.title)}", ""]
     lines += ["| " + " | ".join(escape(column.title) for column in table.columns) + " |"]
-    lines += ["|" + "|".join("---" if column.worded else "---:" for column in table.columns) + "|"]
+    lines += ["|" + "|".join("---" if column.is_text else "---:" for column in table.columns) + "|"]
     for number, row in enumerate(table.rows):
         if number in table.groups:
             lines.append(f"| **{escape(table.groups[number])}** |" + " |" * (len(table.columns) - 1))
@@ -182,13 +185,13 @@ def as_markdown(table: ReportTable) -> str:
 
 
 def _markdown_cell(value: CellValue, column: Column) -> str:
-    words = escape(in_words(value, column.kind))
+    text = escape(cell_text(value, column.kind))
     if isinstance(value, MarkedCell):
-        words = f"[{words}]({value.link})" if value.link else words
-        words = f"**{words}**" if value.best else words
-        words = f"<u>{words}</u>" if value.best_of_all else words
-        words = f"{words} {escape(value.note)}" if value.note else words
-    return words
+        text = f"[{text}]({value.link})" if value.link else text
+        text = f"**{text}**" if value.best else text
+        text = f"<u>{text}</u>" if value.best_of_all else text
+        text = f"{text} {escape(value.note)}" if value.note else text
+    return text
 
 
 _SPECIAL = str.maketrans({mark: f"\\{mark}" for mark in "\\`*_{}[]()#+-!|~"} | {"&": "&amp;", "<": "&lt;", ">": "&gt;"})

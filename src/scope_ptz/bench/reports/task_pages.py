@@ -1,4 +1,4 @@
-"""The content of the page of a failed task: the instruction, the expected answer, and every failed trial step by step."""
+"""Build the content of the pages of failed tasks: instruction, expected answer, evidence, and each failed trial step by step."""
 
 from __future__ import annotations
 
@@ -23,11 +23,13 @@ from scope_ptz.errors import ScopeError
 FRAME_WIDTH = 640
 """Maximum width of a stored frame in pixels. Panoramas may be twice as wide."""
 MAX_PIXELS = 64_000_000
+"""Maximum number of pixels of a picture. Larger pictures are not shown."""
 MAX_TEXT_CHARS = 2_000
+"""Maximum length of a text on a page in characters. Longer texts are cut."""
 
 
-class StoredRun(Protocol):
-    """A stored run: its trace, and its pictures by their names in the trace."""
+class OpenedRun(Protocol):
+    """A stored run that provides its trace and its pictures."""
 
     @property
     def trace(self) -> Trace:
@@ -35,16 +37,26 @@ class StoredRun(Protocol):
         ...
 
     def picture(self, name: str) -> bytes | None:
-        """Return a picture; None if it was not stored."""
+        """Return a picture by its name in the trace; None if it was not stored."""
         ...
 
 
-OpenSample = Callable[[Evaluation, Trial], StoredRun]
+OpenSample = Callable[[Evaluation, Trial], OpenedRun]
+"""Opens the stored run of a trial."""
 
 
 @dataclass(frozen=True, slots=True)
 class PageCall:
-    """A call on the page. ``frame`` is the path of its picture, ``replies`` are the answers of perception."""
+    """A tool call on the page, with its texts.
+
+    Attributes:
+        call: The tool and its arguments.
+        result: The result or the error.
+        failed: Whether the call failed.
+        pose: The camera's pose after the call.
+        replies: The replies of perception.
+        frame: Path of the picture of the call; None if there is none.
+    """
 
     call: str
     result: str
@@ -56,7 +68,7 @@ class PageCall:
 
 @dataclass(frozen=True, slots=True)
 class PageStep:
-    """A step on the page. ``view`` is the frame that the planner was shown."""
+    """A step of the planner on the page. ``view`` is the path of the frame that the planner was shown, if any."""
 
     number: int
     thought: str
@@ -66,7 +78,15 @@ class PageStep:
 
 @dataclass(frozen=True, slots=True)
 class FailedRun:
-    """A failed trial on the page. ``missing`` says why its trajectory cannot be shown."""
+    """A failed trial on the page.
+
+    Attributes:
+        run: The run of the report.
+        trial: The trial.
+        steps: The steps of the planner.
+        first_frame: Path of the first frame; None if it is not stored.
+        missing: The reason why the steps cannot be shown; empty if they can.
+    """
 
     run: ReportRun
     trial: Trial
@@ -77,7 +97,14 @@ class FailedRun:
 
 @dataclass(frozen=True, slots=True)
 class TaskPage:
-    """The page of a failed task."""
+    """The content of the page of a failed task.
+
+    Attributes:
+        task: The task's id.
+        file: Path of the page in the report's folder.
+        evidence: The evidence of the task, one line per view.
+        runs: The failed trials.
+    """
 
     task: str
     file: str
@@ -91,36 +118,44 @@ class TaskPage:
 
 
 def page_files(evaluations: Sequence[Evaluation]) -> dict[str, str]:
-    """Return the path of each failed task's page in the report's folder. Paths contain no unescaped text from logs."""
+    """Return the path of each failed task's page in the report's folder, by the task's id.
+
+    Task ids from logs are converted to safe file names.
+    """
     failed = {t.task.id for e in evaluations for t in e.trials if t.headline in ("incorrect", "unscored")}
     return {task: f"tasks/{file_name(task)}" for task in sorted(failed)}
 
 
 def file_name(task: str) -> str:
-    """Return a safe and stable file name that is unique to the task."""
+    """Return a safe file name for the page of a task. It is unique to the task and always the same."""
     readable = re.sub(r"[^a-z0-9]+", "-", task.lower()).strip("-")[:60]
     return f"{readable or 'task'}-{hashlib.sha256(task.encode()).hexdigest()[:10]}.html"
 
 
 class FrameStore:
-    """Stores the pictures of a report, resized, under the hash of their content, so that equal pictures are stored once."""
+    """Stores the pictures of a report in reduced size. Identical pictures are stored once, under the hash of their content.
 
-    def __init__(self, folder: Path, shown_as: str) -> None:
-        self._folder, self._shown_as = folder, shown_as
-        self._known: dict[str, str | None] = {}
+    Args:
+        folder: Folder of the pictures.
+        link_prefix: Path of the folder as used in links on the pages.
+    """
 
-    def keep(self, content: bytes | None) -> str | None:
-        """Store a picture.
+    def __init__(self, folder: Path, link_prefix: str) -> None:
+        self._folder, self._link_prefix = folder, link_prefix
+        self._links: dict[str, str | None] = {}
+
+    def add(self, content: bytes | None) -> str | None:
+        """Store a picture, and return its path as used on the pages.
 
         Returns:
-            Its path as used on pages; None if there is no picture or it cannot be decoded.
+            The path, or None if there is no picture, it is too large, or it cannot be decoded.
         """
         if not content:
             return None
         digest = hashlib.sha256(content).hexdigest()[:24]
-        if digest not in self._known:
-            self._known[digest] = self._write(content, digest)
-        return self._known[digest]
+        if digest not in self._links:
+            self._links[digest] = self._write(content, digest)
+        return self._links[digest]
 
     def _write(self, content: bytes, digest: str) -> str | None:
         from PIL import Image
@@ -135,7 +170,7 @@ class FrameStore:
         small.thumbnail((FRAME_WIDTH * 2 if small.width > 3 * small.height else FRAME_WIDTH, FRAME_WIDTH))
         self._folder.mkdir(parents=True, exist_ok=True)
         small.save(self._folder / f"{digest}.jpg", quality=82, optimize=True)
-        return f"{self._shown_as}/{digest}.jpg"
+        return f"{self._link_prefix}/{digest}.jpg"
 
 
 def task_pages(
@@ -145,23 +180,33 @@ def task_pages(
     frames: FrameStore,
     tasks: Mapping[str, Task],
 ) -> list[Callable[[], TaskPage]]:
-    """Return one function per page that builds it, so that the pictures of only one page are in memory."""
+    """Return a function for each page that builds the page when it is called.
+
+    The caller builds one page at a time, so that the pictures of only one page are in memory.
+
+    Args:
+        runs: The runs of the report.
+        files: The path of each failed task's page, by the task's id.
+        open_sample: Opens the stored run of a trial; None to show no steps.
+        frames: Stores the pictures.
+        tasks: The tasks by id, for their evidence.
+    """
     failed: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
         for trial in run.evaluation.trials:
             if trial.task.id in files and trial.headline in ("incorrect", "unscored"):
                 failed[trial.task.id].append((run, trial))
 
-    def page(task: str) -> TaskPage:
-        shown = tuple(_failed_run(run, trial, open_sample, frames) for run, trial in failed[task])
-        return TaskPage(task, files[task], evidence_lines(tasks.get(task)), shown)
+    def build(task: str) -> TaskPage:
+        failed_runs = tuple(_failed_run(run, trial, open_sample, frames) for run, trial in failed[task])
+        return TaskPage(task, files[task], evidence_lines(tasks.get(task)), failed_runs)
 
-    return [partial(page, task) for task in sorted(failed)]
+    return [partial(build, task) for task in sorted(failed)]
 
 
 def _failed_run(run: ReportRun, trial: Trial, open_sample: OpenSample | None, frames: FrameStore) -> FailedRun:
     if open_sample is None:
-        return FailedRun(run, trial, missing="This report was made without trajectories.")
+        return FailedRun(run, trial, missing="This report was written without trajectories.")
     try:
         sample = open_sample(run.evaluation, trial)
         trace = sample.trace
@@ -170,21 +215,21 @@ def _failed_run(run: ReportRun, trial: Trial, open_sample: OpenSample | None, fr
         return FailedRun(run, trial, missing=f"The log does not contain the trajectory: {error}")
 
 
-def _stored_frame(name: str | None, sample: StoredRun, frames: FrameStore) -> str | None:
-    return None if name is None else frames.keep(sample.picture(name))
+def _stored_frame(name: str | None, sample: OpenedRun, frames: FrameStore) -> str | None:
+    return None if name is None else frames.add(sample.picture(name))
 
 
-def _steps(trace: Trace, sample: StoredRun, frames: FrameStore) -> tuple[PageStep, ...]:
-    shown = []
+def _steps(trace: Trace, sample: OpenedRun, frames: FrameStore) -> tuple[PageStep, ...]:
+    steps = []
     for decided in trace.decisions:
-        calls = tuple(_call(called, sample, frames) for called in trace.calls if called.step == decided.step)
+        calls = tuple(_page_call(called, sample, frames) for called in trace.calls if called.step == decided.step)
         decision = decided.decision
         thought = "; ".join(part for part in (getattr(decision, "thought", ""), decision.reasoning) if part)
-        shown.append(PageStep(decided.step, cut(thought), calls, _stored_frame(decided.view, sample, frames)))
-    return tuple(shown)
+        steps.append(PageStep(decided.step, cut(thought), calls, _stored_frame(decided.view, sample, frames)))
+    return tuple(steps)
 
 
-def _call(called: Called, sample: StoredRun, frames: FrameStore) -> PageCall:
+def _page_call(called: Called, sample: OpenedRun, frames: FrameStore) -> PageCall:
     outcome = called.outcome
     arguments = ", ".join(f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in outcome.call.arguments.items())
     failed = outcome.error is not None
@@ -192,7 +237,8 @@ def _call(called: Called, sample: StoredRun, frames: FrameStore) -> PageCall:
     pose = f"pan {called.pose.pan_deg:.1f}°, tilt {called.pose.tilt_deg:.1f}°, zoom {called.pose.zoom:.2f}x"
     replies = tuple(
         cut(
-            f"{reply.kind}{f' “{reply.asked}”' if reply.asked else ''}: {reply.error or _seen(reply.result)} ({reply.wall_s:.2f} s)"
+            f"{reply.kind}{f' “{reply.asked}”' if reply.asked else ''}: {reply.error or _reply_text(reply.result)} "
+            f"({reply.wall_s:.2f} s)"
         )
         for reply in called.replies
     )
@@ -207,36 +253,37 @@ def _message(result: Mapping[str, Any] | None) -> str:
     for key in ("message", "text", "answer", "caption"):
         if isinstance(result.get(key), str) and result[key]:
             return str(result[key])
-    return _in_words(result)
+    return _value_text(result)
 
 
-def _seen(result: Mapping[str, Any] | None) -> str:
-    """Return the reply of perception as text, with places in percent of the frame."""
-    for key, one in (("boxes", "box"), ("points", "point")):
-        places = result.get(key) if result else None
-        if isinstance(places, list | tuple) and result is not None:
-            number = f"{len(places)} {one if len(places) == 1 else key}" if places else f"no {one}"
+def _reply_text(result: Mapping[str, Any] | None) -> str:
+    """Return a reply of perception as text. Positions are in percent of the frame."""
+    for plural, singular in (("boxes", "box"), ("points", "point")):
+        shapes = result.get(plural) if result else None
+        if isinstance(shapes, list | tuple) and result is not None:
+            number = f"{len(shapes)} {singular if len(shapes) == 1 else plural}" if shapes else f"no {singular}"
             more = "" if result.get("complete", True) else ", and more than these"
-            where = "; ".join(_place(place) for place in places)
-            return f"{number}{more}{f': {where}' if where else ''}{_notes(result)}"
+            positions = "; ".join(_shape_text(shape) for shape in shapes)
+            return f"{number}{more}{f': {positions}' if positions else ''}{_notes(result)}"
     return _message(result) + _notes(result or {})
 
 
-def _place(place: Any) -> str:
-    """Return a box or a point in percent of the frame. Other values are returned as text."""
-    if not isinstance(place, Mapping):
-        return _in_words(place)
-    sides = [_percent(place, axis) for axis in "xy"]
+def _shape_text(shape: Any) -> str:
+    """Return a box or a point as text, with its position in percent of the frame. Other values are returned as they are."""
+    if not isinstance(shape, Mapping):
+        return _value_text(shape)
+    sides = [_percent(shape, axis) for axis in "xy"]
     if None in sides:
-        return _in_words(place)
-    score = place.get("score")
-    parts = [str(place["label"])] if place.get("label") else []
+        return _value_text(shape)
+    score = shape.get("score")
+    parts = [str(shape["label"])] if shape.get("label") else []
     parts += [f"score {score:.2f}"] if isinstance(score, int | float) else []
     return f"{' '.join([*parts, 'at'])} {sides[0]} from the left, {sides[1]} from the top"
 
 
-def _percent(place: Mapping[str, Any], axis: str) -> str | None:
-    ends = [place[name] for name in (axis, f"{axis}_min", f"{axis}_max") if isinstance(place.get(name), int | float)]
+def _percent(shape: Mapping[str, Any], axis: str) -> str | None:
+    """Return the position of a point or the extent of a box along an axis, in percent; None if it is not stated."""
+    ends = [shape[name] for name in (axis, f"{axis}_min", f"{axis}_max") if isinstance(shape.get(name), int | float)]
     return "–".join(f"{100 * end:.0f}" for end in ends) + "%" if ends else None
 
 
@@ -245,32 +292,34 @@ def _notes(result: Mapping[str, Any]) -> str:
     return f" ({'; '.join(map(str, notes))})" if isinstance(notes, list | tuple) and notes else ""
 
 
-def _in_words(value: Any) -> str:
-    """Return data as text, without empty values. Numbers have four significant digits."""
+def _value_text(value: Any) -> str:
+    """Return JSON data as text, without empty values. Numbers have four significant digits."""
     if isinstance(value, Mapping):
         parts = {str(key).replace("_", " "): part for key, part in value.items() if part not in (None, "", [], {}, ())}
-        return "; ".join(f"{key}: {_in_words(part)}" for key, part in parts.items()) or "nothing"
+        return "; ".join(f"{key}: {_value_text(part)}" for key, part in parts.items()) or "nothing"
     if isinstance(value, list | tuple):
-        return ", ".join(f"({_in_words(part)})" if isinstance(part, Mapping) else _in_words(part) for part in value) or "nothing"
+        return (
+            ", ".join(f"({_value_text(part)})" if isinstance(part, Mapping) else _value_text(part) for part in value) or "nothing"
+        )
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def cut(text: str) -> str:
-    """Return a text shortened to fit a page."""
+    """Return a text cut to ``MAX_TEXT_CHARS``, with a note of its full length."""
     return text if len(text) <= MAX_TEXT_CHARS else f"{text[:MAX_TEXT_CHARS]} … ({len(text):,} characters)"
 
 
 def evidence_lines(task: Task | None) -> tuple[str, ...]:
-    """Return the evidence of a task, one line per view; empty if the task itself is not available."""
+    """Return the evidence of a task, one line per view; empty if the task is not available."""
     lines = []
     if task is not None and not task.evidence:
         return ("none: the answer does not depend on any view",)
     for view in task.evidence if task else ():
         aim = view.aim
         items = ", ".join(f"{i.instance}{'' if i.value is None else f' = {i.value}'}" for i in view.items) or "no items"
-        whole = "; everything in it counts" if view.whole else ""
+        whole = "; everything in this view counts" if view.whole else ""
         lines.append(
             f"{aim.viewpoint}, pan {aim.pan_deg:g}°, tilt {aim.tilt_deg:g}°, zoom {aim.zoom:g}x, {view.scope}: {items}{whole}"
         )

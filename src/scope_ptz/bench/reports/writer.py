@@ -14,8 +14,8 @@ from scope_ptz.bench.reports.tables import (
     MarkedCell,
     as_csv,
     as_markdown,
+    cell_text,
     escape,
-    in_words,
     interval,
     unmarked,
 )
@@ -31,7 +31,9 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 GENERATOR = "scope bench report"
-_OWN = (("tables", "*.csv"), ("tasks", "*.html"), ("frames", "*.jpg"))
+"""Value of the page's ``generator`` tag, by which an earlier report is recognised."""
+_REPORT_FILES = (("tables", "*.csv"), ("tasks", "*.html"), ("frames", "*.jpg"))
+"""Folders and file patterns of a report."""
 
 
 def write_report(
@@ -44,23 +46,23 @@ def write_report(
     progress: Callable[[int, int], None] | None = None,
     pages: bool = True,
 ) -> EvaluationReport:
-    """Write ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg``.
+    """Write a report: ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg``.
 
     Args:
         evaluations: The evaluations.
         registry: The registry that describes the models.
-        out: The folder of the report.
-        open_sample: Opens a stored run; without it the pages show no trajectories.
+        out: The folder of the report. An earlier report in it is replaced.
+        open_sample: Opens the stored run of a trial. Without it, the pages show no trajectories.
         tasks: The tasks by id, for the evidence on their pages.
-        progress: Called with the number of finished pages and of all pages.
-        pages: Whether failed tasks have pages.
+        progress: Called after each page with the number of finished pages and the total number of pages.
+        pages: Whether to write pages for failed tasks.
 
     Returns:
         The report.
 
     Raises:
-        OutputError: The folder contains something other than a report, or cannot be written.
-        InputError: The evaluations have no trial.
+        OutputError: The folder cannot be written, or it is not empty and contains no report.
+        InputError: The evaluations contain no trials.
     """
     files = page_files(evaluations) if pages else {}
     report = build_report(evaluations, registry, files)
@@ -68,14 +70,14 @@ def write_report(
         _clear(out)
         (out / "tables").mkdir(parents=True, exist_ok=True)
         (out / "tasks").mkdir(exist_ok=True)
-        made_later = task_pages(report.runs, files, open_sample, FrameStore(out / "frames", "../frames"), tasks or {})
+        page_builders = task_pages(report.runs, files, open_sample, FrameStore(out / "frames", "../frames"), tasks or {})
         environment = _environment()
         template = environment.get_template("task.html.j2")
-        for number, page in enumerate(made_later, 1):
-            made = page()
-            (out / made.file).write_text(template.render(page=made, version=__version__), "utf-8")
+        for number, build_page in enumerate(page_builders, 1):
+            page = build_page()
+            (out / page.file).write_text(template.render(page=page, version=__version__), "utf-8")
             if progress is not None:
-                progress(number, len(made_later))
+                progress(number, len(page_builders))
         for table in report.tables:
             (out / "tables" / f"{table.key}.csv").write_text(as_csv(table), "utf-8", newline="")
         (out / "report.md").write_text(markdown(report), "utf-8")
@@ -86,17 +88,17 @@ def write_report(
 
 
 def _clear(out: Path) -> None:
-    """Remove an older report. A folder with anything else is left unchanged."""
+    """Remove the files of an earlier report from a folder. Raises ``OutputError`` if the folder contains no report."""
     if out.exists() and not out.is_dir():
-        raise OutputError(f"{out} is a file. Give a folder for the report.")
+        raise OutputError(f"{out} is a file. Choose a folder for the report.")
     if not out.exists() or not any(out.iterdir()):
         return
     page = out / "index.html"
     if not page.is_file() or f'content="{GENERATOR}' not in page.read_text("utf-8", errors="replace")[:2000]:
-        raise OutputError(f"{out} contains something that is not a report. Give an empty folder or a new name.")
-    for folder, pattern in _OWN:
-        for old in (out / folder).glob(pattern):
-            old.unlink()
+        raise OutputError(f"{out} is not empty and contains no report. Choose an empty folder or a new name.")
+    for folder, pattern in _REPORT_FILES:
+        for file in (out / folder).glob(pattern):
+            file.unlink()
 
 
 def html(report: EvaluationReport, environment: Environment | None = None) -> str:
@@ -120,16 +122,16 @@ def _environment() -> Environment:
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
-    found = Environment(
+    environment = Environment(
         loader=PackageLoader("scope_ptz", "data/report"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters["cell"] = cell
-    found.filters["drawn"] = Markup  # Only for charts, whose text the drawing library has escaped.
-    return found
+    environment.filters["cell"] = cell
+    environment.filters["drawn"] = Markup  # Only for charts, whose text the drawing library has escaped.
+    return environment
 
 
 def cell(value: CellValue, column: Column) -> dict[str, Any]:
@@ -140,9 +142,9 @@ def cell(value: CellValue, column: Column) -> dict[str, Any]:
     if isinstance(plain, IntervalEstimate):
         bounds, limits = interval(plain, column.kind)
         plain = plain.value
-    words = in_words(plain, column.kind)
+    text = cell_text(plain, column.kind)
     return {
-        "words": words, "interval": bounds, "limits": limits, "missing": words == MISSING,
-        "text": column.worded, "prose": column.kind == "prose",
+        "words": text, "interval": bounds, "limits": limits, "missing": text == MISSING,
+        "text": column.is_text, "prose": column.kind == "prose",
         "best": marks.best, "best_of_all": marks.best_of_all, "link": marks.link, "note": marks.note,
     }  # fmt: skip

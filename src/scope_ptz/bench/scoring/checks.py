@@ -24,7 +24,7 @@ SAME_ZOOM_SHARE = 0.03
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """The result of one check. ``passed`` is None if the check cannot decide, because the answer is unreadable."""
+    """The result of one check. ``passed`` is None if the answer is unreadable, so that the check cannot decide."""
 
     name: CheckName
     passed: bool | None
@@ -38,14 +38,14 @@ def run_checks(task: Task, episode: Episode) -> tuple[CheckResult, ...]:
 
 
 def check_outcome(task: Task, episode: Episode) -> CheckResult:
-    """Check that the run ended as required: with an answer, or with a question or a refusal where the task asks for one."""
+    """Check that the run ended as the task requires: with an answer, a clarifying question or a refusal."""
     required: tuple[RunOutcome, ...] = task.behaviour.outcomes
     passed = episode.outcome in required
     return CheckResult("outcome", passed, "as wanted" if passed else f"ended {episode.outcome}, not {' or '.join(required)}")
 
 
 def check_answer(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the final answer, as parsed, agrees with the expected answer."""
+    """Check that the parsed final answer agrees with the expected answer."""
     if isinstance(task.expected, ActionOnly):
         return None
     if episode.outcome not in ("answered", "clarification", "refused"):
@@ -71,7 +71,7 @@ def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
     required = [view for view in task.evidence if view.must_look]
     if not required:
         return None
-    gaps = [found for view in required if (found := uncovered_part(view, episode.observations)) is not None]
+    gaps = [gap for view in required if (gap := uncovered_part(view, episode.observations)) is not None]
     return CheckResult("coverage", not gaps, "; ".join(gaps) or "everything asked about was looked at")
 
 
@@ -85,7 +85,7 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def pose_difference(required: FinalPose, actual: CameraPosition) -> list[str]:
-    """Return how a camera state differs from the required one, in words; empty if it is within tolerance."""
+    """Return the differences from the required pose in words. The list is empty if the pose is within tolerance."""
     wrong = []
     if actual.viewpoint != required.viewpoint:
         wrong.append(f"at viewpoint {actual.viewpoint}, not {required.viewpoint}")
@@ -102,7 +102,7 @@ def pose_difference(required: FinalPose, actual: CameraPosition) -> list[str]:
 
 
 def check_calls(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the calls that the instruction requires succeeded, in order if the instruction gives one."""
+    """Check that the required calls succeeded, in the required order if the task specifies one."""
     behaviour = task.behaviour
     if not behaviour.calls:
         return None
@@ -146,13 +146,13 @@ def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def check_framing(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the target is in the middle of the final view and as large as required."""
+    """Check that the target is in the middle of the final view and that its size is within the required limits."""
     framing = task.behaviour.framing
     if framing is None:
         return None
     if episode.final.viewpoint != framing.viewpoint:
         return CheckResult("framing", False, f"the camera is at {episode.final.viewpoint}, not {framing.viewpoint}")
-    fill, offset = framed(framing.outline_deg, episode)
+    fill, offset = framing_of(framing.outline_deg, episode)
     wrong = []
     if not framing.min_fill - 1e-6 <= fill <= framing.max_fill + 1e-6:
         wrong.append(f"{framing.instance} fills {fill:.0%} of the frame")
@@ -161,16 +161,16 @@ def check_framing(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("framing", not wrong, "; ".join(wrong) or f"{framing.instance} fills {fill:.0%} of the frame, in the middle")
 
 
-def framed(outline_deg: Sequence[tuple[float, float]], episode: Episode) -> tuple[float, float]:
-    """Return how an outline is framed in the final view.
+def framing_of(outline_deg: Sequence[tuple[float, float]], episode: Episode) -> tuple[float, float]:
+    """Return the size and the offset of an outline in the final view.
 
     Args:
         outline_deg: Directions (pan, tilt) along the outline.
         episode: The run.
 
     Returns:
-        The share of the frame that the longer side fills, and the larger offset from the middle as a share of the frame. Both are
-        infinite if the outline is behind the camera.
+        The larger of width and height, and the larger of the horizontal and vertical offset from the middle, as shares of the
+        frame's width or height. Both are infinite if a part of the outline is behind the camera.
     """
     pose = episode.final.pose
     view = Perspective(pose.pan_deg, pose.tilt_deg, episode.optics.hfov_deg(pose.zoom), 1600, round(1600 / episode.aspect))

@@ -17,41 +17,41 @@ from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Equirectangular, Perspective, direction
 
 INSET = 0.02
-"""Share of a view at each border that need not be covered. It contains no evidence."""
+"""Share of the view along each border that need not be covered, because it contains no evidence."""
 
 MIN_CAP_PX = 14.0
 """Minimum height of capitals in pixels. Smaller text is not legible."""
 
 _GRID = 9
 """Number of reference directions along each side of a view."""
-_EDGE = 1e-6
+_TOLERANCE = 1e-6
 """Relative tolerance of all comparisons."""
 Floats = NDArray[np.float64]
 
 
 def uncovered_part(view: EvidenceView, observations: Sequence[Observation]) -> str | None:
-    """Describe what the observations leave uncovered.
+    """Describe the part of an evidence view that the observations do not cover.
 
     Args:
         view: A view on which the answer is based.
         observations: The observations of the run.
 
     Returns:
-        None if they cover the view.
+        The description, or None if the observations cover the view.
     """
-    here = [observation for observation in observations if observation.known and counts_for(view, observation)]
-    if not here:
+    matching = [observation for observation in observations if observation.known and counts_for(view, observation)]
+    if not matching:
         return f"nothing looked from {view.aim.viewpoint}{' at what was asked' if view.about else ''}"
     if view.whole:
         points = reference_directions(view)
         seen = np.zeros(len(points), dtype=bool)
-        for observation in here:
-            if density_px_deg(observation) >= view.min_density_px_deg * (1 - _EDGE):
+        for observation in matching:
+            if density_px_deg(observation) >= view.min_density_px_deg * (1 - _TOLERANCE):
                 seen |= inside(observation, points)
         if not seen.all():
             return f"{1 - seen.mean():.0%} of the view from {view.aim.viewpoint} was not looked at closely enough"
     for item in view.items:
-        if not any(shows(item, observation) for observation in here):
+        if not any(shows(item, observation) for observation in matching):
             return f"{item.instance} was in no look large enough"
     return None
 
@@ -66,9 +66,9 @@ def counts_for(view: EvidenceView, observation: Observation) -> bool:
 
 
 def reference_directions(view: EvidenceView) -> Floats:
-    """Return directions spread over a view's reference frame, except its border.
+    """Return directions on a regular grid over a view's reference frame, without its border.
 
-    If the scope is full, they cover the whole circle within the view's band of tilts.
+    If the scope is full, the directions cover all pans within the view's band of tilts.
 
     Returns:
         Unit vectors of shape ``(n, 3)``.
@@ -87,7 +87,7 @@ def inside(observation: Observation, directions: Floats) -> NDArray[np.bool_]:
     """Return which directions, of shape ``(n, 3)``, lie in the picture of an observation."""
     points = observation.projection.points(directions)
     with np.errstate(invalid="ignore"):
-        return np.asarray(np.all((points >= -_EDGE) & (points <= 1 + _EDGE), axis=-1))
+        return np.asarray(np.all((points >= -_TOLERANCE) & (points <= 1 + _TOLERANCE), axis=-1))
 
 
 def is_within(item: Item, observation: Observation) -> bool:
@@ -104,9 +104,9 @@ def shows(item: Item, observation: Observation) -> bool:
     size = points.max(axis=0) - points.min(axis=0)
     if isinstance(observation.projection, Equirectangular) and size[0] > observation.projection.width / 2:
         size[0] = observation.projection.width - size[0]
-    if item.cap_height_deg is not None and item.cap_height_deg * density_px_deg(observation) < MIN_CAP_PX * (1 - _EDGE):
+    if item.cap_height_deg is not None and item.cap_height_deg * density_px_deg(observation) < MIN_CAP_PX * (1 - _TOLERANCE):
         return False
-    return bool(size.max() >= item.min_px * (1 - _EDGE))
+    return bool(size.max() >= item.min_px * (1 - _TOLERANCE))
 
 
 def box_directions(box_deg: tuple[float, float, float, float], per_side: int = 5) -> Floats:

@@ -57,7 +57,7 @@ class Observation:
 
 @dataclass(frozen=True, slots=True)
 class EpisodeCall:
-    """A tool call. ``fault`` is the cause of ``error``, as in the trace; ``observations`` are the successful ones."""
+    """A tool call. ``fault`` is the cause of ``error``, as in the trace. ``observations`` contains only successful ones."""
 
     name: str
     arguments: Mapping[str, Any]
@@ -77,7 +77,7 @@ class EpisodeCall:
 
 @dataclass(frozen=True, slots=True)
 class SavedPicture:
-    """A picture that ``take_image`` reported. ``exists`` is None if the run kept no pictures."""
+    """A picture that ``take_image`` reported. ``exists`` is None if the run stored no pictures."""
 
     file: str
     exists: bool | None = None
@@ -88,7 +88,7 @@ class Episode:
     """A run.
 
     Attributes:
-        instruction: What the agent was asked to do.
+        instruction: The instruction to the agent.
         start: Position of the camera at the start.
         calls: The tool calls in order.
         final: Position of the camera at the end.
@@ -96,7 +96,7 @@ class Episode:
         outcome: How the run ended; None if it was interrupted.
         pictures: The pictures that the agent took.
         planner_views: The frames that the planner itself was shown.
-        failure: How the planner's server failed, if it did.
+        failure: Kind of failure of the planner's server; None if it did not fail.
         aspect: Width of a frame divided by its height.
         optics: The camera's lens.
     """
@@ -147,7 +147,7 @@ class FrameGeometry:
         return Perspective(pose.pan_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), self.width, self.height)
 
     def sweep(self) -> Equirectangular:
-        """Return the projection of a sweep's panorama, at the density of its frames."""
+        """Return the projection of a sweep's panorama, which has the same pixels per degree as its frames."""
         blocks = plan_sweep(CameraInfo("", self.limits, self.optics, self.width, self.height, simulated=True))
         left, top = blocks[0].left_pan_deg, blocks[0].top_tilt_deg
         span, bottom = max(b.right_pan_deg for b in blocks) - left, min(b.bottom_tilt_deg for b in blocks)
@@ -162,16 +162,16 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
         trace: The recorded run.
         places: The viewpoints of the scene's presets.
         planner_sees: Whether the planner was shown frames.
-        keeps_files: Whether the run folder keeps pictures. If it does, a picture without a file is a fault.
+        keeps_files: Whether the run folder contains the pictures, so that their existence can be checked.
     """
     started = trace.started
     geometry = FrameGeometry(started.frame_width, started.frame_height)
-    at = start = CameraPosition(started.viewpoint, started.pose.pose())
+    position = start = CameraPosition(started.viewpoint, started.pose.pose())
     home = started.labels.home_viewpoint or places.home
     calls, planner_views, states = list[EpisodeCall](), list[Observation](), {0: start}
     for called in trace.calls:
-        call = _call(called, at, places, home, geometry)
-        at = states[called.step] = call.after
+        call = _episode_call(called, position, places, home, geometry)
+        position = states[called.step] = call.after
         calls.append(call)
     if planner_sees:
         planner_views = list(_planner_views(trace.decisions, trace.calls, states, geometry, started.scene_time_s))
@@ -181,7 +181,7 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
         instruction=started.instruction,
         start=start,
         calls=tuple(calls),
-        final=CameraPosition(at.viewpoint, ended.pose.pose() if ended else at.pose),
+        final=CameraPosition(position.viewpoint, ended.pose.pose() if ended else position.pose),
         answer=ended.text if ended else "",
         outcome=ended.outcome if ended else None,
         pictures=tuple(SavedPicture(name, (trace.folder / name).is_file() if keeps_files else None) for name in files),
@@ -191,13 +191,15 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
     )
 
 
-def _call(called: Called, before: CameraPosition, places: PresetViewpoints, home: str, geometry: FrameGeometry) -> EpisodeCall:
+def _episode_call(
+    called: Called, before: CameraPosition, places: PresetViewpoints, home: str, geometry: FrameGeometry
+) -> EpisodeCall:
     outcome = called.outcome
-    done = outcome.error is None
+    succeeded = outcome.error is None
     viewpoint = before.viewpoint
-    if done and outcome.call.name == "go_to_preset":
+    if succeeded and outcome.call.name == "go_to_preset":
         viewpoint = places.presets.get(str(outcome.call.arguments.get("name")), viewpoint)
-    elif done and outcome.call.name == "go_home":
+    elif succeeded and outcome.call.name == "go_home":
         viewpoint = home
     after = CameraPosition(viewpoint, called.pose.pose())
     call = EpisodeCall(
@@ -219,7 +221,7 @@ def _call(called: Called, before: CameraPosition, places: PresetViewpoints, home
 def observations_of(call: EpisodeCall, geometry: FrameGeometry) -> tuple[Observation, ...]:
     """Return the observations of a successful call.
 
-    Zooming yields the first observation only, because later ones are not recorded. Tracking yields one for each pose of its path.
+    A zoom has only its first observation, because later ones are not recorded. Tracking has one for each pose of its path.
     """
     how, result = _HOW.get(call.name), call.result or {}
     if how is None:

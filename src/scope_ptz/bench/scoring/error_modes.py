@@ -1,7 +1,7 @@
-"""The paper's eight error modes. A rule assigns exactly one to each failed run, in a published order of precedence.
+"""Assign one of the paper's eight error modes to a failed run.
 
-Errors of the agent's actions come first, then errors of perception, then errors of reasoning. If the agent observed the wrong
-thing, perception did not mislead it; if perception misled it, its reasoning was not wrong. docs/benchmark.md states the rules.
+The rules are applied in a fixed order: errors of the agent's actions first, then errors of perception, then errors of reasoning.
+docs/benchmark.md describes them.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from scope_ptz.bench.scoring.episode import Episode, EpisodeCall, Observation
 from scope_ptz.bench.scoring.evidence import is_supported_by_tools
 from scope_ptz.bench.scoring.misperceptions import CountTruth, target_in, target_shown, wrong_counts, wrong_reads
 from scope_ptz.bench.scoring.required_calls import call_matches, missing_in_any_order, missing_in_order
-from scope_ptz.bench.scoring.verdict import Verdict, claims, score_episode
+from scope_ptz.bench.scoring.verdict import Verdict, score_episode, states_value
 from scope_ptz.bench.tasks.task import ProgramCall, RequiredCall, Task
 from scope_ptz.geometry import Perspective
 
@@ -50,7 +50,7 @@ class _Case:
 
     @property
     def attempted(self) -> set[str]:
-        """Tools that the agent called, without calls that were skipped."""
+        """Names of the tools that the agent called, without skipped calls."""
         return {call.name for call in self.episode.calls if call.fault != "skipped"}
 
     @property
@@ -59,19 +59,20 @@ class _Case:
         return any(check.passed is False and check.name not in ("answer", "outcome") for check in self.verdict.checks)
 
     @property
-    def fixed(self) -> set[str]:
-        """Tools that the instruction requires."""
+    def required(self) -> set[str]:
+        """Names of the tools that the instruction requires."""
         return {call.tool for call in self.task.behaviour.calls}
 
     @property
     def needed(self) -> set[str]:
-        """Tools that the instruction requires or the reference program uses. ``get_presets`` counts only if it is required."""
-        return {call.tool for call in self.task.reference if call.tool != "get_presets"} | self.fixed
+        """Names of the required tools and of the tools in the reference program. The latter do not include ``get_presets``."""
+        return {call.tool for call in self.task.reference if call.tool != "get_presets"} | self.required
 
     def replacements(self, name: str) -> frozenset[str]:
         """Return the tools that can replace a tool, including itself.
 
-        The two tools that only observe can replace each other. Tools that move can if the camera reached its target.
+        The two tools that only observe can replace each other. Tools that move the camera can replace each other if the camera
+        reached its target.
         """
         if name in _OBSERVING_TOOLS:
             return _OBSERVING_TOOLS
@@ -79,13 +80,13 @@ class _Case:
         return _MOVING_TOOLS if name in _MOVING_TOOLS and not missed_target else frozenset({name})
 
     def missing_tools(self) -> set[str]:
-        """Return needed tools that were never tried. A replacement counts unless the instruction requires the tool itself."""
+        """Return the needed tools of which neither the tool nor, unless it is required, a replacement was tried."""
         untried = self.needed - self.attempted
-        return {name for name in untried if name in self.fixed or not self.replacements(name) & self.attempted}
+        return {name for name in untried if name in self.required or not self.replacements(name) & self.attempted}
 
     def unneeded_tools(self) -> set[str]:
         """Return tools that were tried but are neither needed nor a replacement for a needed tool."""
-        replaceable = self.needed - self.attempted - self.fixed
+        replaceable = self.needed - self.attempted - self.required
         replacements_used = {other for name in replaceable for other in self.replacements(name)}
         return self.attempted - self.needed - replacements_used - {"get_presets"}
 
@@ -96,10 +97,10 @@ def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) ->
     Args:
         task: The task.
         episode: The run.
-        truth: The true count of an observation. Without it the task's evidence decides whether a count is wrong.
+        truth: Returns the true count for an observation. If it is None, the task's evidence decides whether a count is wrong.
 
     Returns:
-        None if the run is correct, could not be scored, or was broken by infrastructure.
+        The error mode, or None if the run is correct, could not be scored, or was broken by infrastructure.
     """
     verdict = score_episode(task, episode)
     if verdict.headline != "incorrect":
@@ -109,14 +110,15 @@ def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) ->
 
 
 def _lacks_call(case: _Case) -> bool:
-    """Return whether a needed tool was never tried and no other tool was tried in its place."""
+    """Return whether a needed tool was never tried and no unneeded tool was tried in its place."""
     return (case.acted_wrongly or not case.episode.calls) and bool(case.missing_tools()) and not case.unneeded_tools()
 
 
 def _routed_wrongly(case: _Case) -> bool:
     """Return whether the wrong tools were used.
 
-    Another tool was tried in place of a needed one, a forbidden tool was used, or the number of pictures or the order is wrong.
+    This is so if another tool was tried in place of a needed one, a forbidden tool was used, the number of pictures is wrong, or
+    the required calls were made in the wrong order.
     """
     if case.acted_wrongly and case.missing_tools():
         return True
@@ -124,14 +126,14 @@ def _routed_wrongly(case: _Case) -> bool:
     if forbidden or case.verdict.failed("pictures"):
         return True
     calls = case.task.behaviour.calls
-    is_order = case.task.behaviour.order == "ordered" and missing_in_any_order(calls, case.episode.calls) is None
-    return case.verdict.failed("calls") and is_order
+    is_only_order_wrong = case.task.behaviour.order == "ordered" and missing_in_any_order(calls, case.episode.calls) is None
+    return case.verdict.failed("calls") and is_only_order_wrong
 
 
 def _wrong_scope(case: _Case) -> bool:
-    """Return whether the agent observed the current view where the whole scene was asked for, or the other way round."""
+    """Return whether the agent observed the current view although the task is about the full scene, or the reverse."""
     calls = case.task.behaviour.calls
-    if case.verdict.failed("calls") and _missing(case, calls, {"view"}) is None:
+    if case.verdict.failed("calls") and _missing_call(case, calls, {"view"}) is None:
         return True
     if not case.verdict.failed("answer") and not case.verdict.failed("coverage"):
         return False
@@ -141,29 +143,29 @@ def _wrong_scope(case: _Case) -> bool:
             for observation in case.episode.observations
             if observation.viewpoint == view.aim.viewpoint and observation.how in ("count", "query")
         ]
-        required = view.scope == "full"
-        if view.must_look and observations and all(observation.swept != required for observation in observations):
-            return required or case.verdict.failed("answer")
+        is_full = view.scope == "full"
+        if view.must_look and observations and all(observation.swept != is_full for observation in observations):
+            return is_full or case.verdict.failed("answer")
     return False
 
 
-def _missing(case: _Case, calls: tuple[RequiredCall, ...], leave_out: set[str]) -> str | None:
-    order = missing_in_order if case.task.behaviour.order == "ordered" else missing_in_any_order
-    return order(calls, case.episode.calls, leave_out)
+def _missing_call(case: _Case, calls: tuple[RequiredCall, ...], ignored: set[str]) -> str | None:
+    find_missing = missing_in_order if case.task.behaviour.order == "ordered" else missing_in_any_order
+    return find_missing(calls, case.episode.calls, ignored)
 
 
 def _wrong_arguments(case: _Case) -> bool:
     """Return whether the right tools were called with wrong arguments or at the wrong target."""
-    return case.acted_wrongly and not (_was_blind(case) or _was_left_unanswered(case) or _was_misled(case))
+    return case.acted_wrongly and not (_all_perception_failed(case) or _was_left_unanswered(case) or _was_misled(case))
 
 
-def _was_blind(case: _Case) -> bool:
+def _all_perception_failed(case: _Case) -> bool:
     """Return whether every perception call failed, so that wrong arguments cannot be the cause."""
     return not case.episode.observations and any(call.fault == "perception" for call in case.episode.calls)
 
 
 def _was_left_unanswered(case: _Case) -> bool:
-    """Return whether coverage failed only because perception could not answer a correct question about the right view."""
+    """Return whether only coverage failed, because perception could not answer a correct question about the right view."""
     wrong = {check.name for check in case.verdict.checks if check.passed is False} - {"answer", "outcome"}
     observations = [replace(observation, known=True) for observation in case.episode.observations]
     return wrong == {"coverage"} and all(
@@ -172,33 +174,34 @@ def _was_left_unanswered(case: _Case) -> bool:
 
 
 def _was_misled(case: _Case) -> bool:
-    """Return whether the camera went wrong because perception located the wrong thing or none, although it was asked correctly."""
+    """Return whether the camera missed its target because perception located the wrong thing or none for a correct description."""
     required = case.task.behaviour.calls
-    if not case.acted_wrongly or (case.verdict.failed("calls") and _missing(case, required, {"found"}) is not None):
+    if not case.acted_wrongly or (case.verdict.failed("calls") and _missing_call(case, required, {"found"}) is not None):
         return False
     locators = case.needed & {"zoom_to_object", "track_object"}
     for call in case.episode.calls:
         if call.name not in locators or not call.observations or not target_in(case.task, call.observations[0]):
             continue
-        fixed = [spec for spec in required if spec.tool == call.name]
-        asked_right = all(call_matches(spec, call, {"found"}) for spec in fixed) if fixed else _asks_as_reference(case.task, call)
-        if asked_right and not _reached_target(case, call):
+        specs = [spec for spec in required if spec.tool == call.name]
+        is_correct = all(call_matches(spec, call, {"found"}) for spec in specs) if specs else _asks_as_reference(case.task, call)
+        if is_correct and not _reached_target(case, call):
             return True
     return False
 
 
 def _asks_as_reference(task: Task, call: EpisodeCall) -> bool:
     """Return whether a call describes the same thing as the reference program, in more or fewer words."""
-    asked = _content(call)
-    return any(asked <= required or required <= asked for required in (_content(c) for c in task.reference if c.tool == call.name))
+    asked = _described_words(call)
+    references = (_described_words(c) for c in task.reference if c.tool == call.name)
+    return any(asked <= reference or reference <= asked for reference in references)
 
 
-def _content(call: EpisodeCall | ProgramCall) -> set[str]:
+def _described_words(call: EpisodeCall | ProgramCall) -> set[str]:
     return set(plain_words(str(call.arguments.get("description", "")))) - {"a", "an", "the"}
 
 
 def _reached_target(case: _Case, call: EpisodeCall) -> bool:
-    """Return whether a search found something and left the target framed, or in view if the task requires no framing."""
+    """Return whether a search found something and ended with the target framed, or in view if the task requires no framing."""
     if (call.result or {}).get("found") is False:
         return False
     framing = check_framing(case.task, replace(case.episode, final=call.after))
@@ -213,13 +216,13 @@ def _view_after(episode: Episode, call: EpisodeCall) -> Observation:
 
 
 def _hallucinated(case: _Case) -> bool:
-    """Return whether the answer claims something that does not follow from what the tools reported."""
+    """Return whether the answer states something that does not follow from what the tools reported."""
     if case.episode.outcome != "answered":
         return False
-    if _was_blind(case):
+    if _all_perception_failed(case):
         return True
     if _was_left_unanswered(case) and not any(observation.known for observation in case.episode.observations):
-        return claims(case.task, case.episode)
+        return states_value(case.task, case.episode)
     return case.verdict.failed("answer") and not is_supported_by_tools(case.task, case.episode)
 
 

@@ -1,4 +1,4 @@
-"""Tool evidence: what the tools of a run reported, and whether the final answer is supported by it."""
+"""Tool evidence: what the tools of a run reported, and whether it supports the final answer."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from scope_ptz.bench.tasks.expected import (
 from scope_ptz.bench.tasks.task import Task
 
 _MAX_COUNTS = 8
-"""Number of counts of which all sums are computed."""
+"""Maximum number of counts whose sums are computed."""
 
 
 def text_from_tools(episode: Episode) -> str:
-    """Return everything that the tools reported, as one text."""
+    """Return everything that the tools reported as one text."""
     parts = list[str]()
     for call in episode.calls:
         if call.succeeded and call.result is not None:
@@ -42,8 +42,8 @@ def text_from_tools(episode: Episode) -> str:
 
 
 def numbers_from_tools(episode: Episode) -> set[float]:
-    """Return the numbers that the tools reported, and the sums and differences of their counts."""
-    counts, other = list[float](), set[float]()
+    """Return the numbers that the tools reported, with the sums and differences of counts and the number of counts above zero."""
+    counts, other_numbers = list[float](), set[float]()
     for call in episode.calls:
         result = call.result or {}
         if not call.succeeded:
@@ -51,12 +51,13 @@ def numbers_from_tools(episode: Episode) -> set[float]:
         if "count" in result:
             counts.append(float(result["count"]))
         if "matches" in result:
-            other.add(float(result["matches"]))
+            other_numbers.add(float(result["matches"]))
         if "answer" in result:
-            other |= numbers_in(str(result["answer"]))
-            other |= {0.0} if parse_answer(NoneThere(subject=("thing",)), str(result["answer"])) == ParsedValue(True) else set()
+            other_numbers |= numbers_in(str(result["answer"]))
+            if parse_answer(NoneThere(subject=("thing",)), str(result["answer"])) == ParsedValue(True):
+                other_numbers.add(0.0)
     sums = {sum(c) for n in range(1, min(len(counts), _MAX_COUNTS) + 1) for c in combinations(counts[:_MAX_COUNTS], n)}
-    return other | sums | {abs(a - b) for a, b in combinations(counts, 2)} | {float(sum(c > 0 for c in counts))}
+    return other_numbers | sums | {abs(a - b) for a, b in combinations(counts, 2)} | {float(sum(c > 0 for c in counts))}
 
 
 def is_supported_by_tools(task: Task, episode: Episode) -> bool:
@@ -64,10 +65,10 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
 
     Denials and comparisons are conclusions, so no tool needs to report them.
     """
-    reading = parse_answer(task.expected, episode.answer)
-    if not isinstance(reading, ParsedValue):
+    parsed = parse_answer(task.expected, episode.answer)
+    if not isinstance(parsed, ParsedValue):
         return True
-    value, reported = reading.value, text_from_tools(episode)
+    value, reported = parsed.value, text_from_tools(episode)
     match task.expected:
         case Number():
             return value in numbers_from_tools(episode)
@@ -80,12 +81,12 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
             return not chosen or (_is_mentioned(episode, chosen) if several else names_any(reported, chosen))
         case NameSet():
             named = value if isinstance(value, frozenset) else frozenset()
-            return all(_reported(episode, all_wordings(name, task.expected.options[name])) for name in named)
+            return all(_is_present_by_tools(episode, all_wordings(name, task.expected.options[name])) for name in named)
         case YesNo() | NoneThere():
             claims_presence = value == isinstance(task.expected, YesNo)
             return not claims_presence or _is_presence_reported(task, episode)
         case Description():
-            return _contradictions_reported(task.expected, value, reported)
+            return _are_contradictions_reported(task.expected, value, reported)
         case _:
             return True
 
@@ -93,10 +94,10 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
 def _is_mentioned(episode: Episode, wordings: Sequence[str]) -> bool:
     """Return whether the tools reported anything about a thing: a count of it, even zero, or its presence."""
     counted = (str(c.arguments.get("description", "")) for c in episode.calls if c.succeeded and "count" in (c.result or {}))
-    return _reported(episode, wordings) or any(names_any(description, wordings) for description in counted)
+    return _is_present_by_tools(episode, wordings) or any(names_any(description, wordings) for description in counted)
 
 
-def _reported(episode: Episode, wordings: Sequence[str]) -> bool:
+def _is_present_by_tools(episode: Episode, wordings: Sequence[str]) -> bool:
     """Return whether a tool reported that a thing is present.
 
     A tool reports presence by a count above zero, by finding the thing, by naming it without denial, or by answering yes.
@@ -109,8 +110,10 @@ def _reported(episode: Episode, wordings: Sequence[str]) -> bool:
         answer, chosen = str(result.get("answer", "")), str(result.get("chosen", ""))
         if is_stated(answer, wordings) or names_any(chosen, wordings):
             return True
-        yes = bool(result.get("count") or result.get("found")) or parse_answer(YesNo(value=True), answer) == ParsedValue(True)
-        if yes and names_any(asked, wordings):
+        is_positive = bool(result.get("count") or result.get("found")) or (
+            parse_answer(YesNo(value=True), answer) == ParsedValue(True)
+        )
+        if is_positive and names_any(asked, wordings):
             return True
     return False
 
@@ -130,6 +133,6 @@ def _answers_yes(expected: AnyExpected, answer: object) -> bool:
     return parse_answer(expected, answer) == ParsedValue(isinstance(expected, YesNo))
 
 
-def _contradictions_reported(expected: Description, value: object, reported: str) -> bool:
+def _are_contradictions_reported(expected: Description, value: object, reported: str) -> bool:
     stated = value[1] if isinstance(value, tuple) else frozenset()
     return all(names_any(reported, expected.contradictions[n].any_of) for n in stated if isinstance(n, int))

@@ -7,24 +7,26 @@ from scope_ptz.bench.scoring.required_calls import call_matches, missing_in_any_
 from scope_ptz.bench.scoring.trials import CheckRecord
 from scope_ptz.bench.tasks.imported import ImportedTask
 
-NAME = "calls"
+CHECK_NAME = "calls"
 
 
 def check_imported_calls(imported: ImportedTask, episode: Episode) -> CheckRecord:
     """Check that a run made the calls that an imported task expects. Without expected calls the check is undecided."""
     required = imported.calls
     if not required or imported.policy == "none":
-        return CheckRecord(name=NAME, passed=None, reason="the file demands no tools")
+        return CheckRecord(name=CHECK_NAME, passed=None, reason="the file demands no tools")
     if imported.policy == "any":
-        found = any(call_matches(spec, call) for spec in required for call in episode.calls)
-        reason = "one of the expected tools was used" if found else f"none of {', '.join(spec.tool for spec in required)} succeeded"
-        return CheckRecord(name=NAME, passed=found, reason=reason)
+        passed = any(call_matches(spec, call) for spec in required for call in episode.calls)
+        reason = (
+            "one of the expected tools was used" if passed else f"none of {', '.join(spec.tool for spec in required)} succeeded"
+        )
+        return CheckRecord(name=CHECK_NAME, passed=passed, reason=reason)
     missing = (missing_in_order if imported.order == "ordered" else missing_in_any_order)(required, episode.calls)
     if missing is not None:
-        return CheckRecord(name=NAME, passed=False, reason=missing)
+        return CheckRecord(name=CHECK_NAME, passed=False, reason=missing)
     unexpected = {call.name for call in episode.calls if call.succeeded} - {spec.tool for spec in required}
     if imported.policy == "exact" and unexpected:
         return CheckRecord(
-            name=NAME, passed=False, reason=f"only the expected tools may be used, and {', '.join(sorted(unexpected))} was"
+            name=CHECK_NAME, passed=False, reason=f"only the expected tools may be used, and {', '.join(sorted(unexpected))} was"
         )
-    return CheckRecord(name=NAME, passed=True, reason="every expected call was made")
+    return CheckRecord(name=CHECK_NAME, passed=True, reason="every expected call was made")

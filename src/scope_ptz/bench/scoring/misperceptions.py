@@ -12,7 +12,7 @@ from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NameSet, NoneThe
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 
 CountTruth = Callable[[Observation], int | None]
-"""Returns the true count of the requested things in the picture of an observation; None if the ground truth cannot tell."""
+"""Returns the true count of the requested things in the picture of an observation; None if the ground truth does not define it."""
 
 
 def wrong_counts(task: Task, episode: Episode, truth: CountTruth | None) -> bool:
@@ -21,7 +21,7 @@ def wrong_counts(task: Task, episode: Episode, truth: CountTruth | None) -> bool
     Args:
         task: The task.
         episode: The run.
-        truth: The true count of an observation. Without it, or if it cannot tell, the task's evidence decides.
+        truth: Returns the true count for an observation. Without a true count, the task's evidence decides.
     """
     for call, observation in _observations(episode):
         counted = (call.result or {}).get("count")
@@ -41,14 +41,14 @@ def wrong_counts(task: Task, episode: Episode, truth: CountTruth | None) -> bool
     )
 
 
-def _miscounts(right: AnyExpected | None, counted: int) -> bool:
-    match right:
+def _miscounts(expected: AnyExpected | None, counted: int) -> bool:
+    match expected:
         case Number():
-            return abs(counted - right.value) > right.tolerance
+            return abs(counted - expected.value) > expected.tolerance
         case NoneThere():
             return counted > 0
         case YesNo():
-            return (counted > 0) != right.value
+            return (counted > 0) != expected.value
         case _:
             return False
 
@@ -65,34 +65,34 @@ def wrong_reads(task: Task, episode: Episode) -> bool:
 
 
 def _answers_wrongly(view: EvidenceView, observation: Observation, call: EpisodeCall) -> bool:
-    """Return whether a reply is wrong about a view. If the question names one of several things, only that thing counts."""
-    one = _asked_of(view, observation.asked)
-    if one is None:
+    """Return whether a reply is wrong about a view. If the question names one of several things, only that thing is checked."""
+    thing = _thing_asked_about(view, observation.asked)
+    if thing is None:
         return _misreads(view.shows, call)
     options, reply = view.shows.options, str((call.result or {}).get("answer", ""))  # type: ignore[union-attr]
-    wordings = all_wordings(one, options[one])
-    is_present = one in view.shows.value if isinstance(view.shows, NameSet) else True
+    wordings = all_wordings(thing, options[thing])
+    is_present = thing in view.shows.value if isinstance(view.shows, NameSet) else True
     if (call.result or {}).get("known") is False or parse_answer(NoneThere(subject=wordings), reply) == ParsedValue(is_present):
         return True
     if not is_present and parse_answer(YesNo(value=True, affirms=wordings), reply) == ParsedValue(True):
         return True
-    does_not_name_it = isinstance(view.shows, Ordering) or not names_any(reply, wordings)
-    return does_not_name_it and not isinstance(view.shows, NameSet) and _misreads(view.shows, call)
+    is_not_named = isinstance(view.shows, Ordering) or not names_any(reply, wordings)
+    return is_not_named and not isinstance(view.shows, NameSet) and _misreads(view.shows, call)
 
 
-def _asked_of(view: EvidenceView, asked: str) -> str | None:
-    """Return the only one of several compared or listed things that a question names; None if it names none or several."""
+def _thing_asked_about(view: EvidenceView, asked: str) -> str | None:
+    """Return the compared or listed thing that a question names; None if it names none or several."""
     if not isinstance(view.shows, Choice | Ordering | NameSet) or (not isinstance(view.shows, NameSet) and len(view.items) < 2):
         return None
-    named = [name for name, further in view.shows.options.items() if names_any(asked, all_wordings(name, further))]
+    named = [name for name, other_wordings in view.shows.options.items() if names_any(asked, all_wordings(name, other_wordings))]
     return named[0] if len(named) == 1 else None
 
 
-def _misreads(right: AnyExpected | None, call: EpisodeCall) -> bool:
+def _misreads(expected: AnyExpected | None, call: EpisodeCall) -> bool:
     answer = (call.result or {}).get("answer")
-    if right is None or not isinstance(answer, str):
+    if expected is None or not isinstance(answer, str):
         return False
-    return (call.result or {}).get("known") is False or agrees(right, parse_answer(right, answer)) is False
+    return (call.result or {}).get("known") is False or agrees(expected, parse_answer(expected, answer)) is False
 
 
 def shown_by(task: Task, observation: Observation) -> Iterator[EvidenceView]:
@@ -121,21 +121,21 @@ def _reach_deg(view: EvidenceView) -> float:
 
 
 def target_in(task: Task, observation: Observation) -> bool:
-    """Return whether something that the task is about is in the picture, however small, so that a search can find it.
+    """Return whether a target of the task is in the picture at any size, so that a search can find it.
 
-    If the evidence names no items, the answer is yes.
+    If the evidence has no items, return True.
     """
     return _has_target(task, observation, is_within)
 
 
 def target_shown(task: Task, observation: Observation) -> bool:
-    """Return whether something that the task is about is in the picture and large enough to recognise or read."""
+    """Return whether a target of the task is in the picture and large enough to recognise or read."""
     return _has_target(task, observation, shows)
 
 
-def _has_target(task: Task, observation: Observation, has: Callable[[Item, Observation], bool]) -> bool:
+def _has_target(task: Task, observation: Observation, is_shown: Callable[[Item, Observation], bool]) -> bool:
     items = [item for view in task.evidence for item in view.items if view.aim.viewpoint == observation.viewpoint]
-    return any(has(item, observation) for item in items) if items else not any(view.items for view in task.evidence)
+    return any(is_shown(item, observation) for item in items) if items else not any(view.items for view in task.evidence)
 
 
 def _observations(episode: Episode) -> Iterator[tuple[EpisodeCall, Observation]]:

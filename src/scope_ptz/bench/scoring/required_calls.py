@@ -16,7 +16,7 @@ _DEFAULTS: dict[str, dict[str, Any]] = {name: tool.defaults() for name, tool in 
 def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
     """Return the arguments of a call with defaults filled in.
 
-    A zoom in percent is also given as ``zoom_factor``. An unchanged zoom has the factor 1.
+    A zoom in percent is also given as ``zoom_factor``. If the zoom does not change, ``zoom_factor`` is 1.
     """
     arguments = {**_DEFAULTS.get(call.name, {}), **{k: v for k, v in call.arguments.items() if v is not None}}
     percent = arguments.get("zoom_percent")
@@ -27,23 +27,23 @@ def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
     return arguments
 
 
-def call_matches(required: RequiredCall, call: EpisodeCall, leave_out: Collection[str] = ()) -> bool:
-    """Return whether a call is the required one, succeeded, and found its target if it has one.
+def call_matches(required: RequiredCall, call: EpisodeCall, ignored: Collection[str] = ()) -> bool:
+    """Return whether a call matches a required call, succeeded, and found its target if it searched for one.
 
     Args:
         required: The required call.
-        call: The call that was made.
-        leave_out: Names of arguments that are not compared; "found" accepts a call that did not find its target.
+        call: The actual call.
+        ignored: Names of arguments that are not compared. If it contains "found", a call that did not find its target matches.
     """
     if not call.succeeded or call.name != required.tool:
         return False
-    if "found" not in leave_out and (call.result or {}).get("found") is False:
+    if "found" not in ignored and (call.result or {}).get("found") is False:
         return False
     given = arguments_of(call)
-    return all(_fits_argument(spec, given.get(name)) for name, spec in required.arguments.items() if name not in leave_out)
+    return all(_argument_matches(spec, given.get(name)) for name, spec in required.arguments.items() if name not in ignored)
 
 
-def _fits_argument(spec: Argument, given: Any) -> bool:
+def _argument_matches(spec: Argument, given: Any) -> bool:
     if spec.mentions:
         return isinstance(given, str) and names_any(given, spec.mentions)
     if isinstance(spec.equals, str):
@@ -52,43 +52,44 @@ def _fits_argument(spec: Argument, given: Any) -> bool:
     return is_number and spec.equals is not None and abs(given - spec.equals) <= spec.within + 1e-6
 
 
-def missing_in_order(required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()) -> str | None:
-    """Return which required call is missing when the order counts; None if all were made in order."""
-    at = 0
+def missing_in_order(required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], ignored: Collection[str] = ()) -> str | None:
+    """Return a description of the first required call that is missing or out of order; None if all were made in order."""
+    position = 0
     for spec in required:
         for number in range(spec.times):
-            while at < len(calls) and not call_matches(spec, calls[at], leave_out):
-                at += 1
-            if at == len(calls):
+            while position < len(calls) and not call_matches(spec, calls[position], ignored):
+                position += 1
+            if position == len(calls):
                 time = f" (time {number + 1} of {spec.times})" if spec.times > 1 else ""
-                return f"{_words(spec)} is missing{time}, or comes too early"
-            at += 1
+                return f"{_call_text(spec)} is missing{time}, or comes too early"
+            position += 1
     return None
 
 
 def missing_in_any_order(
-    required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()
+    required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], ignored: Collection[str] = ()
 ) -> str | None:
-    """Return which required call is missing in any order; None if a different call matches each of them."""
+    """Return a description of the first missing call; None if the required calls can be matched to different calls in any order."""
     slots = [spec for spec in required for _ in range(spec.times)]
-    taken: dict[int, int] = {}
+    slot_of_call: dict[int, int] = {}
 
-    def place(slot: int, tried: set[int]) -> bool:
-        for number, call in enumerate(calls):
-            if number not in tried and call_matches(slots[slot], call, leave_out):
-                tried.add(number)
-                if number not in taken or place(taken[number], tried):
-                    taken[number] = slot
+    def assign(slot: int, tried: set[int]) -> bool:
+        """Assign a call to a slot, reassigning earlier slots if necessary (bipartite matching)."""
+        for index, call in enumerate(calls):
+            if index not in tried and call_matches(slots[slot], call, ignored):
+                tried.add(index)
+                if index not in slot_of_call or assign(slot_of_call[index], tried):
+                    slot_of_call[index] = slot
                     return True
         return False
 
     for slot, spec in enumerate(slots):
-        if not place(slot, set()):
-            return f"{_words(spec)} is missing"
+        if not assign(slot, set()):
+            return f"{_call_text(spec)} is missing"
     return None
 
 
-def _words(spec: RequiredCall) -> str:
+def _call_text(spec: RequiredCall) -> str:
     arguments = ", ".join(
         f"{name}={a.equals if a.equals is not None else '/'.join(a.mentions)}" for name, a in spec.arguments.items()
     )

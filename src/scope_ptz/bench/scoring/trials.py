@@ -36,10 +36,10 @@ class Judgement(_Record):
 
     Attributes:
         judge: Name of the judge's model.
-        prompt: Version of the prompt.
-        repeat: 0 for the judge's first judgement of the run.
+        prompt: Version of the judge's prompt.
+        repeat: Index of the judgement, from 0, if the judge judged the run several times.
         verdict: "unparseable" if the judge never gave a valid verdict, "failed" if its server never answered.
-        error_mode: The error mode that the judge names.
+        error_mode: The error mode that the judge assigned.
         reason: The judge's reason.
         attempts: Number of requests.
         input_tokens: Tokens of all requests.
@@ -90,13 +90,13 @@ class Trial(_Record):
     Attributes:
         task: The facts about the task.
         epoch: 1 for the first run of the task.
-        sample: Name of the run in the log, which holds its trace and pictures.
+        sample: Name of the sample in the log. The sample contains the trace and the pictures of the run.
         headline: The verdict.
         scored_by: The source of the headline: the checks, or a judge if the task has no check of its answer.
         reason: The reason for the headline.
         error_mode: The error mode; None unless the headline is "incorrect".
         checks: The results of the checks.
-        collateral: Whether the camera ended at another pose although the task required no move.
+        collateral: Whether the final pose differs from the start although the task required no move.
         outcome: How the run ended; None if it was interrupted.
         answer: The agent's final answer.
         steps: Decisions of the planner.
@@ -193,7 +193,7 @@ class Evaluation(_Record):
     Attributes:
         card: The conditions of the evaluation.
         trials: The finished runs.
-        wanted: Number of trials of a finished evaluation: tasks times epochs.
+        wanted: Number of trials that the evaluation has when it is finished: tasks times epochs.
         log: Path of the log.
     """
 
@@ -204,5 +204,5 @@ class Evaluation(_Record):
 
     @property
     def finished(self) -> bool:
-        """Whether no trial is missing."""
+        """Whether every trial has finished."""
         return len(self.trials) >= self.wanted

@@ -1,6 +1,7 @@
-"""The verdict on a run: a headline that combines all of its checks.
+"""Combine the checks of a run into one verdict, the headline.
 
-A run is correct only if every check passes. Runs that cannot be scored and runs that infrastructure broke have their own headlines.
+A run is correct only if every check passes. Runs that cannot be scored, and runs that infrastructure broke, have their own
+headlines.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ from scope_ptz.errors import ScopeError
 from scope_ptz.tools.registry import TOOLS
 
 Headline = Literal["correct", "incorrect", "unscored", "infrastructure"]
-MOVERS = TOOLS.moving
-AGENTS_OWN_FAILURES = frozenset({"empty", "context-overflow"})
-"""Kinds of planner failures that count as the agent's own: an empty reply, and a full context."""
+MOVING_TOOLS = TOOLS.moving
+AGENT_FAILURES = frozenset({"empty", "context-overflow"})
+"""Kinds of planner failures that count against the agent: an empty reply and a context overflow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +31,8 @@ class Verdict:
         task: The task's id.
         headline: The verdict itself.
         checks: The results of the checks.
-        collateral: Whether the camera ended at another pose although the task required no move. The headline does not depend on it.
+        collateral: Whether the final pose differs from the start although the task required no move. It does not affect the
+            headline.
         reason: The reason for the headline.
     """
 
@@ -48,26 +50,19 @@ class Verdict:
 def score_episode(task: Task, episode: Episode) -> Verdict:
     """Score a run by the checks of its task.
 
-    Args:
-        task: The task.
-        episode: The run.
-
-    Returns:
-        The verdict.
-
     Raises:
-        ScopeError: The task has no check.
+        ScopeError: The task defines no check.
     """
     checks = run_checks(task, episode)
     if all(check.name == "outcome" for check in checks) and task.behaviour.outcomes == ("answered",):
-        raise ScopeError(f"Task {task.id} has no check.")
+        raise ScopeError(f"Runs of the task {task.id} cannot be scored, because the task defines no check.")
     headline, reason = _headline(task, episode, checks)
-    return Verdict(task.id, headline, checks, collateral(task, episode), reason)
+    return Verdict(task.id, headline, checks, moved_needlessly(task, episode), reason)
 
 
 def _headline(task: Task, episode: Episode, checks: tuple[CheckResult, ...]) -> tuple[Headline, str]:
-    if broken := infrastructure(task, episode):
-        return "infrastructure", broken
+    if failure := infrastructure_failure(task, episode):
+        return "infrastructure", failure
     failed = [f"{check.name}: {check.reason}" for check in checks if check.passed is False]
     if failed:
         return "incorrect", "; ".join(failed)
@@ -75,33 +70,32 @@ def _headline(task: Task, episode: Episode, checks: tuple[CheckResult, ...]) -> 
     return ("unscored", "; ".join(unknown)) if unknown else ("correct", "every check passed")
 
 
-def infrastructure(task: Task, episode: Episode) -> str | None:
-    """Return why a run cannot be used to score the agent: it was interrupted, or the camera or a model server failed.
+def infrastructure_failure(task: Task, episode: Episode) -> str | None:
+    """Return why a run cannot be used to score the agent; None if it can.
 
-    Returns:
-        None if the run can be scored.
+    A run cannot be used if it was interrupted, or if the camera or a model server failed.
     """
     if episode.outcome is None:
         return "the run was cut off"
     if episode.outcome in ("camera_error", "cancelled"):
         return f"the run ended {episode.outcome}"
-    if episode.outcome == "planner_error" and episode.failure is not None and episode.failure not in AGENTS_OWN_FAILURES:
+    if episode.outcome == "planner_error" and episode.failure is not None and episode.failure not in AGENT_FAILURES:
         return f"the planner's server failed: {episode.failure}"
-    blind = any(call.fault == "perception" for call in episode.calls) and not episode.observations
-    if blind and any(view.must_look for view in task.evidence) and not claims(task, episode):
+    all_failed = any(call.fault == "perception" for call in episode.calls) and not episode.observations
+    if all_failed and any(view.must_look for view in task.evidence) and not states_value(task, episode):
         return "perception failed and the agent said no more than it knew"
     return None
 
 
-def claims(task: Task, episode: Episode) -> bool:
+def states_value(task: Task, episode: Episode) -> bool:
     """Return whether the final answer states a value."""
     if isinstance(task.expected, ActionOnly) or episode.outcome != "answered":
         return False
     return isinstance(parse_answer(task.expected, episode.answer), ParsedValue)
 
 
-def collateral(task: Task, episode: Episode) -> bool:
-    """Return whether the camera ended at another pose although neither the instruction nor finding the answer requires a move."""
+def moved_needlessly(task: Task, episode: Episode) -> bool:
+    """Return whether the final pose differs from the start although neither the instruction nor the answer requires a move."""
     behaviour = task.behaviour
-    asked = behaviour.final or behaviour.framing or any(call.tool in MOVERS for call in behaviour.calls)
-    return not asked and set(task.needs) <= {"sweep"} and bool(changes(episode.start, episode.final))
+    requires_move = behaviour.final or behaviour.framing or any(call.tool in MOVING_TOOLS for call in behaviour.calls)
+    return not requires_move and set(task.needs) <= {"sweep"} and bool(changes(episode.start, episode.final))

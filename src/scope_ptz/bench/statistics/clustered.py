@@ -1,9 +1,9 @@
-"""Means over strata with cluster-robust intervals, because outcomes of tasks at one viewpoint are correlated.
+"""Estimate means over strata with cluster-robust intervals, because outcomes of tasks at one viewpoint are correlated.
 
-An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k. With w_k = 1/K it is the macro average, with a single
-stratum the micro average, with weights +1 and -1 a contrast. Its variance is that of the linearised estimate, summed by cluster
-(Liang and Zeger 1986), times G/(G-1). Quantiles are Student's with G-1 degrees of freedom (Cameron and Miller 2015, sections II.A
-and VI.D).
+An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k. It is the macro average if every w_k is 1/K, the micro
+average if there is a single stratum, and a contrast if the weights are +1 and -1. Its variance is that of the linearised estimate,
+summed by cluster (Liang and Zeger 1986), times G/(G-1). The quantiles are those of Student's t distribution with G-1 degrees of
+freedom (Cameron and Miller 2015, sections II.A and VI.D).
 
 Repeats of a task count as one observation, called a ``unit``.
 """
@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 from scipy.special import stdtr, stdtrit  # type: ignore[import-untyped]
 
 LEVEL = 0.95
+"""Confidence level of intervals and tests."""
 _ROUNDING = 1e-24
-"""Variances up to this size are rounding errors."""
+"""Variances up to this size are treated as rounding errors."""
 Numbers = NDArray[np.float64]
 
 
@@ -33,7 +34,7 @@ class Scores:
         values: The outcomes, of shape ``(n,)``.
         strata: The stratum of each outcome.
         clusters: The cluster of each outcome.
-        units: The unit of each outcome, if outcomes are repeats; None if every outcome is its own unit. A unit belongs to one
+        units: The unit of each outcome; None if no outcomes are repeats, so that each outcome is a unit. A unit belongs to one
             stratum and one cluster.
     """
 
@@ -43,11 +44,11 @@ class Scores:
     units: tuple[Hashable, ...] | None = None
 
     def __post_init__(self) -> None:
-        if not len(self.values) == len(self.strata) == len(self.clusters) == len(self.observed):
-            raise ValueError("values, strata, clusters and units differ in length")
+        if not len(self.values) == len(self.strata) == len(self.clusters) == len(self.unit_of_each):
+            raise ValueError("values, strata, clusters and units must have the same length")
 
     @property
-    def observed(self) -> tuple[Hashable, ...]:
+    def unit_of_each(self) -> tuple[Hashable, ...]:
         """The unit of each outcome."""
         return tuple(range(len(self.values))) if self.units is None else self.units
 
@@ -64,7 +65,7 @@ class IntervalEstimate:
         n: Number of units (tasks).
         clusters: Number of clusters.
         without: Strata with only one cluster. They are part of the value, but their variation between clusters is unknown, so the
-            interval is too narrow. If all strata have only one cluster, there is no interval.
+            interval is too narrow. If every stratum has only one cluster, there is no interval.
     """
 
     value: float
@@ -77,7 +78,7 @@ class IntervalEstimate:
 
 
 def macro_weights(scores: Scores) -> dict[Hashable, float]:
-    """Return equal weights for all strata that occur."""
+    """Return equal weights for all strata that have outcomes."""
     present = set(scores.strata)
     return {stratum: 1.0 / len(present) for stratum in present}
 
@@ -93,19 +94,19 @@ def weighted_mean(scores: Scores, weights: Mapping[Any, float]) -> float:
     Raises:
         ValueError: A stratum of ``weights`` has no outcome.
     """
-    found: dict[Hashable, list[float]] = {}
+    values: dict[Hashable, list[float]] = {}
     for stratum, value in zip(scores.strata, scores.values.tolist(), strict=True):
-        found.setdefault(stratum, []).append(value)
-    _check_strata(found, weights)
-    # Exact summation, so that runs with the same outcomes have the same mean in any order.
-    return fsum(weight * (fsum(found[stratum]) / len(found[stratum])) for stratum, weight in weights.items())
+        values.setdefault(stratum, []).append(value)
+    _check_strata(values, weights)
+    # fsum makes the mean independent of the order of the outcomes.
+    return fsum(weight * (fsum(values[stratum]) / len(values[stratum])) for stratum, weight in weights.items())
 
 
 def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | None:
     """Return the variance of ``weighted_mean`` over clusters; None with fewer than two clusters.
 
-    It is G/(G-1) sum_g u_g^2, where u_g is the sum of w_k/n_k (x - mean_k) over the outcomes of a cluster. With one stratum it is
-    the CR1 variance of a regression on a constant.
+    The variance is G/(G-1) sum_g u_g^2, where u_g is the sum of w_k/n_k (x - mean_k) over the outcomes of cluster g. With one
+    stratum it equals the CR1 variance of a regression on a constant.
     """
     labels, index = _factorise(scores.clusters)
     if len(labels) < 2:
@@ -118,26 +119,26 @@ def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | No
 def independent_variance(scores: Scores, weights: Mapping[Any, float]) -> float | None:
     """Return the variance as if all units were independent; None with fewer than two units.
 
-    Repeats of a task are not independent: a deterministic model always repeats itself.
+    Repeats of a task form one unit, because they are not independent: a deterministic model always gives the same result.
     """
-    return cluster_variance(Scores(scores.values, scores.strata, scores.observed), weights)
+    return cluster_variance(Scores(scores.values, scores.strata, scores.unit_of_each), weights)
 
 
 def strata_without_spread(scores: Scores, weights: Mapping[Any, float]) -> tuple[Hashable, ...]:
     """Return the strata with only one cluster. Their residuals always sum to 0, so they add no variance."""
-    seen: dict[Hashable, set[Hashable]] = {}
+    clusters_by_stratum: dict[Hashable, set[Hashable]] = {}
     for stratum, cluster in zip(scores.strata, scores.clusters, strict=True):
-        seen.setdefault(stratum, set()).add(cluster)
-    return tuple(stratum for stratum, clusters in seen.items() if weights.get(stratum) and len(clusters) < 2)
+        clusters_by_stratum.setdefault(stratum, set()).add(cluster)
+    return tuple(stratum for stratum, clusters in clusters_by_stratum.items() if weights.get(stratum) and len(clusters) < 2)
 
 
 def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None:
-    """Return the standard error: the root of the larger of the clustered and the independent variance.
+    """Return the standard error: the square root of the larger of the clustered and the independent variance.
 
-    With the larger one, chance agreement between a few clusters cannot shrink the interval. A variance below rounding error is 0.
+    With the larger variance, chance agreement between a few clusters cannot shrink the interval.
 
     Returns:
-        None if every stratum has only one cluster, because the variation between clusters is unknown.
+        The standard error, or None if every stratum has only one cluster, because the variation between clusters is then unknown.
     """
     clustered, independent = cluster_variance(scores, weights), independent_variance(scores, weights)
     if (
@@ -160,31 +161,31 @@ def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Interva
         weights: Weights of the strata, relative to their sum; None pools all outcomes.
 
     Returns:
-        None without data.
+        The estimate, or None if there are no outcomes.
     """
     if not len(scores.values):
         return None
     scores, weights = (pooled(scores), {"all": 1.0}) if weights is None else (scores, weights)
-    se, clusters, units = standard_error(scores, weights), len(set(scores.clusters)), len(set(scores.observed))
+    se, clusters, units = standard_error(scores, weights), len(set(scores.clusters)), len(set(scores.unit_of_each))
     value = min(1.0, max(0.0, weighted_mean(scores, weights) / fsum(weights.values())))
     low = high = None
     if se is not None:
         size = value * (1 - value) / se**2 if se > 0 else float(units)
         low, high = wilson(value, size, t_quantile(clusters))
-    return IntervalEstimate(value, low, high, se, units, clusters, _without(scores, weights))
+    return IntervalEstimate(value, low, high, se, units, clusters, _single_cluster_strata(scores, weights))
 
 
 def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
     """Estimate a mean difference or a contrast of shares, with the interval value +- t se, limited to [-1, 1].
 
-    There is no interval if all outcomes are equal, because a variance of 0 does not mean that the difference is known.
+    If all outcomes are equal, there is no interval, because a variance of 0 does not mean that the difference is known.
 
     Args:
         scores: The differences, or the outcomes of a contrast.
         weights: Weights of the strata; None pools all outcomes.
 
     Returns:
-        None without data.
+        The estimate, or None if there are no outcomes.
     """
     if not len(scores.values):
         return None
@@ -192,18 +193,18 @@ def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> In
     value, se, clusters = weighted_mean(scores, weights), standard_error(scores, weights), len(set(scores.clusters))
     half = se * t_quantile(clusters) if se else None
     low, high = (None, None) if half is None else (max(-1.0, value - half), min(1.0, value + half))
-    return IntervalEstimate(value, low, high, se, len(set(scores.observed)), clusters, _without(scores, weights))
+    return IntervalEstimate(value, low, high, se, len(set(scores.unit_of_each)), clusters, _single_cluster_strata(scores, weights))
 
 
 def share_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
     """Estimate the share of ``first`` minus the share of ``second``, which are different sets of outcomes.
 
-    The interval combines those of the two shares as if they were independent (Newcombe 1998, method 10; Zou and Donner 2008).
-    Unlike value +- t se, it has a width even if all outcomes of one side are equal. It is unknown if one of the shares has no
-    interval.
+    The interval combines the intervals of the two shares as if these were independent (Newcombe 1998, method 10; Zou and Donner
+    2008). Unlike value +- t se, it has a width even if all outcomes of one set are equal. If one of the shares has no interval, the
+    difference has none.
 
     Returns:
-        None if one of them has no data.
+        The estimate, or None if one of the sets is empty.
     """
     one, other = share(first), share(second)
     if one is None or other is None:
@@ -212,13 +213,13 @@ def share_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
         np.concatenate([first.values, second.values]),
         (1,) * len(first.values) + (2,) * len(second.values),
         (*first.clusters, *second.clusters),
-        (*((1, unit) for unit in first.observed), *((2, unit) for unit in second.observed)),
+        (*((1, unit) for unit in first.unit_of_each), *((2, unit) for unit in second.unit_of_each)),
     )
-    found = difference(both, {1: 1.0, 2: -1.0})
-    if found is None:
+    contrast = difference(both, {1: 1.0, 2: -1.0})
+    if contrast is None:
         return None
     low, high = newcombe((one.value, one.low, one.high), (other.value, other.low, other.high))
-    return replace(found, low=low, high=high, without=())
+    return replace(contrast, low=low, high=high, without=())
 
 
 Bounded = tuple[float, float | None, float | None]
@@ -226,10 +227,10 @@ Bounded = tuple[float, float | None, float | None]
 
 
 def newcombe(one: Bounded, other: Bounded) -> tuple[float, float] | tuple[None, None]:
-    """Return the interval of the difference of two independent shares, from their own intervals by Newcombe's method.
+    """Return the interval of the difference of two independent shares by Newcombe's method, which combines their intervals.
 
     Returns:
-        (None, None) if one of the intervals is unknown.
+        The lower and upper limit, or (None, None) if one of the intervals is unknown.
     """
     (p, p_low, p_high), (q, q_low, q_high) = one, other
     if p_low is None or p_high is None or q_low is None or q_high is None:
@@ -237,7 +238,7 @@ def newcombe(one: Bounded, other: Bounded) -> tuple[float, float] | tuple[None, 
     return p - q - hypot(p - p_low, q_high - q), p - q + hypot(p_high - p, q - q_low)
 
 
-def _without(scores: Scores, weights: Mapping[Any, float]) -> tuple[str, ...]:
+def _single_cluster_strata(scores: Scores, weights: Mapping[Any, float]) -> tuple[str, ...]:
     return tuple(map(str, strata_without_spread(scores, weights)))
 
 
@@ -263,18 +264,22 @@ def two_sided_p(estimate: IntervalEstimate) -> float | None:
     return float(2 * stdtr(estimate.clusters - 1, -abs(estimate.value) / estimate.se))
 
 
-def detectable(se: float, clusters: int, power: float = 0.8, level: float = LEVEL) -> float:
-    """Return the smallest true difference that a two-sided test detects: (t_(1-a/2) + t_power) se (Bloom 1995)."""
+def detectable_difference(se: float, clusters: int, power: float = 0.8, level: float = LEVEL) -> float:
+    """Return the smallest true difference that a two-sided test detects with a given power.
+
+    The difference is (t_(1-a/2) + t_power) se (Bloom 1995).
+    """
     return se * float(stdtrit(clusters - 1, 0.5 + level / 2) + stdtrit(clusters - 1, power))
 
 
 def _factorise(labels: Sequence[Hashable]) -> tuple[list[Hashable], NDArray[np.intp]]:
-    known: dict[Hashable, int] = {}
-    codes = np.array([known.setdefault(label, len(known)) for label in labels], dtype=np.intp)
-    return list(known), codes
+    """Return the distinct labels, and the index of each label among them."""
+    indices: dict[Hashable, int] = {}
+    codes = np.array([indices.setdefault(label, len(indices)) for label in labels], dtype=np.intp)
+    return list(indices), codes
 
 
-def _coded(scores: Scores, weights: Mapping[Any, float]) -> tuple[NDArray[np.intp], Numbers]:
+def _strata_codes(scores: Scores, weights: Mapping[Any, float]) -> tuple[NDArray[np.intp], Numbers]:
     """Return the stratum of each outcome, of shape ``(n,)``, and each stratum's weight divided by its number of outcomes."""
     strata, codes = _factorise(scores.strata)
     _check_strata(strata, weights)
@@ -284,11 +289,11 @@ def _coded(scores: Scores, weights: Mapping[Any, float]) -> tuple[NDArray[np.int
 
 def _check_strata(strata: Collection[Hashable], weights: Mapping[Any, float]) -> None:
     if absent := set(weights) - set(strata):
-        raise ValueError(f"no outcome in {', '.join(sorted(map(str, absent)))}")
+        raise ValueError(f"every weighted stratum must have an outcome; there is none in {', '.join(sorted(map(str, absent)))}")
 
 
 def _residuals(scores: Scores, weights: Mapping[Any, float]) -> tuple[Numbers, Numbers]:
     """Return the residual of each outcome and its weight in the estimate, both of shape ``(n,)``."""
-    codes, weight = _coded(scores, weights)
+    codes, weight = _strata_codes(scores, weights)
     means = np.bincount(codes, weights=scores.values) / np.bincount(codes)
     return scores.values - means[codes], weight[codes]

@@ -1,4 +1,4 @@
-"""Statistics for comparing two runs over the same tasks: exact test, cluster bootstrap, adjustment for multiple tests."""
+"""Statistics for comparing two runs over the same tasks: an exact test, a bootstrap, and an adjustment for multiple tests."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ import numpy as np
 from scope_ptz.bench.statistics.clustered import Scores
 
 DRAWS = 10_000
+"""Default number of bootstrap draws."""
 
 
 def mcnemar_exact(only_first: int, only_second: int) -> float:
     """Return the two-sided exact p value of McNemar's test (1947).
 
-    It is min(1, 2 P(X <= min(b, c))) with X binomial(b + c, 1/2). With repeats it is the sign test of the tasks' mean differences.
+    The p value is min(1, 2 P(X <= min(b, c))) with X binomial(b + c, 1/2). If tasks were repeated, this is the sign test of the
+    tasks' mean differences.
 
     Args:
         only_first: Number of tasks on which only the first run is correct.
@@ -27,7 +29,7 @@ def mcnemar_exact(only_first: int, only_second: int) -> float:
 
 
 def holm(p_values: Sequence[float | None]) -> list[float | None]:
-    """Adjust p values by Holm's step-down method (1979). None stays None and does not count as a test."""
+    """Adjust p values by Holm's step-down method (1979). A value of None remains None and does not count as a test."""
     tests = sorted((p, index) for index, p in enumerate(p_values) if p is not None)
     adjusted: list[float | None] = [None] * len(p_values)
     highest = 0.0
@@ -43,10 +45,11 @@ def cluster_bootstrap(scores: Scores, *, seed: int = 0, draws: int = DRAWS) -> t
     Args:
         scores: One difference per task.
         seed: Seed of the draws.
-        draws: Number of draws. Whole clusters are drawn with replacement; strata that a draw lacks are left out of its mean.
+        draws: Number of draws. Whole clusters are drawn with replacement. Strata without outcomes in a draw are left out of its
+            mean.
 
     Returns:
-        None with fewer than two clusters.
+        The lower and upper limit, or None with fewer than two clusters.
     """
     clusters, strata = _codes(scores.clusters), _codes(scores.strata)
     size = (max(clusters) + 1, max(strata) + 1) if clusters else (0, 0)
@@ -63,5 +66,5 @@ def cluster_bootstrap(scores: Scores, *, seed: int = 0, draws: int = DRAWS) -> t
 
 
 def _codes(labels: Sequence[Hashable]) -> list[int]:
-    known: dict[Hashable, int] = {}
-    return [known.setdefault(label, len(known)) for label in labels]
+    indices: dict[Hashable, int] = {}
+    return [indices.setdefault(label, len(indices)) for label in labels]

@@ -1,4 +1,4 @@
-"""The Pareto front."""
+"""Compute the Pareto front of a set of points."""
 
 from __future__ import annotations
 

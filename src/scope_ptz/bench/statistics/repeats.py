@@ -1,4 +1,4 @@
-"""Statistics of repeated tasks."""
+"""Statistics of tasks that were run several times."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from math import comb
 def pass_all(runs: int, passed: int, k: int) -> float | None:
     """Return pass^k of one task, C(c, k) / C(n, k) for c passed of n runs (Yao et al. 2024).
 
-    It is an unbiased estimate of the probability that k runs all pass.
+    This is an unbiased estimate of the probability that k runs all pass.
 
     Args:
         runs: Number of runs.
@@ -17,7 +17,7 @@ def pass_all(runs: int, passed: int, k: int) -> float | None:
         k: Number of runs that must all pass.
 
     Returns:
-        None with fewer than k runs.
+        The estimate, or None with fewer than k runs.
 
     Raises:
         ValueError: ``passed`` is not between 0 and ``runs``, or ``k`` is below 1.

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler
 Wording = Annotated[str, Field(min_length=1, pattern=r"\w")]
 Wordings = tuple[Wording, ...]
 Options = Annotated[dict[Wording, Wordings], Field(min_length=1)]
-"""The further wordings of each option, by its name. The name itself is a wording, too."""
+"""Maps the name of each option to its other wordings. The name is itself a wording."""
 
 
 class _Expected(BaseModel):
@@ -21,7 +21,7 @@ class _Expected(BaseModel):
 
     @model_serializer(mode="wrap")
     def _with_kind(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Write the kind even if defaults are left out, because files cannot be read without it."""
+        """Serialize ``kind`` even if defaults are excluded, because a file cannot be loaded without it."""
         kind = type(self).model_fields.get("kind")
         return {**({} if kind is None else {"kind": kind.default}), **handler(self)}
 
@@ -65,8 +65,8 @@ class Choice(_Expected):
     subject: Wordings = ()
 
     @model_validator(mode="after")
-    def _known(self) -> Choice:
-        return _all_known(self, (self.value,), self.options)
+    def _check_value(self) -> Choice:
+        return _check_options(self, (self.value,), self.options)
 
 
 class Text(_Expected):
@@ -88,8 +88,8 @@ class NameSet(_Expected):
     options: Options
 
     @model_validator(mode="after")
-    def _known(self) -> NameSet:
-        return _all_known(self, self.value, self.options)
+    def _check_value(self) -> NameSet:
+        return _check_options(self, self.value, self.options)
 
 
 class Ordering(_Expected):
@@ -102,9 +102,9 @@ class Ordering(_Expected):
     last: Wordings = ()
 
     @model_validator(mode="after")
-    def _known(self) -> Ordering:
+    def _check_value(self) -> Ordering:
         if sorted(self.value) != sorted(self.options):
-            raise ValueError("an ordering must contain all of its options, each once")
+            raise ValueError("the value of an ordering must contain every option exactly once")
         return self
 
 
@@ -156,8 +156,8 @@ Expected = Annotated[
 AnyExpected = Number | YesNo | Choice | Text | NameSet | Ordering | Relation | Description | NoneThere | ActionOnly
 
 
-def _all_known(expected: _T, values: Wordings, options: dict[Wording, Wordings]) -> _T:
+def _check_options(expected: _T, values: Wordings, options: dict[Wording, Wordings]) -> _T:
     unknown = [value for value in values if value not in options]
     if unknown:
-        raise ValueError(f"{', '.join(unknown)}: not among the options {', '.join(options)}")
+        raise ValueError(f"value must be one of the options {', '.join(options)}; got {', '.join(unknown)}")
     return expected

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -32,26 +33,24 @@ def load_tasks(path: Path) -> tuple[Task, ...]:
             yaml.safe_load(text) if path.suffix in (".yaml", ".yml") else [json.loads(row) for row in text.splitlines() if row]
         )
     except OSError as error:
-        raise InputError(f"The tasks {path} cannot be read: {error.strerror}.") from error
+        raise InputError(f"The task file {path} cannot be read: {error.strerror}.") from error
     except (ValueError, yaml.YAMLError) as error:
-        raise InputError(f"{path} holds no tasks: {error}.") from error
-    tasks = tuple(_task(row, path, number) for number, row in enumerate(content or (), 1))
-    duplicates = (
-        {t.id for t in tasks if sum(t.id == other.id for other in tasks) > 1} if len({t.id for t in tasks}) < len(tasks) else set()
-    )
+        raise InputError(f"{path} is neither valid JSONL with one task per line nor a valid YAML list: {error}.") from error
+    tasks = tuple(_parse_task(row, path, number) for number, row in enumerate(content or (), 1))
+    duplicates = sorted(name for name, count in Counter(task.id for task in tasks).items() if count > 1)
     if duplicates:
-        raise InputError(f"{path} contains {', '.join(sorted(duplicates))} more than once.")
+        raise InputError(f"{path} contains {', '.join(duplicates)} more than once. Every task must have its own id.")
     return tasks
 
 
-def _task(row: Any, path: Path, number: int) -> Task:
+def _parse_task(row: Any, path: Path, number: int) -> Task:
     try:
         return TASK.validate_python(row)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(str(part) for part in first["loc"])
+        first_error = error.errors(include_url=False)[0]
+        field = ".".join(str(part) for part in first_error["loc"])
         name = row.get("id", f"number {number}") if isinstance(row, dict) else f"number {number}"
-        raise InputError(f"{path}, task {name}: {where or 'as a whole'}: {first['msg']}.") from error
+        raise InputError(f"{path}, task {name}: {f'{field}: ' if field else ''}{first_error['msg']}.") from error
 
 
 def dump_tasks(tasks: Iterable[Task], path: Path) -> None:

@@ -24,12 +24,12 @@ class ImportedTask(BaseModel):
     Attributes:
         imported: Version of this format.
         facts: The facts about the task.
-        line: Line of the source file.
+        line: Line number in the source file.
         raw: The cells of the source file, unchanged.
         calls: The expected calls.
         policy: Which of the expected calls a run must make.
-        order: Whether the order of the expected calls counts.
-        start_s: Scene time at the start.
+        order: Whether the calls must be made in the given order ("ordered") or in any order.
+        start_s: Scene time at the start, in seconds.
         findings: Findings about the row.
     """
 
@@ -46,7 +46,7 @@ class ImportedTask(BaseModel):
     findings: tuple[RowFinding, ...] = ()
 
 
-def holds_imported(path: Path) -> bool:
+def is_imported_file(path: Path) -> bool:
     """Return whether the first line of a file is an imported task."""
     try:
         with path.open(encoding="utf-8") as file:
@@ -65,7 +65,7 @@ def load_imported(path: Path) -> tuple[ImportedTask, ...]:
     try:
         lines = path.read_text("utf-8").split("\n")  # JSON strings may contain other line separators.
     except OSError as error:
-        raise InputError(f"The tasks {path} cannot be read: {error.strerror}.") from error
+        raise InputError(f"The task file {path} cannot be read: {error.strerror}.") from error
     except UnicodeDecodeError as error:
         raise InputError(f"{path} contains no imported tasks: it is not UTF-8 text.") from error
     tasks = list[ImportedTask]()
@@ -75,14 +75,14 @@ def load_imported(path: Path) -> tuple[ImportedTask, ...]:
         try:
             tasks.append(ImportedTask.model_validate_json(line))
         except ValidationError as error:
-            first = error.errors(include_url=False, include_input=False)[0]
-            where = ".".join(str(part) for part in first["loc"])
-            raise InputError(f"{path}, line {number}: {where or 'as a whole'}: {first['msg']}.") from error
+            first_error = error.errors(include_url=False, include_input=False)[0]
+            field = ".".join(str(part) for part in first_error["loc"])
+            raise InputError(f"{path}, line {number}: {f'{field}: ' if field else ''}{first_error['msg']}.") from error
     return tuple(tasks)
 
 
 def dump_imported(tasks: Iterable[ImportedTask], path: Path) -> None:
-    """Write imported tasks, one per line.
+    """Write imported tasks to a JSONL file.
 
     Raises:
         OutputError: The file cannot be written.

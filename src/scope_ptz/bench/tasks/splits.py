@@ -24,8 +24,8 @@ from scope_ptz.errors import InputError, OutputError, UnknownNameError
 from scope_ptz.simulator.pack import Scene
 
 SPLITS = ("core", "lite", "paraphrase", "reaction", "unseen", "all")
-FILES = {"core": "tasks.jsonl", "paraphrase": "paraphrase.jsonl", "reaction": "reaction.jsonl", "unseen": "unseen.jsonl"}
-LITE, MANIFEST = "lite.txt", "manifest.json"
+SPLIT_FILES = {"core": "tasks.jsonl", "paraphrase": "paraphrase.jsonl", "reaction": "reaction.jsonl", "unseen": "unseen.jsonl"}
+LITE_FILE, MANIFEST_FILE = "lite.txt", "manifest.json"
 LITE_SHARE = 0.1
 
 
@@ -43,7 +43,7 @@ def load_split(name: str | Path, folder: Path | None = None) -> tuple[Task, ...]
 
     Raises:
         UnknownNameError: The name is neither a split nor a file.
-        InputError: A file is missing or contains something other than tasks.
+        InputError: A file is missing or does not contain valid tasks.
     """
     folder = folder or published_folder()
     if str(name) not in SPLITS:
@@ -51,16 +51,16 @@ def load_split(name: str | Path, folder: Path | None = None) -> tuple[Task, ...]
         if not path.suffix and not path.is_file():
             raise UnknownNameError("split or task file", str(name), SPLITS)
         return load_tasks(path)
-    if not (folder / FILES["core"]).is_file():
+    if not (folder / SPLIT_FILES["core"]).is_file():
         raise InputError(f"There are no tasks in {folder}. Build tasks with 'scope bench build' and give the path of their file.")
     if name == "all":
-        return tuple(task for part in ("core", "paraphrase", "reaction") for task in load_tasks(folder / FILES[part]))
+        return tuple(task for part in ("core", "paraphrase", "reaction") for task in load_tasks(folder / SPLIT_FILES[part]))
     if name == "lite":
-        return _named(load_tasks(folder / FILES["core"]), folder / LITE)
-    return load_tasks(folder / FILES[str(name)])
+        return _listed_tasks(load_tasks(folder / SPLIT_FILES["core"]), folder / LITE_FILE)
+    return load_tasks(folder / SPLIT_FILES[str(name)])
 
 
-def _named(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
+def _listed_tasks(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
     """Return the tasks whose ids a file lists, one per line."""
     try:
         ids = path.read_text("utf-8").split()
@@ -68,51 +68,53 @@ def _named(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
         raise InputError(f"The list {path} cannot be read: {error.strerror}. Build the dataset again.") from error
     by_id = {task.id: task for task in tasks}
     if unknown := [name for name in ids if name not in by_id]:
-        raise InputError(f"{path} names {unknown[0]}, which is not a core task. Build the dataset again.")
+        raise InputError(f"{path} lists {unknown[0]}, which is not a core task. Build the dataset again.")
     return tuple(by_id[name] for name in ids)
 
 
 def lite(tasks: Sequence[Task], seed: int) -> tuple[Task, ...]:
     """Return a stratified tenth of the core tasks."""
-    core = of_stratum(tasks, "core")
+    core = tasks_of_stratum(tasks, "core")
     return stratified_sample(core, round(len(core) * LITE_SHARE), seed)
 
 
-def of_stratum(tasks: Iterable[Task], stratum: Stratum) -> tuple[Task, ...]:
+def tasks_of_stratum(tasks: Iterable[Task], stratum: Stratum) -> tuple[Task, ...]:
     """Return the tasks of one stratum."""
     return tuple(task for task in tasks if task.stratum == stratum)
 
 
 def write_splits(tasks: Sequence[Task], unseen: Sequence[Task], folder: Path, *, seed: int) -> list[Path]:
-    """Write a dataset with one file per split. The same tasks and seed give the same bytes.
+    """Write a dataset with one file per split. The same tasks and seed always produce identical files.
 
     Returns:
-        The files that were written.
+        The paths of the files.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for split, rows in (
-            ("core", of_stratum(tasks, "core")),
-            ("paraphrase", of_stratum(tasks, "paraphrase")),
-            ("reaction", of_stratum(tasks, "reaction")),
+            ("core", tasks_of_stratum(tasks, "core")),
+            ("paraphrase", tasks_of_stratum(tasks, "paraphrase")),
+            ("reaction", tasks_of_stratum(tasks, "reaction")),
             ("unseen", unseen),
         ):
-            dump_tasks(rows, folder / FILES[split])
-        (folder / LITE).write_text("".join(f"{task.id}\n" for task in lite(tasks, seed)), "utf-8")
+            dump_tasks(rows, folder / SPLIT_FILES[split])
+        (folder / LITE_FILE).write_text("".join(f"{task.id}\n" for task in lite(tasks, seed)), "utf-8")
     except OSError as error:
-        raise OutputError(f"The dataset cannot be written to {folder}: {error.strerror}. Choose another with --out.") from error
-    return [folder / name for name in (*FILES.values(), LITE)]
+        raise OutputError(
+            f"The dataset cannot be written to {folder}: {error.strerror}. Choose another folder with --out."
+        ) from error
+    return [folder / name for name in (*SPLIT_FILES.values(), LITE_FILE)]
 
 
 def write_manifest(folder: Path, written: Iterable[Path], scenes: Iterable[Scene], **made_with: Any) -> Path:
-    """Write the manifest of a dataset: how it was made, the versions of its scenes, and the checksums of its files."""
+    """Write the manifest of a dataset: its build options (``made_with``), its scene versions and the checksums of its files."""
     content = {
         "canary": CANARY,
         "made_with": made_with,
         "scenes": {scene.name: {"version": scene.file.version, "sha256": _digest(scene.folder / "scene.json")} for scene in scenes},
         "files": {path.name: _digest(path) for path in sorted(written)},
     }
-    path = folder / MANIFEST
+    path = folder / MANIFEST_FILE
     path.write_text(json.dumps(content, indent=1) + "\n", "utf-8")
     return path
 
@@ -124,7 +126,7 @@ def read_manifest(folder: Path) -> dict[str, Any]:
         InputError: A file of the dataset is missing or has changed.
     """
     try:
-        content: dict[str, Any] = json.loads((folder / MANIFEST).read_text("utf-8"))
+        content: dict[str, Any] = json.loads((folder / MANIFEST_FILE).read_text("utf-8"))
         changed = [name for name, digest in content["files"].items() if _digest(folder / name) != digest]
     except (OSError, ValueError, KeyError) as error:
         raise InputError(f"{folder} contains no complete dataset ({error}). Build one with 'scope bench build --all'.") from error

@@ -10,15 +10,15 @@ from scope_ptz.bench.tasks.task import Task
 
 
 def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
-    """Return a sample in which categories, scenes, difficulties and their combinations have nearly their original shares.
+    """Return a sample that approximately preserves the shares of categories, scenes, difficulties and their combinations.
 
-    Tasks are taken one by one from the group that is most underrepresented. Within a group the choice depends only on the seed and
-    the task ids.
+    Tasks are taken one by one from the most underrepresented group. Within a group the choice depends only on the seed and the
+    task ids.
 
     Args:
-        tasks: The tasks to sample.
+        tasks: The tasks to sample from.
         number: Size of the sample.
-        seed: Seed of the choice.
+        seed: Seed for the choice within a group.
 
     Returns:
         The sample in the original order.
@@ -27,13 +27,13 @@ def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Ta
     remaining: dict[tuple[str, ...], list[str]] = {}
     for task in sorted(tasks, key=lambda t: hashlib.sha256(f"{seed}:{t.id}".encode()).hexdigest()):
         remaining.setdefault((task.category, task.scene, task.difficulty), []).append(task.id)
-    share = Counter(margin for task in tasks for margin in _margins((task.category, task.scene, task.difficulty)))
+    total = Counter(margin for task in tasks for margin in _margins((task.category, task.scene, task.difficulty)))
     fraction = number / len(tasks) if tasks else 0.0
     taken, chosen = Counter[tuple[str, ...]](), set[str]()
     for _ in range(number):
         group = max(
             (g for g, ids in remaining.items() if ids),
-            key=lambda g: (round(sum(share[margin] * fraction - taken[margin] for margin in _margins(g)), 6), g),
+            key=lambda g: (round(sum(total[margin] * fraction - taken[margin] for margin in _margins(g)), 6), g),
         )
         chosen.add(remaining[group].pop())
         taken.update(_margins(group))

@@ -29,7 +29,7 @@ RunOutcome = Literal["answered", "clarification", "refused"]
 if TYPE_CHECKING:
     ToolName = str
 else:
-    ToolName = Literal[tuple(TOOLS)]  # The names in the registry, so that a new tool needs no change here.
+    ToolName = Literal[tuple(TOOLS)]  # Built from the registry, so that a new tool needs no change here.
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -62,9 +62,9 @@ class Argument(_Model):
     mentions: Wordings = ()
 
     @model_validator(mode="after")
-    def _one(self) -> Argument:
+    def _check_exclusive(self) -> Argument:
         if (self.equals is None) == (not self.mentions):
-            raise ValueError("an argument either equals a value or mentions words: set exactly one of them")
+            raise ValueError("exactly one of equals and mentions must be set")
         return self
 
 
@@ -149,11 +149,11 @@ class EvidenceView(_Model):
     window_s: tuple[Finite, Finite] | None = None
 
     @model_validator(mode="after")
-    def _something(self) -> EvidenceView:
+    def _check_evidence(self) -> EvidenceView:
         if self.must_look and not self.items and not self.whole:
-            raise ValueError("an evidence view with must_look needs items or whole=true")
+            raise ValueError("an evidence view with must_look must have items or whole=true")
         if self.scope == "full" and self.whole and self.band_deg is None:
-            raise ValueError("a whole view with the scope full needs band_deg")
+            raise ValueError("a whole view with the scope full must have band_deg")
         return self
 
 
@@ -195,16 +195,16 @@ class Task(_Model):
         return self.scene if self.variation is None else variation_name(self.scene, self.variation)
 
     @model_validator(mode="after")
-    def _sound(self) -> Task:
+    def _check_consistency(self) -> Task:
         if not self.id.startswith(f"{self.dataset}-"):
-            raise ValueError(f"the id {self.id} does not begin with the dataset version {self.dataset}")
+            raise ValueError(f"the id must begin with the dataset version {self.dataset}; got {self.id}")
         if (self.stratum == "paraphrase") != (self.paraphrase_of is not None):
             raise ValueError("paraphrase_of must be set for every paraphrase and for no other task")
         if isinstance(self.expected, ActionOnly):
             if not self.behaviour.checks_something and self.behaviour.outcomes == ("answered",):
                 raise ValueError("a task without an expected answer must require some behaviour, otherwise nothing is checked")
         elif self.stratum != "reaction" and not any(view.must_look for view in self.evidence):
-            raise ValueError("a task with an expected answer needs an evidence view with must_look")
+            raise ValueError("a task with an expected answer must have an evidence view with must_look")
         return self
 
 

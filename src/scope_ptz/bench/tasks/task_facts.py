@@ -10,7 +10,7 @@ from scope_ptz.bench.tasks.task import Category, Scope, Stratum
 
 
 class TaskFacts(BaseModel):
-    """The facts about a task.
+    """The facts about a task that judges read and reports group by.
 
     Attributes:
         id: The task's id.
@@ -19,15 +19,16 @@ class TaskFacts(BaseModel):
         scene: The scene.
         viewpoint: The viewpoint where the run starts.
         preset: The preset where the run starts.
-        instruction: What the agent is asked to do.
+        instruction: The instruction to the agent.
         category: The task's category.
         scope: Whether the task is about the current view or the full scene.
         difficulty: The task's difficulty.
         expected: The expected answer in words.
-        demands: What the instruction requires the run to do, in sentences for a judge.
-        needs: Kinds of actions that the task needs.
-        pair: The task of the same wording with the opposite presence.
-        paraphrase_of: The task of which this one is a paraphrase.
+        demands: Requirements on the run that follow from the instruction, in sentences for a judge.
+        needs: Kinds of camera actions that the task requires.
+        pair: Id of a task with similar wording. In one of the two tasks the thing in question is present, in the other it is
+            absent.
+        paraphrase_of: Id of the task that this task paraphrases.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

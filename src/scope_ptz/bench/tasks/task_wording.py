@@ -81,7 +81,7 @@ def expected_in_words(expected: AnyExpected) -> str:
 
 
 def demands(task: Task) -> Iterator[str]:
-    """Yield what the run must have done, one sentence each. They mention only what the instruction fixes."""
+    """Yield the requirements on a run, one sentence each. They contain only requirements that follow from the instruction."""
     behaviour = task.behaviour
     if behaviour.outcomes != ("answered",):
         yield f"The run must end {_or([_OUTCOMES[name] for name in behaviour.outcomes], marks='')}."
@@ -103,11 +103,11 @@ def demands(task: Task) -> Iterator[str]:
     if behaviour.forbidden.changes:
         yield f"In the end these must be as they were at the start: {', '.join(behaviour.forbidden.changes)}."
     if any(view.must_look for view in task.evidence):
-        where = "; ".join(dict.fromkeys(_view(view) for view in task.evidence if view.must_look))
+        where = "; ".join(dict.fromkeys(_evidence_view(view) for view in task.evidence if view.must_look))
         yield f"The answer must rest on what tools reported about: {where}."
 
 
-def _view(view: EvidenceView) -> str:
+def _evidence_view(view: EvidenceView) -> str:
     aim = view.aim
     if view.scope == "full":
         return f"everything around viewpoint {aim.viewpoint}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp, DeviceReply
 
 NOT_HERE = (404, 405, 501)
-"""Statuses with which a device says that it has no such interface."""
+"""HTTP statuses that mean that the device has no such interface."""
 
 
 class DeviceControlHeldError(ControlHeldError):
@@ -26,10 +26,10 @@ class DeviceControlHeldError(ControlHeldError):
 
     def __init__(self, camera: str, place: QueuePlace) -> None:
         wait = f"about {place.seconds} s" if place.seconds >= 0 else "an unknown time"
-        # VAPIX tells the place in the queue and no names.
+        # VAPIX reports the place in the queue, but no names.
         CameraError.__init__(
             self,
-            f"{camera} is controlled by another client of its own control queue (this client would be number {place.place}, "
+            f"{camera} is controlled by another client of its control queue (this client would be number {place.place}, "
             f"after {wait}). Wait, or ask them to release it.",
         )
         self.holder = None
@@ -86,14 +86,14 @@ class VapixClient:
         """Take control if the device has its control queue on, and keep it.
 
         Raises:
-            ControlHeldError: Another client has control. This client leaves the queue and does not press.
+            ControlHeldError: Another client has control. This client leaves the queue.
         """
         if not self.queueing or monotonic() < self._control_until_s:
             return
         try:
             place = parse_queue((await self.send(requests.control_queue(self.channel, "request"))).body)
         except VapixError as error:
-            raise CameraError(f"The control queue of the camera at {self.address} gives no place. {error}") from None
+            raise CameraError(f"The control queue of the camera at {self.address} assigns no place. {error}") from None
         if place.place != 1:
             await self.drop_control()
             raise DeviceControlHeldError(f"The camera at {self.address}", place)

@@ -1,4 +1,4 @@
-"""What an AXIS device is and can do, read from the device."""
+"""Read the properties and capabilities of an AXIS device."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from scope_ptz.camera.axis import requests
 from scope_ptz.camera.axis.client import VapixClient
+from scope_ptz.camera.axis.lens import focus_actions, iris_actions
 from scope_ptz.camera.axis.replies import DeviceLimits, VapixError, parse_limits, parse_table, text_of, values_of
 from scope_ptz.camera.axis.scales import SpeedScale, ZoomScale, optics_of, zoom_scale
 from scope_ptz.camera.capabilities import Capabilities, Velocity
@@ -28,7 +29,7 @@ DEFAULT_ZOOM_RATE = 1.0
 
 @dataclass(frozen=True, slots=True)
 class AxisDevice:
-    """A device as its replies describe it.
+    """An AXIS device, as described by its replies.
 
     Attributes:
         model: Product name, empty if it reports none.
@@ -36,11 +37,12 @@ class AxisDevice:
         optics: Field of view by magnification.
         zoom: Zoom positions and magnification.
         speeds: Speeds and degrees per second.
-        capabilities: What it can do beyond moving to a pose.
+        capabilities: Its capabilities beyond moving to a pose.
         supported: Names of the functions whose ``PTZ.Support`` parameter is true, such as ``AutoFocus``.
         queueing: Whether its control queue is on.
         locked: Whether its position is locked.
         sizes: Picture sizes that it announces, width and height; empty if it announces none.
+        firmware: Version of its firmware, empty if it reports none.
     """
 
     model: str
@@ -53,14 +55,19 @@ class AxisDevice:
     queueing: bool
     locked: bool
     sizes: tuple[tuple[int, int], ...]
+    firmware: str = ""
 
 
-async def read_device(client: VapixClient, *, fields_deg: tuple[float, float] | None = None) -> AxisDevice:
-    """Read what a device is and can do.
+async def read_device(
+    client: VapixClient, *, fields_deg: tuple[float, float] | None = None, measured: tuple[tuple[float, float], ...] | None = None
+) -> AxisDevice:
+    """Read the properties and capabilities of a device.
 
     Args:
         client: The connection.
-        fields_deg: Horizontal fields of view at the widest and the closest zoom, in place of what the device reports.
+        fields_deg: Horizontal fields of view at the widest and the closest zoom, instead of those that the device reports.
+        measured: Rows of (share of the zoom range, horizontal field of view in degrees) that were measured, widest first.
+            They are used if they reach from one end of the zoom to the other.
 
     Raises:
         NotACameraError: It is not an AXIS camera, or it has no pan, tilt and zoom.
@@ -70,9 +77,15 @@ async def read_device(client: VapixClient, *, fields_deg: tuple[float, float] | 
     brand = await _parameters(client, "root.Brand")
     ptz = await _parameters(client, "root.PTZ")
     image = await _parameters(client, "root.Properties.Image")
+    firmware = (await _parameters(client, "root.Properties.Firmware")).get("Properties.Firmware.Version", "")
     model = brand.get("Brand.ProdFullName") or brand.get("Brand.ProdShortName") or ""
     reported = await _limits(client)
-    widest, closest = fields_deg or _fields(model[:60], reported)
+    if fields_deg is None and measured is not None and measured[0][0] < 0.01 and measured[-1][0] > 0.99:
+        fields = ((0.0, measured[0][1]), *measured[1:-1], (1.0, measured[-1][1]))
+    else:
+        stated = fields_deg or _fields(model[:60], reported)
+        fields = ((0.0, stated[0]), (1.0, stated[1]))
+    widest, closest = fields[0][1], fields[-1][1]
     zoom = zoom_scale(
         await _table(client, "zoom", "zoomSteps"), reported.min_zoom_units, reported.max_zoom_units, widest, closest
     )  # fmt: skip
@@ -84,7 +97,7 @@ async def read_device(client: VapixClient, *, fields_deg: tuple[float, float] | 
     return AxisDevice(
         model=model[:60],
         limits=_limits_in_degrees(reported, zoom),
-        optics=optics_of(zoom, widest, closest),
+        optics=optics_of(zoom, fields),
         zoom=zoom,
         speeds=speeds,
         capabilities=_capabilities(supported, speeds),
@@ -92,6 +105,7 @@ async def read_device(client: VapixClient, *, fields_deg: tuple[float, float] | 
         queueing=ptz.get(f"{various}CtlQueueing") == "true",
         locked=ptz.get(f"{various}Locked") == "true",
         sizes=_sizes(image.get("Properties.Image.Resolution", "")),
+        firmware="".join(c for c in firmware if c.isprintable())[:40],
     )
 
 
@@ -102,7 +116,7 @@ async def read_rtsp_port(client: VapixClient) -> int:
 
 
 def _capabilities(supported: frozenset[str], speeds: SpeedScale) -> Capabilities:
-    """Return the capabilities. A device without ``PTZ.Support`` parameters is taken to drive and to keep presets."""
+    """Return the capabilities. A device without ``PTZ.Support`` parameters is assumed to support continuous moves and presets."""
     silent = not supported
     top = Velocity(
         speeds.top_dps if silent or "ContinuousPan" in supported else 0.0,
@@ -112,8 +126,8 @@ def _capabilities(supported: frozenset[str], speeds: SpeedScale) -> Capabilities
     return Capabilities(
         top,
         edits_presets=silent or "ServerPreset" in supported,
-        focus=bool(supported & {"AutoFocus", "RelativeFocus"}),
-        iris=bool(supported & {"AutoIris", "RelativeIris"}),
+        focus=focus_actions(supported),
+        iris=iris_actions(supported),
     )
 
 
@@ -121,7 +135,7 @@ async def _limits(client: VapixClient) -> DeviceLimits:
     try:
         return parse_limits((await client.send(requests.query(client.channel, "limits"))).body)
     except (VapixError, CameraReplyError) as error:
-        message = f"What answers at {client.address} is not an AXIS camera with pan, tilt and zoom. {error}"
+        message = f"The device at {client.address} is not an AXIS camera with pan, tilt and zoom. {error}"
         raise NotACameraError(message) from None
 
 
@@ -134,7 +148,7 @@ async def _parameters(client: VapixClient, group: str) -> dict[str, str]:
 
 
 async def _table(client: VapixClient, group: str, attribute: str) -> tuple[tuple[float, float], ...]:
-    """Return a calibration table; empty if the device has none, as older firmware."""
+    """Return a calibration table; empty if the device has none, as with older firmware."""
     request = requests.attributes(client.channel, "zoom" if group == "zoom" else "speed")
     try:
         rows = parse_table((await client.send(request)).body, client.channel, attribute, group)

@@ -5,61 +5,93 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from scope_ptz.camera.axis import requests
-from scope_ptz.errors import CameraError, InputError
+from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
+from scope_ptz.camera.network.lens import wait_until_focused
 
 if TYPE_CHECKING:
     from scope_ptz.camera.axis.client import VapixClient
-    from scope_ptz.camera.axis.device import AxisDevice
+    from scope_ptz.camera.axis.requests import VapixRequest
+    from scope_ptz.camera.capabilities import Capabilities
 
-MAX_STEPS = 9999
-"""The most steps of one command."""
+RANGE_UNITS = 9998
+"""Length of the ranges of focus and iris, whose positions are 1 to 9999."""
 
 
-class LensControls:
-    """Focus and iris. Every method raises ``CameraError`` if the camera lacks the function or does not answer."""
+def focus_actions(supported: frozenset[str]) -> tuple[FocusAction, ...]:
+    """Return the focus actions of a device, by the names of its ``PTZ.Support`` parameters."""
+    automatic: tuple[FocusAction, ...] = ("auto", "manual", "once") if "AutoFocus" in supported else ()
+    steps: tuple[FocusAction, ...] = ("near", "far") if "RelativeFocus" in supported else ()
+    return automatic + steps
 
-    def __init__(self, client: VapixClient, device: AxisDevice) -> None:
-        self._client, self._device = client, device
 
-    async def set_autofocus(self, *, on: bool) -> None:
-        """Turn autofocus on or off. Turned on, it focuses at once."""
-        self._check_supported("AutoFocus", "autofocus")
-        await self._client.command(requests.autofocus(self._client.channel, on=on))
+def iris_actions(supported: frozenset[str]) -> tuple[IrisAction, ...]:
+    """Return the iris actions of a device, by the names of its ``PTZ.Support`` parameters."""
+    automatic: tuple[IrisAction, ...] = ("auto", "manual") if "AutoIris" in supported else ()
+    steps: tuple[IrisAction, ...] = ("open", "close") if "RelativeIris" in supported else ()
+    return automatic + steps
 
-    async def step_focus(self, steps: int) -> None:
-        """Move the focus by steps of the device, positive to focus farther away. It turns autofocus off.
+
+class AxisLens:
+    """Focus and iris of one channel.
+
+    Args:
+        name: The camera's name, for error messages.
+        client: The connection.
+        capabilities: The device's capabilities.
+        poll_s: Seconds between two readings while the focus moves.
+    """
+
+    def __init__(self, name: str, client: VapixClient, capabilities: Capabilities, poll_s: float) -> None:
+        self._name, self._client, self._capabilities, self._poll_s = name, client, capabilities, poll_s
+
+    async def state(self) -> LensState:
+        """Read focus and iris."""
+        position = await self._client.position()
+        return LensState(position.autofocus, _share(position.focus_units), position.autoiris, _share(position.iris_units))
+
+    async def set_focus(self, action: FocusAction, step: float = DEFAULT_STEP) -> LensState:
+        """Set the focus and return when it has settled. A step turns autofocus off first, because autofocus would undo the step.
 
         Raises:
-            InputError: The number of steps is beyond -9999 to 9999.
+            InputError: The action or the step is wrong.
+            CameraError: The device does not offer the action, refuses it, or does not answer.
         """
-        self._check_supported("RelativeFocus", "focus in steps")
-        _check_steps(steps)
-        if "AutoFocus" in self._device.supported:
-            await self._client.command(requests.autofocus(self._client.channel, on=False))
-        await self._client.command(requests.relative_focus(self._client.channel, steps))
+        offered, channel = self._capabilities.focus, self._client.channel
+        check_focus(self._name, action, offered, step)
+        if action in ("auto", "once"):
+            await self._send(requests.autofocus(channel, on=True))
+        elif "manual" in offered:
+            await self._send(requests.autofocus(channel, on=False))
+        if action in ("near", "far"):
+            await self._send(requests.relative_focus(channel, _steps(step) * (1 if action == "far" else -1)))
+        state = await wait_until_focused(self.state, self._poll_s)
+        if action == "once":
+            await self._send(requests.autofocus(channel, on=False))
+            state = await self.state()
+        return state
 
-    async def set_autoiris(self, *, on: bool) -> None:
-        """Turn the automatic iris on or off."""
-        self._check_supported("AutoIris", "an automatic iris")
-        await self._client.command(requests.autoiris(self._client.channel, on=on))
-
-    async def step_iris(self, steps: int) -> None:
-        """Move the iris by steps of the device, positive to open it. It turns the automatic iris off.
+    async def set_iris(self, action: IrisAction, step: float = DEFAULT_STEP) -> LensState:
+        """Set the iris. A step turns the automatic iris off first.
 
         Raises:
-            InputError: The number of steps is beyond -9999 to 9999.
+            InputError: The action or the step is wrong.
+            CameraError: The device does not offer the action, refuses it, or does not answer.
         """
-        self._check_supported("RelativeIris", "iris in steps")
-        _check_steps(steps)
-        if "AutoIris" in self._device.supported:
-            await self._client.command(requests.autoiris(self._client.channel, on=False))
-        await self._client.command(requests.relative_iris(self._client.channel, steps))
+        offered, channel = self._capabilities.iris, self._client.channel
+        check_iris(self._name, action, offered, step)
+        if "auto" in offered:
+            await self._send(requests.autoiris(channel, on=action == "auto"))
+        if action in ("open", "close"):
+            await self._send(requests.relative_iris(channel, _steps(step) * (1 if action == "open" else -1)))
+        return await self.state()
 
-    def _check_supported(self, function: str, words: str) -> None:
-        if function not in self._device.supported:
-            raise CameraError(f"{self._device.model or 'The camera'} has no {words}.")
+    async def _send(self, request: VapixRequest) -> None:
+        await self._client.command(request)
 
 
-def _check_steps(steps: int) -> None:
-    if not -MAX_STEPS <= steps <= MAX_STEPS:
-        raise InputError(f"The number of steps is -{MAX_STEPS} to {MAX_STEPS}, got {steps}.")
+def _steps(share: float) -> int:
+    return max(1, round(share * RANGE_UNITS))
+
+
+def _share(units: float | None) -> float | None:
+    return None if units is None else min(max((units - 1) / RANGE_UNITS, 0.0), 1.0)

@@ -1,4 +1,4 @@
-"""Pictures of an AXIS camera by VAPIX and RTSP."""
+"""Pictures of an AXIS camera over VAPIX and RTSP."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.credentials import Credentials
 
 StreamKind = Literal["mjpeg", "rtsp"]
-"""How live frames are transported."""
+"""The transport of live frames."""
 
 SMALL_WIDTH = 320
-"""The least width in pixels of the pictures that are compared for settling."""
+"""Minimum width in pixels of the pictures that are compared for settling."""
 
 
 class AxisPictures(DevicePictures):
@@ -35,7 +35,7 @@ class AxisPictures(DevicePictures):
         credentials: The account, for RTSP.
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
-        sizes: Sizes that the device announces.
+        sizes: Picture sizes that the device reports.
         stream: How live frames are transported.
         rtsp_port: Port of the RTSP server.
         latency_s: Seconds from the exposure of a streamed frame to its arrival.
@@ -72,6 +72,6 @@ class AxisPictures(DevicePictures):
 
 
 def _small_size(width: int, height: int, sizes: tuple[tuple[int, int], ...]) -> tuple[int, int]:
-    """Return the smallest announced size of the frame's shape that is wide enough; the frame's own size if there is none."""
+    """Return the smallest reported size with the frame's aspect ratio that is wide enough, or else the frame's own size."""
     fitting = [(w, h) for w, h in sizes if w >= SMALL_WIDTH and abs(w * height - h * width) <= max(w, h)]
     return min([*fitting, (width, height)])

@@ -11,7 +11,7 @@ from scope_ptz.camera.network.errors import CameraReplyError
 from scope_ptz.errors import CameraError
 
 MAX_SHOWN = 120
-"""Characters of a device's error message that are repeated."""
+"""Maximum number of characters of a device's error message that are quoted."""
 
 _PRESET = re.compile(r"presetposno(\d{1,6})=(.*)")
 _ANCHOR = re.compile(r'name="(-?\d{1,9})"')
@@ -23,18 +23,20 @@ class VapixError(CameraError):
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """Where the device says it is: pan and tilt in degrees, zoom in its own units, focus and iris modes None if it reports none."""
+    """The position that the device reports: pan and tilt in degrees, the rest in its own units. None means not reported."""
 
     pan_deg: float
     tilt_deg: float
     zoom_units: float
     autofocus: bool | None = None
     autoiris: bool | None = None
+    focus_units: float | None = None
+    iris_units: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class DeviceLimits:
-    """The limits of a device; None for what it does not report. Field angles are tenths of a degree."""
+    """The limits of a device; None for those that it does not report. Field angles are tenths of a degree."""
 
     min_pan_deg: float
     max_pan_deg: float
@@ -53,7 +55,7 @@ class QueuePlace:
     Attributes:
         place: 1 has control, 2 and above wait, 0 is not in the queue.
         seconds: Time left with control, or until control; -1 if it cannot be estimated.
-        poll_s: Seconds after which the place is to be renewed.
+        poll_s: Seconds after which the place must be renewed.
     """
 
     place: int
@@ -62,7 +64,7 @@ class QueuePlace:
 
 
 def text_of(body: bytes) -> str:
-    """Decode a text reply: UTF-8, or ISO 8859-1 as older devices send.
+    """Decode a text reply: UTF-8, or ISO 8859-1 from older devices.
 
     Raises:
         VapixError: The device refuses the request.
@@ -74,7 +76,7 @@ def text_of(body: bytes) -> str:
         text = body.decode("iso-8859-1")
     stripped = text.lstrip().removeprefix("#").lstrip()
     if stripped[:6].lower() == "error:":
-        raise VapixError(f"The camera refuses: {_shown(stripped[6:])}.")
+        raise VapixError(f"The camera refused the request: {_shown(stripped[6:])}.")
     if "\0" in text or (stripped[:1] == "<" and "name=" not in stripped[:20]):
         raise CameraReplyError(
             "The camera's reply is not VAPIX text. Check that it is an AXIS camera and that its firmware is healthy."
@@ -83,7 +85,7 @@ def text_of(body: bytes) -> str:
 
 
 def values_of(text: str) -> dict[str, str]:
-    """Return the ``name=value`` lines of a reply. ``root.`` before a name is left out."""
+    """Return the ``name=value`` lines of a reply. The prefix ``root.`` of names is removed."""
     pairs = (line.strip().partition("=") for line in text.splitlines())
     return {name.strip().removeprefix("root."): value.strip() for name, equals, value in pairs if equals and name.strip()}
 
@@ -102,6 +104,8 @@ def parse_position(body: bytes) -> Position:
         _number(values, "zoom"),
         _flag(values, "autofocus"),
         _flag(values, "autoiris"),
+        _number(values, "focus") if "focus" in values else None,
+        _number(values, "iris") if "iris" in values else None,
     )
 
 
@@ -142,7 +146,7 @@ def parse_table(body: bytes, channel: int, attribute: str, key: str) -> tuple[tu
         body: The reply.
         channel: The video channel.
         attribute: The table: ``zoomSteps`` or ``speeds``.
-        key: The column beside ``value``: ``zoom`` or ``speed``.
+        key: The column next to ``value``: ``zoom`` or ``speed``.
 
     Returns:
         Rows of (device value, physical value) that rise in both columns; empty if the device has no such table.
@@ -168,7 +172,7 @@ def parse_queue(body: bytes) -> QueuePlace:
 
     Raises:
         VapixError: The device refuses the request, for example because the queue is full.
-        CameraReplyError: The reply has no place.
+        CameraReplyError: The reply contains no place.
     """
     numbers = [int(number) for number in _ANCHOR.findall(text_of(body))]
     if len(numbers) < 3 or numbers[0] < 0:

@@ -1,4 +1,4 @@
-"""VAPIX requests: paths and queries, built from checked values. Nothing is sent here.
+"""VAPIX requests: paths and queries, built from checked values. This module sends nothing.
 
 Sources: the pan/tilt/zoom, video streaming and parameter management chapters of the VAPIX library.
 """
@@ -45,6 +45,22 @@ def absolute(channel: int, pan_deg: float, tilt_deg: float, zoom_units: int) -> 
     return _ptz(channel, **query, zoom=str(min(max(zoom_units, 1), 19999)))
 
 
+def centre(channel: int, x: float, y: float, percent: int, size: tuple[int, int]) -> VapixRequest:
+    """Bring a point of the picture to its middle.
+
+    Args:
+        channel: The video channel.
+        x: The point from 0 (left border) to 1 (right border).
+        y: The point from 0 (top) to 1 (bottom).
+        percent: The focal length afterwards, in percent of the current one.
+        size: Width and height in pixels of the picture to which the request's coordinates refer.
+    """
+    width, height = size
+    at, within = f"{round(x * width)},{round(y * height)}", {"imagewidth": str(width), "imageheight": str(height)}
+    command = {"center": at} if percent == 100 else {"areazoom": f"{at},{max(percent, 1)}"}
+    return replace(_ptz(channel, **command, **within), repeat=False)
+
+
 def continuous_pan_tilt(channel: int, pan: int, tilt: int, *, proportional: bool = False) -> VapixRequest:
     """Move at a velocity of -100 to 100.
 
@@ -52,7 +68,7 @@ def continuous_pan_tilt(channel: int, pan: int, tilt: int, *, proportional: bool
         channel: The video channel.
         pan: Positive to the right.
         tilt: Positive upwards.
-        proportional: Whether the device would scale the velocity with the zoom; the request says not to.
+        proportional: Whether the device scales velocities with the zoom by default; the request turns this off.
     """
     extra = {"proportionalspeed": "disabled"} if proportional else {}
     return _ptz(channel, continuouspantiltmove=f"{_speed(pan)},{_speed(tilt)}", **extra)
@@ -159,14 +175,14 @@ def _ptz(channel: int, **arguments: str) -> VapixRequest:
 
 def _channel(channel: int) -> str:
     if channel < 1:
-        raise InputError(f"The channel of an AXIS camera is 1 or more, got {channel}.")
+        raise InputError(f"The channel of an AXIS camera must be 1 or more; got {channel}.")
     return str(channel)
 
 
 def _check_finite(**values: float) -> None:
     for name, value in values.items():
         if not math.isfinite(value):
-            raise InputError(f"{name} is a finite number, got {value}.")
+            raise InputError(f"{name} must be a finite number; got {value}.")
 
 
 def _within(value: float, limit: float) -> float:
@@ -174,7 +190,7 @@ def _within(value: float, limit: float) -> float:
 
 
 def _number(value: float) -> str:
-    """Return a number without an exponent, which devices do not read, and without a negative zero."""
+    """Return a number without an exponent, which devices cannot parse, and without a negative zero."""
     return f"{value:.4f}".rstrip("0").rstrip(".").replace("-0", "0", 1) if abs(value) < 5e-5 else f"{value:.4f}"
 
 

@@ -13,7 +13,7 @@ OPTICAL_END_UNITS = 9999.0
 
 @dataclass(frozen=True, slots=True)
 class ZoomScale:
-    """Zoom positions and magnifications as a table, both rising. Between the rows it is linear.
+    """Zoom positions and magnifications as a table, both rising. Between the rows, it is linear.
 
     Attributes:
         table: Rows of (zoom position, magnification).
@@ -62,7 +62,7 @@ class SpeedScale:
         return self.table[-1][1]
 
     def to_speed(self, dps: float) -> int:
-        """Return the speed of -100 to 100 for a velocity. Any velocity but 0 moves the camera."""
+        """Return the speed of -100 to 100 for a velocity. Every velocity except 0 moves the camera."""
         import numpy as np
 
         if dps == 0:
@@ -91,6 +91,12 @@ def zoom_scale(
     return ZoomScale(((min_units, 1.0), (max_units, ratio)))
 
 
-def optics_of(scale: ZoomScale, widest: float, closest: float) -> Optics:
-    """Return the optics: the focal length grows linearly with magnification between the two known fields of view."""
-    return Optics(((scale.min_zoom, widest), (scale.max_zoom, closest)))
+def optics_of(scale: ZoomScale, fields: tuple[tuple[float, float], ...]) -> Optics:
+    """Return the optics: between the known fields of view the focal length grows linearly with magnification.
+
+    Args:
+        scale: The zoom scale.
+        fields: Rows of (share of the range of magnification, horizontal field of view in degrees), from share 0 to share 1.
+    """
+    span = scale.max_zoom - scale.min_zoom
+    return Optics(tuple((scale.min_zoom + share * span, hfov_deg) for share, hfov_deg in fields))

@@ -1,4 +1,4 @@
-"""An append-only log of who asked what of a camera, and what moved."""
+"""An append-only log of a camera's commands, their authors, and the resulting moves."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ class AuditLog:
     """A file with one JSON object per line. Lines are only ever appended, each in one write, so processes can share the file.
 
     Args:
-        path: The file. Its folder is made if needed.
+        path: The file. Its folder is created if needed.
         camera: The camera's name.
-        actor: Who controls the camera.
+        actor: The name of the program or person that controls the camera.
 
     Raises:
         OutputError: The file cannot be written.
@@ -35,7 +35,7 @@ class AuditLog:
         """Append an event.
 
         Raises:
-            OutputError: The file cannot be written. Whoever needs a complete log must not go on.
+            OutputError: The file cannot be written. A caller that needs a complete log must stop.
         """
         entry = {"time": datetime.now(UTC).isoformat(timespec="milliseconds"), "camera": self._camera, "actor": self._actor}
         line = json.dumps({**entry, "event": event, **fields}, ensure_ascii=False, default=str) + "\n"
@@ -45,7 +45,7 @@ class AuditLog:
             raise OutputError(f"The audit log {self.path} cannot be written: {error.strerror}.") from error
 
     def close(self) -> None:
-        """Close the file. Closing twice is allowed."""
+        """Close the file. Calling it again has no effect."""
         if self._file >= 0:
             os.close(self._file)
             self._file = -1

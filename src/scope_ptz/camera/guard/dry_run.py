@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
-from scope_ptz.camera.base import Arrival, Camera, PresetInfo
+from scope_ptz.camera.base import Arrival, Camera, CameraInfo, PresetInfo
 from scope_ptz.camera.capabilities import check_drive, check_preset_name
+from scope_ptz.camera.guard.guarded import GuardedCamera
 from scope_ptz.camera.guard.wrapper import CameraWrapper
+from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.geometry import Pose
 
+HELD_BACK = "the dry run: this is where it would be"
+HELD_BACK_UNKNOWN = "the dry run: only the camera knows the pose there"
+
 
 class DryRunCamera(CameraWrapper):
-    """A camera whose commands are reported and not carried out.
+    """A camera whose commands are reported but not executed.
 
     ``pose`` returns where the camera would be. Frames are real and carry their real pose, because the camera stays where it is.
+    Every ``Arrival`` names the dry run as its limit, so that tool results and traces show it.
 
     Args:
-        camera: The camera inside.
+        camera: The wrapped camera.
         report: Called with one sentence for each command.
     """
 
@@ -26,24 +33,33 @@ class DryRunCamera(CameraWrapper):
         self._report = report
         self._pose: Pose | None = None
 
+    @property
+    def info(self) -> CameraInfo:
+        return replace(self.inner.info, dry_run=True)
+
     async def pose(self) -> Pose:
         return self._pose or await self.inner.pose()
 
     async def move(self, pose: Pose) -> Arrival:
-        self._pose, clamped = self.info.limits.clamp(pose)
-        where = self._pose.as_dict()
-        self._report(f"would move to pan {where['pan_deg']:g}, tilt {where['tilt_deg']:g}, zoom {where['zoom']:g}x")
-        return Arrival(self._pose, clamped)
+        target, clamped = self.info.limits.clamp(pose)
+        limited_by = ""
+        if isinstance(self.inner, GuardedCamera):
+            target, clamped, limited_by = self.inner.permitted(pose)
+        where, self._pose = target.as_dict(), target
+        held = limited_by or f"the {' and '.join(clamped)} limit" if clamped else limited_by
+        note = f", held back by {held}" if held else ""
+        self._report(f"would move to pan {where['pan_deg']:g}, tilt {where['tilt_deg']:g}, zoom {where['zoom']:g}x{note}")
+        return Arrival(target, clamped, f"{held}, and by {HELD_BACK}" if held else HELD_BACK)
 
     async def go_to_preset(self, name: str) -> Arrival:
         if name not in (known := [preset.name for preset in await self.presets()]):
             raise UnknownNameError("preset", name, known)
         self._report(f"would go to the preset '{name}'")
-        return Arrival(await self.pose())
+        return Arrival(await self.pose(), limited_by=HELD_BACK_UNKNOWN)
 
     async def go_home(self) -> Arrival:
         self._report("would go home")
-        return Arrival(await self.pose())
+        return Arrival(await self.pose(), limited_by=HELD_BACK_UNKNOWN)
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
@@ -59,5 +75,19 @@ class DryRunCamera(CameraWrapper):
             raise UnknownNameError("preset", name, known)
         self._report(f"would remove the preset '{name}'")
 
+    async def set_focus(self, action: FocusAction, *, step: float = DEFAULT_STEP) -> LensState:
+        check_focus(self.info.name, action, self.info.capabilities.focus, step)
+        self._report(f"would set the focus: {action}{_step_text(action, step)}")
+        return await self.lens()
+
+    async def set_iris(self, action: IrisAction, *, step: float = DEFAULT_STEP) -> LensState:
+        check_iris(self.info.name, action, self.info.capabilities.iris, step)
+        self._report(f"would set the iris: {action}{_step_text(action, step)}")
+        return await self.lens()
+
     async def stop(self) -> None:
-        """Do nothing: nothing moves."""
+        """Do nothing, because the camera does not move."""
+
+
+def _step_text(action: str, step: float) -> str:
+    return f" by {step:.0%} of the range" if action in ("near", "far", "open", "close") else ""

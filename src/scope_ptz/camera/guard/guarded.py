@@ -1,26 +1,29 @@
-"""A camera that keeps the rules of its site."""
+"""A camera that obeys the rules of its site."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Awaitable
 from contextlib import aclosing
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from anyio import to_thread
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo
 from scope_ptz.camera.capabilities import Velocity, check_drive
+from scope_ptz.camera.clocks import elapsed_s
 from scope_ptz.camera.guard.audit import AuditLog
 from scope_ptz.camera.guard.masking import masked
+from scope_ptz.camera.guard.motion_sums import advanced, capped, changes, joined, scaled, velocity_fields
 from scope_ptz.camera.guard.rules import CameraRules, nearest_outside
 from scope_ptz.camera.guard.wrapper import CameraWrapper
+from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
 from scope_ptz.errors import CameraError, ConfigError
 from scope_ptz.geometry import Axis, Limits, Pose, wrap_pan_deg
 
 STOPPING_S = 0.4
-"""Time that a driven camera is assumed to need for reaction and braking."""
+"""Time, in seconds, that a driven camera is assumed to need for reaction and braking."""
 
 _STEP_S = 0.02
 
@@ -29,21 +32,21 @@ _SHARES = (1.0, 0.5, 0.25, 0.1, 0.04)
 
 
 class KeepOutError(CameraError):
-    """A command would aim the camera at a keep-out region, and there is no way around."""
+    """A command would aim the camera at a keep-out region, and no permitted pose is near."""
 
 
 class GuardedCamera(CameraWrapper):
-    """A camera that is never aimed beyond its site's rules and whose frames show nothing that they hide.
+    """A camera that obeys its site's rules: it never aims beyond them, and its frames hide masked regions.
 
-    A move beyond a rule ends at the nearest permitted pose, and its ``Arrival`` says what held it back.
+    A move beyond a rule ends at the nearest permitted pose, and its ``Arrival`` names the rule.
 
     Args:
-        camera: The camera inside.
+        camera: The wrapped camera.
         rules: The rules.
-        audit: Where commands and moves are recorded; None records nothing.
+        audit: The log of commands and moves; None to record nothing.
 
     Raises:
-        ConfigError: The rules leave nothing of the device's limits.
+        ConfigError: The rules exclude every pose within the device's limits.
     """
 
     def __init__(self, camera: Camera, rules: CameraRules, audit: AuditLog | None = None) -> None:
@@ -56,12 +59,17 @@ class GuardedCamera(CameraWrapper):
     def info(self) -> CameraInfo:
         return replace(self.inner.info, limits=self._limits)
 
+    @property
+    def rules(self) -> CameraRules:
+        """The rules that the camera keeps."""
+        return self._rules
+
     def record_instruction(self, instruction: str) -> None:
-        """Record what a person asked for."""
+        """Record a person's instruction."""
         self._record("instruction", text=instruction)
 
     async def move(self, pose: Pose) -> Arrival:
-        target, clamped, limited_by = self._permitted(pose)
+        target, clamped, limited_by = self.permitted(pose)
         here = await self.inner.pose()
         if self._within_dead_zone(here, target):
             self._record("skipped", target=target, reason="dead zone")
@@ -69,7 +77,7 @@ class GuardedCamera(CameraWrapper):
         await self._wait_for_turn()
         self._record("move", target=target, requested=pose)
         arrival = await self._carried_out(self.inner.move(target))
-        return Arrival(arrival.pose, _joined(clamped, arrival.clamped), limited_by or arrival.limited_by)
+        return Arrival(arrival.pose, joined(clamped, arrival.clamped), limited_by or arrival.limited_by)
 
     async def go_to_preset(self, name: str) -> Arrival:
         await self._wait_for_turn()
@@ -93,16 +101,16 @@ class GuardedCamera(CameraWrapper):
         """Move at constant velocities for as long as the rules permit, at most ``timeout_s``.
 
         An axis that a soft limit stops is not driven. Near a limit or a keep-out region the camera is driven more slowly and for
-        a shorter time, so that it stands still before it gets there.
+        a shorter time, so that it stops before it gets there.
 
         Raises:
-            KeepOutError: The camera would run into a keep-out region at once.
+            KeepOutError: The camera would enter a keep-out region immediately.
         """
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
         here = await self.inner.pose()
-        requested = _capped(Velocity(pan_dps, tilt_dps, zoom_rate), self.inner.info.capabilities.top_speed)
+        requested = capped(Velocity(pan_dps, tilt_dps, zoom_rate), self.inner.info.capabilities.top_speed)
         for share in _SHARES:
-            velocity = self._free_axes(here, _scaled(requested, share))
+            velocity = self._free_axes(here, scaled(requested, share))
             free_s = self._free_time_s(here, velocity, timeout_s)
             if velocity != Velocity() and free_s > 0.0:
                 self._record("drive", velocity=velocity, timeout_s=round(free_s, 3))
@@ -110,8 +118,29 @@ class GuardedCamera(CameraWrapper):
                 return
         self._record("drive", velocity=Velocity(), timeout_s=0.0)
         await self.inner.stop()
-        if region := self._rules.region_at(_advanced(here, _scaled(requested, _SHARES[-1]), STOPPING_S + _STEP_S)):
+        if region := self._rules.region_at(advanced(here, scaled(requested, _SHARES[-1]), STOPPING_S + _STEP_S)):
             raise KeepOutError(f"The camera cannot be driven into the keep-out region '{region.name}'. It has stopped.")
+
+    async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
+        """Centre a point of the picture. Use the device's own command if the rules permit the resulting pose."""
+        here = await self.inner.pose()
+        target = self.info.towards(here, x, y, zoom_factor)
+        permitted, clamped, _ = self.permitted(target)
+        if clamped or self._within_dead_zone(here, permitted):
+            return await self.move(target)
+        await self._wait_for_turn()
+        self._record("centre", x=x, y=y, zoom_factor=zoom_factor, target=target)
+        return await self._corrected(await self._carried_out(self.inner.centre_on(x, y, zoom_factor=zoom_factor)))
+
+    async def set_focus(self, action: FocusAction, *, step: float = DEFAULT_STEP) -> LensState:
+        check_focus(self.info.name, action, self.info.capabilities.focus, step)
+        self._record("focus", action=action, step=step)
+        return await self._adjusted(self.inner.set_focus(action, step=step))
+
+    async def set_iris(self, action: IrisAction, *, step: float = DEFAULT_STEP) -> LensState:
+        check_iris(self.info.name, action, self.info.capabilities.iris, step)
+        self._record("iris", action=action, step=step)
+        return await self._adjusted(self.inner.set_iris(action, step=step))
 
     async def stop(self) -> None:
         self._record("stop")
@@ -139,8 +168,12 @@ class GuardedCamera(CameraWrapper):
         except ValueError as error:
             raise ConfigError(f"The rules of {self.inner.info.name} cannot be kept: {error}.") from error
 
-    def _permitted(self, pose: Pose) -> tuple[Pose, tuple[Axis, ...], str]:
-        """Return the nearest permitted pose, the clamped axes, and what held the camera back."""
+    def permitted(self, pose: Pose) -> tuple[Pose, tuple[Axis, ...], str]:
+        """Return the nearest permitted pose, the clamped axes, and the rule that limited the move, if any.
+
+        Raises:
+            KeepOutError: No permitted pose is near.
+        """
         target, clamped = self._limits.clamp(pose)
         region = self._rules.region_at(target)
         if region is None:
@@ -148,16 +181,16 @@ class GuardedCamera(CameraWrapper):
         outside = nearest_outside(target, self._rules.keep_out, self._limits)
         if outside is None:
             raise KeepOutError(f"The pose {target} aims at the keep-out region '{region.name}'. Choose another direction.")
-        axes: list[Axis] = [axis for axis, moved in _changes(target, outside) if moved]
-        return outside, _joined(clamped, axes), f"the keep-out region '{region.name}'"
+        axes: list[Axis] = [axis for axis, moved in changes(target, outside) if moved]
+        return outside, joined(clamped, axes), f"the keep-out region '{region.name}'"
 
     async def _corrected(self, arrival: Arrival) -> Arrival:
-        """Leave a pose that a preset of the device had and that the rules do not permit."""
-        target, clamped, limited_by = self._permitted(arrival.pose)
+        """Move away from the pose of a device preset if the rules do not permit it."""
+        target, clamped, limited_by = self.permitted(arrival.pose)
         if not clamped:
             return arrival
         moved = await self._carried_out(self.inner.move(target))
-        return Arrival(moved.pose, _joined(arrival.clamped, clamped), limited_by)
+        return Arrival(moved.pose, joined(arrival.clamped, clamped), limited_by)
 
     async def _carried_out(self, command: Any) -> Arrival:
         """Await a move and record how it ended."""
@@ -167,9 +200,19 @@ class GuardedCamera(CameraWrapper):
             self._record("failed", error=type(error).__name__)
             raise
         finally:
-            self._last_move_s = self.clock.now_s()
+            self._last_move_s = elapsed_s(self.clock)
         self._record("arrived", pose=arrival.pose, clamped=arrival.clamped)
         return arrival
+
+    async def _adjusted(self, command: Awaitable[LensState]) -> LensState:
+        """Await a command of the lens and record how it ended."""
+        try:
+            state = await command
+        except BaseException as error:
+            self._record("failed", error=type(error).__name__)
+            raise
+        self._record("lens", **asdict(state))
+        return state
 
     def _within_dead_zone(self, here: Pose, target: Pose) -> bool:
         zone_deg = self._rules.dead_zone_deg
@@ -177,13 +220,13 @@ class GuardedCamera(CameraWrapper):
         return 0.0 < turned_deg < zone_deg and math.isclose(here.zoom, target.zoom, rel_tol=1e-3)
 
     async def _wait_for_turn(self) -> None:
-        left_s = self._last_move_s + self._rules.min_interval_s - self.clock.now_s()
+        left_s = self._last_move_s + self._rules.min_interval_s - elapsed_s(self.clock)
         if left_s > 0:
             await self.clock.sleep(left_s)
 
     def _free_axes(self, here: Pose, velocity: Velocity) -> Velocity:
         """Return the velocity without axes that would leave the limits before they can stop."""
-        stopped = self._beyond(_advanced(here, velocity, STOPPING_S + _STEP_S))
+        stopped = self._beyond(advanced(here, velocity, STOPPING_S + _STEP_S))
         return Velocity(
             0.0 if "pan" in stopped else velocity.pan_dps,
             0.0 if "tilt" in stopped else velocity.tilt_dps,
@@ -195,12 +238,12 @@ class GuardedCamera(CameraWrapper):
         return set(self._limits.clamp(pose)[1]) - set(self.inner.info.limits.clamp(pose)[1])
 
     def _free_time_s(self, here: Pose, velocity: Velocity, timeout_s: float) -> float:
-        """Return how long the camera can be driven so that it stands still before a limit or a keep-out region."""
+        """Return the time in seconds for which the camera can be driven without passing a limit or entering a keep-out region."""
         if not self._rules.keep_out and self._limits == self.inner.info.limits:
             return timeout_s
         time_s = 0.0
         while time_s < timeout_s:
-            ahead = _advanced(here, velocity, time_s + STOPPING_S + _STEP_S)
+            ahead = advanced(here, velocity, time_s + STOPPING_S + _STEP_S)
             if self._rules.region_at(ahead) or self._beyond(ahead):
                 return time_s
             time_s += _STEP_S
@@ -215,41 +258,11 @@ class GuardedCamera(CameraWrapper):
     def _record(self, event: str, **fields: Any) -> None:
         if self._audit is not None:
             plain = {
-                name: value.as_dict() if isinstance(value, Pose) else _as_dict(value) if isinstance(value, Velocity) else value
+                name: value.as_dict()
+                if isinstance(value, Pose)
+                else velocity_fields(value)
+                if isinstance(value, Velocity)
+                else value
                 for name, value in fields.items()
             }
             self._audit.write(event, **plain)
-
-
-def _as_dict(velocity: Velocity) -> dict[str, float]:
-    """Return a velocity as a dictionary."""
-    return {"pan_dps": velocity.pan_dps, "tilt_dps": velocity.tilt_dps, "zoom_rate": velocity.zoom_rate}
-
-
-def _capped(velocity: Velocity, top: Velocity) -> Velocity:
-    def cap(speed: float, limit: float) -> float:
-        return math.copysign(min(abs(speed), limit), speed)
-
-    return Velocity(
-        cap(velocity.pan_dps, top.pan_dps), cap(velocity.tilt_dps, top.tilt_dps), cap(velocity.zoom_rate, top.zoom_rate)
-    )
-
-
-def _scaled(velocity: Velocity, share: float) -> Velocity:
-    return Velocity(velocity.pan_dps * share, velocity.tilt_dps * share, velocity.zoom_rate * share)
-
-
-def _advanced(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
-    zoom = pose.zoom * 2.0 ** max(-10.0, min(10.0, velocity.zoom_rate * seconds))
-    return Pose(pose.pan_deg + velocity.pan_dps * seconds, pose.tilt_deg + velocity.tilt_dps * seconds, zoom)
-
-
-def _changes(start: Pose, end: Pose) -> tuple[tuple[Axis, bool], ...]:
-    return ("pan", start.pan_deg != end.pan_deg), ("tilt", start.tilt_deg != end.tilt_deg)
-
-
-def _joined(*axes: Any) -> tuple[Axis, ...]:
-    """Return axes of several reports once each, in the order pan, tilt, zoom."""
-    found = {axis for group in axes for axis in group}
-    order: tuple[Axis, ...] = ("pan", "tilt", "zoom")
-    return tuple(axis for axis in order if axis in found)

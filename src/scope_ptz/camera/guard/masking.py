@@ -1,4 +1,4 @@
-"""Black out the parts of a frame that nobody may see."""
+"""Black out the masked parts of a frame."""
 
 from __future__ import annotations
 
@@ -14,26 +14,36 @@ from scope_ptz.geometry import Projection, direction
 
 _STEP_DEG = 0.5
 _GRID = 4
-"""Regions are drawn on a grid of every fourth pixel and grown by one cell, so that an edge is never drawn too far inside."""
+"""Regions are drawn on a grid of every fourth pixel and grown by one cell, so that no visible pixel of a region is missed."""
 
 
 def masked(frame: Frame, regions: tuple[Region, ...], masks: tuple[PixelMask, ...]) -> Frame:
-    """Return a frame in which the regions and masks are black. A frame that shows none of them is returned as it is."""
-    hidden = _hidden(frame.projection, regions) if regions else None
-    if not masks and hidden is None:
+    """Return a frame in which the regions and masks are black. A frame that shows none of them is returned unchanged."""
+    hidden = hidden_pixels(frame.projection, regions, masks)
+    if hidden is None:
         return frame
     image = frame.image.copy()
-    if hidden is not None:
-        image[hidden] = 0
-    for mask in masks:
-        rows = slice(int(mask.top * frame.height), int(np.ceil(mask.bottom * frame.height)))
-        columns = slice(int(mask.left * frame.width), int(np.ceil(mask.right * frame.width)))
-        image[rows, columns] = 0
-    # The truth of what is hidden must not be known either.
+    image[hidden] = 0
+    # The ground truth of hidden parts must be hidden too.
     return replace(frame, image=image, origin=None)
 
 
-def _hidden(projection: Projection, regions: tuple[Region, ...]) -> NDArray[np.bool_] | None:
+def hidden_pixels(
+    projection: Projection, regions: tuple[Region, ...], masks: tuple[PixelMask, ...] = ()
+) -> NDArray[np.bool_] | None:
+    """Return which pixels of a picture show a region or lie under a mask, as (H, W); None if no pixel does."""
+    hidden = _in_regions(projection, regions) if regions else None
+    if not masks:
+        return hidden
+    found = np.zeros((projection.height, projection.width), bool) if hidden is None else hidden
+    for mask in masks:
+        rows = slice(int(mask.top * projection.height), int(np.ceil(mask.bottom * projection.height)))
+        columns = slice(int(mask.left * projection.width), int(np.ceil(mask.right * projection.width)))
+        found[rows, columns] = True
+    return found
+
+
+def _in_regions(projection: Projection, regions: tuple[Region, ...]) -> NDArray[np.bool_] | None:
     """Return which pixels show a region, as (H, W); None if no pixel does."""
     width, height = projection.width, projection.height
     xs = np.append(np.arange(0, width, _GRID), width) / width

@@ -19,7 +19,7 @@ from scope_ptz.geometry import Axis, Limits, Perspective, Pose, direction
 from scope_ptz.geometry.sphere import camera_axes, pan_tilt_deg
 
 _LEVEL_DEG = 0.05
-"""A picture that is rolled by less is left as it is."""
+"""A picture that is rolled by less than this many degrees is not rotated."""
 
 
 class MountedCamera(CameraWrapper):
@@ -50,12 +50,12 @@ class MountedCamera(CameraWrapper):
         return replace(info, limits=Limits(*pans, low, high, own.min_zoom, own.max_zoom, own.pan_endless))
 
     async def pose(self) -> Pose:
-        return self._world_pose(await self.inner.pose())
+        return self.world_pose(await self.inner.pose())
 
     async def move(self, pose: Pose) -> Arrival:
         target, clamped = self.info.limits.clamp(pose)
         arrival = await self.inner.move(self._device_pose(target))
-        # An axis of the device is no axis of the world when the base leans, so the difference tells what was clamped.
+        # If the base leans, the device's axes are not those of the world, so the difference shows which axes were clamped.
         world = self._world_arrival(arrival)
         if self._lean_deg and arrival.clamped:
             return replace(world, clamped=tuple(dict.fromkeys((*clamped, *_differences(target, world.pose)))))
@@ -68,7 +68,7 @@ class MountedCamera(CameraWrapper):
         return self._world_arrival(await self.inner.go_home())
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
-        """Drive the device's own axes, with the signs of the world. With a leaning base they are not exactly pan and tilt."""
+        """Drive the device's own axes, with the signs of the world. If the base leans, they are not exactly pan and tilt."""
         sign = -1.0 if self._ceiling else 1.0
         await self.inner.drive(sign * pan_dps, sign * tilt_dps, zoom_rate, timeout_s=timeout_s)
 
@@ -80,7 +80,8 @@ class MountedCamera(CameraWrapper):
             async for frame in stream:
                 yield self._world_frame(frame)
 
-    def _world_pose(self, device: Pose) -> Pose:
+    def world_pose(self, device: Pose) -> Pose:
+        """Return a pose of the device in the coordinates of the world."""
         pan, tilt = pan_tilt_deg(self._to_world @ direction(device.pan_deg, device.tilt_deg))
         return Pose(float(pan), float(tilt), device.zoom)
 
@@ -89,12 +90,14 @@ class MountedCamera(CameraWrapper):
         return Pose(float(pan), float(tilt), world.zoom)
 
     def _world_arrival(self, arrival: Arrival) -> Arrival:
-        return replace(arrival, pose=self._world_pose(arrival.pose))
+        return replace(arrival, pose=self.world_pose(arrival.pose))
 
     def _world_frame(self, frame: Frame) -> Frame:
         if not isinstance(frame.projection, Perspective):
-            raise CameraError(f"{self.inner.info.name} returned a frame that is no perspective view; it cannot be turned upright.")
-        pose = self._world_pose(frame.pose)
+            raise CameraError(
+                f"{self.inner.info.name} returned a frame that is not a perspective view, so it cannot be turned upright."
+            )
+        pose = self.world_pose(frame.pose)
         up = self._to_world @ camera_axes(frame.pose.pan_deg, frame.pose.tilt_deg)[1]
         right, level_up, _ = camera_axes(pose.pan_deg, pose.tilt_deg)
         roll_deg = math.degrees(math.atan2(float(up @ right), float(up @ level_up)))

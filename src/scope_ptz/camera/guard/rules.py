@@ -20,7 +20,7 @@ class Region(_Rules):
     """A rectangle of pan and tilt, such as the windows of a neighbour. Pan may run through 180: from 170 to -170.
 
     Attributes:
-        name: What people call it. Messages show it.
+        name: Its name, for messages.
         pan_deg: From left to right, clockwise.
         tilt_deg: From bottom to top.
     """
@@ -32,9 +32,9 @@ class Region(_Rules):
     @model_validator(mode="after")
     def _in_order(self) -> Region:
         if self.tilt_deg[0] >= self.tilt_deg[1]:
-            raise ValueError("tilt_deg is [bottom, top], with bottom below top")
+            raise ValueError("tilt_deg must be [bottom, top], with bottom below top")
         if self.pan_deg[0] == self.pan_deg[1]:
-            raise ValueError("pan_deg is [left, right], and they differ")
+            raise ValueError("pan_deg must be [left, right], with two different angles")
         return self
 
     @property
@@ -59,12 +59,12 @@ class PixelMask(_Rules):
     @model_validator(mode="after")
     def _in_order(self) -> PixelMask:
         if self.left >= self.right or self.top >= self.bottom:
-            raise ValueError("left lies before right, and top before bottom")
+            raise ValueError("left must be less than right, and top less than bottom")
         return self
 
 
 class SoftLimits(_Rules):
-    """Limits inside those of the device. None leaves the device's own."""
+    """Limits within those of the device. None keeps the device's own limit."""
 
     min_pan_deg: Degrees | None = None
     max_pan_deg: Degrees | None = None
@@ -73,10 +73,10 @@ class SoftLimits(_Rules):
     max_zoom: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
 
     def within(self, device: Limits) -> Limits:
-        """Return the device's limits, narrowed. A pan limit gives an endless pan stops.
+        """Return the device's limits, narrowed. A pan limit makes endless pan limited.
 
         Raises:
-            ValueError: Nothing is left between two limits.
+            ValueError: A minimum is not below its maximum.
         """
         low_pan, high_pan = device.min_pan_deg, device.max_pan_deg
         limits = Limits(
@@ -99,14 +99,14 @@ class SoftLimits(_Rules):
 
 
 class CameraRules(_Rules):
-    """Everything that a site may set for a camera.
+    """The rules that a site may set for a camera.
 
     Attributes:
         soft_limits: Limits inside those of the device.
         keep_out: Regions that no frame shows and at which the camera is never aimed.
         masks: Rectangles of the picture that are black in every frame, such as a text overlay.
-        dead_zone_deg: Turns smaller than this are not carried out, which spares the motors. Zooming always is.
-        min_interval_s: Shortest time between two moves. An earlier move waits.
+        dead_zone_deg: Turns smaller than this are not executed, which reduces wear on the motors. Zooming is never ignored.
+        min_interval_s: Shortest time between two moves. A move that comes earlier waits.
     """
 
     soft_limits: SoftLimits = SoftLimits()
@@ -121,11 +121,11 @@ class CameraRules(_Rules):
 
 
 class Mounting(_Rules):
-    """How the device is mounted.
+    """The mounting of the device.
 
     Attributes:
         position: ``upright``, or ``ceiling`` for a device that hangs upside down and does not turn its own picture.
-        tilt_deg: How far the base leans: positive when the device's pan 0 looks up by this angle. At most 30.
+        tilt_deg: The lean of the base in degrees, at most 30; positive if the device points up by this angle at its pan 0.
     """
 
     position: Literal["upright", "ceiling"] = "upright"

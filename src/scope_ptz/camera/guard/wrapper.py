@@ -6,14 +6,17 @@ from collections.abc import AsyncGenerator, AsyncIterator, Iterator
 from contextlib import aclosing, asynccontextmanager, contextmanager
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo
+from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState
 from scope_ptz.geometry import Pose
 
 
 class CameraWrapper(Camera):
-    """A camera that behaves as the one inside.
+    """A camera that behaves like the wrapped one.
+
+    ``centre_on`` is not delegated. It uses ``pose`` and ``move``, so that guards that override these also affect it.
 
     Args:
-        camera: The camera inside. Closing the wrapper closes it.
+        camera: The wrapped camera. Closing the wrapper closes it.
     """
 
     def __init__(self, camera: Camera) -> None:
@@ -59,6 +62,15 @@ class CameraWrapper(Camera):
     async def remove_preset(self, name: str) -> None:
         await self.inner.remove_preset(name)
 
+    async def lens(self) -> LensState:
+        return await self.inner.lens()
+
+    async def set_focus(self, action: FocusAction, *, step: float = DEFAULT_STEP) -> LensState:
+        return await self.inner.set_focus(action, step=step)
+
+    async def set_iris(self, action: IrisAction, *, step: float = DEFAULT_STEP) -> LensState:
+        return await self.inner.set_iris(action, step=step)
+
     @asynccontextmanager
     async def control(self, holder: str) -> AsyncIterator[None]:
         async with self.inner.control(holder):
@@ -71,3 +83,17 @@ class CameraWrapper(Camera):
     def hold_time(self) -> Iterator[None]:
         with self.inner.hold_time():
             yield
+
+
+def layers(camera: Camera) -> Iterator[Camera]:
+    """Yield a camera and the cameras inside its wrappers, from the outermost to the innermost."""
+    yield camera
+    while isinstance(camera, CameraWrapper):
+        camera = camera.inner
+        yield camera
+
+
+def innermost(camera: Camera) -> Camera:
+    """Return the camera inside all wrappers."""
+    *_, last = layers(camera)
+    return last

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 ANGLE_TOLERANCE = 0.03
 FIELD_TOLERANCE = 0.05
-"""Shares by which a measurement may differ from what the device states, before it contradicts it."""
+"""Shares by which a measurement may differ from the device's value before it counts as a contradiction."""
 
 TILT_ZERO_TOLERANCE_DEG = 3.0
 """Degrees by which the horizon of the pictures may differ from a tilt of 0."""
@@ -42,10 +42,10 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class AxisResponse:
-    """How the picture answers to a commanded turn.
+    """The response of the picture to a commanded turn.
 
     Attributes:
-        scale: Degrees that the camera really turns for each degree that it states; negative if it turns the other way.
+        scale: Degrees that the camera actually turns for each degree that it reports; negative if it turns the other way.
         inverted: Whether it turns the other way.
     """
 
@@ -61,7 +61,7 @@ class FieldOfView:
     """A field of view at a zoom.
 
     Attributes:
-        zoom: Magnification as the camera states it.
+        zoom: Magnification that the camera reports.
         share: Its share of the camera's zoom range, 0 to 1.
         stated_deg: Horizontal field of view by the camera's own table, in degrees.
         measured_deg: Horizontal field of view by the pictures, in degrees.
@@ -75,18 +75,18 @@ class FieldOfView:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """What was measured.
+    """The results of a calibration.
 
     Attributes:
         pan: Response of pan.
         tilt: Response of tilt.
-        tilt_offset_deg: The real tilt where the camera states 0, in degrees.
+        tilt_offset_deg: The actual tilt in degrees at a reported tilt of 0.
         fields: Fields of view, widest first.
         snapshot_s: Median seconds to take a picture.
         move_s: Median seconds of a move of 20 degrees, until the driver reports arrival.
-        settling_s: Median seconds from then until the picture stands.
+        settling_s: Median seconds from then until the picture has settled.
         residual_px: Typical error of the registration in pixels.
-        contradictions: What the pictures contradict, as sentences.
+        contradictions: Sentences about values that the pictures contradict.
     """
 
     pan: AxisResponse
@@ -103,14 +103,14 @@ class Calibration:
 async def calibrate(
     camera: Camera, *, zooms: int = 6, assumed: tuple[str, ...] = (), progress: Progress = lambda _: None
 ) -> Calibration:
-    """Measure a camera, and bring it back to where it stood.
+    """Measure a camera, and return it to its initial pose.
 
-    Moving things in view do no harm while most of the picture stands still. Time of a simulated world is held.
+    Moving objects do no harm as long as most of the picture is static. The time of a simulated world is held.
 
     Args:
         camera: The camera. Nobody else may move it.
-        zooms: At how many zooms the field of view is measured.
-        assumed: What the driver only assumes, so that a measurement replaces it and contradicts nothing: "pan range",
+        zooms: Number of zooms at which the field of view is measured.
+        assumed: Values that the driver only assumes, which a measurement replaces instead of contradicting: "pan range",
             "tilt range", "field of view".
         progress: Receives a sentence about each step.
 
@@ -168,7 +168,7 @@ async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response
         pair, turned = await _turned(camera, base, centre, here, pan_deg, tilt_deg)
         found = r.rotation(pair, focal)
         rough.append(found.angle_deg / (abs(turned) or 1.0))
-    # The second turns are chosen so that the pictures overlap well whatever a commanded degree is.
+    # The second turns are chosen so that the pictures overlap well for any size of a commanded degree.
     pan_deg = min(_LARGE * stated / max(rough[0], 0.05), 3 * _LARGE * stated)
     tilt_deg = _vertical(camera, base, min(_LARGE * stated * 0.5 / max(rough[1], 0.05), 60.0))
     pairs = [await _turned(camera, base, centre, here, *turn) for turn in ((pan_deg, 0.0), (-pan_deg, 0.0), (0.0, tilt_deg))]
@@ -176,7 +176,7 @@ async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response
     right, left, up = (r.rotation(pair, focal) for pair, _ in pairs)
     pan = statistics.mean(math.copysign(each.angle_deg, each.right_deg) / pairs[k][1] for k, each in enumerate((right, left)))
     tilt = math.copysign(up.angle_deg, up.up_deg) / pairs[2][1]
-    # A turn about the vertical shows as roll as far as the camera looks up or down.
+    # If the camera looks up or down, a turn about the vertical also rolls the picture.
     seen_tilt = math.degrees(math.atan2(right.roll_deg - left.roll_deg, right.right_deg - left.right_deg))
     seen_tilt = seen_tilt if pan > 0 else math.degrees(math.atan2(left.roll_deg - right.roll_deg, left.right_deg - right.right_deg))
     progress(f"Pan turns {pan:+.3f} and tilt {tilt:+.3f} degrees for each degree.")
@@ -198,7 +198,7 @@ async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, p
         stated = optics.hfov_deg(zoom)
         expected = min(stated * correction, fields[-1].measured_deg)
         at = Pose(base.pan_deg, base.tilt_deg, zoom)
-        for share in (0.25, 0.06):  # the second one is for a table that is far off
+        for share in (0.25, 0.06):  # the second pass is for a table that is far off
             try:
                 centre, here = await _look(camera, at)
                 pair, turned = await _turned(camera, at, centre, here, share * expected / abs(response.pan), 0.0)
@@ -224,7 +224,7 @@ async def _snapshot_s(camera: Camera) -> float:
 
 
 async def _settling(camera: Camera, base: Pose) -> tuple[float, float]:
-    """Return the median seconds of a move, and from its reported arrival until the picture stands."""
+    """Return the median seconds of a move, and from its reported arrival until the picture has settled."""
     moves, settlings = [], []
     for run in range(_RUNS):
         started_s = camera.clock.now_s()
@@ -255,12 +255,12 @@ async def _turned(
     image, there = await _look(camera, Pose(base.pan_deg + pan_deg, base.tilt_deg + tilt_deg, base.zoom))
     turned = wrap_pan_deg(there.pan_deg - here.pan_deg) if pan_deg else there.tilt_deg - here.tilt_deg
     if abs(turned) < 0.2 * abs(pan_deg or tilt_deg):
-        raise CameraError(f"{camera.info.name} was told to turn and states that it did not. Its motor may be blocked.")
+        raise CameraError(f"{camera.info.name} was commanded to turn but reports that it did not. Its motor may be blocked.")
     return await to_thread.run_sync(r.match, centre, image), turned
 
 
 def _base(camera: Camera, start: Pose, turn_deg: float) -> Pose:
-    """Return a pose with room to turn around it, at the widest zoom and near the horizon."""
+    """Return a pose with room to turn in all directions, at the widest zoom and near the horizon."""
     limits = camera.info.limits
     room = min(40.0, (limits.max_pan_deg - limits.min_pan_deg) / 4)
     pan = wrap_pan_deg(start.pan_deg + turn_deg)
@@ -284,7 +284,7 @@ def _contradictions(
     for name, words, response in (("pan", ("right", "left"), pan), ("tilt", ("up", "down"), tilt)):
         if response.inverted:
             found.append(
-                f"The {name} is inverted: told to turn {words[0]}, the picture turns {words[1]}. "
+                f"The {name} is inverted: when it is commanded to turn {words[0]}, the picture turns {words[1]}. "
                 f"Correct the direction in the camera's settings, and check whether it is mounted upside down."
             )
         elif f"{name} range" not in assumed and abs(response.scale - 1) > ANGLE_TOLERANCE:

@@ -1,4 +1,4 @@
-"""The profile of a camera: what was found out about it, kept as JSON in the configuration folder."""
+"""The profile of a camera: its probe and calibration, stored as JSON in the configuration folder."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class CalibrationRecord(_Record):
 
 
 class ProbeRecord(_Record):
-    """What a camera states about itself."""
+    """The values that a camera reports about itself."""
 
     probed_at: str
     model: str
@@ -80,16 +80,19 @@ class ProbeRecord(_Record):
     iris: bool
     assumed: tuple[str, ...]
     snapshot_s: float
+    focus_actions: tuple[str, ...] = ()
+    iris_actions: tuple[str, ...] = ()
+    firmware: str = ""
 
 
 class CameraProfile(_Record):
-    """What was found out about a camera. It holds no password and no user name.
+    """The stored results for a camera, without passwords and user names.
 
     Attributes:
         version: Version of the format.
         camera: Where the camera is, such as ``onvif 10.0.0.7:80``.
-        probe: What it states.
-        calibration: What was measured.
+        probe: The values that it reports.
+        calibration: The measurements.
     """
 
     version: int = VERSION
@@ -134,7 +137,7 @@ def profile_path(folder: Path, camera: str) -> Path:
 
 
 def load_profile(folder: Path, camera: str) -> CameraProfile | None:
-    """Return the profile of a camera, None if there is none.
+    """Return the profile of a camera; None if there is none.
 
     Raises:
         PackError: The file is damaged.
@@ -152,7 +155,7 @@ def load_profile(folder: Path, camera: str) -> CameraProfile | None:
 
 
 def save_profile(folder: Path, profile: CameraProfile) -> Path:
-    """Write the profile of a camera. A reader never sees half of it.
+    """Write the profile of a camera. Readers never see a partial file.
 
     Raises:
         OutputError: The file cannot be written.

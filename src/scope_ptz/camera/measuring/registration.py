@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MIN_MATCHES = 24
-"""Matches that a registration needs; fewer may agree by chance."""
+"""Minimum number of matches for a registration; fewer may agree by chance."""
 
 _RATIO = 0.75  # Lowe's ratio test
 _RANSAC_PX = 2.0
@@ -48,7 +48,7 @@ class Matches:
 
 @dataclass(frozen=True, slots=True)
 class Rotation:
-    """How a camera turned between two pictures.
+    """The rotation of a camera between two pictures.
 
     Attributes:
         right_deg: Degrees to the right, about the camera's own upward axis.
@@ -69,14 +69,14 @@ class Rotation:
 
 
 def match(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> Matches:
-    """Match features of two pictures. Those on things that moved by themselves are left out.
+    """Match features of two pictures. Matches on moving objects are rejected.
 
     Args:
         first: A picture, ``(H, W, 3)`` uint8 RGB.
         second: A picture of the same size.
 
     Raises:
-        RegistrationError: There is too little in common.
+        RegistrationError: The pictures have too little in common.
     """
     import cv2
 
@@ -110,7 +110,7 @@ def rotation(matches: Matches, focal_px: float) -> Rotation:
     back = predicted[:, :2] / predicted[:, 2:] * focal_px
     residual = float(np.sqrt(np.mean(np.sum((back - matches.second) ** 2, axis=1))))
     vector = _rotation_vector(turn)
-    # Directions turn against the camera: a camera that turns right sees the world turn left. Axes: right, up, forward.
+    # Directions turn opposite to the camera: when it turns right, the world turns left. Axes: right, up, forward.
     right_deg, up_deg, roll_deg = np.degrees([-vector[1], vector[0], -vector[2]])
     return Rotation(float(right_deg), float(up_deg), float(roll_deg), residual)
 
@@ -118,7 +118,8 @@ def rotation(matches: Matches, focal_px: float) -> Rotation:
 def focal_from(pairs: list[Matches]) -> float:
     """Return the focal length in pixels that explains all pairs best.
 
-    The pairs must have turned by a good part of the field of view: perspective tells the focal length, and a small turn has none.
+    The pairs must differ by a large part of the field of view: the focal length follows from perspective, which a small turn does
+    not show.
     """
     width = pairs[0].width
     fields = np.geomspace(4.0, 130.0, 48)
@@ -141,7 +142,9 @@ def focal_for_angle(matches: Matches, angle_deg: float) -> float:
     low, high = matches.width / 2 / math.tan(math.radians(160.0) / 2), matches.width / 2 / math.tan(math.radians(0.5) / 2)
     wanted = abs(angle_deg)
     if not rotation(matches, low).angle_deg > wanted > rotation(matches, high).angle_deg:
-        raise RegistrationError("The picture did not turn by an angle that any lens explains.")
+        raise RegistrationError(
+            "No focal length explains the motion between the pictures. Check that the camera turned and that the scene has detail."
+        )
     for _ in range(60):
         middle = math.sqrt(low * high)
         if rotation(matches, middle).angle_deg > wanted:
@@ -180,7 +183,7 @@ def _rotation_vector(turn: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _minimum(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return where a function of one number is smallest, by golden section."""
+    """Return the argument that minimises a function of one number, by golden-section search."""
     share = (math.sqrt(5) - 1) / 2
     left, right = high - share * (high - low), low + share * (high - low)
     at_left, at_right = function(left), function(right)

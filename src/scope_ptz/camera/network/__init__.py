@@ -1,1 +1,1 @@
-"""What the drivers of network cameras share: HTTP with pinned credentials, pictures, streams, settling, and a dead man's switch."""
+"""Shared code of network camera drivers: HTTP with pinned credentials, pictures, streams, settling, and a dead man's switch."""

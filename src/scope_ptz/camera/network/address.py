@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from ipaddress import ip_address
 from urllib.parse import urlsplit, urlunsplit
 
 from scope_ptz.camera.network.errors import ForeignAddressError
@@ -15,7 +16,7 @@ _HOST = re.compile(r"[A-Za-z0-9._-]+|\[[0-9A-Fa-f:.]+\]")
 
 @dataclass(frozen=True, slots=True)
 class DeviceAddress:
-    """Where a device is. Credentials go to this host and port only.
+    """The address of a device. Credentials are sent only to this host and port.
 
     Attributes:
         host: Host name, IPv4 address, or IPv6 address in brackets.
@@ -36,6 +37,14 @@ class DeviceAddress:
         standard = 443 if self.tls else 80
         return self.host if self.port == standard else f"{self.host}:{self.port}"
 
+    @property
+    def is_loopback(self) -> bool:
+        """Whether the device is on this machine."""
+        try:
+            return ip_address(self.host.strip("[]")).is_loopback
+        except ValueError:
+            return self.host.lower() == "localhost"
+
     def has_origin(self, scheme: str, host: str, port: int | None) -> bool:
         """Return whether scheme, host and port are those of this address."""
         mine = "https" if self.tls else "http"
@@ -45,7 +54,8 @@ class DeviceAddress:
     def pin_http(self, url: str) -> str:
         """Return a URL that the device returned, rewritten to its configured scheme, host and port.
 
-        Devices behind address translation return addresses of their own network. Path and query are kept, credentials are dropped.
+        Devices behind address translation return addresses in their local network. Path and query are kept; credentials
+        are dropped.
 
         Raises:
             ForeignAddressError: It is not an HTTP URL.
@@ -83,14 +93,14 @@ def parse_address(text: str, *, tls: bool = False) -> tuple[str, DeviceAddress]:
         The user name, "" if there is none, and the address.
 
     Raises:
-        InputError: The host or the port is wrong, or there is a password. The message does not repeat the text.
+        InputError: The host or the port is invalid, or there is a password. The message does not repeat the text.
     """
     user, _, place = text.rstrip("/").rpartition("@")
     if ":" in user:
         raise InputError("Leave the password out of the camera's address. Set SCOPE_CAMERA_PASSWORD instead.")
     host, colon, port = place.rpartition(":") if not place.endswith("]") and ":" in place else (place, "", "")
     if not _HOST.fullmatch(host):
-        raise InputError("The camera's address is user@host or user@host:port, for example operator@10.0.0.7.")
+        raise InputError("The camera's address must be user@host or user@host:port, for example operator@10.0.0.7.")
     if colon and not (port.isdecimal() and 0 < int(port) < 65536):
-        raise InputError("The port of the camera's address is a number from 1 to 65535.")
+        raise InputError("The port of the camera's address must be a number from 1 to 65535.")
     return user, DeviceAddress(host, int(port) if colon else (443 if tls else 80), tls)

@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from scope_ptz.camera.clocks import Clock
 
 RETRIES = 3
-"""How often a damaged snapshot is taken again."""
+"""Number of times that a damaged snapshot is retaken."""
 
 FROZEN_PATIENCE_S = 2.0
-"""How long a picture may lag behind the motors, as with an encoder that freezes it during a move."""
+"""Seconds that a picture may lag behind the motors, as with an encoder that freezes it during a move."""
 
 
 class DevicePictures(ABC):
-    """The pictures of one channel of a device. A driver says how a snapshot is taken and how a stream is opened.
+    """The pictures of one channel of a device. A driver implements the taking of a snapshot and the opening of a stream.
 
     Args:
         width: Width of a frame in pixels.
@@ -49,18 +49,21 @@ class DevicePictures(ABC):
         """Take a snapshot, and return bytes that are the same for the same picture, and its pixels.
 
         Raises:
-            PictureError: The picture is damaged, or of another size.
+            PictureError: The picture is damaged or has the wrong size.
         """
 
     @abstractmethod
     def open_stream(self, rate_hz: float) -> LiveStream:
         """Open a stream of frames."""
 
+    async def close(self) -> None:
+        """Release resources that are kept between snapshots. By default, there are none."""
+
     async def frame(self, read_pose: Callable[[], Awaitable[Pose]], info: CameraInfo, clock: Clock) -> Frame:
         """Take a snapshot, with the pose in the middle of the exposure.
 
         Raises:
-            PictureError: The picture is damaged, black, frozen, or of another size.
+            PictureError: The picture is damaged, black or frozen, or has the wrong size.
         """
         give_up_s = monotonic() + FROZEN_PATIENCE_S
         while True:
@@ -77,7 +80,7 @@ class DevicePictures(ABC):
             await anyio.sleep(0.1)
 
     async def small(self, pose: Pose) -> NDArray[np.uint8]:
-        """Take a small picture at a standing pose. A picture that lags behind the motors is waited for.
+        """Take a small picture while the camera is stationary. Wait if the picture lags behind the motors.
 
         Raises:
             PictureError: The picture is damaged or frozen.
@@ -85,7 +88,7 @@ class DevicePictures(ABC):
         give_up_s = monotonic() + FROZEN_PATIENCE_S
         while True:
             data, image = await self._take(*self._small)
-            # Black pictures are all the same. Taking a picture reports the fault; the move itself has succeeded.
+            # All black pictures are equal. Taking a picture reports the fault later; the move itself has succeeded.
             if is_black(image) or not self._frozen_small.lags(data, pose, give_up_s):
                 return image
             await anyio.sleep(0.1)
@@ -121,7 +124,7 @@ class DevicePictures(ABC):
                 await stream.close()
 
     async def _take(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
-        """Take a snapshot. A damaged one is taken again."""
+        """Take a snapshot. A damaged snapshot is retaken."""
         for left in range(RETRIES, -1, -1):
             try:
                 return await self.take_once(width, height)

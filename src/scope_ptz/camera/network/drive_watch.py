@@ -1,4 +1,4 @@
-"""A dead man's switch for cameras that do not stop by themselves."""
+"""A dead man's switch for cameras that do not stop on their own."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from time import monotonic
 
+from scope_ptz.camera.network.stop_process import StopProcess
 from scope_ptz.errors import CameraError
+
+LONGEST_PAUSE_S = 2.0
+"""Longest pause, in seconds, between two attempts to stop a camera."""
 
 _LOG = logging.getLogger(__name__)
 
@@ -17,21 +21,32 @@ _LOG = logging.getLogger(__name__)
 class DriveWatch:
     """Sends a stop when a drive is not renewed in time, and when the process ends.
 
-    It runs in a thread with a connection of its own, so it works when the event loop is busy, blocked or gone. The thread
-    exists only while the camera is driven. Nothing helps against a process that is killed or a machine that loses power.
+    It runs in a thread with a separate connection, so it works even if the event loop is busy, blocked or closed. The thread
+    exists only while the camera is driven. If the process ends, ``after_death`` stops the camera. Nothing stops it if the
+    machine loses power.
 
     Args:
         name: The camera's name, for the log.
         send_stop: Sends the stop and returns when the camera has acknowledged it. It runs in the thread.
-        retry_s: Seconds between two attempts while the camera cannot be reached.
+        after_death: Watchdog process that stops the camera if this process is killed; None for none.
+        retry_s: Seconds between the first two attempts while the camera cannot be reached. Later pauses are longer, up to 2 s.
         give_up_s: Seconds after which no further attempt is made.
     """
 
-    def __init__(self, name: str, send_stop: Callable[[], None], *, retry_s: float = 0.25, give_up_s: float = 60.0) -> None:
-        self._name, self._send_stop = name, send_stop
+    def __init__(
+        self,
+        name: str,
+        send_stop: Callable[[], None],
+        *,
+        after_death: StopProcess | None = None,
+        retry_s: float = 0.25,
+        give_up_s: float = 600.0,
+    ) -> None:
+        self._name, self._send_stop, self._after_death = name, send_stop, after_death
         self._retry_s, self._give_up_s = retry_s, give_up_s
         self._condition = threading.Condition()
         self._deadline_s: float | None = None
+        self._handed_over = False  # whether another party now stops the camera
         self._thread: threading.Thread | None = None
 
     @property
@@ -42,6 +57,8 @@ class DriveWatch:
     def arm(self, timeout_s: float) -> None:
         """Send a stop after the timeout, unless ``arm`` or ``disarm`` is called before. Call it before the drive is sent."""
         with self._condition:
+            if self._after_death is not None:
+                self._after_death.arm()
             self._deadline_s = monotonic() + timeout_s
             if self._thread is None:
                 self._thread = threading.Thread(target=self._watch, name=f"drive watch {self._name}", daemon=True)
@@ -50,13 +67,13 @@ class DriveWatch:
             self._condition.notify_all()
 
     def disarm(self) -> None:
-        """The camera has acknowledged a stop."""
+        """Record that the camera has acknowledged a stop."""
         with self._condition:
-            self._deadline_s = None
+            self._stopped()
             self._condition.notify_all()
 
     def stop_now(self) -> None:
-        """Let the thread send a stop at once. The call does not wait for it."""
+        """Make the thread send a stop immediately. The call does not wait for it."""
         with self._condition:
             if self._deadline_s is not None:
                 self._deadline_s = monotonic()
@@ -67,33 +84,55 @@ class DriveWatch:
         if (thread := self._thread) is not None:
             thread.join(timeout_s)
 
+    def close(self, timeout_s: float = 5.0) -> None:
+        """Stop the camera if it is driven, and release everything. It blocks.
+
+        If the camera cannot be reached within the time limit, ``after_death`` keeps trying.
+        """
+        self.stop_now()
+        self.join(timeout_s)
+        if self._after_death is not None:
+            with self._condition:
+                self._handed_over = True
+                self._condition.notify_all()
+            self.join(timeout_s)
+            self._after_death.close()
+
+    def _stopped(self) -> None:
+        self._deadline_s = None
+        if self._after_death is not None:
+            self._after_death.disarm()
+
     def _watch(self) -> None:
+        pause_s = self._retry_s
         while True:
             with self._condition:
                 while self._deadline_s is not None and (left_s := self._deadline_s - monotonic()) > 0:
                     self._condition.wait(left_s)
                 due_s = self._deadline_s
-                if due_s is None:
+                if due_s is None or self._handed_over:
                     self._thread = None
                     atexit.unregister(self._stop_at_exit)
                     return
-            sent = self._try_to_stop()
+            sent = self._try_to_stop(level=logging.WARNING if pause_s == self._retry_s else logging.DEBUG)
             with self._condition:
                 if self._deadline_s != due_s:
-                    continue  # driven again, or stopped by somebody else
+                    pause_s = self._retry_s
+                    continue  # driven again, or stopped by another party
                 if sent:
-                    self._deadline_s = None
+                    self._stopped()
                 elif monotonic() - due_s > self._give_up_s:
-                    _LOG.error("%s does not answer for %g s and may still be moving.", self._name, self._give_up_s)
+                    _LOG.error("%s has not answered for %g s and may still be moving.", self._name, self._give_up_s)
                     self._deadline_s = None
                 else:
-                    self._condition.wait(self._retry_s)
+                    self._condition.wait(pause_s)
+                    pause_s = min(2 * pause_s, max(self._retry_s, LONGEST_PAUSE_S))
 
-    def _try_to_stop(self) -> bool:
+    def _try_to_stop(self, level: int) -> bool:
         try:
             self._send_stop()
         except CameraError as error:
-            _LOG.warning("The stop of %s did not arrive and is sent again: %s", self._name, error)
+            _LOG.log(level, "The stop command for %s did not arrive and will be retried: %s", self._name, error)
             return False
         return True
 
@@ -101,3 +140,4 @@ class DriveWatch:
         if self.armed:
             with suppress(CameraError):
                 self._send_stop()
+                self._stopped()

@@ -1,15 +1,15 @@
-"""The errors of cameras on a network. Each message says what to do, and none contains a password.
+"""The errors of cameras on a network. Each message tells the user what to do, and none contains a password.
 
 CameraError
 ├── CameraUnreachableError   nothing answers at the address, or the connection breaks
-├── CameraTimeoutError       the camera answers too late
-├── CameraSignInError        the account is refused, or may not do this
-├── CameraReplyError         the reply is not what the protocol says
-├── NotACameraError          something answers, and it is no camera of this kind
-├── ForeignAddressError      the camera points to another host, to which no credentials go
-├── PictureError             a picture is damaged, black, frozen, or has another size
+├── CameraTimeoutError       the camera does not answer in time
+├── CameraSignInError        the account is refused, or lacks the right for the request
+├── CameraReplyError         the reply violates the protocol
+├── NotACameraError          something else answers at the address
+├── ForeignAddressError      the reply refers to another host, which never gets credentials
+├── PictureError             a picture is damaged, black, frozen, or has an unexpected size
 ├── PositionNotReachedError  a move ends elsewhere, or does not end
-└── PictureNotStillError     the encoders report arrival, and the picture keeps moving
+└── PictureNotStillError     the encoders report arrival, but the picture keeps moving
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Literal
 from scope_ptz.errors import CameraError
 
 PictureFault = Literal["truncated", "damaged", "size", "black", "frozen", "stalled"]
-"""What is wrong with a picture or a stream of pictures."""
+"""The fault of a picture or of a stream."""
 
 
 class CameraUnreachableError(CameraError):
@@ -27,30 +27,30 @@ class CameraUnreachableError(CameraError):
 
 
 class CameraTimeoutError(CameraError):
-    """The camera answers too late."""
+    """The camera does not answer in time."""
 
 
 class CameraSignInError(CameraError):
-    """The camera refuses the account, or the account may not do what was asked."""
+    """The camera refuses the account, or the account lacks the right for the request."""
 
 
 class CameraReplyError(CameraError):
-    """The camera's reply is not what its protocol says."""
+    """The camera's reply violates its protocol."""
 
 
 class NotACameraError(CameraError):
-    """Something answers at the address, and it is not a camera of this kind."""
+    """Something answers at the address, but it is not a camera of the expected type."""
 
 
 class ForeignAddressError(CameraError):
-    """The camera points to another host. Credentials are never sent there."""
+    """A reply of the camera refers to another host. Credentials are never sent there."""
 
 
 class PictureError(CameraError):
-    """A picture is damaged, black, frozen, or has another size.
+    """A picture is damaged, black, frozen, or has an unexpected size.
 
     Attributes:
-        fault: What is wrong.
+        fault: The fault of the picture.
     """
 
     def __init__(self, message: str, fault: PictureFault) -> None:
@@ -63,4 +63,4 @@ class PositionNotReachedError(CameraError):
 
 
 class PictureNotStillError(CameraError):
-    """The encoders report arrival, and the picture keeps moving."""
+    """The encoders report arrival, but the picture keeps moving."""

@@ -1,4 +1,4 @@
-"""HTTP to one device: sign-in, time limits, retries of reads, and errors that say what to do."""
+"""HTTP to one device: sign-in, time limits, retries of reads, and errors with instructions for the user."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import ssl
 from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
+from typing import Any
 
 import anyio
 import httpx2
@@ -20,13 +21,14 @@ from scope_ptz.camera.network.errors import (
     ForeignAddressError,
 )
 from scope_ptz.camera.network.sign_in import PinnedSignIn
+from scope_ptz.camera.network.trust import PinnedContext
 from scope_ptz.errors import CameraError
 
 MAX_BODY_BYTES = 32 * 2**20
-"""The longest reply that is read. A 4K JPEG has about 4 MB."""
+"""Maximum size of a reply in bytes. A 4K JPEG has about 4 MB."""
 
-_BACKOFF_S = (0.15, 0.4)
-"""Pauses before a read is repeated."""
+BACKOFF_S = (0.15, 0.4)
+"""Pauses, in seconds, before a read is retried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class DeviceTimeouts:
 
 @dataclass(frozen=True, slots=True)
 class DeviceReply:
-    """A reply. ``body`` may hold anything: it comes from the device.
+    """A reply. ``body`` is untrusted, because it comes from the device.
 
     Attributes:
         status: HTTP status; 2xx, or one of the statuses that the caller accepts.
@@ -70,7 +72,7 @@ class DeviceHttp:
         timeouts: DeviceTimeouts | None = None,
         verify: ssl.SSLContext | bool = True,
     ) -> None:
-        self.address, self._credentials = address, credentials
+        self.address, self.credentials = address, credentials
         # Without TLS there is nothing to verify, and reading the certificate store takes 50 ms.
         self._verify = verify if address.tls else False
         self._timeouts = timeouts or DeviceTimeouts()
@@ -78,7 +80,7 @@ class DeviceHttp:
             base_url=address.base_url,
             auth=PinnedSignIn(address, credentials),
             timeout=httpx2.Timeout(self._timeouts.reply_s, connect=self._timeouts.connect_s),
-            # A device closes idle connections at will, and a command must not fail because of it.
+            # A device may close idle connections at any time, and a command must not fail because of it.
             limits=httpx2.Limits(max_connections=8, max_keepalive_connections=4, keepalive_expiry=2.0),
             follow_redirects=False,
             trust_env=False,
@@ -88,6 +90,22 @@ class DeviceHttp:
     def __repr__(self) -> str:
         return f"DeviceHttp({self.address})"
 
+    def described(self) -> dict[str, object]:
+        """Return the values that another process needs to create an equal client. They contain the password."""
+        address, account = self.address, self.credentials
+        certificate = self._verify.certificate if isinstance(self._verify, PinnedContext) else None
+        return {
+            "host": address.host, "port": address.port, "tls": address.tls, "certificate": certificate,
+            "user": account.user, "password": account.password,
+        }  # fmt: skip
+
+    @classmethod
+    def from_description(cls, found: Mapping[str, Any]) -> DeviceHttp:
+        """Create a client from the value that ``described`` returned."""
+        address = DeviceAddress(found["host"], found["port"], found["tls"])
+        verify = True if found["certificate"] is None else PinnedContext.of(found["certificate"])
+        return cls(address, Credentials(found["user"], found["password"]), verify=verify)
+
     async def get(
         self, path: str, parameters: Mapping[str, str] | None = None, *, repeat: bool = True, accept: tuple[int, ...] = ()
     ) -> DeviceReply:
@@ -96,22 +114,18 @@ class DeviceHttp:
         Args:
             path: The path on the device.
             parameters: The query.
-            repeat: Whether the request may be sent again after a lost connection. Commands that add up may not.
-            accept: Statuses besides 2xx that are returned and not raised.
+            repeat: Whether the request may be sent again after a lost connection. Relative commands may not.
+            accept: Statuses besides 2xx that are returned instead of raised.
 
         Raises:
             CameraError: One of the errors of ``camera.network.errors``.
         """
         return await self._send("GET", path, parameters, repeat=repeat, accept=accept)
 
-    async def post_json(self, path: str, message: Mapping[str, object], *, accept: tuple[int, ...] = ()) -> DeviceReply:
-        """Post a JSON message that only reads."""
-        return await self._send("POST", path, None, json=message, repeat=True, accept=accept)
-
     async def post(
         self, path: str, content: bytes, headers: Mapping[str, str], *, repeat: bool, accept: tuple[int, ...] = ()
     ) -> DeviceReply:
-        """Post a message. The arguments are those of ``get``; ``headers`` say what the content is."""
+        """Post a message. The arguments are those of ``get``; ``headers`` describe the content."""
         return await self._send("POST", path, None, content=content, headers=headers, repeat=repeat, accept=accept)
 
     async def _send(
@@ -122,16 +136,13 @@ class DeviceHttp:
         *,
         repeat: bool,
         accept: tuple[int, ...],
-        json: Mapping[str, object] | None = None,
         content: bytes | None = None,
         headers: Mapping[str, str] | None = None,
     ) -> DeviceReply:
-        for pause_s in (*(_BACKOFF_S if repeat else ()), None):
+        for pause_s in (*(BACKOFF_S if repeat else ()), None):
             try:
                 with connection_errors(self.address), anyio.fail_after(self._timeouts.connect_s + self._timeouts.reply_s):
-                    async with self._client.stream(
-                        method, path, params=parameters, json=json, content=content, headers=headers
-                    ) as response:
+                    async with self._client.stream(method, path, params=parameters, content=content, headers=headers) as response:
                         check_status(self.address, response, accept)
                         body = await _read(self.address, response)
                         return DeviceReply(response.status_code, _media_type(response), body)
@@ -152,17 +163,17 @@ class DeviceHttp:
                 yield response.headers.get("content-type", ""), response.aiter_raw()
 
     def send_blocking(self, path: str, queries: tuple[Mapping[str, str], ...], *, timeout_s: float = 2.0) -> None:
-        """Send GET requests from a thread, on a connection of their own. It works when the event loop does not.
+        """Send GET requests from a thread, on a separate connection. It works even if the event loop is blocked.
 
         Raises:
-            CameraError: A request failed; those before it arrived.
+            CameraError: A request failed. The requests before it were received.
         """
         with connection_errors(self.address), self._blocking_client(timeout_s) as client:
             for query in queries:
                 check_status(self.address, client.get(path, params=query), ())
 
     def post_blocking(self, path: str, content: bytes, headers: Mapping[str, str], *, timeout_s: float = 2.0) -> None:
-        """Post a message from a thread, on a connection of its own.
+        """Post a message from a thread, on a separate connection.
 
         Raises:
             CameraError: The request failed.
@@ -171,9 +182,9 @@ class DeviceHttp:
             check_status(self.address, client.post(path, content=content, headers=dict(headers)), ())
 
     def _blocking_client(self, timeout_s: float) -> httpx2.Client:
-        # A fresh sign-in: the one of the event loop counts its requests and is not safe in two threads.
+        # Use a new sign-in: that of the event loop counts its requests and is not thread-safe.
         return httpx2.Client(
-            base_url=self.address.base_url, auth=PinnedSignIn(self.address, self._credentials), timeout=timeout_s,
+            base_url=self.address.base_url, auth=PinnedSignIn(self.address, self.credentials), timeout=timeout_s,
             cookies=self._client.cookies, follow_redirects=False, trust_env=False, verify=self._verify,
         )  # fmt: skip
 
@@ -211,7 +222,7 @@ def connection_errors(address: DeviceAddress) -> Iterator[None]:
         )
     except (httpx2.HTTPError, httpx2.InvalidURL, NotImplementedError, ValueError):
         failure = CameraReplyError(
-            f"The camera at {address} sent a reply that is not valid HTTP. Is this the port of its web interface?"
+            f"The camera at {address} sent a reply that is not valid HTTP. Check that this is the port of its web interface."
         )
     else:
         return
@@ -226,7 +237,10 @@ def check_status(address: DeviceAddress, response: httpx2.Response, accept: tupl
     if status == 401:
         raise CameraSignInError(f"The camera at {address} refuses the user name or the password. Check both, then try again.")
     if status == 403:
-        raise CameraSignInError(f"The account may not do this on the camera at {address}. Give it the right to control PTZ.")
+        raise CameraSignInError(
+            f"The account may not do this on the camera at {address}. Moves need the right to control PTZ (an operator), and "
+            "changes of presets an administrator."
+        )
     if 300 <= status < 400:
         raise ForeignAddressError(_redirect(address, response))
     if status in (502, 503, 504):

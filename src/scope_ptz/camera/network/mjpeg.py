@@ -8,10 +8,10 @@ from typing import Final
 from scope_ptz.camera.network.errors import CameraReplyError, PictureError
 
 MAX_PART_BYTES: Final = 16 * 2**20
-"""The longest picture that is read."""
+"""Maximum size of a picture in bytes."""
 
 MAX_HEADER_BYTES: Final = 8192
-"""The longest header of a part."""
+"""Maximum size of a part's header in bytes."""
 
 _BOUNDARY = re.compile(r'boundary="?([^";,\s]+)"?', re.IGNORECASE)
 _LENGTH = re.compile(rb"^content-length:[ \t]*(\d{1,9})[ \t]*\r?$", re.IGNORECASE | re.MULTILINE)
@@ -22,7 +22,7 @@ def boundary_of(content_type: str) -> bytes:
     """Return the delimiter of the parts, with its leading dashes.
 
     Raises:
-        CameraReplyError: It is no multipart stream.
+        CameraReplyError: The stream is not multipart.
     """
     found = _BOUNDARY.search(content_type)
     if not content_type.lower().startswith("multipart/") or found is None:
@@ -82,7 +82,7 @@ class MjpegParser:
         if start < 0:
             del buffer[: max(0, len(buffer) - len(self._boundary))]
             return False
-        # The line of the boundary ends before the header, so an empty line right after it ends an empty header.
+        # The boundary line ends before the header, so an empty line right after it means an empty header.
         found = _HEADER_END.search(buffer, start + len(self._boundary))
         if found is None:
             del buffer[:start]

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from scope_ptz.geometry import Pose
 
 BLACK_LEVEL = 6
-"""A picture without any brighter pixel is black. The noise of a sensor in the dark is brighter."""
+"""A picture is black if no pixel is brighter than this. The noise of a sensor in the dark is brighter."""
 
 FROZEN_TURN_DEG = 1.0
-"""A picture that is the same to the last bit after a turn of more than this is frozen."""
+"""A picture is frozen if it is bit-identical after a turn of more than this many degrees."""
 
 STANDING_DEG = 0.05
-"""Poses of two successive pictures that differ by less are one pose."""
+"""Two successive pictures have the same pose if their poses differ by less than this."""
 
 _START, _END = b"\xff\xd8", b"\xff\xd9"
 
@@ -54,7 +54,7 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
             if (width, height) != (None, None) and size != (width, height):
                 raise PictureError(
                     f"The camera sent a picture of {size[0]}x{size[1]} pixels instead of {width}x{height}. "
-                    "Ask for a size that it offers with ?width=...&height=...",
+                    "Request a size that it offers with ?width=...&height=...",
                     "size",
                 )
             return np.array(picture.convert("RGB"))
@@ -78,8 +78,8 @@ def check_not_black(image: NDArray[np.uint8]) -> None:
 class FrozenCheck:
     """Detects a picture that stays the same although the camera turns.
 
-    Pictures of a scene at rest may be the same, so a picture is compared with one of another pose. Only poses at which the camera
-    stands count: while it moves, a picture and a pose may belong to slightly different moments.
+    Pictures of a scene at rest may be the same, so a picture is compared with one of another pose. Only poses of a
+    stationary camera count: during a move, a picture and a pose may belong to slightly different moments.
     """
 
     def __init__(self) -> None:
@@ -88,7 +88,7 @@ class FrozenCheck:
         self._last: Pose | None = None
 
     def is_frozen(self, data: bytes, pose: Pose) -> bool:
-        """Return whether a picture was seen before, with the camera standing at a clearly different pose.
+        """Return whether a picture was seen before, while the camera was stationary at a clearly different pose.
 
         Args:
             data: The picture's bytes: a JPEG file, or pixels.
@@ -106,7 +106,7 @@ class FrozenCheck:
         return False
 
     def lags(self, data: bytes, pose: Pose, give_up_s: float) -> bool:
-        """Return whether a picture is still the one of another pose, as with an encoder that freezes it during a move.
+        """Return whether a picture still shows another pose, as with an encoder that freezes it during a move.
 
         Args:
             data: The picture's bytes.
@@ -114,7 +114,7 @@ class FrozenCheck:
             give_up_s: The time on ``time.monotonic`` from which such a picture is an error.
 
         Raises:
-            PictureError: The picture is still frozen at that time.
+            PictureError: The picture is still frozen after ``give_up_s``.
         """
         if not self.is_frozen(data, pose):
             return False

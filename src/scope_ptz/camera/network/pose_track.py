@@ -12,14 +12,14 @@ from time import monotonic
 from scope_ptz.geometry import Pose, wrap_pan_deg
 
 MAX_SAMPLES = 128
-"""About six seconds of readings."""
+"""Maximum number of readings, about six seconds."""
 
 POLL_S = 0.05
 """Seconds between two readings. At 400 degrees per second squared, a straight line between them is off by 0.13 degrees at most."""
 
 
 class PoseTrack:
-    """Readings of the position with their times, newest last. Times are seconds on any one clock and never go back."""
+    """Readings of the position with their times, newest last. Times are seconds on a single clock and never decrease."""
 
     def __init__(self) -> None:
         self._samples: deque[tuple[float, Pose]] = deque(maxlen=MAX_SAMPLES)
@@ -40,7 +40,7 @@ class PoseTrack:
             self._samples.append((time_s, pose))
 
     def at(self, time_s: float) -> Pose:
-        """Return the pose at a time, interpolated between the readings around it; the nearest one outside of them.
+        """Return the pose at a time, interpolated between the readings around it; outside the readings, the nearest one.
 
         Raises:
             ValueError: There is no reading.
@@ -66,7 +66,7 @@ class PoseTrack:
 
 
 class PosePoller:
-    """Reads the position again and again while a stream is open. ``close`` it with the stream.
+    """Reads the position repeatedly while a stream is open. ``close`` it with the stream.
 
     Args:
         read_pose: Reads the position.
@@ -106,6 +106,6 @@ class PosePoller:
                 self._track.add((before_s + monotonic()) / 2, pose)
                 self._changed.set()
                 await asyncio.sleep(POLL_S)
-        except Exception as error:  # whatever it is, the consumer of the stream has to see it
+        except Exception as error:  # any failure must reach the consumer of the stream
             self._failure = error
             self._changed.set()

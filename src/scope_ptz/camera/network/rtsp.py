@@ -95,7 +95,7 @@ class RtspStream(LiveStream):
         last_s, pause_s = monotonic(), 0.1
         while not self._closing.is_set():
             before_s = last_s
-            # FFmpeg's errors repeat the address with its password, so they are dropped.
+            # FFmpeg's errors contain the address with the password, so they are dropped.
             with suppress(self._av.FFmpegError, OSError, ValueError):
                 for picture in self._pictures():
                     last_s = picture.arrived_s
@@ -120,12 +120,12 @@ class RtspStream(LiveStream):
         if picture is not None:
             self._newest = picture
         self._failure = failure
-        with suppress(RuntimeError):  # the loop has ended, and nobody waits
+        with suppress(RuntimeError):  # the event loop has ended, so no consumer waits
             self._loop.call_soon_threadsafe(self._changed.set)
 
 
 def _with_credentials(url: str, credentials: Credentials | None) -> str:
-    """Return the URL with user and password, which is FFmpeg's only way to take them."""
+    """Return the URL with user and password, which is the only way to pass them to FFmpeg."""
     if credentials is None or not credentials.user:
         return url
     parts = urlsplit(url)

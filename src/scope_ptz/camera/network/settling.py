@@ -1,4 +1,4 @@
-"""Whether a camera has settled: its reported position stands, and its picture confirms it."""
+"""Detect when a camera has settled: its reported position no longer changes, and neither does its picture."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import anyio
 import numpy as np
 
 from scope_ptz.camera.network.errors import PictureNotStillError, PositionNotReachedError
-from scope_ptz.geometry import Pose, wrap_pan_deg
+from scope_ptz.geometry import Axis, Pose, wrap_pan_deg
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Settling:
-    """When a camera counts as settled.
+    """The criteria for when a camera counts as settled.
 
     Attributes:
         angle_tolerance_deg: Allowed difference between the requested and the reached angle.
         zoom_tolerance: Allowed difference between the requested and the reached zoom, as a share.
         poll_s: Seconds between two readings of the position.
-        start_s: Seconds after which a camera that has not moved is not going to.
+        start_s: Seconds after which a camera that has not started to move will not move.
         timeout_s: Seconds after which a move has failed.
         picture_interval_s: Seconds between the pictures that are compared.
         picture_timeout_s: Seconds after which a picture that keeps moving is an error.
@@ -47,8 +47,17 @@ class Settling:
             and abs(pose.zoom / target.zoom - 1) <= self.zoom_tolerance
         )
 
+    def farthest(self, pose: Pose, target: Pose) -> Axis:
+        """Return the axis that is farthest from its target, in tolerances."""
+        off: dict[Axis, float] = {
+            "pan": abs(wrap_pan_deg(pose.pan_deg - target.pan_deg)) / self.angle_tolerance_deg,
+            "tilt": abs(pose.tilt_deg - target.tilt_deg) / self.angle_tolerance_deg,
+            "zoom": abs(pose.zoom / target.zoom - 1) / self.zoom_tolerance,
+        }
+        return max(off, key=lambda axis: off[axis])
 
-def stands(before: Pose, now: Pose) -> bool:
+
+def is_stationary(before: Pose, now: Pose) -> bool:
     """Return whether two successive readings show no motion."""
     return (
         abs(wrap_pan_deg(now.pan_deg - before.pan_deg)) < 0.011
@@ -57,22 +66,22 @@ def stands(before: Pose, now: Pose) -> bool:
     )
 
 
-async def wait_until_standing(
+async def wait_until_stationary(
     read_pose: Callable[[], Awaitable[Pose]],
     settling: Settling,
     target: Pose | None = None,
     superseded: Callable[[], bool] = lambda: False,
 ) -> Pose:
-    """Wait until the position stands: at the target, or anywhere once the camera had time to start.
+    """Wait until the camera is stationary: at the target, or anywhere once it has had time to start.
 
     Args:
         read_pose: Reads the position.
-        settling: The limits.
+        settling: The criteria.
         target: Where the camera should go; None if it is unknown, as for a preset.
-        superseded: Whether another command has replaced this one. Then any standstill counts.
+        superseded: Whether another command has replaced this one. In that case, any stationary position counts.
 
     Raises:
-        PositionNotReachedError: The camera still moves when the time is over.
+        PositionNotReachedError: The camera is still moving at the time limit.
     """
     started_s = still_since_s = monotonic()
     before = await read_pose()
@@ -80,7 +89,7 @@ async def wait_until_standing(
     while True:
         await anyio.sleep(settling.poll_s)
         now, now_s = await read_pose(), monotonic()
-        if not stands(before, now):
+        if not is_stationary(before, now):
             still_since_s, has_moved = now_s, True
         else:
             arrived = superseded() or (target is not None and settling.near(now, target))
@@ -89,7 +98,8 @@ async def wait_until_standing(
                 return now
         if now_s - started_s > settling.timeout_s:
             raise PositionNotReachedError(
-                f"The camera still moves after {settling.timeout_s:g} s. Check that nobody else moves it and no tour runs."
+                f"The camera still moves after {settling.timeout_s:g} s. Check that nobody else is moving it and that no tour is "
+                "running."
             )
         before = now
 
@@ -107,7 +117,8 @@ def motion_share(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> float |
     """Return the share of the textured tiles that moved between two pictures.
 
     A tile has moved when it differs by more than noise and by more than its own texture would at a shift of a quarter of a pixel
-    (of 320). A brightness that changes as a whole is no motion. People and vehicles cover few tiles, a turning camera moves all.
+    (of 320). A change of the overall brightness does not count. People and vehicles cover
+    few tiles, but a turning camera moves all of them.
 
     Args:
         first: A picture, ``(H, W, 3)`` uint8 RGB.
@@ -147,7 +158,7 @@ async def wait_for_still_picture(
             return
         if monotonic() - started_s > settling.picture_timeout_s:
             raise PictureNotStillError(
-                "The camera reports that it has arrived, and its picture keeps moving. Check its mounting and its motors."
+                "The camera reports that it has arrived, but its picture keeps moving. Check its mounting and its motors."
             )
         before = now
 

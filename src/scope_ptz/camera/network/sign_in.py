@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class PinnedSignIn(httpx2.Auth):
-    """Digest sign-in for one host and port. Basic is used over TLS only, since it shows the password to the network.
+    """Digest sign-in for one host and port. Basic is used only over TLS, because it reveals the password to the network.
 
     Args:
         address: The device.
@@ -32,7 +32,7 @@ class PinnedSignIn(httpx2.Auth):
         url = request.url
         if not self._address.has_origin(url.scheme, url.host, url.port):
             raise ForeignAddressError(
-                f"A request to another host than {self._address} was refused; credentials stay with the camera."
+                f"A request to a host other than {self._address} was refused, because credentials are sent only to the camera."
             )
         if self._basic_wanted:
             yield from self._basic.auth_flow(request)
@@ -50,10 +50,13 @@ class PinnedSignIn(httpx2.Auth):
 
     def _without_digest(self, request: httpx2.Request, offers: set[str]) -> Generator[httpx2.Request, httpx2.Response, None]:
         if "basic" not in offers:
-            raise CameraSignInError(f"The camera at {self._address} offers no way to sign in that is supported (digest).")
+            raise CameraSignInError(
+                f"The camera at {self._address} offers no supported authentication. Enable digest authentication in the camera's "
+                "settings."
+            )
         if not self._address.tls:
             raise CameraSignInError(
-                f"The camera at {self._address} wants the password in clear text. Allow digest authentication, or add ?tls=on."
+                f"The camera at {self._address} accepts only passwords in clear text. Allow digest authentication, or add ?tls=on."
             )
         self._basic_wanted = True
         yield from self._basic.auth_flow(request)

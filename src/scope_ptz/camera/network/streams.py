@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -25,13 +24,13 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 STALLED_S = 5.0
-"""A stream without a picture for this long is stalled."""
+"""A stream without a picture for this many seconds is stalled."""
 
 MAX_DAMAGED = 5
-"""Damaged pictures in a row that are skipped."""
+"""Maximum number of consecutive damaged pictures that are skipped."""
 
 GIVE_UP_S = 15.0
-"""A stream that cannot be opened again for this long is lost."""
+"""A stream that cannot be reopened for this many seconds is lost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +65,7 @@ class LiveStream(ABC):
 
 
 class MjpegStream(LiveStream):
-    """Motion JPEG over HTTP. Only pictures that somebody waits for are decoded.
+    """Motion JPEG over HTTP. Only pictures that a consumer waits for are decoded.
 
     Args:
         http: The device.
@@ -96,7 +95,7 @@ class MjpegStream(LiveStream):
         self._changed = asyncio.Event()
         self._failure: Exception | None = None
         self.reconnects = 0
-        """How many times the stream was opened again."""
+        """Number of times that the stream was reopened."""
         # A task without a task group: the stream outlives the call that opens it, and a failure waits for ``next``.
         self._task = asyncio.get_running_loop().create_task(self._read())
 
@@ -131,9 +130,7 @@ class MjpegStream(LiveStream):
         try:
             while True:
                 seen_s = last_s
-                failure: Exception = CameraUnreachableError(
-                    "The camera closed its MJPEG stream again and again. Restart the camera."
-                )
+                failure: Exception = CameraUnreachableError("The camera closed its MJPEG stream repeatedly. Restart the camera.")
                 try:
                     last_s = await self._read_once(last_s)
                 except (CameraUnreachableError, CameraTimeoutError, PictureError) as error:
@@ -145,7 +142,7 @@ class MjpegStream(LiveStream):
                     return
                 self.reconnects += 1
                 await anyio.sleep(pause_s)
-        except Exception as error:  # whatever it is, the consumer has to see it
+        except Exception as error:  # any failure must reach the consumer
             self._fail(error)
 
     _last_s = 0.0
@@ -176,7 +173,3 @@ class MjpegStream(LiveStream):
     def _fail(self, error: Exception) -> None:
         self._failure = error
         self._changed.set()
-
-
-LiveStreamOpener = Callable[[], LiveStream]
-"""A function that opens a stream."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import anyio
 
-from scope_ptz.camera.network.errors import CameraReplyError, CameraSignInError
+from scope_ptz.camera.network.errors import CameraReplyError, CameraSignInError, CameraUnreachableError
+from scope_ptz.camera.network.http import BACKOFF_S
 from scope_ptz.camera.onvif.faults import soap_errors
 from scope_ptz.camera.onvif.transport import PinnedTransport, import_onvif, pinned_path, to_bytes, unchanged_proxies
 
@@ -16,11 +18,14 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.credentials import Credentials
     from scope_ptz.camera.network.http import DeviceHttp
 
+ADDS_UP = ("ContinuousMove", "RelativeMove", "SetPreset", "RemovePreset")
+"""Operations that are not retried after a lost connection."""
+
 _STOP_HEADERS = {"Content-Type": "application/soap+xml; charset=utf-8"}
 
 
 class OnvifClient:
-    """The connection to one device. ``connect`` first.
+    """The connection to one device. Call ``connect`` first.
 
     Args:
         http: The device. It is closed with the client.
@@ -46,7 +51,7 @@ class OnvifClient:
         return self.http.address
 
     async def connect(self) -> None:
-        """Read the device's clock and the addresses of its services. Connecting again reads them anew.
+        """Read the device's clock and the addresses of its services. Connecting again rereads them.
 
         Raises:
             CameraError: The device cannot be reached, refuses the account, or has no ONVIF services.
@@ -54,13 +59,12 @@ class OnvifClient:
         for adjust_time in (True, False):
             camera = self._make_camera(adjust_time)
             try:
-                with soap_errors(self.address, "GetServices"):
-                    await camera.update_xaddrs()
+                await _repeated(partial(self._read_addresses, camera))
             except BaseException as error:
                 with anyio.CancelScope(shield=True):
                     await _close(camera)
                 if isinstance(error, CameraReplyError) and adjust_time:
-                    continue  # a device without a readable clock: its time stamps are taken for right
+                    continue  # a device without a readable clock: assume that its clock is right
                 raise
             await self._close_services()
             self._camera = camera
@@ -69,7 +73,10 @@ class OnvifClient:
             return
 
     async def call(self, service: str, operation: str, **arguments: Any) -> Any:
-        """Call an operation and return its reply. A sign-in that was right before is tried again with a fresh clock.
+        """Call an operation and return its reply.
+
+        After a lost connection, idempotent operations are retried. If a sign-in fails that worked before, it is retried after
+        reading the clock again.
 
         Args:
             service: ``devicemgmt``, ``media`` or ``ptz``.
@@ -79,29 +86,21 @@ class OnvifClient:
         Raises:
             CameraError: One of the errors of ``camera.network.errors`` or ``camera.onvif.faults``.
         """
-        try:
-            reply = await self._call(service, operation, arguments)
-        except CameraSignInError:
-            if not self._signed_in:
-                raise
-            self._signed_in = False
-            await self.connect()  # the clock of the device may have been set, as after a reboot
-            reply = await self._call(service, operation, arguments)
-        self._signed_in = True
-        return reply
+        once = partial(self._signed_in_call, service, operation, arguments)
+        return await (once() if operation in ADDS_UP else _repeated(once))
 
     async def prepare_stop(self, profile: str) -> None:
-        """Make ready what ``stop_blocking`` needs."""
+        """Prepare the connection for ``stop_blocking``."""
         self._stop_profile = profile
         self._stop_service = await self.make_service("ptz")
 
     def stop_blocking(self) -> None:
-        """Stop pan, tilt and zoom from a thread, on a connection of its own.
+        """Stop pan, tilt and zoom from a thread, on a separate connection.
 
         Raises:
             CameraError: The stop did not arrive, or is refused.
         """
-        service = self._stop_service  # with time stamps of its own: those of the event loop are not safe in two threads
+        service = self._stop_service  # with separate time stamps, because those of the event loop are not thread-safe
         with soap_errors(self.address, "Stop"):
             message = service.zeep_client.create_message(
                 service.ws_client, "Stop", ProfileToken=self._stop_profile, PanTilt=True, Zoom=True
@@ -114,6 +113,22 @@ class OnvifClient:
         await self._close_services()
         await self.http.close()
 
+    async def _read_addresses(self, camera: Any) -> None:
+        with soap_errors(self.address, "GetServices"):
+            await camera.update_xaddrs()
+
+    async def _signed_in_call(self, service: str, operation: str, arguments: dict[str, Any]) -> Any:
+        try:
+            reply = await self._call(service, operation, arguments)
+        except CameraSignInError:
+            if not self._signed_in:
+                raise
+            self._signed_in = False
+            await self.connect()  # the clock of the device may have been set, as after a reboot
+            reply = await self._call(service, operation, arguments)
+        self._signed_in = True
+        return reply
+
     async def _call(self, service: str, operation: str, arguments: dict[str, Any]) -> Any:
         with soap_errors(self.address, operation):
             return await getattr(await self._camera.create_onvif_service(service), operation)(arguments)
@@ -125,7 +140,7 @@ class OnvifClient:
             camera = self._library.ONVIFCamera(
                 f"{scheme}://{address.host}", address.port, account.user, account.password, no_cache=True, adjust_time=adjust_time
             )
-        # The library's services bring transports that follow redirects and go wherever the device points.
+        # The library's services use transports that follow redirects to any host.
         camera.create_onvif_service = partial(_service_of, self, camera)
         return camera
 
@@ -138,7 +153,7 @@ class OnvifClient:
                 self.address.pin_http(xaddr), camera.user, camera.passwd, wsdl, no_cache=True, dt_diff=camera.dt_diff,
                 binding_name=binding, binding_key=(name, None),
             )  # fmt: skip
-            await service.close()  # the transport that it brought
+            await service.close()  # its default transport
             service.transport = PinnedTransport(self.http)
             await service.setup()
         return service
@@ -149,14 +164,44 @@ class OnvifClient:
             await _close(camera)
 
 
+async def _repeated(call: Callable[[], Awaitable[Any]]) -> Any:
+    """Call a function, and retry it after a lost connection. Each call creates a message with a new login."""
+    for pause_s in BACKOFF_S:
+        try:
+            return await call()
+        except CameraUnreachableError:
+            await anyio.sleep(pause_s)
+    return await call()
+
+
 async def _close(camera: Any) -> None:
-    camera.services.clear()  # their transports belong to this client
+    camera.services.clear()  # their transports are closed with this client
     await camera.close()
 
 
 async def _service_of(client: OnvifClient, camera: Any, name: str, *_: Any, **__: Any) -> Any:
-    """Return a service of a camera, made at the first call."""
+    """Return a service of a camera. It is created at the first call."""
     key = (name.lower(), None)
     if key not in camera.services:
         camera.services[key] = await client.make_service(key[0], camera)
     return camera.services[key]
+
+
+def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
+    """Stop all motion of a device, from a process that has no connection to it yet. It blocks.
+
+    Args:
+        http: The device.
+        details: Token of the ``profile`` with the motors.
+
+    Raises:
+        CameraError: The stop did not arrive.
+    """
+
+    async def connected() -> OnvifClient:
+        client = OnvifClient(http, http.credentials)
+        await client.connect()
+        await client.prepare_stop(details["profile"])
+        return client
+
+    anyio.run(connected).stop_blocking()

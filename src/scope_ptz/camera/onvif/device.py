@@ -1,4 +1,4 @@
-"""What an ONVIF device is and can do: profiles, spaces, limits, optics, presets and addresses of its pictures."""
+"""Read the properties and capabilities of an ONVIF device: profiles, spaces, limits and optics."""
 
 from __future__ import annotations
 
@@ -45,11 +45,14 @@ class OnvifDevice:
         reports_in: The spaces in which it may report positions, by name; "" for a position without one.
         zoom: The space of zoom positions.
         velocity: The generic velocity space of pan and tilt; None if they cannot be driven.
-        zoom_velocity: The same for the zoom.
+        zoom_velocity: The generic velocity space of the zoom; None if it cannot be driven.
+        fov_translation: The space of turns by shares of the picture; None if it has none.
+        zoom_translation: The generic space of relative zoom; None if it has none.
+        video_source: Token of the video source, for focus and iris.
         timeout_s: Shortest and longest timeout of a continuous move.
         limits: Limits of motion.
-        capabilities: What else it can do.
-        assumed: What is neither stated nor configured nor measured, in words.
+        capabilities: Its further capabilities.
+        assumed: Names of the values that are neither reported, configured nor measured.
     """
 
     manufacturer: str
@@ -64,6 +67,9 @@ class OnvifDevice:
     zoom: ZoomSpace
     velocity: StatedSpace | None
     zoom_velocity: StatedSpace | None
+    fov_translation: StatedSpace | None
+    zoom_translation: StatedSpace | None
+    video_source: str
     timeout_s: Ends
     limits: Limits
     capabilities: Capabilities
@@ -76,13 +82,13 @@ class OnvifDevice:
 
 
 async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int = 1280, profile: str = "") -> OnvifDevice:
-    """Read what a device is and can do.
+    """Read the properties and capabilities of a device.
 
     Args:
         client: The connection.
-        mapping: What was configured or measured. It takes precedence over what is known about the model.
-        width: The wanted width of pictures in pixels.
-        profile: Token or name of the profile to use; by default one that suits.
+        mapping: Configured or measured values. They take precedence over those known for the model.
+        width: The requested width of pictures in pixels.
+        profile: Token or name of the profile to use; by default, a suitable one.
 
     Raises:
         CameraError: The device cannot be reached, refuses the account, or has no position space.
@@ -97,7 +103,9 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
     stated = {space.uri: space for space in spaces.stated_spaces(offered.AbsolutePanTiltPositionSpace) if space.y is not None}
     reports_in = _position_spaces(stated, mapping, assumed)
     if not reports_in:
-        raise CameraReplyError(f"The camera at {client.address} states no space of absolute positions, so it cannot be aimed.")
+        raise CameraReplyError(
+            f"The camera at {client.address} reports no space of absolute positions, so SCOPE cannot move it to a pose."
+        )
     moves_in = reports_in.get(spaces.DEGREES) or next(iter(reports_in.values()))
     zoom = _zoom_space(spaces.stated_spaces(offered.AbsoluteZoomPositionSpace), mapping, assumed)
     velocity = _first(spaces.stated_spaces(offered.ContinuousPanTiltVelocitySpace), spaces.VELOCITY)
@@ -117,6 +125,9 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
         zoom,
         velocity,
         zoom_velocity,
+        _first(spaces.stated_spaces(offered.RelativePanTiltTranslationSpace), spaces.TRANSLATION_FOV),
+        _first(spaces.stated_spaces(offered.RelativeZoomTranslationSpace), spaces.ZOOM_TRANSLATION),
+        _source(picture),
         timeout,
         _limits(moves_in, zoom, configuration, reports_in),
         Capabilities(
@@ -138,7 +149,7 @@ def choose_profiles(profiles: Any, where: str, width: int, wanted: str = "") -> 
     the smallest profile of the same video source that is wide enough.
 
     Raises:
-        CameraError: No profile suits.
+        CameraError: There is no suitable profile.
     """
     profiles = [each for each in profiles or () if each.token]
     moving = [each for each in profiles if getattr(each, "PTZConfiguration", None) is not None]
@@ -172,7 +183,7 @@ async def _options(client: OnvifClient, configuration: Any) -> tuple[Any, Ends]:
     except CameraSignInError:
         raise
     except (OnvifFaultError, CameraReplyError, AttributeError):
-        pass  # the node states the same
+        pass  # the node reports the same
     node = await client.call("ptz", "GetNode", NodeToken=configuration.NodeToken)
     return node.SupportedPTZSpaces, (0.1, 60.0)
 
@@ -203,7 +214,7 @@ def _zoom_space(stated: tuple[StatedSpace, ...], mapping: OnvifMapping, assumed:
     if mapping.fields is None:
         assumed.append("field of view")
     fields = mapping.fields or ((0.0, ASSUMED_FIELDS_DEG[0]), (1.0, ASSUMED_FIELDS_DEG[1]))
-    if space is None:  # a fixed lens: a table of one zoom, which needs two rows
+    if space is None:  # a fixed lens still needs a table of two rows
         return ZoomSpace(spaces.ZOOM_GENERIC, ((0.0, 1.0, fields[0][1]), (1.0, 1.0001, fields[0][1] * 0.9999)), moves=False)
     low, high = space.x
     rows = tuple((low + share * (high - low), zoom, hfov) for share, zoom, hfov in zoom_rows(fields, mapping.zoom_max))
@@ -211,7 +222,7 @@ def _zoom_space(stated: tuple[StatedSpace, ...], mapping: OnvifMapping, assumed:
 
 
 def _limits(moves_in: PanTiltSpace, zoom: ZoomSpace, configuration: Any, known: dict[str, PanTiltSpace]) -> Limits:
-    """Return the limits: those of the space, within those of the configuration."""
+    """Return the limits of the space, restricted to those of the configuration."""
     pan, tilt = sorted(moves_in.pan.values), sorted(moves_in.tilt.values)
     endless = pan[1] - pan[0] >= ENDLESS_DEG
     narrowed = getattr(configuration, "PanTiltLimits", None)
@@ -244,5 +255,5 @@ def _name(profile: Any) -> str:
 
 
 def _word(text: object) -> str:
-    """Return a short printable text of what the device states."""
+    """Return a text from the device, shortened and without non-printable characters."""
     return " ".join("".join(c if c.isprintable() else " " for c in str(text or "")).split())[:60]

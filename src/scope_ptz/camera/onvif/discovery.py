@@ -1,4 +1,4 @@
-"""WS-Discovery: ask the local networks which ONVIF devices are there. No password is asked for or sent."""
+"""Find ONVIF devices on the local networks with WS-Discovery. No password is needed or sent."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ class FoundDevice:
 
     Attributes:
         address: Host and port of its web interface, as in a camera spec.
-        name: Its name, by its own words.
-        model: Its model, by its own words.
+        name: The name that it reports.
+        model: The model that it reports.
         tls: Whether the address is HTTPS.
     """
 
@@ -50,7 +50,7 @@ class FoundDevice:
 
     @property
     def spec(self) -> str:
-        """The camera spec, with a place for the user's name."""
+        """The camera spec, with a placeholder for the user name."""
         return f"onvif://USER@{self.address}" + ("?tls=on" if self.tls else "")
 
 
@@ -58,13 +58,13 @@ async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port:
     """Return the devices that answer, ordered by address.
 
     Args:
-        interfaces: IPv4 addresses of this machine's interfaces; by default those that are found, and loopback.
+        interfaces: IPv4 addresses of this machine's interfaces; by default, all that are found, and loopback.
         wait_s: How long to wait for answers, in seconds.
         port: The UDP port of the devices.
 
     Raises:
         InputError: An interface is not an IPv4 address.
-        CameraError: No interface can be asked.
+        CameraError: No interface can be searched.
         ConfigError: lxml is not installed.
     """
     _import_parser()
@@ -73,14 +73,14 @@ async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port:
     failure = "there is none"
     for interface in tuple(interfaces) or local_addresses():
         try:
-            asker = _open(interface)
+            udp_socket = _open(interface)
         except OSError as error:
             failure = error.strerror or str(error)
             continue
-        transport, _ = await loop.create_datagram_endpoint(lambda: _Collector(found), sock=asker)
+        transport, _ = await loop.create_datagram_endpoint(lambda: _Collector(found), sock=udp_socket)
         transports.append(transport)
     if not transports:
-        raise CameraError(f"No network interface can be asked for cameras: {failure}.")
+        raise CameraError(f"No network interface can be searched for cameras: {failure}.")
     try:
         for _ in range(2):  # datagrams get lost
             for transport in transports:
@@ -93,18 +93,18 @@ async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port:
 
 
 def local_addresses() -> tuple[str, ...]:
-    """Return IPv4 addresses of this machine: those of its name, the one of the default route, and loopback."""
+    """Return IPv4 addresses of this machine: those that its host name resolves to, that of the default route, and loopback."""
     found = {"127.0.0.1"}
-    with suppress(OSError):  # a machine that does not know its own name
+    with suppress(OSError):  # the machine's own name cannot be resolved
         found.update(str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET))
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asker, suppress(OSError):  # there may be no route
-        asker.connect((GROUP, PORT))  # sends nothing: it only asks the routing table
-        found.add(str(asker.getsockname()[0]))
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp_socket, suppress(OSError):  # there may be no route
+        udp_socket.connect((GROUP, PORT))  # this sends nothing; it only consults the routing table
+        found.add(str(udp_socket.getsockname()[0]))
     return tuple(sorted(found - {"0.0.0.0"}))  # noqa: S104 - compared, not bound to
 
 
 def parse_match(data: bytes, sender: str) -> list[FoundDevice]:
-    """Return the devices of an answer; none if it is anything else.
+    """Return the devices of an answer; none if the datagram is not an answer.
 
     Args:
         data: The datagram.
@@ -121,10 +121,10 @@ def parse_match(data: bytes, sender: str) -> list[FoundDevice]:
         return []
     found = []
     for each in root.iterfind(f".//{{{_DISCOVERY}}}ProbeMatch"):
-        places = [place for text in (each.findtext(f"{{{_DISCOVERY}}}XAddrs") or "").split() if (place := _place(text))]
+        places = [place for text in (each.findtext(f"{{{_DISCOVERY}}}XAddrs") or "").split() if (place := _parse_address(text))]
         if not places:
             continue
-        # Of several addresses, the one that the answer came from can be reached from here.
+        # If there are several addresses, choose the one that the answer came from, because it can be reached.
         host, port, tls = next((place for place in places if place[0] == sender), places[0])
         scopes = (each.findtext(f"{{{_DISCOVERY}}}Scopes") or "").split()
         standard = 443 if tls else 80
@@ -146,27 +146,29 @@ class _Collector(asyncio.DatagramProtocol):
                 self._found.setdefault(device.address, device)
 
     def error_received(self, error: Exception) -> None:
-        """Ignore what a router says about a datagram: nobody has to answer."""
+        """Ignore errors that routers report, because no answer is required."""
 
 
 def _open(interface: str) -> socket.socket:
     try:
         number = socket.inet_aton(interface)
     except OSError:
-        raise InputError(f"An interface is named by its IPv4 address, for example 192.168.1.20, got '{interface[:40]}'.") from None
-    asker = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        raise InputError(
+            f"An interface must be given by its IPv4 address, for example 192.168.1.20; got '{interface[:40]}'."
+        ) from None
+    udp_socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        asker.bind((interface, 0))
-        asker.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, number)
-        asker.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 1)
-        asker.setblocking(False)
+        udp_socket.bind((interface, 0))
+        udp_socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, number)
+        udp_socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 1)
+        udp_socket.setblocking(False)
     except OSError:
-        asker.close()
+        udp_socket.close()
         raise
-    return asker
+    return udp_socket
 
 
-def _place(text: str) -> tuple[str, int, bool] | None:
+def _parse_address(text: str) -> tuple[str, int, bool] | None:
     """Return host, port and whether it is HTTPS; None for anything but an HTTP address."""
     try:
         parts = urlsplit(text)
@@ -180,7 +182,7 @@ def _place(text: str) -> tuple[str, int, bool] | None:
 
 
 def _scope(scopes: list[str], kind: str) -> str:
-    """Return what a device says of itself, on one line and without control characters."""
+    """Return a device's description of itself on one line, without control characters."""
     start = f"onvif://www.onvif.org/{kind}/"
     text = next((unquote(scope[len(start) :]) for scope in scopes if scope.lower().startswith(start)), "")
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:60]

@@ -1,4 +1,4 @@
-"""SOAP faults and unreadable replies as camera errors that say what to do."""
+"""Convert SOAP faults and unreadable replies to camera errors with instructions for the user."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.address import DeviceAddress
 
 _SIGN_IN = ("NotAuthorized", "FailedAuthentication", "InvalidSecurity", "FailedCheck")
-_MAX_REASON = 200  # characters of a device's own words in a message
+_MAX_REASON = 200  # maximum number of characters that are quoted from a device's message
 
 
 class OnvifFaultError(CameraError):
@@ -38,9 +38,9 @@ class NotOfferedError(OnvifFaultError):
 
 @contextmanager
 def soap_errors(address: DeviceAddress, operation: str) -> Iterator[None]:
-    """Return a context that turns what zeep and the ONVIF client raise into camera errors.
+    """Return a context that converts errors of zeep and the ONVIF client to camera errors.
 
-    The original error is dropped, since it may carry the message with its password digest.
+    The original error is dropped, because it may contain the message with its password digest.
     """
     from onvif.exceptions import ONVIFError
     from zeep.exceptions import Error as ZeepError
@@ -85,6 +85,6 @@ def _codes(fault: Any) -> tuple[str, ...]:
 
 
 def _plain(text: object) -> str:
-    """Return one short printable line of what a device says."""
+    """Return a device's message as one short printable line."""
     line = " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())
     return line[:_MAX_REASON].rstrip(".")

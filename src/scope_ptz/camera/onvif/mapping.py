@@ -1,4 +1,4 @@
-"""What ONVIF does not state and a driver must know: degrees of generic spaces, fields of view, and speeds."""
+"""Values that ONVIF does not report but a driver needs: degrees of generic spaces, fields of view, and speeds."""
 
 from __future__ import annotations
 
@@ -11,16 +11,19 @@ from scope_ptz.geometry import AXIS_M5075_G, Optics
 
 ASSUMED_PAN_DEG = (-180.0, 180.0)
 ASSUMED_TILT_DEG = (-90.0, 90.0)
-"""The angles that most devices mean by the ends of the generic space. A driver uses them only to measure the real ones."""
+"""The angles that the ends of the generic space mean on most devices. A driver uses them only to measure the actual angles."""
 
 ASSUMED_FIELDS_DEG = (60.0, 6.0)
 ASSUMED_SPEED = Velocity(60.0, 60.0, 0.5)
-"""Top speeds of a device that nobody has measured. Wrong ones make a drive slower or faster, and stops do not depend on them."""
+"""Assumed top speeds of a device without measured ones.
+
+If they are wrong, continuous moves are slower or faster; stops do not depend on them.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class OnvifMapping:
-    """Numbers that were configured or measured. None means unknown.
+    """Configured or measured values. None means unknown.
 
     Attributes:
         pan_deg: Pan in degrees at the low and the high end of the generic space.
@@ -37,7 +40,7 @@ class OnvifMapping:
     top_speed: Velocity | None = None
 
     def over(self, other: OnvifMapping) -> OnvifMapping:
-        """Return this mapping, with numbers of another one where it has none."""
+        """Return this mapping, with missing values taken from another one."""
         return OnvifMapping(
             self.pan_deg or other.pan_deg,
             self.tilt_deg or other.tilt_deg,
@@ -48,7 +51,7 @@ class OnvifMapping:
 
 
 def known_mapping(model: str) -> OnvifMapping:
-    """Return what is known about a model from its data sheet; nothing for most."""
+    """Return the data sheet values of a model; an empty mapping for most models."""
     return _KNOWN.get(model.strip().upper().removeprefix("AXIS ").strip(), OnvifMapping())
 
 
@@ -56,7 +59,7 @@ def zoom_rows(fields: tuple[tuple[float, float], ...], zoom_max: float | None) -
     """Return rows of (share of the zoom range, magnification, field of view).
 
     Without a rated magnification it is the ratio of the focal lengths, so the widest zoom is 1. With it, magnification is
-    linear in the zoom range, which is how devices with a rated zoom count.
+    linear in the zoom range, as on devices with a rated zoom.
     """
     first = math.tan(math.radians(fields[0][1]) / 2)
     return tuple(

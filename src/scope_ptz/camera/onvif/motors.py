@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Awaitable, Callable
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from scope_ptz.geometry import Pose, wrap_pan_deg
 if TYPE_CHECKING:
     from scope_ptz.camera.onvif.client import OnvifClient
     from scope_ptz.camera.onvif.device import OnvifDevice
-    from scope_ptz.camera.onvif.spaces import StatedSpace
+    from scope_ptz.camera.onvif.spaces import Ends, StatedSpace
 
 
 class OnvifMotors:
@@ -21,7 +22,7 @@ class OnvifMotors:
 
     Args:
         client: The connection.
-        device: What the device is and can do.
+        device: The device's properties and capabilities.
     """
 
     def __init__(self, client: OnvifClient, device: OnvifDevice) -> None:
@@ -29,7 +30,7 @@ class OnvifMotors:
         self._sends_timeout = True
 
     async def pose(self) -> Pose:
-        """Read the position. The device's own word on whether it moves is not asked for: too many devices lie.
+        """Read the position. The device's move status is not used, because it is wrong on too many devices.
 
         Raises:
             CameraReplyError: The device does not report its position.
@@ -39,7 +40,7 @@ class OnvifMotors:
         pan_tilt = getattr(position, "PanTilt", None)
         if pan_tilt is None or pan_tilt.x is None or pan_tilt.y is None:
             raise CameraReplyError(
-                f"The camera at {self._client.address} does not report its position, so no move can be checked. "
+                f"The camera at {self._client.address} does not report its position, so SCOPE cannot check moves. "
                 "A newer firmware may help."
             )
         space = self._device.reports_in.get(str(pan_tilt.space or "")) or self._device.reports_in[""]
@@ -62,8 +63,36 @@ class OnvifMotors:
             position["Zoom"] = {"x": zoom.to_units(pose.zoom), "space": zoom.uri}
         await self._client.call("ptz", "AbsoluteMove", ProfileToken=self._device.ptz_profile, Position=position)
 
+    def centring(self, here: Pose, target: Pose, x: float, y: float) -> Callable[[], Awaitable[None]] | None:
+        """Return the command that centres a point of the picture by a relative move in shares of the picture.
+
+        Args:
+            here: The pose now.
+            target: The pose that the command leads to; its zoom is used.
+            x: The point from 0 (left border) to 1 (right border).
+            y: The point from 0 (top) to 1 (bottom).
+
+        Returns:
+            None if the device has no such moves, or if a zoom is requested that they cannot include.
+        """
+        device, space = self._device, self._device.fov_translation
+        if space is None or space.y is None:
+            return None
+        turn = {"x": _at(x, space.x), "y": _at(1.0 - y, space.y), "space": space.uri}
+        translation: dict[str, Any] = {"PanTilt": turn}
+        if not math.isclose(here.zoom, target.zoom, rel_tol=1e-6):
+            if device.zoom_translation is None:
+                return None
+            units = device.zoom.to_units(target.zoom) - device.zoom.to_units(here.zoom)
+            translation["Zoom"] = {"x": units, "space": device.zoom_translation.uri}
+
+        async def send() -> None:
+            await self._client.call("ptz", "RelativeMove", ProfileToken=device.ptz_profile, Translation=translation)
+
+        return send
+
     async def drive(self, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
-        """Move at velocities. The device is asked to stop by itself; one that refuses timeouts is driven without."""
+        """Move at velocities. The request contains a timeout unless the device refuses timeouts."""
         top, velocity = self._device.capabilities.top_speed, {}
         if self._device.velocity is not None:
             space = self._device.velocity
@@ -98,10 +127,18 @@ class OnvifMotors:
         await self._client.call("ptz", "GotoHomePosition", ProfileToken=self._device.ptz_profile)
 
 
+def _at(share: float, ends: Ends) -> float:
+    """Return the number at a share of a range."""
+    return ends[0] + share * (ends[1] - ends[0])
+
+
 def _speed(
     value: float, top: float, space: StatedSpace, counts: tuple[float, float] = (0.0, 1.0), *, axis: str = "x"
 ) -> float:  # fmt: skip
-    """Return a velocity in a generic space, whose ends are the top speeds. An axis that counts the other way is turned round."""
+    """Return a velocity in a generic space, whose ends are the top speeds.
+
+    The sign of an axis that counts in the opposite direction is inverted.
+    """
     if not value or not top:
         return 0.0
     low, high = space.y if axis == "y" and space.y is not None else space.x

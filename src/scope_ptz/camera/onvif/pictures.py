@@ -1,8 +1,7 @@
-"""Pictures of an ONVIF camera: snapshots by HTTP, or frames of its RTSP stream where it has none."""
+"""Pictures of an ONVIF camera: snapshots over HTTP, or frames of its RTSP stream if it has no snapshots."""
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
 from time import monotonic
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -13,7 +12,8 @@ from scope_ptz.camera.network.device_pictures import DevicePictures
 from scope_ptz.camera.network.errors import CameraReplyError, PictureError
 from scope_ptz.camera.network.pictures import decode_jpeg
 from scope_ptz.camera.network.rtsp import RtspStream
-from scope_ptz.camera.network.streams import LivePicture, LiveStream
+from scope_ptz.camera.network.scaled_streams import ScaledStream, SnapshotStream, scaled
+from scope_ptz.camera.network.streams import LiveStream
 from scope_ptz.camera.onvif.faults import OnvifFaultError
 from scope_ptz.camera.onvif.transport import pinned_path
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.onvif.device import OnvifDevice
 
 OnvifStream = Literal["rtsp", "snapshot"]
-"""How live frames are transported: as video, or one snapshot after the other."""
+"""The transport of live frames: video, or a sequence of snapshots."""
 
 _SETUP = {"Stream": "RTP-Unicast", "Transport": {"Protocol": "RTSP"}}
 
@@ -40,7 +40,7 @@ class OnvifPictures(DevicePictures):
         credentials: The account, for RTSP.
         snapshot_path: Path and query of a snapshot; "" if the device has none.
         stream_url: Address of the RTSP stream without credentials; "" if the device has none.
-        native: Width and height of a snapshot (of the stream, without snapshots) in pixels.
+        native: Width and height in pixels of a snapshot, or of the stream if there are no snapshots.
         stream_size: Width and height of the stream in pixels.
         width: Width of a frame in pixels; pictures are scaled to it.
         height: Height of a frame in pixels.
@@ -73,7 +73,7 @@ class OnvifPictures(DevicePictures):
             return await self._from_video()
         body = (await self._http.get(self.snapshot_path)).body
         image = await to_thread.run_sync(lambda: decode_jpeg(body, width=self._native[0], height=self._native[1]))
-        return body, _scaled(image, width, height)
+        return body, scaled(image, width, height)
 
     def open_stream(self, rate_hz: float) -> LiveStream:  # noqa: ARG002 - the device decides
         if self._stream_kind == "snapshot" or not self.stream_url:
@@ -81,7 +81,7 @@ class OnvifPictures(DevicePictures):
         return ScaledStream(self._open_video(), self.width, self.height)
 
     async def close(self) -> None:
-        """Close the stream that stands in for snapshots."""
+        """Close the stream that is used instead of snapshots."""
         if self._video is not None:
             await self._video.close()
             self._video = None
@@ -99,43 +99,11 @@ class OnvifPictures(DevicePictures):
                     await self.close()
                 raise
             if picture.arrived_s - self._latency_s >= asked_s:
-                return picture.data, _scaled(picture.image, self.width, self.height)
+                return picture.data, scaled(picture.image, self.width, self.height)
 
     def _open_video(self) -> LiveStream:
         width, height = self._stream_size
         return RtspStream(self.stream_url, self._credentials, width=width, height=height)
-
-
-class SnapshotStream(LiveStream):
-    """One snapshot after the other.
-
-    Args:
-        take: Takes a snapshot.
-    """
-
-    def __init__(self, take: Callable[[], Awaitable[tuple[bytes, NDArray[np.uint8]]]]) -> None:
-        self._take = take
-
-    async def next(self) -> LivePicture:
-        data, image = await self._take()
-        return LivePicture(image, data, monotonic())
-
-    async def close(self) -> None:
-        """Nothing is open between two snapshots."""
-
-
-class ScaledStream(LiveStream):
-    """A stream whose pictures are scaled to the size of frames."""
-
-    def __init__(self, stream: LiveStream, width: int, height: int) -> None:
-        self._stream, self._width, self._height = stream, width, height
-
-    async def next(self) -> LivePicture:
-        picture = await self._stream.next()
-        return LivePicture(_scaled(picture.image, self._width, self._height), picture.data, picture.arrived_s)
-
-    async def close(self) -> None:
-        await self._stream.close()
 
 
 async def open_pictures(
@@ -149,7 +117,7 @@ async def open_pictures(
     rtsp_port: int | None,
     latency_s: float,
 ) -> OnvifPictures:
-    """Ask a device where its pictures are. Addresses that point to another host are rewritten to the configured one.
+    """Read the picture addresses of a device. Addresses that point to another host are rewritten to the configured one.
 
     Args:
         client: The connection.
@@ -158,11 +126,11 @@ async def open_pictures(
         width: Width of a frame in pixels; None for that of the device's pictures.
         height: Height of a frame in pixels; None for that of the device's pictures.
         stream: How live frames are transported.
-        rtsp_port: Port of the RTSP server in place of the one that the device states.
+        rtsp_port: Port of the RTSP server, instead of the one that the device reports.
         latency_s: Seconds from the exposure of a streamed frame to its arrival.
 
     Raises:
-        CameraError: The device has no pictures.
+        CameraError: The device offers no pictures.
     """
     token, stream_size = device.picture_profile, (device.width, device.height)
     uri = await _uri(client, "GetSnapshotUri", ProfileToken=token)
@@ -170,7 +138,9 @@ async def open_pictures(
     stream_uri = await _uri(client, "GetStreamUri", StreamSetup=_SETUP, ProfileToken=token)
     stream_url = _with_port(client.address.pin_rtsp(stream_uri), rtsp_port) if stream_uri else ""
     if not snapshot_path and not stream_url:
-        raise CameraReplyError(f"The camera at {client.address} states neither a snapshot nor a stream. Check its video settings.")
+        raise CameraReplyError(
+            f"The camera at {client.address} reports neither a snapshot nor a stream address. Check its video settings."
+        )
     native = stream_size
     if snapshot_path:
         native = await _snapshot_size(client, snapshot_path)
@@ -182,7 +152,7 @@ async def open_pictures(
 
 
 async def _uri(client: OnvifClient, operation: str, **arguments: Any) -> str:
-    """Return an address that the device states, "" if it has none."""
+    """Return an address that the device reports; "" if it has none."""
     try:
         reply = await client.call("media", operation, **arguments)
     except (OnvifFaultError, CameraReplyError):
@@ -209,7 +179,7 @@ def _frame_size(native: tuple[int, int], width: int | None, height: int | None) 
     height = height or round(width * native[1] / native[0])
     if abs(width * native[1] - height * native[0]) > max(native):
         raise PictureError(
-            f"The camera's pictures have {native[0]}x{native[1]} pixels, which is another shape than {width}x{height}. "
+            f"The camera's pictures have {native[0]}x{native[1]} pixels, whose aspect ratio differs from {width}x{height}. "
             "Leave ?height=... out.",
             "size",
         )
@@ -221,18 +191,3 @@ def _with_port(url: str, port: int | None) -> str:
 
     parts = urlsplit(url)
     return url if port is None else urlunsplit(parts._replace(netloc=f"{parts.netloc.rpartition(':')[0]}:{port}"))
-
-
-def _scaled(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
-    import cv2
-    import numpy as np
-
-    if image.shape[1::-1] == (width, height):
-        return image
-    if abs(image.shape[1] * height - image.shape[0] * width) > max(image.shape):
-        raise PictureError(
-            f"The stream has {image.shape[1]}x{image.shape[0]} pixels, which is another shape than {width}x{height}. "
-            "Change the stream's size in the camera, or use ?stream=snapshot.",
-            "size",
-        )
-    return np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)

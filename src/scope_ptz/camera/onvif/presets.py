@@ -1,4 +1,4 @@
-"""Presets of an ONVIF device by name. The device addresses them by token, and some break the encoding of names."""
+"""Presets of an ONVIF device by name. The device addresses them by token, and some devices break the encoding of names."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 MAX_PRESETS = 512
-"""Presets that are read. Some devices list hundreds of empty ones."""
+"""Maximum number of presets that are read. Some devices list hundreds of empty ones."""
 
 SAVE_TRIES = 10
-"""How often a preset is saved again while the device says that it still moves."""
+"""Number of times that saving a preset is retried while the device reports that it still moves."""
 
 
 class OnvifPresets:
@@ -76,7 +76,9 @@ class OnvifPresets:
                     raise
                 await anyio.sleep(0.1)
         if name not in await self.tokens():
-            raise CameraError(f"The camera at {self._client.address} did not save the preset. Its account may lack the right.")
+            raise CameraError(
+                f"The camera at {self._client.address} did not save the preset. The account may lack the right to save presets."
+            )
 
     async def remove(self, name: str) -> None:
         """Remove a preset.
@@ -87,13 +89,13 @@ class OnvifPresets:
         await self._client.call("ptz", "RemovePreset", ProfileToken=self._profile, PresetToken=await self.token(name))
 
     async def go_to(self, token: str) -> None:
-        """Start towards a preset. No speed is sent, since some devices refuse a preset with one."""
+        """Start towards a preset. No speed is sent, because some devices refuse it."""
         await self._client.call("ptz", "GotoPreset", ProfileToken=self._profile, PresetToken=token)
 
 
 def readable_name(name: object) -> str:
-    """Return a preset's name without what cannot be printed. UTF-8 that was read as Latin-1 is repaired."""
+    """Return a preset's name without non-printable characters. UTF-8 that was read as Latin-1 is repaired."""
     text = str(name or "")
-    with suppress(UnicodeError):  # it is right already, or beyond repair
+    with suppress(UnicodeError):  # it is already correct, or cannot be repaired
         text = text.encode("latin-1").decode("utf-8")
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:60]

@@ -17,13 +17,16 @@ VELOCITY = _PAN_TILT + "VelocityGenericSpace"
 ZOOM_GENERIC = _ZOOM + "PositionGenericSpace"
 ZOOM_VELOCITY = _ZOOM + "VelocityGenericSpace"
 
+TRANSLATION_FOV = _PAN_TILT + "TranslationSpaceFov"
+ZOOM_TRANSLATION = _ZOOM + "TranslationGenericSpace"
+
 Ends = tuple[float, float]
 """The two ends of a range."""
 
 
 @dataclass(frozen=True, slots=True)
 class StatedSpace:
-    """A space as the device states it. A space of one dimension has no ``y``."""
+    """A space as the device reports it. A one-dimensional space has no ``y``."""
 
     uri: str
     x: Ends
@@ -36,7 +39,7 @@ class LinearScale:
 
     Attributes:
         units: The ends of the device's range, rising.
-        values: The values at these ends; they fall if the device counts the other way round.
+        values: The values at these ends; they are in falling order if the device counts in the opposite direction.
     """
 
     units: Ends
@@ -104,16 +107,17 @@ class ZoomSpace:
 
 
 def stated_spaces(described: Any) -> tuple[StatedSpace, ...]:
-    """Return the usable spaces of a list in a reply. A range without extent, which some devices state, is left out."""
+    """Return the usable spaces of a list in a reply. Empty ranges, which some devices report, are left out."""
     found = []
     for each in described or ():
-        x, y = _ends(each.XRange), _ends(getattr(each, "YRange", None))
+        x, y = ends_of(each.XRange), ends_of(getattr(each, "YRange", None))
         if each.URI and x is not None and (getattr(each, "YRange", None) is None or y is not None):
             found.append(StatedSpace(str(each.URI), x, y))
     return tuple(found)
 
 
-def _ends(described: Any) -> Ends | None:
+def ends_of(described: Any) -> Ends | None:
+    """Return the ends of a range in a reply; None if the range is empty."""
     if described is None or described.Min is None or described.Max is None:
         return None
     low, high = float(described.Min), float(described.Max)

@@ -1,4 +1,4 @@
-"""How SOAP messages reach the device: through the pinned HTTP client, whatever addresses the device states."""
+"""Send SOAP messages through the pinned HTTP client, regardless of the addresses that the device reports."""
 
 from __future__ import annotations
 
@@ -18,10 +18,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 FAULT_STATUSES = (400, 403, 500)
-"""Statuses of replies whose body is a SOAP fault, which says more than the status."""
-
-_ADDS_UP = ("ContinuousMove", "RelativeMove", "SetPreset", "RemovePreset")
-"""Commands that are not sent again after a lost connection."""
+"""HTTP statuses of replies whose body is a SOAP fault, which is more specific than the status."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,23 +44,21 @@ class PinnedTransport:
         self._http = http
 
     async def post_xml(self, address: str, envelope: Any, headers: Mapping[str, str]) -> SoapReply:
-        """Send a message and return the reply.
+        """Send a message once and return the reply. Its login can be used only once, so a retry needs a new message.
 
         Raises:
             CameraError: One of the errors of ``camera.network.errors``.
         """
         content = to_bytes(envelope)
-        reply = await self._http.post(
-            pinned_path(self._http, address), content, headers, repeat=not _adds_up(envelope), accept=FAULT_STATUSES
-        )
+        reply = await self._http.post(pinned_path(self._http, address), content, headers, repeat=False, accept=FAULT_STATUSES)
         return SoapReply(reply.status, _readable(reply.body), {"Content-Type": reply.content_type or "text/xml"})
 
     async def aclose(self) -> None:
-        """Do nothing: the HTTP client belongs to the camera."""
+        """Do nothing, because the camera closes the HTTP client."""
 
 
 def pinned_path(http: DeviceHttp, address: str) -> str:
-    """Return path and query of an address that the device stated, rewritten to the configured host.
+    """Return path and query of an address that the device reported, rewritten to the configured host.
 
     Raises:
         ForeignAddressError: It is not an HTTP address.
@@ -73,14 +68,14 @@ def pinned_path(http: DeviceHttp, address: str) -> str:
 
 
 def to_bytes(envelope: Any) -> bytes:
-    """Return a message as it is sent."""
+    """Serialise a message."""
     from lxml import etree
 
     return bytes(etree.tostring(envelope, xml_declaration=True, encoding="utf-8"))
 
 
 def import_onvif() -> Any:
-    """Import ``onvif-zeep-async``, and undo what its import does to logging.
+    """Import ``onvif-zeep-async``, and undo the changes that its import makes to logging.
 
     Raises:
         ConfigError: It is not installed.
@@ -107,18 +102,12 @@ def _unchanged_logging() -> Iterator[None]:
 
 @contextmanager
 def unchanged_proxies() -> Iterator[None]:
-    """Return a context that restores the variables of the environment that the ONVIF client deletes: others use them."""
+    """Return a context that restores the environment variables that the ONVIF client deletes, because other code uses them."""
     kept = {name: os.environ[name] for name in ("http_proxy", "https_proxy") if name in os.environ}
     try:
         yield
     finally:
         os.environ.update(kept)
-
-
-def _adds_up(envelope: Any) -> bool:
-    body = envelope.find("{*}Body")
-    first = next(iter(body), None) if body is not None else None
-    return first is not None and str(first.tag).rpartition("}")[2] in _ADDS_UP
 
 
 def _readable(body: bytes) -> bytes:

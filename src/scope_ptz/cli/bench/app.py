@@ -8,6 +8,7 @@ from scope_ptz.cli.bench import HELP
 from scope_ptz.cli.bench.audit import audit_app
 from scope_ptz.cli.bench.browse import browse
 from scope_ptz.cli.bench.build import build, card, gold_app, validate
+from scope_ptz.cli.bench.drafts import drafts
 from scope_ptz.cli.bench.generate import generate, import_tasks
 from scope_ptz.cli.bench.human import human
 from scope_ptz.cli.bench.judge import agree, judge_gold, rescore
@@ -48,6 +49,7 @@ for panel, name, function in (
     (SCORES, "judge-gold", judge_gold),
     (TASKS, "build", build),
     (TASKS, "generate", generate),
+    (TASKS, "drafts", drafts),
     (TASKS, "import", import_tasks),
     (TASKS, "validate", validate),
     (TASKS, "card", card),

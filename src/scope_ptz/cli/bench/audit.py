@@ -55,7 +55,7 @@ def audit_make(
     try:
         out.mkdir(parents=True)
     except FileExistsError as error:
-        raise OutputError(f"{out} exists already. Name a new folder with --out.") from error
+        raise OutputError(f"{out} already exists. Specify a new folder with --out.") from error
     except OSError as error:
         raise OutputError(f"{out} cannot be created: {error.strerror}.") from error
     questions = [anyio.run(write_question, q, task, runners[task.world], out, print_error) for q, task in chosen]
@@ -89,8 +89,8 @@ def audit_score(
     if as_json:
         put_json(audit.as_dict())
         return
-    right, of = audit.share()
-    put(f"{right} of {of} answers agree")
+    agreeing, total = audit.share()
+    put(f"{agreeing} of {total} answers agree")
     for row in audit.rows:
         if row.outcome != "agrees":
             put(f"{row.q} {row.task} {row.outcome}: {row.instruction!r}")

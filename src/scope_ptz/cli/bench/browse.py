@@ -59,18 +59,18 @@ def _tasks(name: str) -> tuple[Task, ...]:
 
 
 def _matching(tasks: tuple[Task, ...], category: str, scene: str) -> list[Task]:
-    found = [row for row in tasks if category in ("", row.category) and scene in ("", row.scene, row.world)]
-    if not found:
-        raise InputError("No task matches. Leave out --category or --scene, or name other tasks with --tasks.")
-    return found
+    matches = [row for row in tasks if category in ("", row.category) and scene in ("", row.scene, row.world)]
+    if not matches:
+        raise InputError("No task matches. Remove --category or --scene, or select other tasks with --tasks.")
+    return matches
 
 
 def _with_id(tasks: list[Task], name: str) -> Task:
     exact = [row for row in tasks if row.id == name]
-    found = exact or [row for row in tasks if row.id.endswith(f"-{name}")]
-    if not found:
+    matches = exact or [row for row in tasks if row.id.endswith(f"-{name}")]
+    if not matches:
         raise InputError(f"There is no task '{name}'. List them with 'scope bench browse --category counting'.")
-    if len(found) > 1:
-        names = ", ".join(row.id for row in found[:MAX_AMBIGUOUS_LISTED])
+    if len(matches) > 1:
+        names = ", ".join(row.id for row in matches[:MAX_AMBIGUOUS_LISTED])
         raise InputError(f"Several tasks end with '{name}': {names}. Give a full id.")
-    return found[0]
+    return matches[0]

@@ -27,22 +27,25 @@ def build(
     out: Annotated[Path, typer.Option("--out", help="File for the tasks (JSONL); with --all, a folder.")],
     further: Annotated[list[int] | None, typer.Argument(hidden=True, metavar="")] = None,
     scene: SceneNames = None,
-    seed: Annotated[int, typer.Option(help="Seed; another seed gives another dataset of the same scenes.")] = 1,
+    seed: Annotated[
+        int, typer.Option(help="Seed for every random choice; a different seed gives a different dataset of the same scenes.")
+    ] = 1,
     share: Annotated[float, typer.Option(min=0.02, max=1.0, help="Share of the published number of tasks to make.")] = 1.0,
     seeds: Annotated[
-        list[int] | None, typer.Option("--seeds", min=1, help="Numbers of the scene variations, for example 7 8 9.")
+        list[int] | None,
+        typer.Option("--seeds", min=1, help="Numbers of scene variations to use instead of the scenes, for example 7 8 9."),
     ] = None,
     whole: Annotated[
         bool, typer.Option("--all", help="Make the whole dataset: every split, its validation and the gold runs.")
     ] = False,
     card: Annotated[Path | None, typer.Option("--card", help="With --all: file for the dataset card (Markdown).")] = None,
 ) -> int:
-    """Make tasks from the ground truth of scenes. Exit code 1 if the scenes do not yield enough tasks."""
+    """Make tasks from the ground truth of scenes. The exit code is 1 if the scenes do not yield enough tasks."""
     from scope_ptz.bench.tasks.files import dump_tasks
     from scope_ptz.factory.validation_perception import is_answerable
     from scope_ptz.factory.worlds import scenes_named
     from scope_ptz.taskgen.authoring.assembly import build as build_tasks
-    from scope_ptz.taskgen.dataset.build import shortfall
+    from scope_ptz.taskgen.dataset.build import missing_tasks_message
     from scope_ptz.taskgen.dataset.unseen import build_unseen
 
     numbers = variation_numbers(seeds, further)
@@ -59,7 +62,7 @@ def build(
     out.parent.mkdir(parents=True, exist_ok=True)
     dump_tasks(built.tasks, out)
     put(f"{len(built.tasks)} tasks in {out}")
-    if missing := shortfall(built):
+    if missing := missing_tasks_message(built):
         print_error(missing)
         return FAILED
     return 0
@@ -73,19 +76,19 @@ def _build_all(
     from scope_ptz.factory.worlds import scenes_named
     from scope_ptz.taskgen.dataset.build import build_dataset
 
-    good = build_dataset(
+    is_valid = build_dataset(
         scenes_named(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
         report=put, notify=print_error,
     )  # fmt: skip
     if card is not None:
         write_card(out, card)
-    return 0 if good else FAILED
+    return 0 if is_valid else FAILED
 
 
 def variation_numbers(seeds: list[int] | None, further: list[int] | None) -> tuple[int, ...]:
-    """Return the numbers given after ``--seeds``, which need not be repeated for each number. Raises ``InputError``."""
+    """Return the numbers given after ``--seeds``. The option need not be repeated for each number. Raises ``InputError``."""
     if further and not seeds:
-        raise InputError(f"'{further[0]}' belongs to no option. Give the numbers of scene variations after --seeds.")
+        raise InputError(f"Unexpected argument '{further[0]}'. Give the numbers of scene variations after --seeds.")
     numbers = (*(seeds or ()), *(further or ()))
     if any(not 1 <= number < 10**9 for number in numbers):
         raise InputError("The numbers of scene variations must be whole numbers from 1 to 999999999.")
@@ -131,9 +134,9 @@ def write_card(folder: Path, out: Path) -> None:
 def validate(
     tasks: TasksOption = "all",
     as_json: JsonOption = False,
-    seed: Annotated[int, typer.Option(help="Seed for the wrong answers.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed for choosing the wrong answers.")] = 1,
 ) -> int:
-    """Validate tasks: correct programs and answers must pass, and adversarial ones must fail. Exit code 1 on any failure."""
+    """Validate tasks: correct programs and answers must pass, and adversarial ones must fail. The exit code is 1 on any failure."""
     from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.factory.task_validation import validate_tasks
     from scope_ptz.taskgen.validation.report_text import report_lines
@@ -179,7 +182,7 @@ def gold_check(
 ) -> int:
     """Apply the error-mode rules to gold runs, and compare the result with the published one.
 
-    Exit code 1 if they name fewer faults or accept more faulty runs than published.
+    The exit code is 1 if the rules name fewer faults, or accept more faulty runs, than the published result.
     """
     from scope_ptz.bench.tasks.splits import load_split, published_folder
     from scope_ptz.taskgen.gold.gold_runs import confusion_matrix, read_gold
@@ -193,7 +196,8 @@ def gold_check(
     else:
         for line in matrix_lines(runs):
             put(line)
-        put(f"published: {published['named']} named, {published['accepted']} accepted; {'WORSE' if worse else 'not worse'} now")
+        verdict = "WORSE" if worse else "not worse"
+        put(f"published: {published['named']} named, {published['accepted']} accepted; this result is {verdict}")
     return FAILED if worse else 0
 
 

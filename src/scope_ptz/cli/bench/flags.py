@@ -14,7 +14,8 @@ from scope_ptz.errors import InputError
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.estimate import Price
     from scope_ptz.bench.tasks.task import Task
-    from scope_ptz.factory.evaluation_options import JudgeSettings
+    from scope_ptz.factory.evaluation_options import EvaluationOptions, JudgeSettings
+    from scope_ptz.factory.models import ModelOptions
 
 TASKS_PANEL = "Tasks"
 DEFAULT_LOG_FOLDER = Path("evaluations")
@@ -66,7 +67,7 @@ class EvaluationFlags:
             "--concurrency",
             min=1,
             max=256,
-            help="Number of runs at a time (default: 8 with model servers, else 1).",
+            help="Number of runs at a time (default: 8 with model servers, otherwise 1).",
             rich_help_panel=RUN_PANEL,
         ),
     ] = None
@@ -79,20 +80,22 @@ class EvaluationFlags:
     ] = 60
     time_budget: Annotated[
         float | None,
-        typer.Option("--time-budget", min=1, help="Maximum seconds of a run (default: no limit).", rich_help_panel=RUN_PANEL),
+        typer.Option(
+            "--time-budget", min=1, help="Maximum duration of a run in seconds (default: no limit).", rich_help_panel=RUN_PANEL
+        ),
     ] = None
     out: Annotated[Path, typer.Option("--out", help="Folder for logs.", rich_help_panel=RUN_PANEL)] = DEFAULT_LOG_FOLDER
 
 
 @dataclass(frozen=True, kw_only=True)
 class SingleRunFlags(EvaluationFlags):
-    """Options of a single evaluation, which a sweep over several pairs does not have."""
+    """Options of a single evaluation, including those that a sweep over several pairs does not have."""
 
     pictures: Annotated[
         bool,
         typer.Option(
             "--pictures/--no-pictures",
-            help="Render frames and log them. Ground-truth perception needs none.",
+            help="Render frames and log them. Ground-truth perception needs no frames.",
             rich_help_panel=RUN_PANEL,
         ),
     ] = True
@@ -123,15 +126,44 @@ class SingleRunFlags(EvaluationFlags):
             rich_help_panel=RUN_PANEL,
         ),
     ] = None
+    progress: Annotated[
+        Path | None,
+        typer.Option(
+            "--progress",
+            metavar="FOLDER",
+            help="Folder for files with the progress, for programs that follow the evaluation.",
+            rich_help_panel=RUN_PANEL,
+        ),
+    ] = None
     agent: Annotated[
         str,
         typer.Option(
             "--agent",
             metavar="MODULE:CLASS",
-            help="External agent in place of the built-in loop; see docs/evaluation.md.",
+            help="External agent to run instead of the built-in loop; see docs/evaluation.md.",
             rich_help_panel="Models",
         ),
     ] = "scope"
+
+
+def evaluation_options(selection: SelectionFlags, running: EvaluationFlags, models: ModelOptions) -> EvaluationOptions:
+    """Return the evaluation options that every command that evaluates has in common."""
+    from scope_ptz.factory.evaluation_options import EvaluationOptions
+
+    return EvaluationOptions(
+        models=models,
+        out=running.out,
+        tasks=selection.split,
+        categories=tuple(selection.category or ()),
+        scenes=tuple(selection.scene or ()),
+        limit=selection.limit,
+        epochs=selection.epochs,
+        seed=running.seed,
+        max_steps=running.max_steps,
+        time_s=running.time_budget,
+        concurrency=running.concurrency,
+        latency=running.latency,
+    )
 
 
 def judge_settings(flags: JudgeFlags, repeats: int = 1) -> JudgeSettings:
@@ -155,27 +187,27 @@ def price_of(text: str | None) -> Price | None:
     from scope_ptz.bench.engine.estimate import Price
 
     try:
-        given = [float(part) for part in text.split(",")]
+        amounts = [float(part) for part in text.split(",")]
     except ValueError:
-        given = []
-    if len(given) != 2 or min(given) < 0:
+        amounts = []
+    if len(amounts) != 2 or min(amounts) < 0:
         raise InputError(
-            f"--price needs two amounts, for input and output tokens, in US dollars per million (0.15,0.60), got '{text}'."
+            f"--price must be two amounts, for input and output tokens, in US dollars per million (0.15,0.60); got '{text}'."
         )
-    return Price(*given)
+    return Price(*amounts)
 
 
 def published_tasks() -> list[Task]:
     """Return the tasks of every published split that is installed."""
     from scope_ptz.bench.tasks.splits import load_split
 
-    found: list[Task] = []
+    tasks: list[Task] = []
     for split in ("core", "paraphrase", "reaction", "unseen"):
         try:
-            found += load_split(split)
+            tasks += load_split(split)
         except InputError:
             continue
-    return found
+    return tasks
 
 
 def category_named(name: str) -> str:

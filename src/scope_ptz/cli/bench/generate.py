@@ -51,13 +51,13 @@ def generate(
     import anyio
 
     from scope_ptz.bench.tasks.splits import load_split
-    from scope_ptz.factory.scenes import open_scene
+    from scope_ptz.factory.worlds import scenes_named
     from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
     from scope_ptz.taskgen.generating.drafting_loop import GenerationRequest
     from scope_ptz.taskgen.generating.operator_runs import read_runs
 
     request = GenerationRequest(
-        scene=open_scene(scene),
+        scene=scenes_named([scene])[scene],
         requested=_requested(want or [], number),
         known=load_split(known) if known else (),
         runs=read_runs(runs, feedback),
@@ -74,7 +74,7 @@ def generate(
     put(f"{len(ledger.kept)} tasks accepted of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
     if missing:
         names = ", ".join(f"{n} of {name}" for name, n in missing.items())
-        print_error(f"still missing: {names}. Run the same command again with more --requests.")
+        print_error(f"still missing: {names}. Run the same command again with a higher --requests.")
         return FAILED
     return 0
 
@@ -93,23 +93,26 @@ async def _draft(request: GenerationRequest, ledger: DraftLedger, endpoint: Endp
 
 
 def _requested(want: list[str], number: int) -> dict[Category, int]:
-    """Return the number of tasks of each category: as given, or ``number`` in the published proportions."""
+    """Return the number of tasks of each category: as given in ``want``, or ``number`` in the published proportions."""
     from scope_ptz.taskgen.authoring.assembly import QUOTAS
 
     if not want:
-        shares = sorted(QUOTAS, key=lambda name: -(number * QUOTAS[name] / sum(QUOTAS.values()) % 1))
+        by_remainder = sorted(QUOTAS, key=lambda name: -(number * QUOTAS[name] / sum(QUOTAS.values()) % 1))
         counts = {name: number * QUOTAS[name] // sum(QUOTAS.values()) for name in QUOTAS}
-        for name in shares[: number - sum(counts.values())]:
+        for name in by_remainder[: number - sum(counts.values())]:
             counts[name] += 1
         return {name: n for name, n in counts.items() if n}
-    found: dict[Category, int] = {}
-    for given in want:
-        written, _, count = given.partition("=")
+    counts_by_category: dict[Category, int] = {}
+    for entry in want:
+        written, _, count = entry.partition("=")
         category = next((name for name in QUOTAS if name == written), None)
         if category is None or not count.isdecimal() or not int(count):
-            raise InputError(f"--want {given} is not CATEGORY=N, such as counting=5. The categories are: {', '.join(QUOTAS)}.")
-        found[category] = int(count)
-    return found
+            raise InputError(
+                f"--want must have the form CATEGORY=N, for example counting=5; got '{entry}'. "
+                f"The categories are: {', '.join(QUOTAS)}."
+            )
+        counts_by_category[category] = int(count)
+    return counts_by_category
 
 
 def _endpoint(url: str, key_file: Path | None, timeout_s: float) -> Endpoint:
@@ -161,7 +164,7 @@ def import_tasks(
 ) -> int:
     """Import tasks from a file in the paper's format: map tools, arguments, categories and scenes, and report doubtful rows.
 
-    Exit code 1 if no row can be run.
+    The exit code is 1 if no row can be run.
     """
     from scope_ptz.bench.tasks.imported import dump_imported
     from scope_ptz.taskgen.importing.import_report import import_file, report_lines
@@ -185,7 +188,7 @@ def import_tasks(
         if any(content["map_to_fill"].values()):
             put("Map unknown names of scenes and presets with --map; 'map_to_fill' in the report lists them.")
     if not imported.tasks and not content["rows"]:
-        print_error(f"{file} has a header and no rows: there is nothing to import.")
+        print_error(f"{file} contains a header but no rows, so there is nothing to import.")
     elif not imported.tasks:
         known = ", ".join(sorted(places_in(scenes, mapping).scenes)) or "none"
         print_error(

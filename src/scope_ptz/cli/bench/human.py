@@ -61,10 +61,10 @@ class _Session:
         open_tasks = [task for task in self.tasks if self._trace(task) is None]
         put(f"{len(open_tasks)} of {len(self.tasks)} tasks to do. The camera's pictures are written to files. Commands:\n{HELP}")
         for task in open_tasks[:limit]:
-            left = self._do(task)
-            if left is None:
-                put("recorded")
-            elif left.ends_session:
+            interruption = self._do_task(task)
+            if interruption is None:
+                put("Recorded.")
+            elif interruption.ends_session:
                 break
         self._finish()
 
@@ -81,8 +81,8 @@ class _Session:
             return None
         return trace if trace.ended is not None else None
 
-    def _do(self, task: Task) -> TaskLeftError | None:
-        """Do one task. An unfinished run leaves no folder."""
+    def _do_task(self, task: Task) -> TaskLeftError | None:
+        """Let the person solve one task. The folder of an unfinished run is removed."""
         import anyio
 
         folder = self._folder(task)
@@ -94,42 +94,42 @@ class _Session:
         put(
             f"\n{task.id}\n\n    {task.instruction}\n\n  presets: {', '.join(p.name for p in self.worlds[task.world].file.presets)}"
         )
-        left: TaskLeftError | None = None
+        interruption: TaskLeftError | None = None
         try:
-            left = anyio.run(run_by_person, task, self.worlds[task.world], folder, self.by)
+            interruption = anyio.run(run_by_person, task, self.worlds[task.world], folder, self.by)
         except BaseException:
             shutil.rmtree(folder, ignore_errors=True)
             raise
-        if left is not None:
+        if interruption is not None:
             shutil.rmtree(folder, ignore_errors=True)
-        return left
+        return interruption
 
     def _finish(self) -> None:
         from scope_ptz.bench.human_runs import write_result
 
         result = self._result()
         if not result.trials:
-            put("nothing recorded")
+            put("No run is recorded.")
             return
-        right = sum(trial.headline == "correct" for trial in result.trials)
-        put(f"\n{len(result.trials)} of {result.wanted} tasks done, {right} correct; {write_result(result, self.out)}")
+        correct = sum(trial.headline == "correct" for trial in result.trials)
+        put(f"\n{len(result.trials)} of {result.wanted} tasks done, {correct} correct; {write_result(result, self.out)}")
 
     def _result(self) -> Evaluation:
         from scope_ptz.bench.human_runs import human_run_card, human_trial
         from scope_ptz.bench.scoring.trials import Evaluation
 
-        done = [(task, trace) for task in self.tasks if (trace := self._trace(task)) is not None]
-        started = min((trace.started.started for _, trace in done), default=datetime.now(UTC)).isoformat()
+        finished_runs = [(task, trace) for task in self.tasks if (trace := self._trace(task)) is not None]
+        started = min((trace.started.started for _, trace in finished_runs), default=datetime.now(UTC)).isoformat()
         return Evaluation(
             card=human_run_card(self.by, self.split, self.tasks, started, MAX_STEPS),
-            trials=tuple(human_trial(task, self.worlds[task.world].file, trace, task.id) for task, trace in done),
+            trials=tuple(human_trial(task, self.worlds[task.world].file, trace, task.id) for task, trace in finished_runs),
             wanted=len(self.tasks),
             log=str(self.out),
         )
 
 
 async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> TaskLeftError | None:
-    """Record a run in which a person is planner and perception. Return None if the task was finished, else how it was left."""
+    """Record a run in which a person is planner and perception. Return the error that ended an unfinished task, else None."""
     from scope_ptz.agent.loop import Agent
     from scope_ptz.agent.records import Budgets, RunLabels
     from scope_ptz.agent.store import RunFolder

@@ -39,8 +39,8 @@ def rescore(
 
     For runs that only a judge can score, the verdicts of the first judge count until --decides names another.
 
-    Running the same command again resumes an interrupted rescoring: only missing judgements are requested. Exit code 1 if any
-    judgement fails.
+    Running the same command again resumes an interrupted rescoring: only missing judgements are requested. The exit
+    code is 1 if any judgement fails.
     """
     import anyio
 
@@ -50,13 +50,13 @@ def rescore(
 
     require_engine()
     from scope_ptz.bench.engine.logs import read_evaluation
-    from scope_ptz.bench.engine.rescoring import let_decide
+    from scope_ptz.bench.engine.rescoring import set_deciding_judge
     from scope_ptz.factory.evaluation import eval_context
     from scope_ptz.factory.rescore import add_scores, open_requested_judge
 
     settings = judge_settings(judge, repeats)
     if not checks and not settings.requested and not decides:
-        raise InputError("Nothing to score with: give a judge (--judge-url), the checks (--checks), or both.")
+        raise InputError("There is nothing to score with. Give a judge (--judge-url), the checks (--checks), or both.")
 
     async def work() -> JudgementTally:
         total = JudgementTally()
@@ -65,15 +65,21 @@ def rescore(
             for log in logs:
                 if checks or server is not None:
                     tally = await add_scores(
-                        log, server, eval_context(seed=1), repeats=repeats, checks=checks, at_a_time=concurrency, notify=print_error
+                        log,
+                        server,
+                        eval_context(seed=1),
+                        repeats=repeats,
+                        checks=checks,
+                        concurrency=concurrency,
+                        notify=print_error,
                     )
                     total += tally
-                    done = ["checked again"] if checks else []
-                    put(f"{log}: {', '.join([*done, *_new_judgements(server, tally)])}")
+                    parts = ["checked again"] if checks else []
+                    put(f"{log}: {', '.join([*parts, *_new_judgements(server, tally)])}")
                 if decides:
-                    let_decide(log, decides)
-                if several := other_judges_note(read_evaluation(log).trials):
-                    put(f"{log}: {several}")
+                    set_deciding_judge(log, decides)
+                if note := other_judges_note(read_evaluation(log).trials):
+                    put(f"{log}: {note}")
         finally:
             if server is not None:
                 await server.close()
@@ -90,18 +96,18 @@ def _new_judgements(judge: JudgeServer | None, tally: JudgementTally) -> list[st
     """Describe the new judgements of a log."""
     if judge is None:
         return []
-    return [f"{tally.made} judgement{'' if tally.made == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"]
+    return [f"{tally.total} judgement{'' if tally.total == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"]
 
 
 def judge_failure(tally: JudgementTally) -> str:
     """Return a sentence about the judgements for which the judge's server failed."""
     first = f", the first with: {tally.failure}" if tally.failure else ""
     first = first if first.endswith((".", "!", "?")) else f"{first}."
-    return f"{tally.failed} of {tally.made} judgements failed because the judge's server gave no usable reply{first}"
+    return f"{tally.failed} of {tally.total} judgements failed because the judge's server gave no usable reply{first}"
 
 
 def retry_message(tally: JudgementTally) -> str:
-    """Return a message about failed judgements that says how to retry them."""
+    """Return a message about failed judgements that explains how to retry them."""
     return (
         f"{judge_failure(tally)} Nothing is lost; running the same command again retries {'it' if tally.failed == 1 else 'them'}."
     )
@@ -133,7 +139,7 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
     """Return the raters in these files: judges, checks and people. Raises ``InputError`` or ``TraceError``."""
     from scope_ptz.bench.judging.agreement import raters_of
     from scope_ptz.bench.judging.human_labels import labels_file, read_labels, with_labels
-    from scope_ptz.taskgen.gold.judge_results import raters_of_gold, read_verdicts
+    from scope_ptz.taskgen.gold.judge_results import gold_raters, read_verdicts
 
     gold = [path for path in logs if path.suffix == ".jsonl"]
     evaluations = []
@@ -143,7 +149,7 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
 
             evaluations.append(with_labels(read_evaluation(path), read_labels(labels_file(path))))
     verdicts = [verdict for path in gold for verdict in read_verdicts(path)]
-    return [*raters_of(evaluations), *raters_of_gold(verdicts)]
+    return [*raters_of(evaluations), *gold_raters(verdicts)]
 
 
 def judge_gold(
@@ -151,7 +157,7 @@ def judge_gold(
     judge: JudgeFlags,
     gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published file).")] = None,
     tasks: TasksOption = "core",
-    passing: Annotated[int, typer.Option(min=0, help="Number of runs without faults to mix in.")] = 60,
+    passing: Annotated[int, typer.Option(min=0, help="Number of runs without faults to add.")] = 60,
     repeats: Annotated[int, typer.Option(min=1, help="Number of judgements of each run.")] = 1,
     limit: Annotated[int | None, typer.Option(min=1, help="Judge at most N gold runs, taken from all error modes in turn.")] = None,
     concurrency: Annotated[int, typer.Option(min=1, help="Number of judgements at a time.")] = DEFAULT_CONCURRENCY,
@@ -180,11 +186,11 @@ def judge_gold(
             await server.close()
 
     tally = anyio.run(work)
-    found = results(read_verdicts(out))
+    judge_results = results(read_verdicts(out))
     if as_json:
-        put_json([result.as_dict() for result in found], indent=1)
+        put_json([result.as_dict() for result in judge_results], indent=1)
     else:
-        for result in found:
+        for result in judge_results:
             for line in result_lines(result):
                 put(line)
     if tally.failed:

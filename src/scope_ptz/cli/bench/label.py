@@ -21,17 +21,17 @@ from scope_ptz.cli.options import JsonOption
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from scope_ptz.bench.engine.logs import SampleFiles
+    from scope_ptz.bench.engine.sample_files import SampleFiles
     from scope_ptz.bench.scoring.trials import Evaluation, Label, Trial
 
 _HELP = """c correct   i1-i8 incorrect, with the error mode   u unclear   s skip   b back   q quit   ? modes
 You can add a note: "i6 the tool counted 4, there are 5"."""
 _COMMAND = re.compile(r"\A(?P<verb>[ciusbq?])(?P<mode>[1-8])?(?:\s+(?P<note>.*))?\Z", re.IGNORECASE | re.DOTALL)
 _PICTURE = re.compile(r"\A(?:frames|pictures)/[\w.-]+\.(?:jpg|png)\Z")
-"""Names of pictures in run folders. Pictures with other names are not written, so a log cannot choose any other path."""
+"""Valid names of pictures in run folders. Other names are skipped, so that a log cannot write to other paths."""
 
-MAX_CHARS = 40_000
-"""Longer runs are truncated on the screen."""
+MAX_RUN_CHARS = 40_000
+"""Maximum number of characters of a run that are printed. Longer runs are truncated."""
 
 
 def label(
@@ -70,8 +70,8 @@ def sampled(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial
     Runs that never started are left out. So are runs that failed for infrastructure reasons, because resuming the evaluation
     replaces them.
     """
-    fit = (trial for trial in evaluation.trials if trial.outcome is not None and trial.headline != "infrastructure")
-    trials = sorted(fit, key=lambda trial: trial.sample)
+    labelable = (trial for trial in evaluation.trials if trial.outcome is not None and trial.headline != "infrastructure")
+    trials = sorted(labelable, key=lambda trial: trial.sample)
     random.Random(seed).shuffle(trials)
     return trials[:number]
 
@@ -102,14 +102,14 @@ class _Labelling:
 
         self.log, self.by, self.trials, self.pictures = log, by, trials, pictures
         self.file = labels_file(log)
-        self.done = {row.sample for row in read_labels(self.file) if row.by == by}
+        self.labelled = {row.sample for row in read_labels(self.file) if row.by == by}
 
     def run(self) -> None:
-        at, first = 0, True
-        while at < len(self.trials):
-            trial = self.trials[at]
-            if trial.sample in self.done:
-                at += 1
+        index, first = 0, True
+        while index < len(self.trials):
+            trial = self.trials[index]
+            if trial.sample in self.labelled:
+                index += 1
                 continue
             if first:
                 put(_HELP)
@@ -118,19 +118,19 @@ class _Labelling:
             step = self._ask(trial)
             if step is None:
                 break
-            at = max(0, at + step)
-        left = sum(trial.sample not in self.done for trial in self.trials)
-        put(f"{len(self.trials) - left} of {len(self.trials)} runs labelled by {self.by}, in {self.file}")
+            index = max(0, index + step)
+        unlabelled = sum(trial.sample not in self.labelled for trial in self.trials)
+        put(f"{len(self.trials) - unlabelled} of {len(self.trials)} runs labelled by {self.by}, in {self.file}")
 
     def _show(self, trial: Trial) -> None:
-        from scope_ptz.bench.engine.logs import open_sample
+        from scope_ptz.bench.engine.sample_files import open_sample
         from scope_ptz.bench.judging.case import case_of
         from scope_ptz.bench.judging.rendering import render
 
-        number = sum(other.sample in self.done for other in self.trials) + 1
+        number = sum(other.sample in self.labelled for other in self.trials) + 1
         files = open_sample(self.log, trial.sample)
         put(f"\n{'=' * 20} run {number} of {len(self.trials)} {'=' * 20}")
-        put(render(trial.task, case_of(files.trace, files.places), MAX_CHARS))
+        put(render(trial.task, case_of(files.trace, files.places), MAX_RUN_CHARS))
         for path in write_pictures(files, self.pictures / folder_name(self.log, trial.sample)):
             put(f"picture: {path}")
 
@@ -159,7 +159,7 @@ class _Labelling:
                 case verb:
                     new_label = self._label(verb, command["mode"], (command["note"] or "").strip())
                     if new_label is not None:
-                        self._keep(trial, new_label)
+                        self._save_label(trial, new_label)
                         return 1
 
     def _label(self, verb: str, mode: str | None, note: str) -> Label | None:
@@ -167,26 +167,26 @@ class _Labelling:
         from scope_ptz.bench.scoring.trials import Label
 
         if verb == "i" and mode is None:
-            put("Which error mode?")
+            put("Give an error mode, for example i6:")
             _put_modes()
             return None
         if verb == "i":
             return Label(by=self.by, verdict="incorrect", error_mode=list(ErrorMode)[int(mode or 0) - 1], note=note)
         return Label(by=self.by, verdict="correct" if verb == "c" else "unclear", note=note)
 
-    def _keep(self, trial: Trial, new_label: Label) -> None:
+    def _save_label(self, trial: Trial, new_label: Label) -> None:
         from scope_ptz.bench.judging.human_labels import add_label
 
         add_label(self.file, new_label, trial.sample)
-        self.done.add(trial.sample)
+        self.labelled.add(trial.sample)
 
     def _back(self, trial: Trial) -> int:
         """Move back to the previous run, and ask for its label again."""
-        at = self.trials.index(trial)
-        if at == 0:
+        index = self.trials.index(trial)
+        if index == 0:
             put("This is the first run.")
             return 0
-        self.done.discard(self.trials[at - 1].sample)
+        self.labelled.discard(self.trials[index - 1].sample)
         return -1
 
 

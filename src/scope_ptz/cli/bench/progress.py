@@ -66,7 +66,7 @@ class LiveProgress(EvaluationProgress):
         self._plan, self._trials = plan, {trial.sample: trial for trial in plan.finished}
         self._began = self._printed = time.monotonic()
         if self._console.is_terminal:
-            self._live = Live(get_renderable=self._drawn, console=self._console, refresh_per_second=2)
+            self._live = Live(get_renderable=self._render, console=self._console, refresh_per_second=2)
             self._live.start()
 
     def closed(self) -> None:
@@ -74,10 +74,10 @@ class LiveProgress(EvaluationProgress):
             self._live.stop()
             self._live = None
 
-    def began(self, sample: str, entry: Entry) -> None:  # noqa: ARG002 - the watcher's signature
+    def run_began(self, sample: str, entry: Entry) -> None:  # noqa: ARG002 - the watcher's signature
         self._running[sample] = time.monotonic()
 
-    def ended(self, sample: str, trial: Trial) -> None:
+    def run_ended(self, sample: str, trial: Trial) -> None:
         self._running.pop(sample, None)
         self._trials[sample] = trial
         now = time.monotonic()
@@ -96,12 +96,12 @@ class LiveProgress(EvaluationProgress):
         correct = sum(t.headline == "correct" for t in rows)
         broken = sum(t.headline == "infrastructure" for t in rows)
         pending = sum(without_verdict(t) for t in rows)
-        when = f", about {duration_text(left)} left" if left is not None else ""
+        remaining = f", about {duration_text(left)} left" if left is not None else ""
         judged = f", {pending} not judged yet" if pending else ""
         total = self._plan.runs if self._plan is not None else len(rows)
-        return f"{len(rows)} of {total} runs: {correct} correct{judged}, {broken} broken by infrastructure{when}"
+        return f"{len(rows)} of {total} runs: {correct} correct{judged}, {broken} broken by infrastructure{remaining}"
 
-    def _drawn(self) -> RenderableType:
+    def _render(self) -> RenderableType:
         rows = list(self._trials.values())
         title, total = (self._plan.pair, self._plan.runs) if self._plan is not None else ("", len(rows))
         head = Text.assemble((title, "bold"), "  ", self._line())
@@ -122,29 +122,29 @@ def category_table(trials: Iterable[Trial]) -> Table:
     table = Table("category", box=None, pad_edge=False, header_style="bold")
     for name in ("runs", "correct", "wrong", "unscored", "broken", "accuracy"):
         table.add_column(name, justify="right")
-    shares = []
+    fractions = []
     for category in CATEGORIES:
-        own = [t for t in rows if t.task.category == category]
-        if own:
-            share = accuracy(own)
-            shares += [share] if share is not None else []
-            table.add_row(category.replace("_", " "), *_counts(own), _percent(share))
+        in_category = [t for t in rows if t.task.category == category]
+        if in_category:
+            fraction = accuracy(in_category)
+            fractions += [fraction] if fraction is not None else []
+            table.add_row(category.replace("_", " "), *_counts(in_category), _percent(fraction))
     if rows:
         table.add_section()
         table.add_row(
-            "macro (mean of categories)", *[""] * 5, _percent(sum(shares) / len(shares) if shares else None), style="bold"
+            "macro (mean of categories)", *[""] * 5, _percent(sum(fractions) / len(fractions) if fractions else None), style="bold"
         )
         table.add_row("micro (all runs)", *_counts(rows), _percent(accuracy(rows)), style="bold")
     return table
 
 
 def _counts(trials: Sequence[Trial]) -> list[str]:
-    by = [sum(t.headline == name for t in trials) for name in ("correct", "incorrect", "unscored", "infrastructure")]
-    return [str(len(trials)), *(str(n) if n else "-" for n in by)]
+    counts = [sum(t.headline == name for t in trials) for name in ("correct", "incorrect", "unscored", "infrastructure")]
+    return [str(len(trials)), *(str(n) if n else "-" for n in counts)]
 
 
-def _percent(share: float | None) -> str:
-    return f"{100 * share:.1f} %" if share is not None else "-"
+def _percent(fraction: float | None) -> str:
+    return f"{100 * fraction:.1f} %" if fraction is not None else "-"
 
 
 def unscored_lines(trials: Sequence[Trial]) -> list[str]:
@@ -165,12 +165,12 @@ def summary(evaluation: Evaluation) -> RenderableType:
         ((m, sum(t.error_mode == m for t in trials)) for m in {t.error_mode for t in trials if t.error_mode}), key=lambda x: -x[1]
     )
     parts += [Text(line) for line in unscored_lines(trials)]
-    parts += [Text(f"judged     {several}")] if (several := other_judges_note(trials)) else []
+    parts += [Text(f"judged     {note}")] if (note := other_judges_note(trials)) else []
     if modes:
         parts.append(Text("failed by  " + ", ".join(f"{mode.value.replace('_', ' ')} {count}" for mode, count in modes)))
     if events := server_events(trials):
-        having = sum(bool(t.server_events) for t in trials)
-        parts.append(Text(f"servers    failed: {counts_text(events)} (in {having} of {len(trials)} runs)"))
+        affected = sum(bool(t.server_events) for t in trials)
+        parts.append(Text(f"servers    failed: {counts_text(events)} (in {affected} of {len(trials)} runs)"))
     timed = sorted(t.timings.total_s for t in trials if t.headline != "infrastructure")
     if timed:
         median, p95 = timed[len(timed) // 2], timed[math.ceil(0.95 * len(timed)) - 1]

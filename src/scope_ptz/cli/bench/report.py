@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from scope_ptz.bench.reports.submission import Header, TrialLine
-    from scope_ptz.bench.reports.task_pages import StoredRun
+    from scope_ptz.bench.reports.task_pages import OpenedRun
     from scope_ptz.bench.scoring.trials import Evaluation, Trial
     from scope_ptz.bench.tasks.task import Task
 
@@ -35,7 +35,7 @@ def report(
     tasks: Annotated[
         str | None,
         typer.Option(
-            "--tasks", help="Split or task file of the tasks, whose evidence the pages show (default: all published tasks)."
+            "--tasks", help="Split or task file with the tasks whose evidence the pages show (default: all published tasks)."
         ),
     ] = None,
     pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write a page with frames for each failed task.")] = True,
@@ -54,15 +54,15 @@ def report(
     evaluations = [_read(path) for path in paths]
     path_of = {id(evaluation): path for evaluation, path in zip(evaluations, paths, strict=True)}
 
-    def open_trial(evaluation: Evaluation, trial: Trial) -> StoredRun:
-        from scope_ptz.bench.engine.logs import open_sample
+    def open_trial(evaluation: Evaluation, trial: Trial) -> OpenedRun:
+        from scope_ptz.bench.engine.sample_files import open_sample
         from scope_ptz.bench.human_runs import open_run
 
         path = path_of[id(evaluation)]
         return open_run(path, trial.sample) if path.suffix == HUMAN_RESULT_SUFFIX else open_sample(path, trial.sample)
 
     evidence: Sequence[Task] = () if not pages else load_split(tasks) if tasks is not None else published_tasks()
-    made = write_report(
+    result = write_report(
         evaluations,
         load_registry(load_settings().models_file()),
         out,
@@ -71,7 +71,7 @@ def report(
         progress=_print_progress if sys.stderr.isatty() else None,
         pages=pages,
     )
-    for line in (*made.summary, *made.warnings):
+    for line in (*result.summary, *result.warnings):
         put(line)
     put(f"{out / 'index.html'}")
 
@@ -86,7 +86,7 @@ def gate(
 ) -> int:
     """Compare two logs task by task, for continuous integration.
 
-    Exit code 1 on a significant loss, overall or in a category; 2 if the logs are not comparable.
+    The exit code is 1 on a significant loss, overall or in a category, and 2 if the logs are not comparable.
     """
     from scope_ptz.factory.evaluate import require_engine
 
@@ -96,16 +96,16 @@ def gate(
     from scope_ptz.bench.engine.regression_text import comparison_lines, judge_change_note
 
     now, before = read_evaluation(log), read_evaluation(baseline)
-    found = compare(now, before, alpha)
+    comparison = compare(now, before, alpha)
     if as_json:
-        rows = [asdict(found.overall), *(asdict(c) for c in found.categories)]
-        put_json({"passed": found.passed, "alpha": alpha, "groups": rows, "left_out": found.left_out}, indent=2)
+        rows = [asdict(comparison.overall), *(asdict(c) for c in comparison.categories)]
+        put_json({"passed": comparison.passed, "alpha": alpha, "groups": rows, "left_out": comparison.left_out}, indent=2)
     else:
-        for line in comparison_lines(found, now):
+        for line in comparison_lines(comparison, now):
             put(line)
     if note := judge_change_note(now, before):
         print_error(note)
-    return 0 if found.passed else FAILED
+    return 0 if comparison.passed else FAILED
 
 
 @submission_app.command("make")
@@ -131,16 +131,16 @@ def submission_make(
     evaluation = _read(log)
     header, lines = submission_lines(evaluation)
     skip = partial and tasks is None and header.card.split not in SPLITS
-    lacking = [] if skip else _missing(header, lines, tasks)
-    if lacking and not partial:
+    missing = [] if skip else _missing(header, lines, tasks)
+    if missing and not partial:
         raise InputError(
-            f"{log} does not cover {tasks or header.card.split}: {_first(lacking)}. A submission covers a whole split: run the "
-            "rest without --limit, --category and --scene, or write an incomplete submission with --partial."
+            f"{log} does not cover {tasks or header.card.split}: {_first(missing)}. A submission must cover a whole split: run the "
+            "remaining tasks without --limit, --category and --scene, or write an incomplete submission with --partial."
         )
     write_submission((header, lines), out)
     put(f"{out}: {len(evaluation.trials)} trials of {evaluation.card.pair}")
-    if lacking:
-        print_error(f"{out} is incomplete and not a valid submission: {_first(lacking)}.")
+    if missing:
+        print_error(f"{out} is incomplete and not a valid submission: {_first(missing)}.")
 
 
 @submission_app.command("validate")
@@ -152,19 +152,19 @@ def submission_validate(
     ] = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Check that a submission is complete and consistent and that its dataset is known. Exit code 1 on any fault."""
+    """Check that a submission is complete and consistent and that its dataset is known. The exit code is 1 on any fault."""
     from scope_ptz.bench.reports.submission_checks import check_submission
 
-    found = check_submission(file, _split(tasks))
+    result = check_submission(file, _split(tasks))
     if as_json:
-        put_json(found.as_dict(), indent=1)
+        put_json(result.as_dict(), indent=1)
     else:
-        for fault in found.faults[:MAX_FAULTS_LISTED]:
+        for fault in result.faults[:MAX_FAULTS_LISTED]:
             print_error(fault)
-        if len(found.faults) > MAX_FAULTS_LISTED:
-            print_error(f"and {len(found.faults) - MAX_FAULTS_LISTED} more")
-        put(found.summary)
-    return FAILED if found.faults else 0
+        if len(result.faults) > MAX_FAULTS_LISTED:
+            print_error(f"and {len(result.faults) - MAX_FAULTS_LISTED} more")
+        put(result.summary)
+    return FAILED if result.faults else 0
 
 
 def _missing(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> list[str]:
@@ -179,9 +179,9 @@ def _first(faults: Sequence[str]) -> str:
 
 
 def _require_extra() -> None:
-    from scope_ptz.perception.backends.spec import need
+    from scope_ptz.perception.backends.spec import require_packages
 
-    need("bench", "inspect_ai", "jinja2", "matplotlib", "scipy")
+    require_packages("bench", "inspect_ai", "jinja2", "matplotlib", "scipy")
 
 
 def _read(path: Path) -> Evaluation:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
-from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, judge_settings, price_of
+from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, evaluation_options, judge_settings, price_of
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags, PairFlags
 
 if TYPE_CHECKING:
-    from scope_ptz.factory.evaluation_options import EvaluationResult
+    from pathlib import Path
+
+    from rich.console import Console
+
+    from scope_ptz.factory.evaluation_options import EvaluationOptions, EvaluationResult
 
 
 def run(
@@ -23,32 +27,20 @@ def run(
 ) -> int:
     """Run a pair of planner and perception, or an external agent, on the benchmark, and print its scores.
 
-    Without options, the built-in planner and ground-truth perception run the published core tasks. That needs no server and no key.
+    Without options, the built-in planner and ground-truth perception run the published core tasks.
+    This needs neither a server nor a key.
 
-    Running the same command again resumes an interrupted evaluation. Exit code 1 if runs are missing or broken.
+    Running the same command again resumes an interrupted evaluation. The exit code is 1 if runs are missing or broken.
     """
-    import anyio
     from rich.console import Console
 
     from scope_ptz.bench.engine.run_totals import evaluation_summary
-    from scope_ptz.cli.bench.progress import LiveProgress, summary
-    from scope_ptz.factory.evaluate import EvaluationOptions, evaluate
+    from scope_ptz.cli.bench.progress import summary
 
     judge_options = judge_settings(judge, judge_repeats)
-    options = EvaluationOptions(
-        models=models.options(),
-        out=running.out,
-        tasks=selection.split,
-        categories=tuple(selection.category or ()),
-        scenes=tuple(selection.scene or ()),
-        limit=selection.limit,
-        epochs=selection.epochs,
-        seed=running.seed,
+    options = replace(
+        evaluation_options(selection, running, models.options()),
         agent=running.agent,
-        max_steps=running.max_steps,
-        time_s=running.time_budget,
-        concurrency=running.concurrency,
-        latency=running.latency,
         pictures=running.pictures,
         variant=running.variant,
         fresh=running.fresh,
@@ -58,10 +50,7 @@ def run(
     )
     console = Console(highlight=False, stderr=as_json)
 
-    async def work() -> EvaluationResult:
-        return await evaluate(options, progress=LiveProgress(console))
-
-    result = anyio.run(work)
+    result = _evaluate(options, console, running.progress)
     if as_json:
         judgements = {"judge": result.judge, "judgements": asdict(result.judgements)} if result.judgements is not None else {}
         put_json(evaluation_summary(result.evaluation) | judgements)
@@ -71,6 +60,35 @@ def run(
             put(f"judge      {result.judge}: {result.judgements.summary}")
         put(f"log        {result.evaluation.log}")
     return _report_failures(result)
+
+
+def _evaluate(options: EvaluationOptions, console: Console, files: Path | None) -> EvaluationResult:
+    """Run the evaluation, with its progress on the terminal and, if ``files`` is a folder, in files."""
+    from contextlib import closing
+
+    from scope_ptz.cli.bench.progress import LiveProgress
+    from scope_ptz.cli.exit import run_async
+    from scope_ptz.factory.evaluate import evaluate, require_engine
+
+    require_engine()
+    results: list[EvaluationResult] = []
+    if files is None:
+
+        async def work() -> None:
+            results.append(await evaluate(options, progress=LiveProgress(console)))
+
+        run_async(work)
+        return results[0]
+    from scope_ptz.factory.progress_files import ProgressFiles, ProgressGroup
+
+    with closing(ProgressFiles(files)) as progress:
+
+        async def followed() -> None:
+            results.append(await evaluate(options, progress=ProgressGroup(LiveProgress(console), progress)))
+
+        run_async(followed)
+        progress.finish(results[0])
+    return results[0]
 
 
 def _report_failures(result: EvaluationResult) -> int:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import typer
 
-from scope_ptz.cli.bench.flags import EvaluationFlags, SelectionFlags
+from scope_ptz.cli.bench.flags import EvaluationFlags, SelectionFlags, evaluation_options
 from scope_ptz.cli.exit import FAILED, print_error, put_json
 from scope_ptz.cli.options import JsonOption, ModelFlags
 from scope_ptz.errors import InputError, ScopeError
@@ -54,40 +54,27 @@ def sweep(
 
     Your models file states where each model is served; --planner-url and --perception-url apply to all pairs.
 
-    Running the same command again resumes the sweep: it skips complete pairs and retries those that could not be reached.
+    Running the same command again resumes the sweep: it skips complete pairs and retries pairs whose servers could not be reached.
     """
     from rich.console import Console
 
     from scope_ptz.bench.engine.run_totals import evaluation_summary
-    from scope_ptz.factory.evaluate import EvaluationOptions, require_engine
+    from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
     names = pair_names(pairs, paper=paper)
-    shared = EvaluationOptions(
-        models=servers.options(),
-        out=running.out,
-        tasks=selection.split,
-        categories=tuple(selection.category or ()),
-        scenes=tuple(selection.scene or ()),
-        limit=selection.limit,
-        epochs=selection.epochs,
-        seed=running.seed,
-        max_steps=running.max_steps,
-        time_s=running.time_budget,
-        concurrency=running.concurrency,
-        latency=running.latency,
-    )
+    shared = evaluation_options(selection, running, servers.options())
     console = Console(highlight=False, stderr=as_json)
-    done = _run_all(names, shared, console)
+    results = _run_all(names, shared, console)
     if as_json:
         put_json(
-            {name: {"error": result} if isinstance(result, str) else evaluation_summary(result) for name, result in done.items()}
+            {name: {"error": result} if isinstance(result, str) else evaluation_summary(result) for name, result in results.items()}
         )
     else:
-        for table in sweep_tables(done, console.width):
+        for table in sweep_tables(results, console.width):
             console.print(table, "")
-    if any(isinstance(result, str) or not is_complete(result) for result in done.values()):
-        print_error("not every pair is complete; running the same command again resumes them.")
+    if any(isinstance(result, str) or not is_complete(result) for result in results.values()):
+        print_error("some pairs are incomplete; running the same command again resumes them.")
         return FAILED
     return 0
 
@@ -105,14 +92,14 @@ def pair_names(text: str | None, *, paper: bool) -> list[str]:
         return [pair.name for pair in registry.pairs.values() if pair.origin == "paper"]
     names = list(dict.fromkeys(name.strip() for name in (text or "").split(",") if name.strip()))
     if not names:
-        raise InputError("--pairs names no pair.")
+        raise InputError("--pairs is empty. Give pairs such as A+B,C+D.")
     for name in names:
         read_pair(registry, name)
     return names
 
 
 def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> dict[str, Evaluation | str]:
-    """Run all pairs. Return for each its evaluation, or the message of the error that prevented it."""
+    """Run all pairs, and return for each pair its evaluation or the message of the error that prevented it."""
     import anyio
 
     from scope_ptz.bench.engine.failure_summary import failure_summary
@@ -122,18 +109,18 @@ def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> d
     async def work(options: EvaluationOptions) -> EvaluationResult:
         return await evaluate(options, progress=LiveProgress(console))
 
-    done: dict[str, Evaluation | str] = {}
+    results: dict[str, Evaluation | str] = {}
     for number, name in enumerate(names, 1):
         console.rule(f"{number} of {len(names)}: {name}")
         try:
             evaluation = anyio.run(work, replace(shared, models=_models_of_pair(shared.models, name))).evaluation
-            done[name] = evaluation
+            results[name] = evaluation
             for line in failure_summary(evaluation.trials, evaluation.card):
                 print_error(f"{name}: {line}")
         except ScopeError as error:
-            done[name] = str(error)
+            results[name] = str(error)
             print_error(f"{name}: {error}")
-    return done
+    return results
 
 
 def _models_of_pair(shared: ModelOptions, name: str) -> ModelOptions:
@@ -154,21 +141,21 @@ def is_complete(evaluation: Evaluation) -> bool:
     return evaluation.finished and not any(trial.headline == "infrastructure" for trial in evaluation.trials)
 
 
-def sweep_tables(done: dict[str, Evaluation | str], width: int) -> Iterator[Table]:
+def sweep_tables(results: dict[str, Evaluation | str], width: int) -> Iterator[Table]:
     """Yield tables for model pairs, built-in baselines, server failures, and pairs that did not run.
 
     ``width`` is the terminal width in characters. A wide terminal gets a column for each category.
     """
     from scope_ptz.bench.engine.failure_summary import failure_summary
 
-    result = [(name, e) for name, e in done.items() if not isinstance(e, str)]
-    ranked, others = [row for row in result if row[1].card.ranked], [row for row in result if not row[1].card.ranked]
+    evaluations = [(name, e) for name, e in results.items() if not isinstance(e, str)]
+    ranked, others = [row for row in evaluations if row[1].card.ranked], [row for row in evaluations if not row[1].card.ranked]
     if ranked:
         yield _pairs_table("Pairs of models, best first", ranked, width)
     if others:
         yield _pairs_table("Rule-based planner or ground-truth perception: baselines, not results of models", others, width)
-    failures = [(name, line) for name, e in result for line in failure_summary(e.trials, e.card)]
-    missing = [(name, why) for name, why in done.items() if isinstance(why, str)]
+    failures = [(name, line) for name, e in evaluations for line in failure_summary(e.trials, e.card)]
+    missing = [(name, message) for name, message in results.items() if isinstance(message, str)]
     for title, rows in (("Server failures", failures), ("Not run", missing)):
         if rows:
             table = _table(title)

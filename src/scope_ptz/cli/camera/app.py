@@ -8,6 +8,8 @@ import typer
 
 from scope_ptz.cli.camera import HELP
 from scope_ptz.cli.camera.by_hand import move, password, presets, snapshot, watch
+from scope_ptz.cli.camera.capture import capture
+from scope_ptz.cli.camera.lens import focus, iris
 from scope_ptz.cli.camera.measure import calibrate, discover, probe
 from scope_ptz.cli.camera.serve import serve
 from scope_ptz.cli.options import command
@@ -26,14 +28,17 @@ COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = (
     (FIND, "discover", discover),
     (FIND, "probe", probe),
     (FIND, "calibrate", calibrate),
+    (FIND, "capture", capture),
     (CONTROL, "snapshot", snapshot),
     (CONTROL, "move", move),
+    (CONTROL, "focus", focus),
+    (CONTROL, "iris", iris),
     (CONTROL, "presets", presets),
     (CONTROL, "watch", watch),
     (CONTROL, "password", password),
     (TEST, "serve", serve),
 )
-"""Panel of the help, name, and function of each command."""
+"""Help panel, name and function of each command."""
 
 for panel, name, function in COMMANDS:
     camera_app.command(name, rich_help_panel=panel)(command(function))

@@ -1,4 +1,4 @@
-"""``scope camera snapshot|move|presets|watch|password``: a camera by hand."""
+"""``scope camera snapshot|move|presets|watch|password``: control a camera by hand."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 CameraSpecArgument = Annotated[
     str, typer.Argument(metavar="CAMERA", help="Camera: a name in scope.yaml, axis://USER@HOST, onvif://USER@HOST, sim:SCENE, ...")
 ]
-DryRun = Annotated[bool, typer.Option("--dry-run", help="Say what the camera would do, and do nothing.")]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Print what the camera would do, without doing it.")]
 
 
 def snapshot(
@@ -33,68 +33,80 @@ def snapshot(
     full: Annotated[bool, typer.Option("--full", help="Sweep the camera's whole range into one panorama.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Take a picture."""
+    """Save a picture of the camera's current view, or a panorama of its whole range."""
 
     from scope_ptz.tools.sweep import sweep
 
     async def work() -> None:
-        async with _opened(camera) as opened:
+        async with opened_camera(camera) as opened:
             frame = await (sweep(opened) if full else opened.frame())
         _write_picture(frame, out)
-        where = {"file": str(out), "width": frame.width, "height": frame.height, **frame.pose.as_dict()}
+        facts = {"file": str(out), "width": frame.width, "height": frame.height, **frame.pose.as_dict()}
         if as_json:
-            put_json({**where, "hfov_deg": round(frame.hfov_deg, 2)})
+            put_json({**facts, "hfov_deg": round(frame.hfov_deg, 2)})
         else:
-            put(f"{out}: {frame.width}x{frame.height}, {_pose_text(where)}, {frame.hfov_deg:.1f} degrees wide")
+            put(f"{out}: {frame.width}x{frame.height}, {_pose_text(facts)}, {frame.hfov_deg:.1f} degrees wide")
 
     run_async(work)
 
 
 def move(
     camera: CameraSpecArgument,
-    pan: Annotated[float | None, typer.Option("--pan", help="Pan in degrees, absolute.")] = None,
-    tilt: Annotated[float | None, typer.Option("--tilt", help="Tilt in degrees, absolute.")] = None,
-    zoom: Annotated[float | None, typer.Option("--zoom", help="Magnification, absolute.")] = None,
-    by_pan: Annotated[float, typer.Option("--by-pan", help="Degrees to turn right.")] = 0.0,
-    by_tilt: Annotated[float, typer.Option("--by-tilt", help="Degrees to turn up.")] = 0.0,
-    preset: Annotated[str | None, typer.Option("--preset", help="Go to a preset.")] = None,
-    home: Annotated[bool, typer.Option("--home", help="Go home.")] = False,
+    pan: Annotated[float | None, typer.Option("--pan", help="Absolute pan in degrees.")] = None,
+    tilt: Annotated[float | None, typer.Option("--tilt", help="Absolute tilt in degrees.")] = None,
+    zoom: Annotated[float | None, typer.Option("--zoom", help="Absolute magnification.")] = None,
+    by_pan: Annotated[float, typer.Option("--by-pan", help="Degrees to turn right; negative turns left.")] = 0.0,
+    by_tilt: Annotated[float, typer.Option("--by-tilt", help="Degrees to turn up; negative turns down.")] = 0.0,
+    centre: Annotated[
+        str | None,
+        typer.Option(
+            "--centre", metavar="X,Y", help="Point of the picture to centre, as shares from left and top, such as 0.7,0.4."
+        ),
+    ] = None,
+    zoom_by: Annotated[float, typer.Option("--zoom-by", help="Factor to zoom by, with --centre.")] = 1.0,
+    preset: Annotated[str | None, typer.Option("--preset", help="Preset to go to.")] = None,
+    home: Annotated[bool, typer.Option("--home", help="Go to the home position.")] = False,
     stop: Annotated[bool, typer.Option("--stop", help="Stop any motion.")] = False,
     dry_run: DryRun = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Move the camera to a pose, by an angle, to a preset or home. Without options, print where it is."""
+    """Move the camera to a pose, by an angle, to a point of its picture, to a preset or home. Without options, print the pose."""
     numbers = [value for value in (pan, tilt, zoom, by_pan, by_tilt) if value is not None]
     if not all(math.isfinite(value) for value in numbers) or (zoom is not None and zoom <= 0):
-        raise InputError("Angles are finite numbers of degrees, and the magnification is above 0.")
+        raise InputError("Angles must be finite numbers of degrees, and the magnification must be above 0.")
     by_pose = pan is not None or tilt is not None or zoom is not None or by_pan != 0.0 or by_tilt != 0.0
-    if sum((by_pose, preset is not None, home, stop)) > 1:
-        raise InputError("Give one target: a pose, --preset, --home, or --stop.")
+    point = None if centre is None else _point(centre)
+    if sum((by_pose, point is not None, preset is not None, home, stop)) > 1:
+        raise InputError("Give one target: a pose, --centre, --preset, --home, or --stop.")
+    if zoom_by != 1.0 and point is None:
+        raise InputError("--zoom-by needs --centre X,Y; use --zoom for a magnification.")
 
     async def carry_out(opened: Camera) -> Arrival | None:
         if stop:
             await opened.stop()
+        elif point is not None:
+            return await opened.centre_on(*point, zoom_factor=zoom_by)
         elif preset is not None:
             return await opened.go_to_preset(preset)
         elif home:
             return await opened.go_home()
         elif by_pose:
             start = await opened.pose()
-            given = {"pan_deg": pan, "tilt_deg": tilt, "zoom": zoom}
-            target = replace(start, **{name: value for name, value in given.items() if value is not None})
+            requested = {"pan_deg": pan, "tilt_deg": tilt, "zoom": zoom}
+            target = replace(start, **{name: value for name, value in requested.items() if value is not None})
             return await opened.move(target.turned(by_pan, by_tilt))
         return None
 
     async def work() -> None:
-        async with _opened(camera, dry_run=dry_run) as opened:
+        async with opened_camera(camera, dry_run=dry_run) as opened:
             arrival = await carry_out(opened)
             pose = (await opened.pose() if arrival is None else arrival.pose).as_dict()
         clamped = () if arrival is None else arrival.clamped
-        held_back = "" if arrival is None else arrival.limited_by
+        limited_by = "" if arrival is None else arrival.limited_by
         if as_json:
-            put_json({**pose, "clamped": list(clamped), "limited_by": held_back})
+            put_json({**pose, "clamped": list(clamped), "limited_by": limited_by})
             return
-        note = f"; held back by {held_back}" if held_back else f"; stopped by the {' and '.join(clamped)} limit" if clamped else ""
+        note = f"; limited by {limited_by}" if limited_by else f"; stopped by the {' and '.join(clamped)} limit" if clamped else ""
         put(_pose_text(pose) + note)
 
     run_async(work)
@@ -112,16 +124,16 @@ def presets(
         raise InputError("Give --save or --remove, not both.")
 
     async def work() -> None:
-        async with _opened(camera, dry_run=dry_run) as opened:
+        async with opened_camera(camera, dry_run=dry_run) as opened:
             if save is not None:
                 await opened.save_preset(save)
             if remove is not None:
                 await opened.remove_preset(remove)
-            found = await opened.presets()
+            listed = await opened.presets()
         if as_json:
-            put_json([{"name": preset.name, "description": preset.description} for preset in found])
+            put_json([{"name": preset.name, "description": preset.description} for preset in listed])
         else:
-            for preset in found:
+            for preset in listed:
                 put(f"{preset.name}  {preset.description}".rstrip())
 
     run_async(work)
@@ -129,25 +141,27 @@ def presets(
 
 def watch(
     camera: CameraSpecArgument,
-    folder: Annotated[Path | None, typer.Option("--out", help="Folder that keeps the pictures (default: none).")] = None,
+    folder: Annotated[
+        Path | None, typer.Option("--out", help="Folder in which to save the pictures (default: they are not saved).")
+    ] = None,
     rate: Annotated[float, typer.Option("--rate", help="Pictures per second.")] = 1.0,
-    count: Annotated[int, typer.Option("--count", min=0, help="Number of pictures; 0 for until Ctrl-C.")] = 0,
+    count: Annotated[int, typer.Option("--count", min=0, help="Number of pictures; 0 continues until Ctrl-C.")] = 0,
     as_json: JsonOption = False,
 ) -> None:
-    """Follow the live picture: print time and pose of each frame, and keep the frames if a folder is given."""
+    """Watch the live picture: print the time and pose of each frame, and save the frames if --out is given."""
     if not (math.isfinite(rate) and 0 < rate <= 60):
-        raise InputError(f"--rate is above 0 and at most 60 pictures per second, got {rate:g}.")
+        raise InputError(f"--rate must be above 0 and at most 60 pictures per second; got {rate:g}.")
 
     async def work() -> None:
-        async with _opened(camera, realtime=True) as opened, aclosing(opened.frames(rate_hz=rate)) as stream:
+        async with opened_camera(camera, realtime=True) as opened, aclosing(opened.frames(rate_hz=rate)) as stream:
             number = 0
             async for frame in stream:
                 number += 1
-                where: dict[str, Any] = {"number": number, "time_s": round(frame.time_s, 3), **frame.pose.as_dict()}
+                facts: dict[str, Any] = {"number": number, "time_s": round(frame.time_s, 3), **frame.pose.as_dict()}
                 if folder is not None:
-                    where["file"] = str(path := folder / f"{number:06d}.jpg")
+                    facts["file"] = str(path := folder / f"{number:06d}.jpg")
                     _write_picture(frame, path)
-                put_json(where) if as_json else put(f"{where['time_s']:9.3f} s  {_pose_text(where)}")
+                put_json(facts) if as_json else put(f"{facts['time_s']:9.3f} s  {_pose_text(facts)}")
                 sys.stdout.flush()
                 if number == count:
                     break
@@ -158,7 +172,7 @@ def watch(
 def password(camera: CameraSpecArgument) -> None:
     """Store the password of a camera's account in the operating system's keyring."""
     from scope_ptz.factory.cameras import parse_camera
-    from scope_ptz.factory.passwords import account_of, store_password
+    from scope_ptz.factory.cameras.passwords import account_of, store_password
 
     spec = parse_camera(camera)
     account = account_of(spec)
@@ -168,7 +182,7 @@ def password(camera: CameraSpecArgument) -> None:
 
 
 @asynccontextmanager
-async def _opened(spec: str, *, dry_run: bool = False, realtime: bool = False) -> AsyncIterator[Camera]:
+async def opened_camera(spec: str, *, dry_run: bool = False, realtime: bool = False) -> AsyncIterator[Camera]:
     """Open a camera for one command, and close it afterwards."""
     from scope_ptz.camera.control import user_name
     from scope_ptz.camera.guard.dry_run import DryRunCamera
@@ -176,6 +190,14 @@ async def _opened(spec: str, *, dry_run: bool = False, realtime: bool = False) -
 
     async with await open_camera(spec, realtime=realtime, actor=f"scope camera: {user_name()}") as opened:
         yield DryRunCamera(opened.camera, print_error) if dry_run else opened.camera
+
+
+def _point(text: str) -> tuple[float, float]:
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"--centre must be two numbers from 0 to 1, such as 0.7,0.4; got {text[:40]!r}.") from None
+    return x, y
 
 
 def _pose_text(pose: dict[str, Any]) -> str:
@@ -186,7 +208,7 @@ def _write_picture(frame: Frame, path: Path) -> None:
     from PIL import Image
 
     if path.suffix.lower() not in (".jpg", ".jpeg", ".png"):
-        raise InputError(f"A picture's file ends in .jpg or .png, got {path.name[:60]}.")
+        raise InputError(f"The name of a picture file must end in .jpg or .png; got '{path.name[:60]}'.")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         Image.fromarray(frame.image).save(path, quality=92)

@@ -51,5 +51,5 @@ def _make_built_in(name: str, spec: BackendSpec) -> Perception:
         module = import_module(f"{__name__}.{name}")
     except ImportError as error:
         raise ConfigError(f"The perception backend '{name}' cannot be imported: {error}. Install the missing package.") from error
-    made: Perception = module.make(spec)
-    return made
+    backend: Perception = module.make(spec)
+    return backend

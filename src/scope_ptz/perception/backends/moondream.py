@@ -25,7 +25,8 @@ class MoondreamOptions(Options):
     """Options of the backend.
 
     Attributes:
-        max_pixels: Frames with more pixels are scaled down to this number. The model itself sees only a few crops of 378 pixels.
+        max_pixels: Frames with more pixels are scaled down to this number. The model itself processes only a few crops of 378
+            pixels.
         max_objects: Maximum number of objects to request; None leaves the limit to the server.
         reasoning: Whether Moondream 3 reasons before it answers a question; None leaves the choice to the server.
         caption_length: "short", "normal" or "long".
@@ -54,8 +55,9 @@ class MoondreamPerception(Perception):
         return (await self._ask(frame, "query", {"question": question.strip(), **reasoning}, "answer")).answer()
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        found = (await self._locate(frame, "detect", description, "objects")).detections(UNIT, (1, 1))
-        return found if self._limit is None or len(found.boxes) < self._limit else found.model_copy(update={"complete": False})
+        detections = (await self._locate(frame, "detect", description, "objects")).detections(UNIT, (1, 1))
+        complete = self._limit is None or len(detections.boxes) < self._limit
+        return detections if complete else detections.model_copy(update={"complete": False})
 
     async def point(self, frame: Frame, description: str) -> Points:
         return (await self._locate(frame, "point", description, "points")).points(UNIT, (1, 1))

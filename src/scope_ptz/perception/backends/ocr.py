@@ -15,11 +15,11 @@ import numpy as np
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.backends.spec import BackendSpec, Options, need
+from scope_ptz.perception.backends.spec import BackendSpec, Options, require_packages
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.models.frame_memo import FrameMemo, Image
-from scope_ptz.perception.models.text_requests import is_reading, requested_texts, text_fits
-from scope_ptz.perception.models.tile_geometry import PanoramaTile, merged, tiles
+from scope_ptz.perception.models.text_requests import is_reading, requested_texts, text_matches
+from scope_ptz.perception.models.tile_geometry import PanoramaTile, merge_boxes, tiles
 
 Reader = Callable[[Image], "list[Line]"]
 """A function that returns the lines of text in an RGB image (H, W, 3)."""
@@ -53,7 +53,7 @@ class OcrPerception(Perception):
         self._lines: FrameMemo[None, list[Line]] = FrameMemo(lambda image, _: in_reading_order(read_tiles(reader, image)))
 
     async def lines(self, frame: Frame) -> list[Line]:
-        """Return all text in a frame, top to bottom and left to right."""
+        """Return all lines of text in a frame, from top to bottom and from left to right."""
         return await self._lines.get_async(frame.image, None)
 
     async def caption(self, frame: Frame) -> Caption:
@@ -77,16 +77,18 @@ class OcrPerception(Perception):
         return Detections(boxes=boxes, source=self.name, raw=raw, latency_s=perf_counter() - began)
 
     async def point(self, frame: Frame, description: str) -> Points:
-        found = await self.detect(frame, description)
-        points = tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in found.boxes)
-        return Points(points=points, source=self.name, raw=found.raw, latency_s=found.latency_s)
+        detections = await self.detect(frame, description)
+        points = tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in detections.boxes)
+        return Points(points=points, source=self.name, raw=detections.raw, latency_s=detections.latency_s)
 
     async def _find(self, frame: Frame, description: str) -> list[Line]:
         texts = requested_texts(description)
         if texts is None:
-            raise PerceptionError(f"OCR only finds text, and '{description}' names none. Quote the text, or ask a detector.")
+            raise PerceptionError(
+                f"OCR only finds text, and '{description}' contains no text to find. Quote the text, or ask a detector."
+            )
         lines = await self.lines(frame)
-        return lines if not texts else [line for line in lines if any(text_fits(text, line.text) for text in texts)]
+        return lines if not texts else [line for line in lines if any(text_matches(text, line.text) for text in texts)]
 
 
 def quoted(lines: Iterable[Line]) -> str:
@@ -118,7 +120,7 @@ def read_tiles(reader: Reader, image: Image) -> list[Line]:
             parts.append((tile, [line.box for line in reader(np.ascontiguousarray(tile.crop(image)))]))
         except (cv2.error, ValueError, RuntimeError, MemoryError) as error:
             raise PerceptionError(f"OCR failed on a frame of {width}x{height}: {error}") from error
-    return [Line(box.label or "", box) for box in merged(parts, width)]
+    return [Line(box.label or "", box) for box in merge_boxes(parts, width)]
 
 
 class RapidOcr:
@@ -134,12 +136,12 @@ class RapidOcr:
         with self._lock:
             if self._engine is None:
                 self._engine = self._load()
-            found = self._engine(cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
-        if found.boxes is None or found.txts is None:
+            output = self._engine(cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
+        if output.boxes is None or output.txts is None:
             return []
         return [
             line
-            for corners, text, score in zip(found.boxes, found.txts, found.scores, strict=True)
+            for corners, text, score in zip(output.boxes, output.txts, output.scores, strict=True)
             if text.strip() and (line := _line(np.asarray(corners, dtype=float), text.strip(), float(score), image)) is not None
         ]
 
@@ -166,5 +168,5 @@ def _line(corners: np.ndarray[Any, np.dtype[np.float64]], text: str, score: floa
 
 def make(spec: BackendSpec) -> Perception:
     """Create the backend that a spec describes."""
-    need("ocr", "rapidocr", "onnxruntime")
+    require_packages("ocr", "rapidocr", "onnxruntime")
     return OcrPerception(RapidOcr(OcrOptions.of(spec).min_score), spec.name)

@@ -50,14 +50,14 @@ class VisionOptions(Options):
 
 
 class OpenAIVisionPerception(Perception):
-    """Perception by a chat model that accepts images. ``style`` is its coordinate convention, None if it gives no boxes."""
+    """Perception by a chat model that accepts images. ``style`` is its coordinate convention, or None if it returns no boxes."""
 
     def __init__(
         self, client: ChatClient, style: Convention | None, options: VisionOptions | None = None, name: str = "vision"
     ) -> None:
         self.name, self._client, self._style = name, client, style
         self._options = options or VisionOptions()
-        self._refused: set[str] = set()
+        self._rejected: set[str] = set()
         self.skills = ALL_SKILLS if style is not None else frozenset[Skill](("caption", "query"))
 
     async def caption(self, frame: Frame) -> Caption:
@@ -109,30 +109,30 @@ class OpenAIVisionPerception(Perception):
 
         Rejected fields are omitted from later requests, too.
         """
-        refused, earlier = set(self._refused), tuple[Attempt, ...]()
+        rejected, earlier = set(self._rejected), tuple[Attempt, ...]()
         while True:
-            fields = self._fields(schema, refused)
+            fields = self._fields(schema, rejected)
             try:
                 reply = await self._complete(picture, prompt, fields)
             except PerceptionError as error:
-                named = refused_fields(error, fields)
-                if not named:
+                rejected_here = rejected_fields(error, fields)
+                if not rejected_here:
                     raise PerceptionError(str(error), kind=error.kind, attempts=(*earlier, *error.attempts)) from error
-                refused |= named
+                rejected |= rejected_here
                 earlier += tuple(a for a in error.attempts if isinstance(a, Attempt))
             else:
-                self._refused = refused
+                self._rejected = rejected
                 return reply, earlier
 
-    def _fields(self, schema: dict[str, Any] | None, refused: set[str]) -> dict[str, Any]:
-        """Return the request fields other than the messages. Newer hosted models require ``max_completion_tokens``."""
-        limit = "max_completion_tokens" if "max_tokens" in refused else "max_tokens"
+    def _fields(self, schema: dict[str, Any] | None, rejected: set[str]) -> dict[str, Any]:
+        """Return the request fields, without the messages. Newer hosted models require ``max_completion_tokens``."""
+        limit = "max_completion_tokens" if "max_tokens" in rejected else "max_tokens"
         fields: dict[str, Any] = {limit: self._options.max_tokens, **self._options.extra}
         if self._options.temperature is not None:
             fields["temperature"] = self._options.temperature
         if schema is not None and self._options.structured:
             fields["response_format"] = {"type": "json_schema", "json_schema": {"name": "places", "schema": schema, "strict": True}}
-        return {name: value for name, value in fields.items() if name not in refused}
+        return {name: value for name, value in fields.items() if name not in rejected}
 
     async def _complete(self, picture: EncodedPicture, prompt: str, fields: dict[str, Any]) -> ChatReply:
         content = [{"type": "image_url", "image_url": {"url": picture.data_url}}, {"type": "text", "text": prompt}]
@@ -141,16 +141,16 @@ class OpenAIVisionPerception(Perception):
 
 
 _FIELD_ALIASES = {"response_format": ("response_format", "json_schema", "json schema", "grammar", "guided", "structured")}
-"""Words that error messages use for a request field, where the field's own name is not enough."""
+"""Words that error messages use for a request field. Other fields are recognised by their names."""
 
 
-def refused_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
+def rejected_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
     """Return the request fields that an error message rejects. If the message names none, assume that it means the JSON schema."""
     if error.kind not in (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR):
         return set()
     words = str(error).lower()
-    named = {field for field in sent if any(name in words for name in _FIELD_ALIASES.get(field, (field,)))}
-    return named or ({"response_format"} & sent.keys() if error.kind == FailureKind.BAD_REQUEST else set())
+    rejected_here = {field for field in sent if any(name in words for name in _FIELD_ALIASES.get(field, (field,)))}
+    return rejected_here or ({"response_format"} & sent.keys() if error.kind == FailureKind.BAD_REQUEST else set())
 
 
 def make(spec: BackendSpec) -> Perception:

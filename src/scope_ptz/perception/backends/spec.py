@@ -15,7 +15,7 @@ class BackendSpec(BaseModel):
     """The spec of a perception backend.
 
     Attributes:
-        name: The name of the backend, which its results give as their source.
+        name: The name of the backend. Results report it as their source.
         backend: The kind of backend: a module name in this package, or the name of a plug-in.
         model: The model's name on its server or on Hugging Face.
         endpoint: The model server; None for backends that run in this process.
@@ -46,10 +46,10 @@ class BackendSpec(BaseModel):
         """Return the model's name. Backends that load a model call this.
 
         Raises:
-            ConfigError: The spec names no model.
+            ConfigError: The spec has no model.
         """
         if not self.model:
-            raise ConfigError(f"The perception backend '{self.name}' needs a model. Give its name or its folder.")
+            raise ConfigError(f"The perception backend '{self.name}' needs a model. Give the model's name or its folder.")
         return self.model
 
 
@@ -76,7 +76,7 @@ class Options(BaseModel):
             raise ConfigError(f"The option '{where}' of the perception backend '{spec.name}' is invalid: {first['msg']}.") from None
 
 
-def need(extra: str, *packages: str) -> None:
+def require_packages(extra: str, *packages: str) -> None:
     """Check that the packages of an optional extra are installed, without importing them.
 
     Raises:

@@ -16,7 +16,7 @@ from pydantic import Field
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import ConfigError, PerceptionError
-from scope_ptz.perception.backends.spec import BackendSpec, Options, need
+from scope_ptz.perception.backends.spec import BackendSpec, Options, require_packages
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.perception.models.coordinates import Convention, convention
 from scope_ptz.perception.models.encoding import resized
@@ -61,7 +61,7 @@ class LocalOptions(Options):
 
 
 class ChatModel(Protocol):
-    """A chat model that takes a picture and a prompt. It returns its text, and whether the text was cut off at the token limit."""
+    """A chat model. It returns its reply to a picture and a prompt, and whether the reply was cut off at the token limit."""
 
     def __call__(self, image: Image, prompt: str) -> tuple[str, bool]: ...
 
@@ -118,13 +118,13 @@ class LocalMoondreamPerception(Perception):
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         began = perf_counter()
-        found = await self._call(frame, "detect", "objects", one_line(description))
-        return VisionReply(self.name, json.dumps({"objects": found}, default=float), began).detections(UNIT, (1, 1))
+        objects = await self._call(frame, "detect", "objects", one_line(description))
+        return VisionReply(self.name, json.dumps({"objects": objects}, default=float), began).detections(UNIT, (1, 1))
 
     async def point(self, frame: Frame, description: str) -> Points:
         began = perf_counter()
-        found = await self._call(frame, "point", "points", one_line(description))
-        return VisionReply(self.name, json.dumps({"objects": found}, default=float), began).points(UNIT, (1, 1))
+        objects = await self._call(frame, "point", "points", one_line(description))
+        return VisionReply(self.name, json.dumps({"objects": objects}, default=float), began).points(UNIT, (1, 1))
 
     async def _call(self, frame: Frame, method: str, field: str, *args: str, **options: str) -> Any:
         def call() -> Any:
@@ -142,9 +142,9 @@ async def _in_thread(name: str, call: Callable[[], Any]) -> Any:
         return await to_thread.run_sync(call)
     except PerceptionError:
         raise
-    # Model code can raise anything, and out-of-memory errors have a different class on every device.
+    # Model code can raise any exception, and the class of out-of-memory errors depends on the device.
     except Exception as error:
-        raise PerceptionError(f"{name} could not look: {type(error).__name__}: {error}") from error
+        raise PerceptionError(f"{name} failed: {type(error).__name__}: {error}") from error
 
 
 def _pillow(image: Image) -> Any:
@@ -164,7 +164,7 @@ class TransformersChat:
         with self._lock:
             processor, model = self._loaded = self._loaded or self._load()
             parts = [{"type": "image", "image": _pillow(image)}, {"type": "text", "text": prompt}]
-            # If the chat template lacked this option, it would be passed to the processor.
+            # A template that does not use this option would pass it on to the processor.
             template_options = {"enable_thinking": False} if "enable_thinking" in str(processor.chat_template) else {}
             inputs = processor.apply_chat_template(
                 [{"role": "user", "content": parts}],
@@ -206,7 +206,7 @@ def _device(options: LocalOptions) -> str:
 
 def make(spec: BackendSpec) -> Perception:
     """Create the backend that a spec describes."""
-    need("local", "transformers", "torch")
+    require_packages("local", "transformers", "torch")
     options, model = LocalOptions.of(spec), spec.needed_model()
     if options.family == "chat":
         return LocalChatPerception(TransformersChat(model, options), convention(spec.coordinates), options, spec.name)

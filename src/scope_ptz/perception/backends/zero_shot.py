@@ -13,14 +13,14 @@ from anyio import to_thread
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.backends.spec import BackendSpec, Options, need
+from scope_ptz.perception.backends.spec import BackendSpec, Options, require_packages
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.models.coordinates import RawThing, convention, located
+from scope_ptz.perception.models.coordinates import RawThing, convention, places_in_frame
 from scope_ptz.perception.models.frame_memo import Image
-from scope_ptz.perception.models.tile_geometry import suppressed
+from scope_ptz.perception.models.tile_geometry import without_overlaps
 
-Found = list[dict[str, Any]]
-Detector = Callable[[Image, str], Found]
+RawDetections = list[dict[str, Any]]
+Detector = Callable[[Image, str], RawDetections]
 """A function from an RGB image and a phrase to ``[{"score", "label", "box": {"xmin", "ymin", "xmax", "ymax"}}]``, in pixels."""
 
 
@@ -39,7 +39,7 @@ class ZeroShotOptions(Options):
 
 
 class ZeroShotPerception(Perception):
-    """A detector that locates what a phrase describes, best score first. It cannot answer questions."""
+    """A detector that locates the objects that a phrase describes, best score first. It cannot answer questions."""
 
     skills = frozenset(("detect", "point"))
 
@@ -47,10 +47,10 @@ class ZeroShotPerception(Perception):
         self.name, self._detector, self._options = name, detector, options or ZeroShotOptions()
 
     async def caption(self, frame: Frame) -> Caption:  # noqa: ARG002
-        raise PerceptionError(f"{self.name} is a detector and describes no pictures. Ask a vision-language model.")
+        raise PerceptionError(f"{self.name} is a detector and cannot describe pictures. Ask a vision-language model.")
 
     async def query(self, frame: Frame, question: str) -> Answer:  # noqa: ARG002
-        raise PerceptionError(f"{self.name} is a detector and answers no questions. Ask a vision-language model.")
+        raise PerceptionError(f"{self.name} is a detector and cannot answer questions. Ask a vision-language model.")
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         phrase = " ".join(description.split())
@@ -61,25 +61,25 @@ class ZeroShotPerception(Perception):
         return Detections(boxes=boxes, source=self.name, raw=raw, notes=notes, latency_s=perf_counter() - began)
 
     async def point(self, frame: Frame, description: str) -> Points:
-        found = await self.detect(frame, description)
-        points = tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in found.boxes)
-        return Points(points=points, source=self.name, raw=found.raw, notes=found.notes, latency_s=found.latency_s)
+        detections = await self.detect(frame, description)
+        points = tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in detections.boxes)
+        return Points(points=points, source=self.name, raw=detections.raw, notes=detections.notes, latency_s=detections.latency_s)
 
     def _detect(self, image: Image, phrase: str) -> tuple[tuple[Box, ...], str, tuple[str, ...]]:
         width, height = image.shape[1], image.shape[0]
         try:
-            found = self._detector(image, phrase)
+            raw = self._detector(image, phrase)
         except (RuntimeError, ValueError, MemoryError, IndexError) as error:
             raise PerceptionError(f"{self.name} failed on a frame of {width}x{height}: {error}") from error
-        things = [t for t in map(_thing, found) if t.score is not None and t.score >= self._options.threshold]
-        places = located(things, convention("pixels"), (width, height))
-        return tuple(suppressed(places.boxes, self._options.overlap)), json.dumps(found, default=str), places.notes
+        things = [t for t in map(_thing, raw) if t.score is not None and t.score >= self._options.threshold]
+        places = places_in_frame(things, convention("pixels"), (width, height))
+        return tuple(without_overlaps(places.boxes, self._options.overlap)), json.dumps(raw, default=str), places.notes
 
 
-def _thing(found: dict[str, Any]) -> RawThing:
-    box, score = found["box"], float(found["score"])
+def _thing(detection: dict[str, Any]) -> RawThing:
+    box, score = detection["box"], float(detection["score"])
     numbers = tuple(float(box[k]) for k in ("xmin", "ymin", "xmax", "ymax"))
-    return RawThing(numbers, str(found.get("label") or "") or None, score if math.isfinite(score) else None)
+    return RawThing(numbers, str(detection.get("label") or "") or None, score if math.isfinite(score) else None)
 
 
 class PipelineDetector:
@@ -90,16 +90,16 @@ class PipelineDetector:
 
     _pipeline: Any
 
-    def __call__(self, image: Image, phrase: str) -> Found:
+    def __call__(self, image: Image, phrase: str) -> RawDetections:
         from PIL import Image as PillowImage
 
         with self._lock:
             if self._pipeline is None:
                 self._pipeline = self._load()
-            found: Found = self._pipeline(
+            detections: RawDetections = self._pipeline(
                 PillowImage.fromarray(image), candidate_labels=[phrase], threshold=self._options.threshold
             )
-        return found
+        return detections
 
     def _load(self) -> Any:
         try:
@@ -116,6 +116,6 @@ class PipelineDetector:
 
 def make(spec: BackendSpec) -> Perception:
     """Create the backend that a spec describes."""
-    need("local", "transformers", "torch")
+    require_packages("local", "transformers", "torch")
     options = ZeroShotOptions.of(spec)
     return ZeroShotPerception(PipelineDetector(spec.needed_model(), options), options, spec.name)

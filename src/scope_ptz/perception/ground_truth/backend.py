@@ -26,10 +26,9 @@ TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
 class GroundTruthPerception(Perception):
     """Answers from the ground truth of simulated frames. Frames of real cameras have none and raise ``PerceptionError``.
 
-    What reads questions and descriptions is imported with the first of them: many instructions ask nothing.
-
-    Visibility and legibility are as the simulator defines them. Boxes come largest first, unless the description orders them ("the
-    nearest car"). Their label is the name of the thing, and they have no score.
+    Visibility and legibility follow the simulator's definitions. Boxes are sorted by size, largest first, unless the description
+    orders them ("the nearest car"). Their label is the name of the thing, and they have no score. The parsers of questions and
+    descriptions are imported on first use, because many instructions need neither.
     """
 
     name = GROUND_TRUTH
@@ -47,7 +46,7 @@ class GroundTruthPerception(Perception):
 
     async def caption(self, frame: Frame) -> Caption:
         began = time.perf_counter()
-        reply = await to_thread.run_sync(self._described, frame)
+        reply = await to_thread.run_sync(self._describe, frame)
         return Caption(text=reply.text, source=self.name, raw=reply.text, latency_s=time.perf_counter() - began)
 
     async def query(self, frame: Frame, question: str) -> Answer:
@@ -67,10 +66,10 @@ class GroundTruthPerception(Perception):
         points = tuple(Point(x=t.sighting.point[0], y=t.sighting.point[1], label=t.name) for t in things)
         return Points(points=points, source=self.name, raw=_ids(things), latency_s=time.perf_counter() - began)
 
-    def view(self, frame: Frame, asked: str) -> View:
+    def view(self, frame: Frame, request: str) -> View:
         """Return everything that a simulated frame shows.
 
-        ``asked`` is the question. The truth does not depend on it, but simulated noise does.
+        ``request`` is the question or description. The truth does not depend on it, but simulated noise does.
         """
         from scope_ptz.perception.ground_truth.view import read_view
 
@@ -81,16 +80,21 @@ class GroundTruthPerception(Perception):
             )
         try:
             scene = self.open_scene(origin.scene)
+            if scene.file.captured is not None:
+                raise PerceptionError(
+                    f"The scene '{scene.name}' was captured from a camera and has no ground truth. "
+                    "Name a vision model, or a text reader such as rapidocr, with --perception."
+                )
             truth = self.read_truth(scene, origin.viewpoint, frame.projection, origin.time_s)
         except (PackError, UnknownNameError) as error:
             raise PerceptionError(f"The ground truth of this frame cannot be read: {error}") from error
-        return read_view(self.perceived(truth, frame, asked), scene.file, origin.time_s)
+        return read_view(self.perceived(truth, frame, request), scene.file, origin.time_s)
 
-    def perceived(self, truth: ViewTruth, frame: Frame, asked: str) -> ViewTruth:  # noqa: ARG002
+    def perceived(self, truth: ViewTruth, frame: Frame, request: str) -> ViewTruth:  # noqa: ARG002
         """Return the part of the truth that the backend perceives. This one perceives everything; subclasses add errors."""
         return truth
 
-    def _described(self, frame: Frame) -> AnswerText:
+    def _describe(self, frame: Frame) -> AnswerText:
         from scope_ptz.perception.ground_truth.answers import answer
         from scope_ptz.perception.ground_truth.language.question_tree import Describe
 

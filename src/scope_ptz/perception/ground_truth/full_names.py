@@ -1,5 +1,4 @@
-"""Search by the full name that the scene gives a thing: "mannequin in a red dress", "planter with pink
-flowers".
+"""Search by the full name of a thing in the scene: "mannequin in a red dress", "planter with pink flowers".
 
 The parser reads such a name as a noun with a property, but the scene may state that property only in the name.
 """
@@ -7,31 +6,33 @@ The parser reads such a name as a noun with a property, but the scene may state 
 from __future__ import annotations
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 _FUNCTION_WORDS = frozenset({"a", "an", "the", "in", "on", "of", "at", "by", "to", "with"})
 
 
-def named_in_full(view: View, phrase: s.Phrase) -> list[Thing]:
+def named_in_full(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Return the things whose name has exactly the words of a phrase."""
-    asked = _words(phrase)
-    if not asked:
+    phrase_words = _words(phrase)
+    if not phrase_words:
         return []
-    return [t for t in view.things if {english.singular(x) for x in english.letters(t.name).split()} - _FUNCTION_WORDS == asked]
+    return [
+        t for t in view.things if {english.singular(x) for x in english.letters(t.name).split()} - _FUNCTION_WORDS == phrase_words
+    ]
 
 
-def _words(phrase: s.Phrase) -> set[str]:
+def _words(phrase: tree.Phrase) -> set[str]:
     """Return all words of a phrase; an empty set if the phrase contains more than a name can."""
     if not phrase.tests or phrase.order is not None or phrase.ordinal is not None:
         return set()
     words = set(phrase.words)
     for test in phrase.tests:
         match test:
-            case s.Has(what=what) | s.Relation(other=what) if len(what.phrases) == 1 and not what.phrases[0].tests:
+            case tree.Has(what=what) | tree.Relation(other=what) if len(what.phrases) == 1 and not what.phrases[0].tests:
                 words |= set(what.phrases[0].words)
-            case s.Is(words=loose):
-                words |= set(loose)
+            case tree.Is(words=state_words):
+                words |= set(state_words)
             case _:
                 return set()
     return {english.singular(word) for word in words} - _FUNCTION_WORDS

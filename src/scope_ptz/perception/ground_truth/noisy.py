@@ -43,7 +43,7 @@ class Noise:
 
 
 class NoisyPerception(GroundTruthPerception):
-    """Ground truth with errors, which are consistent within one question and differ between questions."""
+    """Ground truth with simulated errors. Repeating a question gives the same errors; different questions give different ones."""
 
     name = NOISY_SOURCE
 
@@ -52,16 +52,16 @@ class NoisyPerception(GroundTruthPerception):
         self._seed = seed
         self._noise = noise or Noise()
 
-    def perceived(self, truth: ViewTruth, frame: Frame, asked: str) -> ViewTruth:
+    def perceived(self, truth: ViewTruth, frame: Frame, request: str) -> ViewTruth:
         """Return the truth with misses, duplicates, shifted boxes and misread characters."""
-        key = f"{self._seed}|{frame.origin}|{frame.projection}|{' '.join(asked.lower().split())}"
+        key = f"{self._seed}|{frame.origin}|{frame.projection}|{' '.join(request.lower().split())}"
         rng = random.Random(hashlib.sha256(key.encode()).digest())
         sightings: list[Sighting] = []
         for sighting in truth.sightings:
             missed = rng.random() < self._noise.miss * math.exp(-sighting.pixels / self._noise.miss_scale_px)
             twice = rng.random() < self._noise.duplicate
-            seen = [self._shifted(sighting, rng) for _ in range(2)]
-            sightings += seen[: 0 if missed else 2 if twice else 1]
+            shifted = [self._shifted(sighting, rng) for _ in range(2)]
+            sightings += shifted[: 0 if missed else 2 if twice else 1]
         return ViewTruth(tuple(sightings), tuple(self._misread(t, rng) for t in truth.texts))
 
     def _shifted(self, sighting: Sighting, rng: random.Random) -> Sighting:

@@ -6,9 +6,9 @@ overlap horizontally, with a tolerance of a tenth of the frame.
 tolerance of a twentieth of the frame.
 - *near, next to*: at most 4 m apart in the world.
 - *on, in, at, of*: a part of the other thing, or within its footprint and not below it.
-- *on the left*: the centre lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: in the
-middle 40% across, without the top and bottom tenth. *In the foreground*, *in the distance*: the nearest and furthest third of the
-depth in view, on a logarithmic scale.
+- *on the left*: the centre lies in the left 40% of the frame; *in the left half*: in the left 50%; *in a corner*: in the 40% bands
+of both sides; *in the middle*: in the middle 40% across, without the top and bottom tenth.
+- *in the foreground*, *in the distance*: the nearest and furthest third of the depth in view, on a logarithmic scale.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import facts, key_words
 from scope_ptz.perception.ground_truth.view import Thing, View
 
@@ -26,22 +26,22 @@ BACKDROP = frozenset({"surface", "sky"})
 """Concepts of the background, which do not count as objects."""
 
 NEAR_M = 4.0  # things at most this far apart are next to each other
-ON_SLACK_M = 0.3  # tolerance for standing on something
+ON_SLACK_M = 0.3  # tolerance of the test whether one thing stands on another
 FLAT_M = 0.5  # lower things are flat, such as a road
-DEPTH_STEP_M = 0.5  # minimum difference in distance of a thing behind another
+DEPTH_STEP_M = 0.5  # minimum difference in distance between two things, one of which is behind the other
 SIDE_BAND = 0.4  # share of the frame that counts as a side
 SIDE_SLACK = 0.05  # tolerance of horizontal overlap, as a share of the frame
 
 
-def in_region(view: View, thing: Thing, region: s.Region) -> bool:
+def in_region(view: View, thing: Thing, region: tree.Region) -> bool:
     """Return whether a thing lies in a part of the frame."""
     x, y = thing.box.centre
-    band = 0.5 if region.half else SIDE_BAND
+    side_share = 0.5 if region.half else SIDE_BAND
     checks: dict[str, Callable[[], bool]] = {
-        "left": lambda: x < band,
-        "right": lambda: x > 1 - band,
-        "top": lambda: y < band,
-        "bottom": lambda: y > 1 - band,
+        "left": lambda: x < side_share,
+        "right": lambda: x > 1 - side_share,
+        "top": lambda: y < side_share,
+        "bottom": lambda: y > 1 - side_share,
         "middle": lambda: abs(x - 0.5) <= SIDE_BAND / 2 and (len(region.sides) > 1 or abs(y - 0.5) <= SIDE_BAND),
         "near": lambda: thing.distance_m <= _depth(view, 1 / 3),
         "far": lambda: thing.distance_m >= _depth(view, 2 / 3),
@@ -56,8 +56,8 @@ def _depth(view: View, share: float) -> float:
     return float(near * (far / near) ** share)
 
 
-def relation_holds(view: View, a: Thing, kind: s.RelationKind, b: Thing) -> bool:
-    """Return whether two things stand in a relation in the picture."""
+def relation_holds(view: View, a: Thing, kind: tree.RelationKind, b: Thing) -> bool:
+    """Return whether a relation holds between two things."""
     (ax, ay), (bx, by) = a.box.centre, b.box.centre
     part = view.belongs(a.id, b.id) or view.belongs(b.id, a.id)
     match kind:
@@ -98,7 +98,7 @@ def _volume_m3(thing: Thing) -> float:
     return float(np.prod(np.maximum(thing.high_m - thing.low_m, 0.1)))
 
 
-def from_corner(thing: Thing, sides: Sequence[str]) -> float:
+def distance_to_corner(thing: Thing, sides: Sequence[str]) -> float:
     """Return the distance from a thing to a corner, a side or the centre of the frame, as a share of the frame."""
     x, y = thing.box.centre
     to_x = 0.0 if "left" in sides else 1.0 if "right" in sides else 0.5
@@ -115,12 +115,12 @@ def faces(thing: Thing, side: str) -> bool | None:
 
 
 def pixels(thing: Thing) -> int:
-    """Return how many pixels of a thing are visible."""
+    """Return the number of visible pixels of a thing."""
     return thing.sighting.pixels
 
 
-def rank_key(key: s.OrderKey) -> Callable[[Thing], float]:
-    """Return the sort key of a superlative. The thing with the lowest value fits it best."""
+def rank_key(key: tree.OrderKey) -> Callable[[Thing], float]:
+    """Return the sort key of a superlative. The thing with the lowest value matches best."""
     keys: dict[str, Callable[[Thing], float]] = {
         "left": lambda t: t.box.centre[0],
         "right": lambda t: -t.box.centre[0],

@@ -1,4 +1,4 @@
-"""Tests whether words, clothes and texts fit a thing. They return None if the scene does not state the answer."""
+"""Test whether words, clothes and texts match a thing. The tests return None if the scene does not state the answer."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _STATES = [
     "working: operating operational active running",
     "",
 ]
-"""States, each followed by its synonyms."""
+"""States with their synonyms, in the form ``state: synonyms``."""
 _CANONICAL = {word: line.partition(":")[0] for line in _STATES if line for word in line.replace(":", "").split()} | {
     "gray": "grey", "amber": "orange", "violet": "purple", "golden": "gold", "metallic": "metal", "steel": "metal",
     "standing": "upright", "stand": "upright", "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
@@ -149,27 +149,27 @@ def value_words(value: object) -> list[str]:
 
 def fact_words(thing: Thing) -> set[str]:
     """Return the words that describe a thing: its name, attribute values, true flags and motion, but not people's clothes."""
-    found = {canonical(x) for x in english.letters(f"{thing.name} {thing.category}").split()}
+    result = {canonical(x) for x in english.letters(f"{thing.name} {thing.category}").split()}
     for key, value in facts(thing):
         words = key_words(key)
         if value is True:
-            found |= {canonical(x) for x in words}
-            found |= {"on"} if "lit" in words else set()
+            result |= {canonical(x) for x in words}
+            result |= {"on"} if "lit" in words else set()
         elif value is False:
-            found |= {b for pair in _OPPOSITES for a, b in (pair, pair[::-1]) if a in {canonical(x) for x in words}}
+            result |= {b for pair in _OPPOSITES for a, b in (pair, pair[::-1]) if a in {canonical(x) for x in words}}
         elif not (is_colour(value) and words[-1] not in COLOUR_KEYS and any(k in thing.attributes for k in COLOUR_KEYS)) and not (
             is_worn(key) and "person" in thing.concepts
         ):
-            found |= set(value_words(value))
+            result |= set(value_words(value))
         if words[-1] in {"load", "cargo"} and str(value).lower() not in ABSENT_VALUES:
-            found.add("full")
-    if "lit" in found:
-        found.add("on")
-    if "unlit" in found:
-        found.add("off")
-    if thing.motion and not found & {"moving", "stationary"}:
-        found.add(thing.motion)
-    return found
+            result.add("full")
+    if "lit" in result:
+        result.add("on")
+    if "unlit" in result:
+        result.add("off")
+    if thing.motion and not result & {"moving", "stationary"}:
+        result.add(thing.motion)
+    return result
 
 
 def facts(thing: Thing) -> list[tuple[str, Attribute]]:
@@ -218,7 +218,7 @@ def fits_noun(view: View, thing: Thing, noun: str) -> bool:
 
 
 def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
-    """Return whether words such as "parked", "dark blue" or "a van" hold for a thing; None if the scene does not state it."""
+    """Return whether words such as "parked", "dark blue" or "a van" hold for a thing; None if the scene does not state this."""
     rest = [x for x in words if x not in FILLERS] or [x for x in words if x in {"on", "in"}]
     if not rest:
         return True
@@ -232,26 +232,26 @@ def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
 
 def _all(answers: Iterable[bool | None]) -> bool | None:
     """Return whether all answers are yes; None stands for unknown."""
-    found = list(answers)
-    return False if False in found else None if None in found else True
+    result = list(answers)
+    return False if False in result else None if None in result else True
 
 
 def _fits(view: View, thing: Thing, word: str) -> bool | None:
-    """Return whether one word holds for a thing; None if the scene does not state it."""
+    """Return whether one word holds for a thing; None if the scene does not state this."""
     if word.startswith("non-"):
         answer = _fits(view, thing, word.removeprefix("non-"))
         return None if answer is None else not answer
-    known = fact_words(thing)
-    meant = canonical(word)
-    if _forms(word) & {f for x in known for f in _forms(x)} or fits_noun(view, thing, word):
+    thing_words = fact_words(thing)
+    canonical_word = canonical(word)
+    if _forms(word) & {f for x in thing_words for f in _forms(x)} or fits_noun(view, thing, word):
         return True
     if lexicon().concept(word) is not None and "person" in thing.concepts and has_item(view, thing, [word]):
         return True
     if _in_context(view, thing, word) or any(english.letters(word) in english.letters(text).split() for text in thing.texts):
         return True
-    if any(opposite(meant, other) for other in known):
+    if any(opposite(canonical_word, other) for other in thing_words):
         return False
-    if meant in english.COLOURS and colour_of(thing) is not None:
+    if canonical_word in english.COLOURS and colour_of(thing) is not None:
         return False
     if any(_forms(word) & domain and key in thing.attributes for key, domain in view.values.items() if key not in TEXT_KEYS):
         return False
@@ -260,7 +260,7 @@ def _fits(view: View, thing: Thing, word: str) -> bool | None:
 
 @lru_cache(maxsize=4096)
 def _forms(word: str) -> frozenset[str]:
-    """Return a word with its other forms, so that "kneeling" fits "kneel"."""
+    """Return a word with its other forms, so that "kneeling" matches "kneel"."""
     stems = {word, english.singular(word)}
     for ending in ("ing", "ed"):
         if word.endswith(ending) and len(word) > len(ending) + 2:
@@ -282,21 +282,21 @@ def _in_context(view: View, thing: Thing, word: str) -> bool:
 
 
 def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None = None) -> bool:
-    """Return whether a thing has an attribute, part, clothing or text that fits. Anything not stated counts as absent."""
+    """Return whether a thing has a matching attribute, part, clothing or text. Anything not stated counts as absent."""
     rest = [x for x in words if x not in FILLERS]
     spans = nouns_in(rest, view.nouns)
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))
     noun, others = " ".join(rest[start:end]), [canonical(x) for x in (*rest[:start], *rest[end:])]
     if lexicon().concept(noun) == "thing":  # "carrying something"
-        held = [v for k, v in facts(thing) if set(key_words(k)) & {"carrying", "load", "holding"}]
-        return any(str(v).lower() not in ABSENT_VALUES for v in held)
+        carried = [v for k, v in facts(thing) if set(key_words(k)) & {"carrying", "load", "holding"}]
+        return any(str(v).lower() not in ABSENT_VALUES for v in carried)
     if any(_attribute_has(key, value, names_of(noun), others, amount) for key, value in facts(thing)):
         return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
     if any(fits_noun(view, part, noun) and all(_fits(view, part, x) for x in others) for part in parts):
         return True
-    wanted = english.letters(" ".join(rest))
-    return any(wanted in english.letters(text) for text in thing.texts)
+    requested = english.letters(" ".join(rest))
+    return any(requested in english.letters(text) for text in thing.texts)
 
 
 def _attribute_has(key: str, value: Attribute, names: frozenset[str], others: Sequence[str], amount: int | None) -> bool:
@@ -324,7 +324,7 @@ def names_of(noun: str) -> frozenset[str]:
 
 
 def _chunks(value: object) -> list[str]:
-    """Split "orange vest and white helmet" into its parts, so that the vest is not white."""
+    """Split "orange vest and white helmet" into its parts, so that "white" applies only to the helmet."""
     if not isinstance(value, str):
         return []
     text = value.lower().replace(" and ", ",").replace(" with ", ",").replace(";", ",")
@@ -333,8 +333,8 @@ def _chunks(value: object) -> list[str]:
 
 def has_text(thing: Thing, words: Sequence[str]) -> bool:
     """Return whether legible text on a thing contains these words in this order. Without words, any legible text counts."""
-    wanted = f" {' '.join(words)} "
-    return any(wanted in f" {english.letters(text)} " or not words for text in thing.texts) or _has_plate(thing, words)
+    requested = f" {' '.join(words)} "
+    return any(requested in f" {english.letters(text)} " or not words for text in thing.texts) or _has_plate(thing, words)
 
 
 def _has_plate(thing: Thing, words: Sequence[str]) -> bool:

@@ -1,4 +1,4 @@
-"""Search for the things in a view that fit a description.
+"""Search for the things in a view that match a description.
 
 - Facts that the scene states ("in the left lane", "in an orange vest") take precedence over the spatial relations of ``relations``.
 - *between*: the centre lies horizontally between the centres of the two, and not clearly in front of or behind both.
@@ -14,13 +14,13 @@ from typing import cast
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.full_names import named_in_full
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.relations import (
     BACKDROP,
     NEAR_M,
+    distance_to_corner,
     faces,
-    from_corner,
     in_region,
     pixels,
     rank_key,
@@ -38,49 +38,49 @@ from scope_ptz.perception.ground_truth.thing_facts import (
 )
 from scope_ptz.perception.ground_truth.view import Thing, View
 
-_SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top", "bottom": "bottom"}
+_SIDES: dict[str, tree.OrderKey] = {"left": "left", "right": "right", "top": "top", "bottom": "bottom"}
 
 
-def find(view: View, description: s.Description) -> list[Thing]:
-    """Return all things that fit a description, best first."""
-    found = things_named(view, description)
-    if found or len(description.phrases) != 1:
-        return found
+def find(view: View, description: tree.Description) -> list[Thing]:
+    """Return all things that match a description, best first."""
+    matches = things_named(view, description)
+    if matches or len(description.phrases) != 1:
+        return matches
     return named_in_full(view, description.phrases[0]) or _worn(view, description.phrases[0])
 
 
-def things_named(view: View, description: s.Description) -> list[Thing]:
-    """Return the things that fit a description, without those that people wear."""
-    found = _two_coloured(view, description)
-    if found:
-        return found
+def things_named(view: View, description: tree.Description) -> list[Thing]:
+    """Return the things that match a description, without things that people wear."""
+    matches = _two_coloured(view, description)
+    if matches:
+        return matches
     for phrase in description.phrases:
-        found += [t for t in find_phrase(view, phrase) if t not in found]
-    return found if len(description.phrases) == 1 else sorted(found, key=pixels, reverse=True)
+        matches += [t for t in find_phrase(view, phrase) if t not in matches]
+    return matches if len(description.phrases) == 1 else sorted(matches, key=pixels, reverse=True)
 
 
-def _worn(view: View, phrase: s.Phrase) -> list[Thing]:
+def _worn(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Find "hard hats", which are not independent things, on the people who wear them."""
     if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
         return []
     return sorted((t for t in view.things if "person" in t.concepts and has_item(view, t, phrase.words)), key=pixels, reverse=True)
 
 
-def _two_coloured(view: View, description: s.Description) -> list[Thing]:
-    """Find "red and white barriers": those that have both colours. If there are none, the caller searches for each colour."""
+def _two_coloured(view: View, description: tree.Description) -> list[Thing]:
+    """Find "red and white barriers": barriers that have both colours. If there are none, the caller searches for each colour."""
     phrases = description.phrases
     if len(phrases) != 2 or any(len(p.words) < 2 or p.words[0] not in english.COLOURS for p in phrases):
         return []
     first, second = phrases
     if (first.words[1:], first.tests, first.order) != (second.words[1:], second.tests, second.order):
         return []
-    wanted = {p.words[0] for p in phrases}
+    requested = {p.words[0] for p in phrases}
     both = replace(first, words=first.words[1:])
-    return [t for t in find_phrase(view, both) if wanted <= set(english.letters(colour_of(t) or "").split())]
+    return [t for t in find_phrase(view, both) if requested <= set(english.letters(colour_of(t) or "").split())]
 
 
-def find_phrase(view: View, phrase: s.Phrase) -> list[Thing]:
-    """Return all things that fit one noun phrase, best first."""
+def find_phrase(view: View, phrase: tree.Phrase) -> list[Thing]:
+    """Return all things that match one noun phrase, best first."""
     core, extra, order = _core(view, phrase)
     matches = [t for t in core if all(holds(view, t, test) is True for test in (*phrase.tests, *extra))]
     return _ordered(view, sorted(matches, key=pixels, reverse=True), order, phrase)
@@ -95,13 +95,13 @@ def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[st
     return tuple(words[:end]), tuple(words[end:])
 
 
-def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
-    """Return the things that the core words fit, further tests, and the order if the words imply one ("the left sign")."""
+def _core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tree.Test, ...], tree.Order | None]:
+    """Return the things that match the core words, additional tests, and the order if the words imply one ("the left sign")."""
     words = list(phrase.words)
     if phrase.amount is not None and phrase.order is None and words and not english.is_plural(words[-1]) and phrase.amount > 1:
         words.insert(0, str(phrase.amount))
     spans = nouns_in(words, view.nouns)
-    carried = any(isinstance(t, s.Relation) and t.kind == "on" for t in phrase.tests)
+    carried = any(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
     for start, end in reversed(spans):
         others = [*words[:start], *words[end:]]
         candidates = _named(view, " ".join(words[start:end]), others, carried)
@@ -113,12 +113,12 @@ def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...]
         plain = [x for x in (*words[:start], *words[end:]) if x not in sides]
         matches = [t for t in _named(view, " ".join(words[start:end]), plain, carried) if _modified(view, t, plain)]
         if sides and matches:
-            return _sided(matches, sides, english.is_plural(words[end - 1]), phrase)
+            return _with_sides(matches, sides, english.is_plural(words[end - 1]), phrase)
     return [] if spans else [t for t in view.things if _all_words(view, t, words)], (), phrase.order
 
 
 def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
-    """Return the things that a noun names. If no vehicle fits the other words ("yellow vehicle"), machines count as vehicles."""
+    """Return the things that a noun names. If no vehicle matches the other words ("yellow vehicle"), machines count as vehicles."""
     if lexicon().concept(noun) == "thing":
         return [t for t in view.things if _is_object(view, t) or (carried and not t.concepts & BACKDROP)]
     named = [t for t in view.things if fits_noun(view, t, noun)]
@@ -127,26 +127,27 @@ def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[
     return named
 
 
-def _sided(
-    matches: list[Thing], sides: list[str], many: bool, phrase: s.Phrase
-) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
+def _with_sides(
+    matches: list[Thing], sides: list[str], many: bool, phrase: tree.Phrase
+) -> tuple[list[Thing], tuple[tree.Test, ...], tree.Order | None]:
     """Apply words for sides.
 
     "The left sign" is the left-most one, "the left signs" are on the left, and "the top right sign" is nearest to that corner.
     """
     if many:
-        return matches, (s.Region(cast("tuple[s.Side, ...]", tuple(sides))),), phrase.order
+        return matches, (tree.Region(cast("tuple[tree.Side, ...]", tuple(sides))),), phrase.order
     if len(sides) == 1 and sides[0] in _SIDES and phrase.order is None:
-        return matches, (), s.Order(_SIDES[sides[0]])
-    return sorted(matches, key=lambda t: from_corner(t, sides))[:1], (), phrase.order
+        return matches, (), tree.Order(_SIDES[sides[0]])
+    return sorted(matches, key=lambda t: distance_to_corner(t, sides))[:1], (), phrase.order
 
 
 def _is_object(view: View, thing: Thing) -> bool:
-    """Return whether a thing is an object of its own, not background and not a part of something else in view."""
+    """Return whether a thing is an independent object: not background, and not a part of something else in view."""
     return not thing.concepts & BACKDROP and (thing.parent is None or thing.parent not in view.by_id)
 
 
 def _modified(view: View, thing: Thing, others: Sequence[str]) -> bool:
+    """Return whether the other words of a phrase hold for a thing."""
     if not others:
         return True
     return (
@@ -163,69 +164,71 @@ def _ignorable(view: View, thing: Thing, word: str) -> bool:
 
 
 def _all_words(view: View, thing: Thing, words: Sequence[str]) -> bool:
-    """Return whether a thing fits a phrase with an unknown noun: every word must hold for it."""
+    """Return whether a thing matches a phrase with an unknown noun: every word must hold for it."""
     return not set(words) <= FILLERS and all(fits_words(view, thing, [x]) is True for x in words)
 
 
-def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
+def holds(view: View, thing: Thing, test: tree.Test) -> bool | None:
     """Return whether a test holds for a thing; None if the scene does not state it."""
     match test:
-        case s.Not(test=inner):
+        case tree.Not(test=inner):
             answer = holds(view, thing, inner)
             return None if answer is None else not answer
-        case s.Any(tests=tests):
+        case tree.Any(tests=tests):
             answers = [holds(view, thing, t) for t in tests]
             return True if True in answers else None if None in answers else False
-        case s.Is(words=words):
+        case tree.Is(words=words):
             answer = fits_words(view, thing, words)
             return True if answer is None and all(_ignorable(view, thing, x) for x in words) else answer
-        case s.Says(words=words):
+        case tree.Says(words=words):
             return has_text(thing, words) or (len(words) == 1 and faces(thing, words[0]) is True)
-        case s.Has(what=what):
+        case tree.Has(what=what):
             return _has(view, thing, what)
-        case s.Faces(side=side):
+        case tree.Faces(side=side):
             return faces(thing, side)
-        case s.Order():
+        case tree.Order():
             return None
         case _:
             return _holds_in_space(view, thing, test)
 
 
-def _holds_in_space(view: View, thing: Thing, test: s.Region | s.Between | s.Relation | s.Measured | s.Within) -> bool:
+def _holds_in_space(
+    view: View, thing: Thing, test: tree.Region | tree.Between | tree.Relation | tree.Measured | tree.Within
+) -> bool:
     """Return whether a test about place, distance or size holds for a thing."""
     match test:
-        case s.Region():
+        case tree.Region():
             return in_region(view, thing, test)
-        case s.Between(first=first, second=second):
+        case tree.Between(first=first, second=second):
             return _between(view, thing, first, second)
-        case s.Relation(kind=kind, other=other):
-            return related(view, thing, kind, other)
-        case s.Measured(key=key, other=other):
+        case tree.Relation(kind=kind, other=other):
+            return has_relation(view, thing, kind, other)
+        case tree.Measured(key=key, other=other):
             rank = rank_key(key)
             return any(rank(thing) < rank(o) for o in find(view, other)[:1] if o is not thing)
-        case s.Within(metres=metres, other=other, beyond=beyond):
+        case tree.Within(metres=metres, other=other, beyond=beyond):
             gaps = [thing.distance_m] if other is None else [thing.gap_m(o) for o in find(view, other) if o is not thing]
             return bool(gaps) and (min(gaps) <= metres) is not beyond
 
 
-def _has(view: View, thing: Thing, what: s.Description) -> bool:
+def _has(view: View, thing: Thing, what: tree.Description) -> bool:
     """Return whether a thing has everything in a list ("with a vest and a helmet")."""
     return all(
         has_item(view, thing, phrase.words, phrase.amount)
-        and all(not isinstance(t, s.Is | s.Says) or has_item(view, thing, (*phrase.words, *t.words)) for t in phrase.tests)
+        and all(not isinstance(t, tree.Is | tree.Says) or has_item(view, thing, (*phrase.words, *t.words)) for t in phrase.tests)
         for phrase in what.phrases
     )
 
 
-def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description) -> bool:
-    """Return whether a thing stands in a relation to any thing that fits ``other``."""
+def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.Description) -> bool:
+    """Return whether a thing has a relation to any thing that matches ``other``."""
     others = things_named(view, other)
     if kind == "on" and thing not in others and _stated(view, thing, other):
         return True
     return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)
 
 
-def _stated(view: View, thing: Thing, other: s.Description) -> bool:
+def _stated(view: View, thing: Thing, other: tree.Description) -> bool:
     """Return whether a fact or clothing states the relation: "in the left lane", "in an orange vest"."""
     words = [x for p in other.phrases for x in p.words]
     if any(set(words) <= set(stated) for stated in (english.letters(thing.name).split(), *_values(thing))):
@@ -237,13 +240,15 @@ _LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "r
 
 
 def _values(thing: Thing) -> Iterable[list[str]]:
+    """Yield the words of each fact of a thing."""
     for key, value in facts(thing):
         yield english.letters(f"{key.replace('_', ' ')} {value}").split()
         if key == "lane" and isinstance(value, int):
             yield ["lane", *_LANES.get(value, "").split()]
 
 
-def _between(view: View, thing: Thing, first: s.Description, second: s.Description) -> bool:
+def _between(view: View, thing: Thing, first: tree.Description, second: tree.Description) -> bool:
+    """Return whether a thing is between any two things that match the descriptions."""
     ones, others = find(view, first), find(view, second)
     x = thing.box.centre[0]
     for a in ones:
@@ -257,7 +262,8 @@ def _between(view: View, thing: Thing, first: s.Description, second: s.Descripti
     return False
 
 
-def _ordered(view: View, matches: list[Thing], order: s.Order | None, phrase: s.Phrase) -> list[Thing]:
+def _ordered(view: View, matches: list[Thing], order: tree.Order | None, phrase: tree.Phrase) -> list[Thing]:
+    """Return the matches that a superlative, an ordinal and an amount select, in their order."""
     if order is None and phrase.ordinal is None:
         return matches
     key = order.key if order else "left"

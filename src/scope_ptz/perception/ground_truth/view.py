@@ -1,4 +1,4 @@
-"""The content of a frame as questions need it: the visible things with their facts, and the texts on them."""
+"""The content of a frame: the visible things with their facts, and the texts on them."""
 
 from __future__ import annotations
 
@@ -73,8 +73,8 @@ class Thing:
 
     def gap_m(self, other: Thing) -> float:
         """Return the distance in metres between the world boxes of two things."""
-        apart = np.maximum(0.0, np.maximum(self.low_m - other.high_m, other.low_m - self.high_m))
-        return float(np.linalg.norm(apart))
+        gaps_m = np.maximum(0.0, np.maximum(self.low_m - other.high_m, other.low_m - self.high_m))
+        return float(np.linalg.norm(gaps_m))
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class View:
     instances: Mapping[str, SceneInstance | SceneActor]
     """Instances by id, for the whole scene."""
     values: Mapping[str, frozenset[str]]
-    """The words in the values of each attribute, for the whole scene."""
+    """The words in the values of each attribute, from the whole scene."""
     nouns: frozenset[str] = field(default=frozenset())
     """Nouns of the scene in addition to those of the lexicon."""
     hosts: tuple[Thing, ...] = ()
@@ -128,7 +128,7 @@ class View:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SceneFacts:
-    """The facts of a scene that every view of it shares. They have the meaning of the attributes of ``View``."""
+    """The facts that all views of a scene share. The attributes have the same meaning as in ``View``."""
 
     file: SceneFile
     parents: Mapping[str, str]
@@ -145,29 +145,29 @@ _MAX_SCENES = 32
 
 def scene_facts(scene: SceneFile) -> SceneFacts:
     """Return the facts of a scene. They are read once for each scene file in memory."""
-    known = _SCENES.get(id(scene))
-    if known is None or known.file is not scene:
+    cached = _SCENES.get(id(scene))
+    if cached is None or cached.file is not scene:
         if len(_SCENES) >= _MAX_SCENES:
             _SCENES.clear()
-        known = _SCENES[id(scene)] = _read_facts(scene)
-    return known
+        cached = _SCENES[id(scene)] = _read_facts(scene)
+    return cached
 
 
 def _read_facts(scene: SceneFile) -> SceneFacts:
-    everything: list[SceneInstance | SceneActor] = [*scene.instances, *scene.actors]
+    objects: list[SceneInstance | SceneActor] = [*scene.instances, *scene.actors]
     values: dict[str, set[str]] = {}
     nouns: set[str] = set()
-    for instance in everything:
+    for instance in objects:
         nouns |= {singular_phrase(n.lower()) for n in (instance.category, head_of(instance.name)) if n.strip()}
         for key, value in instance.attributes.items():
             values.setdefault(key, set()).update(english.letters(str(value)).split())
     return SceneFacts(
         file=scene,
         parents={i.id: i.parent for i in scene.instances if i.parent},
-        instances={i.id: i for i in everything},
+        instances={i.id: i for i in objects},
         values={k: frozenset(v) for k, v in values.items()},
         nouns=frozenset(nouns),
-        concepts={i.id: concepts_of(i) for i in everything},
+        concepts={i.id: concepts_of(i) for i in objects},
     )
 
 
@@ -208,34 +208,34 @@ def head_of(name: str) -> str:
 
 
 def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
-    """Return every concept of an instance: by its category, by a more specific kind, and by the noun at the end of its name."""
+    """Return every concept of an instance: from its category, a more specific kind, and the noun at the end of its name."""
     table = lexicon()
-    found: set[str] = set()
+    concepts: set[str] = set()
     if instance.category and (concept := table.concept(instance.category.lower())):
-        found |= table.kinds(concept)
+        concepts |= table.kinds(concept)
     for key in ("kind", "type"):
         kind = str(instance.attributes.get(key, "")).lower()
         concept = table.concept(kind) if kind else None
         # A barrier of the kind "pedestrian" is not a pedestrian.
-        if concept and (not found or (table.kinds(concept) & found) - {"thing"}):
-            found |= table.kinds(concept)
+        if concept and (not concepts or (table.kinds(concept) & concepts) - {"thing"}):
+            concepts |= table.kinds(concept)
     name = head_of(instance.name).split()
     for start in range(len(name)):
         noun = " ".join(name[start:])
-        if found and instance.category.lower().endswith(f" {noun}"):
+        if concepts and instance.category.lower().endswith(f" {noun}"):
             break  # "lamp" is short for the category, a table lamp, and does not mean a lamp post
         if concept := table.concept(noun):
-            found |= table.kinds(concept)
+            concepts |= table.kinds(concept)
             break
-    return frozenset(found or {"thing"})
+    return frozenset(concepts or {"thing"})
 
 
 def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Floats, Floats]:
     """Return the lowest and highest corner in the world. An actor's box stands on its path and is not rotated."""
     if isinstance(instance, SceneInstance):
         return np.array(instance.box_min_m), np.array(instance.box_max_m)
-    here = path_position(instance, time_s)
-    foot = np.zeros(3) if here is None else here.position_m
+    position = path_position(instance, time_s)
+    foot = np.zeros(3) if position is None else position.position_m
     width, depth, height = instance.size_m
     return foot - np.array([width / 2, depth / 2, 0.0]), foot + np.array([width / 2, depth / 2, height])
 
@@ -244,8 +244,8 @@ def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:
     """Return "moving" or "stationary". Only actors move, and only while their path advances."""
     if isinstance(instance, SceneInstance):
         return "stationary"
-    now, soon = path_position(instance, time_s), path_position(instance, time_s + _STEP_S)
-    return "moving" if now and soon and abs(soon.walked_m - now.walked_m) > _STEP_M else "stationary"
+    now, later = path_position(instance, time_s), path_position(instance, time_s + _STEP_S)
+    return "moving" if now and later and abs(later.walked_m - now.walked_m) > _STEP_M else "stationary"
 
 
-_STEP_S, _STEP_M = 0.1, 0.005  # an actor that walks further than this in this time is moving
+_STEP_S, _STEP_M = 0.1, 0.005  # an actor that moves more than _STEP_M metres in _STEP_S seconds is moving

@@ -83,7 +83,9 @@ def smart_resize(width: int, height: int, *, factor: int, min_pixels: int, max_p
         PerceptionError: The processors reject the aspect ratio.
     """
     if min(width, height) < 1 or max(width, height) / min(width, height) > MAX_ASPECT:
-        raise PerceptionError(f"A picture of {width}x{height} is too narrow to be shown to a model (at most 1:{MAX_ASPECT:.0f}).")
+        raise PerceptionError(
+            f"A picture of {width}x{height} is too narrow for a model. Its sides may differ by at most 1:{MAX_ASPECT:.0f}."
+        )
     wide, high = max(factor, round(width / factor) * factor), max(factor, round(height / factor) * factor)
     if wide * high > max_pixels:
         shrink = math.sqrt(width * height / max_pixels)
@@ -103,7 +105,7 @@ def fit(width: int, height: int, max_pixels: int) -> tuple[int, int]:
 
 @dataclass(frozen=True, slots=True)
 class RawThing:
-    """One object in a reply: four numbers (a box) or two (a point), in the model's convention."""
+    """An object in a reply: four numbers (a box) or two (a point), in the model's convention."""
 
     numbers: tuple[float, ...]
     label: str | None = None
@@ -117,8 +119,8 @@ class RawThing:
 
 
 @dataclass(frozen=True, slots=True)
-class Located:
-    """The boxes and points of a reply, in its order.
+class ReplyPlaces:
+    """The boxes and points of a reply, in the order of the reply.
 
     Attributes:
         notes: Corrections and omissions.
@@ -131,7 +133,9 @@ class Located:
     complete: bool = True
 
 
-def located(things: Iterable[RawThing], convention: Convention, sent: tuple[int, int], limit: int = MAX_THINGS) -> Located:
+def places_in_frame(
+    things: Iterable[RawThing], convention: Convention, sent: tuple[int, int], limit: int = MAX_THINGS
+) -> ReplyPlaces:
     """Return the boxes and points of a reply in [0, 1].
 
     Entries that are not finite, have no area, lie outside the frame or are repeated are dropped and counted in the notes.
@@ -154,39 +158,39 @@ def located(things: Iterable[RawThing], convention: Convention, sent: tuple[int,
         if len(thing.numbers) not in (2, 4):
             counts["no place"] += 1
             continue
-        numbers = _x_first(thing.numbers) if convention.y_first and not thing.named else thing.numbers
+        numbers = _swap_axes(thing.numbers) if convention.y_first and not thing.named else thing.numbers
         if not all(map(math.isfinite, numbers)):
             counts["not finite"] += 1
         else:
             unit = [v / (scale_x if i % 2 == 0 else scale_y) for i, v in enumerate(numbers)]
             if thing.is_box:
-                _keep(_box(unit, thing, counts), boxes, counts)
+                _add_place(_box(unit, thing, counts), boxes, counts)
             else:
-                _keep(_point(unit, thing, counts), points, counts)
+                _add_place(_point(unit, thing, counts), points, counts)
     if raw and not boxes and not points:
-        raise PerceptionError(f"None of the places in the reply lie in the picture ({_listing(counts)}).", kind="malformed")
-    return _capped(list(boxes.values()), list(points.values()), counts, limit)
+        raise PerceptionError(f"None of the places in the reply lie in the picture ({_counts_text(counts)}).", kind="malformed")
+    return _limited(list(boxes.values()), list(points.values()), counts, limit)
 
 
 _WITHOUT_PLACE = ("not finite", "no place")
 """Entries that have no usable coordinates. With any of them, the list is incomplete."""
 
 
-def _capped(boxes: list[Box], points: list[Point], counts: Counter[str], limit: int) -> Located:
-    notes = [f"Among the places in the reply: {_listing(counts)}."] if counts else []
+def _limited(boxes: list[Box], points: list[Point], counts: Counter[str], limit: int) -> ReplyPlaces:
+    notes = [f"Among the places in the reply: {_counts_text(counts)}."] if counts else []
     within = max(len(boxes), len(points)) <= limit
     complete = within and not any(counts[kind] for kind in _WITHOUT_PLACE)
     if not within:
         notes.append(f"The reply names {max(len(boxes), len(points))} things; the first {limit} are kept.")
-    return Located(tuple(boxes[:limit]), tuple(points[:limit]), tuple(notes), complete)
+    return ReplyPlaces(tuple(boxes[:limit]), tuple(points[:limit]), tuple(notes), complete)
 
 
-def _listing(counts: Counter[str]) -> str:
-    return ", ".join(f"{number} {what}" for what, number in sorted(counts.items()))
+def _counts_text(counts: Counter[str]) -> str:
+    return ", ".join(f"{number} {kind}" for kind, number in sorted(counts.items()))
 
 
 def _scale(things: Sequence[RawThing], space: Space, sent: tuple[int, int]) -> tuple[float, float]:
-    """Return the numbers by which x and y of a reply are divided."""
+    """Return the divisors that convert the x and y coordinates of a reply to [0, 1]."""
     fixed = {"unit": 1.0, "percent": 100.0, "thousand": 1000.0}
     if space == "guess":
         space = _guess(things, sent)
@@ -209,12 +213,12 @@ def _guess(things: Sequence[RawThing], sent: tuple[int, int]) -> Space:
     if largest <= max(sent) * 1.05:
         return "pixels"
     raise PerceptionError(
-        f"The reply's coordinates reach {largest:.0f} in a picture of {sent[0]}x{sent[1]}: their convention is not known.",
+        f"The reply's coordinates reach {largest:.0f} in a picture of {sent[0]}x{sent[1]}: the coordinate convention is unknown.",
         kind="malformed",
     )
 
 
-def _x_first(numbers: tuple[float, ...]) -> tuple[float, ...]:
+def _swap_axes(numbers: tuple[float, ...]) -> tuple[float, ...]:
     return tuple(v for i in range(0, len(numbers), 2) for v in (numbers[i + 1], numbers[i]))
 
 
@@ -259,13 +263,13 @@ def _score(score: float | None) -> float | None:
 _Place = TypeVar("_Place", Box, Point)
 
 
-def _keep(place: _Place | None, kept: dict[tuple[float, ...], _Place], counts: Counter[str]) -> None:
+def _add_place(place: _Place | None, places: dict[tuple[float, ...], _Place], counts: Counter[str]) -> None:
     """Add a box or point, unless the reply contains it already."""
     if place is None:
         return
     numbers = (place.x, place.y) if isinstance(place, Point) else (place.x_min, place.y_min, place.x_max, place.y_max)
     key = tuple(round(v, 3) for v in numbers)
-    if key in kept:
+    if key in places:
         counts["repeated"] += 1
     else:
-        kept[key] = place
+        places[key] = place

@@ -50,24 +50,25 @@ def _interpolation(old: Size, new: Size) -> int:
     """
     if new[0] * new[1] < 0.6 * old[0] * old[1]:
         return cv2.INTER_AREA
-    slight = all(abs(after / before - 1) < 0.02 for before, after in zip(old, new, strict=True))
-    return cv2.INTER_NEAREST_EXACT if slight else cv2.INTER_LINEAR
+    almost_same_size = all(abs(after / before - 1) < 0.02 for before, after in zip(old, new, strict=True))
+    return cv2.INTER_NEAREST_EXACT if almost_same_size else cv2.INTER_LINEAR
 
 
 def encode(image: Image, size: Size | None = None) -> EncodedPicture:
     """Encode an RGB image (H, W, 3) as JPEG, at another size (width, height) if one is given."""
     picture = resized(image, size)
-    own = picture if picture is not image else None  # converted in place, because allocating a copy takes longer
+    # A resized copy is converted in place, because allocating another array takes longer.
+    target = picture if picture is not image else None
     try:
-        swapped = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR, dst=own)
-        worked, jpeg = cv2.imencode(".jpg", swapped, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+        swapped = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR, dst=target)
+        succeeded, jpeg = cv2.imencode(".jpg", swapped, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
     except cv2.error:
-        worked = False
-    if not worked:
+        succeeded = False
+    if not succeeded:
         raise PerceptionError(f"A frame of {picture.shape[1]}x{picture.shape[0]} pixels cannot be written as JPEG.")
-    made = EncodedPicture(jpeg.tobytes(), int(picture.shape[1]), int(picture.shape[0]))
-    _ = made.data_url  # computed here, in the worker thread
-    return made
+    encoded = EncodedPicture(jpeg.tobytes(), int(picture.shape[1]), int(picture.shape[0]))
+    _ = encoded.data_url  # computed here, in the worker thread
+    return encoded
 
 
 _SHARED: FrameMemo[Size | None, EncodedPicture] = FrameMemo(encode)

@@ -1,4 +1,4 @@
-"""A cache of results that are computed from pictures and kept as long as the picture exists."""
+"""A cache of results that are computed from pictures. A result is deleted with its picture."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ T = TypeVar("T")
 class FrameMemo(Generic[K, T]):
     """A cache of ``make(image, key)`` for at most ``size`` pairs of image and key.
 
-    Images are compared by identity. They are read-only, so a result stays valid until its image is deleted. Callers that want
+    Images are compared by identity. They are read-only, so a result stays valid until its image is deleted. Callers that request
     the same result at the same time, in any thread, share one computation.
     """
 
@@ -36,15 +36,15 @@ class FrameMemo(Generic[K, T]):
         """Return the result, computing it in this thread if it is new."""
         entry = self._entry(image, key)
         with entry.lock:
-            if not entry.made:
-                entry.made = (self._make(image, key),)
-            return entry.made[0]
+            if not entry.result:
+                entry.result = (self._make(image, key),)
+            return entry.result[0]
 
     async def get_async(self, image: Image, key: K) -> T:
         """Return the result, computing it in a worker thread if it is new."""
         entry = self._entries.get((id(image), key))
-        if entry is not None and entry.image() is image and entry.made:
-            return entry.made[0]
+        if entry is not None and entry.image() is image and entry.result:
+            return entry.result[0]
         return await to_thread.run_sync(self.get, image, key)
 
     def _entry(self, image: Image, key: K) -> _Entry[T]:
@@ -52,21 +52,21 @@ class FrameMemo(Generic[K, T]):
         with self._lock:
             entry = self._entries.get(slot)
             if entry is None or entry.image() is not image:
-                entry = self._entries[slot] = _Entry(weakref.ref(image, lambda gone: self._forget(slot, gone)))
+                entry = self._entries[slot] = _Entry(weakref.ref(image, lambda reference: self._remove_entry(slot, reference)))
             self._entries.move_to_end(slot)
             while len(self._entries) > self._size:
                 self._entries.popitem(last=False)
             return entry
 
-    def _forget(self, slot: tuple[int, K], gone: weakref.ref[Any]) -> None:
-        # No lock: this runs wherever the last reference is dropped, possibly in a thread that holds the lock.
+    def _remove_entry(self, slot: tuple[int, K], reference: weakref.ref[Any]) -> None:
+        # No lock: this runs when the last reference is deleted, possibly in a thread that holds the lock.
         entry = self._entries.get(slot)
-        if entry is not None and entry.image is gone:
+        if entry is not None and entry.image is reference:
             self._entries.pop(slot, None)
 
 
 class _Entry(Generic[T]):
     def __init__(self, image: weakref.ref[Any]) -> None:
         self.image = image
-        self.made: tuple[()] | tuple[T] = ()
+        self.result: tuple[()] | tuple[T] = ()
         self.lock = threading.Lock()

@@ -1,7 +1,7 @@
 """The parser of model replies: boxes and points from JSON in many forms, even cut off, and plain answers.
 
-A reply means "nothing found" only if it says so, with an empty list or a short sentence. Any other reply that cannot be parsed
-raises ``PerceptionError`` of kind "malformed".
+A reply means "nothing found" only if it contains an empty list or a short sentence that states this. Any other reply that cannot
+be parsed raises ``PerceptionError`` of kind "malformed".
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.models.coordinates import RawThing
 
 MAX_REPLY_CHARS = 200_000
-"""The rest of a longer reply is ignored. No valid list of boxes or points is that long."""
+"""Maximum length of a reply; the rest is ignored. No valid list of boxes or points is that long."""
 
 MAX_ANSWER_CHARS = 2_000
-"""Longer answers are truncated, because they become part of the planner's context."""
+"""Maximum length of an answer. Longer answers are truncated, because they become part of the planner's context."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParsedPlaces:
-    """The objects that a reply names, in order. ``complete`` is False if the reply was cut off, so that there may be more."""
+    """The objects that a reply names, in order. ``complete`` is False if the reply was cut off and may have named more."""
 
     things: tuple[RawThing, ...]
     complete: bool = True
@@ -35,22 +35,22 @@ class ParsedPlaces:
 def read_places(text: str) -> ParsedPlaces:
     """Return the boxes and points in a model's text.
 
-    Understands bare and fenced JSON (also several documents), lists cut off at the token limit, point and box tags, and corner
-    pairs in prose. The result is empty if the reply says that nothing was found.
+    Accepts bare and fenced JSON (one or more documents), lists cut off at the token limit, point and box tags, and corner
+    pairs in prose. The result is empty if the reply states that nothing was found.
 
     Raises:
         PerceptionError: The reply cannot be parsed (kind "malformed").
     """
     visible = without_reasoning(text)
     body, whole = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
-    documents, uncut = _documents(body)
+    documents, reply_complete = _documents(body)
     things = tuple(thing for document in documents for thing in _collect(document)) or tuple(_tagged(body))
     if things:
-        return ParsedPlaces(things, whole and uncut)
-    if whole and uncut and (any(_is_empty(d) for d in documents) or _says_none(body)):
+        return ParsedPlaces(things, whole and reply_complete)
+    if whole and reply_complete and (any(_is_empty(d) for d in documents) or _says_none(body)):
         return ParsedPlaces(())
-    cut = "" if uncut else " (cut off before the first place was complete)"
-    raise PerceptionError(f"The reply names no places that can be read{cut}: {excerpt(text)}", kind="malformed")
+    cut_note = "" if reply_complete else " (cut off before the first one was complete)"
+    raise PerceptionError(f"The reply contains no readable boxes or points{cut_note}: {excerpt(text)}", kind="malformed")
 
 
 def read_answer(text: str) -> str:
@@ -63,7 +63,7 @@ def read_answer(text: str) -> str:
     if len(answer) > 1 and answer[0] == answer[-1] == '"' and answer.count('"') == 2:
         answer = answer[1:-1].strip()
     if not answer:
-        raise PerceptionError("The reply holds no answer.", kind="empty")
+        raise PerceptionError("The reply contains no answer.", kind="empty")
     return answer if len(answer) <= MAX_ANSWER_CHARS else answer[:MAX_ANSWER_CHARS].rstrip() + " …"
 
 
@@ -94,7 +94,7 @@ _UNKNOWN = re.compile(
 
 
 def cannot_tell(answer: str) -> bool:
-    """Return whether an answer says that the question cannot be answered from the picture."""
+    """Return whether an answer states that the question cannot be answered from the picture."""
     return bool(_UNKNOWN.match(answer))
 
 
@@ -116,19 +116,19 @@ _START = re.compile(r"[\[{](?=\s*(?:[\[{\]}\"'\-\d]|NaN|Infinity))")
 
 def _documents(body: str) -> tuple[list[Any], bool]:
     """Return every JSON document in a text, repaired where needed, and whether the last one was closed."""
-    decoder, found, at = json.JSONDecoder(), list[Any](), 0
-    while start := _START.search(body, at):
+    decoder, documents, position = json.JSONDecoder(), list[Any](), 0
+    while start := _START.search(body, position):
         try:
-            document, at = decoder.raw_decode(body, start.start())
+            document, position = decoder.raw_decode(body, start.start())
         except (ValueError, RecursionError):
             repaired, closed, length = _repair(body[start.start() :])
-            found.append(repaired)
+            documents.append(repaired)
             if not closed:
-                return found, False
-            at = start.start() + length
+                return documents, False
+            position = start.start() + length
         else:
-            found.append(document)
-    return found, True
+            documents.append(document)
+    return documents, True
 
 
 _MAX_NESTING = 64
@@ -140,7 +140,7 @@ def _repair(text: str) -> tuple[Any, bool, int]:
 
     If the document was cut off, only complete values are kept, because a truncated number is a wrong number.
     """
-    end, stack, last = 0, list[str](), (0, "")
+    end, open_brackets, last = 0, list[str](), (0, "")
     quote = ""
     previous = ""
     skip = False
@@ -153,20 +153,20 @@ def _repair(text: str) -> tuple[Any, bool, int]:
         elif char == '"' or (char == "'" and previous in "[{,:"):
             quote = char
         elif char in "[{":
-            stack.append("]" if char == "[" else "}")
-            if len(stack) > _MAX_NESTING:
+            open_brackets.append("]" if char == "[" else "}")
+            if len(open_brackets) > _MAX_NESTING:
                 return None, False, end + 1
-        elif char in "]}" and stack:
-            stack.pop()
-            last = (end + 1, "".join(reversed(stack)))
-            if not stack:
-                return _lenient(text[: end + 1]), True, end + 1
+        elif char in "]}" and open_brackets:
+            open_brackets.pop()
+            last = (end + 1, "".join(reversed(open_brackets)))
+            if not open_brackets:
+                return _parse_leniently(text[: end + 1]), True, end + 1
         previous = char if not char.isspace() else previous
-    kept, closing = last
-    return (_lenient(text[:kept] + closing) if kept else None), False, end + 1
+    complete_end, closing = last
+    return (_parse_leniently(text[:complete_end] + closing) if complete_end else None), False, end + 1
 
 
-def _lenient(text: str) -> Any:
+def _parse_leniently(text: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
@@ -193,7 +193,7 @@ def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
         return
     if isinstance(value, dict):
         fields = {str(k).lower(): v for k, v in value.items()}
-        things = _named(fields)
+        things = _from_fields(fields)
         if things:
             yield from things
             return
@@ -204,28 +204,29 @@ def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
         if len(value) > 1 and all(_is_number(v) for v in value):
             yield RawThing(tuple(map(_number, value)))
             return
-        found = [list(_collect(inner, depth + 1)) for inner in value]
-        for inner, things in zip(value, found, strict=True):
+        things_by_item = [list(_collect(inner, depth + 1)) for inner in value]
+        for inner, things in zip(value, things_by_item, strict=True):
             # Among objects with coordinates, one without any is malformed; ``located`` counts it.
-            malformed = [RawThing(())] if not things and isinstance(inner, dict) and any(found) else []
+            malformed = [RawThing(())] if not things and isinstance(inner, dict) and any(things_by_item) else []
             yield from things or malformed
 
 
-def _named(fields: dict[str, Any]) -> list[RawThing]:
+def _from_fields(fields: dict[str, Any]) -> list[RawThing]:
     """Return the box and the point in one JSON object, if there are any."""
     label = next((safe_text(fields[k][:200]) for k in _LABEL_KEYS if isinstance(fields.get(k), str)), None)
     score = next((_number(fields[k]) for k in _SCORE_KEYS if _is_number(fields.get(k))), None)
-    found = []
+    things = []
     for keys in (_BOX_KEYS, _POINT_KEYS):
         value = next((fields[k] for k in keys if fields.get(k) is not None), None)
         if isinstance(value, dict):
-            found += [
-                RawThing(t.numbers, label or t.label, score, named=True) for t in _named({k.lower(): v for k, v in value.items()})
+            things += [
+                RawThing(t.numbers, label or t.label, score, named=True)
+                for t in _from_fields({k.lower(): v for k, v in value.items()})
             ]
         elif flat := _flat(_parsed(value)):
-            found.append(RawThing(tuple(flat), label, score))
-    if found:
-        return found
+            things.append(RawThing(tuple(flat), label, score))
+    if things:
+        return things
     for names in _CORNERS:
         if all(n in fields for n in names):
             return [RawThing(tuple(_number(fields[n]) for n in names), label, score, named=True)]

@@ -1,7 +1,8 @@
 """A router that combines perception backends: a reader for text, a detector for boxes and points, and an answerer for questions.
 
 Each call has an order of backends, and the first usable result is returned. With ``compare``, the first two backends are called at
-the same time, and their agreement is recorded. Without it, a backend is called only if those before it give no usable result.
+the same time, and their agreement is recorded. Without it, a backend is called only if the backends before it give no usable
+result.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ Share = Callable[[R, R], float]
 
 
 @dataclass
-class _Opinion(Generic[R]):
-    """What one backend returned. Result and error are None if it was not called."""
+class _CallOutcome(Generic[R]):
+    """The outcome of a call to one backend. Result and error are None if it was not called."""
 
     backend: Perception
     result: R | None = None
@@ -49,7 +50,7 @@ class _Opinion(Generic[R]):
 
 
 class RouterPerception(Perception):
-    """A backend that combines up to three others, at least one."""
+    """A backend that combines one to three other backends."""
 
     handles_panoramas = True
 
@@ -111,66 +112,66 @@ class RouterPerception(Perception):
         if target is None or not finders:
             return await self._reader.query(frame, question)
         began = perf_counter()
-        everything, owners = await _both(self._reader.query(frame, question), finders[0].detect(frame, target))
-        if isinstance(everything, PerceptionError):
-            raise everything
+        all_texts, owners = await _await_both(self._reader.query(frame, question), finders[0].detect(frame, target))
+        if isinstance(all_texts, PerceptionError):
+            raise all_texts
         if isinstance(owners, PerceptionError) or not owners.boxes:
-            why = f"{finders[0].name} did not find '{target}'; all text in view is given."
-            return everything.model_copy(update={"notes": (*everything.notes, why)})
+            note = f"{finders[0].name} did not find '{target}'; all text in view is given."
+            return all_texts.model_copy(update={"notes": (*all_texts.notes, note)})
         lines = (await self._reader.detect(frame, ANY_TEXT)).boxes
         texts = [line.label or "" for line in lines if any(_contains_centre(box, line) for box in owners.boxes)]
         if not texts:
-            why = f"No readable text is on '{target}'; all text in view is given."
-            return everything.model_copy(update={"notes": (*everything.notes, why)})
+            note = f"No readable text is on '{target}'; all text in view is given."
+            return all_texts.model_copy(update={"notes": (*all_texts.notes, note)})
         text = "It reads: " + ", ".join(f'"{t}"' for t in texts) + "."
-        attempts = everything.attempts + owners.attempts
-        return everything.model_copy(update={"text": text, "attempts": attempts, "latency_s": perf_counter() - began})
+        attempts = all_texts.attempts + owners.attempts
+        return all_texts.model_copy(update={"text": text, "attempts": attempts, "latency_s": perf_counter() - began})
 
     async def _first_usable(
         self, order: Sequence[Perception], call: PerceptionCall[R], share: Share[R], *, compare: bool = True
     ) -> R:
         if not order:
-            raise PerceptionError(f"No part of {self.name} can do this.")
+            raise PerceptionError(f"None of the backends of {self.name} supports this call.")
         began = perf_counter()
-        opinions = [_Opinion[R](backend) for backend in order]
-        first = opinions[: 2 if self._compare and compare else 1]
+        outcomes = [_CallOutcome[R](backend) for backend in order]
+        first = outcomes[: 2 if self._compare and compare else 1]
         async with anyio.create_task_group() as group:
-            for opinion in first:
-                group.start_soon(_ask, opinion, call)
-        for opinion in opinions[len(first) :]:
-            if any(o.usable for o in opinions):
+            for outcome in first:
+                group.start_soon(_ask, outcome, call)
+        for outcome in outcomes[len(first) :]:
+            if any(o.usable for o in outcomes):
                 break
-            await _ask(opinion, call)
-        return self._concluded(opinions, share, perf_counter() - began)
+            await _ask(outcome, call)
+        return self._conclude(outcomes, share, perf_counter() - began)
 
-    def _concluded(self, opinions: Sequence[_Opinion[R]], share: Share[R], latency_s: float) -> R:
+    def _conclude(self, outcomes: Sequence[_CallOutcome[R]], share: Share[R], latency_s: float) -> R:
         """Return the first usable result, compared with the second one. If all backends failed, raise an error with all reasons."""
-        attempts = tuple(a for o in opinions for a in _attempts(o))
-        failed = [(o.backend.name, o.error) for o in opinions if o.error is not None]
-        results = [o.result for o in opinions if o.result is not None]
-        ranked = [o.result for o in opinions if o.usable and o.result is not None] or results
+        attempts = tuple(a for o in outcomes for a in _attempts(o))
+        failed = [(o.backend.name, o.error) for o in outcomes if o.error is not None]
+        results = [o.result for o in outcomes if o.result is not None]
+        ranked = [o.result for o in outcomes if o.usable and o.result is not None] or results
         if not ranked:
-            why = " ".join(dict.fromkeys(str(error) for _, error in failed))
-            raise PerceptionError(why, kind=failed[0][1].kind, attempts=attempts)
+            note = " ".join(dict.fromkeys(str(error) for _, error in failed))
+            raise PerceptionError(note, kind=failed[0][1].kind, attempts=attempts)
         best = ranked[0]
         failures = tuple(f"{name} failed: {error}" for name, error in failed)
         update: dict[str, Any] = {"notes": best.notes + failures, "attempts": attempts, "latency_s": latency_s}
         if other := next((r for r in results if r is not best), None):
-            update["agreement"] = Agreement(other=other.source, said=_in_short(other), share=share(best, other))
+            update["agreement"] = Agreement(other=other.source, said=_summary(other), share=share(best, other))
         return best.model_copy(update=update)
 
 
-async def _ask(opinion: _Opinion[R], call: PerceptionCall[R]) -> None:
+async def _ask(outcome: _CallOutcome[R], call: PerceptionCall[R]) -> None:
     try:
-        opinion.result = await call(opinion.backend)
+        outcome.result = await call(outcome.backend)
     except PerceptionError as error:
-        opinion.error = error
+        outcome.error = error
 
 
-async def _both(
+async def _await_both(
     one: Awaitable[Answer], other: Awaitable[Detections]
 ) -> tuple[Answer | PerceptionError, Detections | PerceptionError]:
-    """Run two perception calls at once and return their errors as values."""
+    """Run two perception calls at the same time. Errors are returned, not raised."""
     results: dict[int, Any] = {}
 
     async def run(index: int, call: Awaitable[Any]) -> None:
@@ -185,13 +186,13 @@ async def _both(
     return results[0], results[1]
 
 
-def _attempts(opinion: _Opinion[Any]) -> tuple[Any, ...]:
-    if opinion.error is not None:
-        return tuple(opinion.error.attempts)
-    return opinion.result.attempts if opinion.result is not None else ()
+def _attempts(outcome: _CallOutcome[Any]) -> tuple[Any, ...]:
+    if outcome.error is not None:
+        return tuple(outcome.error.attempts)
+    return outcome.result.attempts if outcome.result is not None else ()
 
 
-def _in_short(result: Caption | Answer | Detections | Points) -> str:
+def _summary(result: Caption | Answer | Detections | Points) -> str:
     if isinstance(result, Detections):
         return f"{len(result.boxes)} found"
     return f"{len(result.points)} found" if isinstance(result, Points) else result.text[:300]

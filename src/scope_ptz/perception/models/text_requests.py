@@ -1,4 +1,4 @@
-"""Heuristics for requests about text: whether a question asks to read, on what, and which text a description names."""
+"""Heuristics for requests about text: does a question ask to read text, on which object, and which text does a description name?"""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ _TARGETS = (
 
 
 def reading_target(question: str) -> str | None:
-    """Return the thing whose text a question asks for ("the gantry sign"); None if it asks for all text in view."""
+    """Return the object whose text a question asks for ("the gantry sign"); None if it asks for all text in view."""
     for pattern in _TARGETS:
-        if found := pattern.search(question):
-            target = re.split(r"\s+(?:and|then|for|to|please|in view|right now)\b", found["x"].strip())[0].strip()
+        if match := pattern.search(question):
+            target = re.split(r"\s+(?:and|then|for|to|please|in view|right now)\b", match["x"].strip())[0].strip()
             if target and not re.fullmatch(
                 rf"{_WRITING}|it|there|here|view|(?:current )?(?:image|picture|frame|scene)", target, re.IGNORECASE
             ):
@@ -69,13 +69,13 @@ def requested_texts(description: str) -> tuple[str, ...] | None:
     """
     if quoted := [a or b for a, b in _QUOTED.findall(description)]:
         return tuple(quoted)
-    if saying := _SAYING.search(description):
-        return (saying[1].strip(" .'\""),)
+    if text_clause := _SAYING.search(description):
+        return (text_clause[1].strip(" .'\""),)
     return () if _ANY_TEXT.match(description) else None
 
 
 SAME_TEXT = 0.8
-"""Similarity from which two texts count as the same. It allows for one misread character in five."""
+"""Minimum similarity of two texts that count as the same. It allows for one misread character in five."""
 
 
 def plain(text: str) -> str:
@@ -89,7 +89,7 @@ def similarity(a: str, b: str) -> float:
     return SequenceMatcher(None, a, b, autojunk=False).ratio() if a and b else 0.0
 
 
-def text_fits(requested: str, line: str) -> bool:
+def text_matches(requested: str, line: str) -> bool:
     """Return whether a line contains the requested text, or is similar to it despite OCR errors."""
     a, b = plain(requested), plain(line)
     return bool(a) and bool(b) and (a in b or similarity(a, b) >= SAME_TEXT)

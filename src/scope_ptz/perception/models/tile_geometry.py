@@ -1,4 +1,4 @@
-"""Overlapping tiles of wide pictures. Models scale a whole panorama down so far that small objects vanish."""
+"""Overlapping tiles of wide pictures. Models scale a whole panorama down so far that small objects disappear."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from scope_ptz.perception.base import Box, Point
 from scope_ptz.perception.models.frame_memo import Image
 
 MAX_WHOLE_ASPECT = 2.4
-"""Pictures up to this ratio of width to height are processed whole; ordinary frames are 16:9."""
+"""Pictures up to this ratio of width to height are not split; ordinary frames are 16:9."""
 
 TILE_ASPECT = 1.6  # width / height of a tile
 OVERLAP = 0.15
-"""Share of a tile that the next tile covers, too. Any object narrower than this is whole in one of the two."""
+"""Share of a tile that the next tile also covers. Any narrower object is complete in one of the two tiles."""
 
 SAME_BOX = 0.5
-"""Overlap from which boxes of neighbouring tiles are the same object: the intersection over the area of the smaller box, or the
-vertical overlap if the borders of their tiles cut both boxes.
+"""Minimum overlap of boxes of neighbouring tiles that show the same object: the intersection over the area of the smaller box, or
+the vertical overlap if the borders of their tiles cut both boxes.
 """
 
-SEAM = 0.002
+PANORAMA_SEAM = 0.002
 """A box within this share of the width from the end of a 360-degree panorama may continue at the other end."""
 
-CUT = 0.01
+TILE_BORDER = 0.01
 """A box within this share of the tile's width from the border of its tile may continue beyond it."""
 
 
@@ -66,13 +66,13 @@ def iou(a: Box, b: Box) -> float:
     return shared / union if union > 0 else 0.0
 
 
-def suppressed(boxes: Iterable[Box], threshold: float) -> list[Box]:
-    """Return boxes by score, best first, without those whose intersection over union with a better one exceeds ``threshold``."""
-    kept: list[Box] = []
+def without_overlaps(boxes: Iterable[Box], threshold: float) -> list[Box]:
+    """Return boxes by score, best first, without boxes whose intersection over union with a better box exceeds ``threshold``."""
+    result: list[Box] = []
     for box in sorted(boxes, key=lambda b: -(b.score or 0.0)):
-        if all(iou(box, other) <= threshold for other in kept):
-            kept.append(box)
-    return kept
+        if all(iou(box, other) <= threshold for other in result):
+            result.append(box)
+    return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,42 +85,44 @@ class _Part:
     cut_right: bool
 
 
-def merged(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int) -> list[Box]:
+def merge_boxes(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int) -> list[Box]:
     """Merge the boxes of all tiles. The boxes of an object that appears in several tiles become one."""
-    kept: list[_Part] = []
+    result: list[_Part] = []
     for tile, boxes in parts:
         for box in boxes:
-            cut_left, cut_right = tile.left > 0 and box.x_min < CUT, tile.right < width and box.x_max > 1 - CUT
+            cut_left, cut_right = tile.left > 0 and box.x_min < TILE_BORDER, tile.right < width and box.x_max > 1 - TILE_BORDER
             part = _Part(tile, tile.place(box, width), cut_left, cut_right)
-            duplicate = next((i for i, other in enumerate(kept) if other.tile != tile and _is_same(other, part)), None)
+            duplicate = next((i for i, other in enumerate(result) if other.tile != tile and _is_same(other, part)), None)
             if duplicate is None:
-                kept.append(part)
+                result.append(part)
             else:
-                kept[duplicate] = _Part(tile, _union_box(kept[duplicate].box, part.box), kept[duplicate].cut_left, part.cut_right)
-    return [part.box for part in kept]
+                result[duplicate] = _Part(
+                    tile, _union_box(result[duplicate].box, part.box), result[duplicate].cut_left, part.cut_right
+                )
+    return [part.box for part in result]
 
 
-def merged_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
+def merge_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
     """Merge the points of all tiles. Points of different tiles become one if they are within ``near``, a share of the width."""
-    kept: list[tuple[PanoramaTile, Point]] = []
+    result: list[tuple[PanoramaTile, Point]] = []
     for tile, points in parts:
         for point in (tile.place_point(p, width) for p in points):
-            duplicates = (p for other, p in kept if other != tile)
+            duplicates = (p for other, p in result if other != tile)
             if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in duplicates):
-                kept.append((tile, point))
-    return [point for _, point in kept]
+                result.append((tile, point))
+    return [point for _, point in result]
 
 
-def without_seam_twins(boxes: list[Box]) -> list[Box]:
+def without_seam_duplicates(boxes: list[Box]) -> list[Box]:
     """Drop the narrower half of each object that appears at both ends of a 360-degree panorama."""
     duplicates = {
         (i, j)
         for i, left in enumerate(boxes)
         for j, right in enumerate(boxes)
-        if i != j and left.x_min < SEAM and right.x_max > 1 - SEAM and _same_heights(left, right)
+        if i != j and left.x_min < PANORAMA_SEAM and right.x_max > 1 - PANORAMA_SEAM and _same_heights(left, right)
     }
-    lost = {i if boxes[i].width < boxes[j].width else j for i, j in duplicates}
-    return [box for i, box in enumerate(boxes) if i not in lost]
+    dropped = {i if boxes[i].width < boxes[j].width else j for i, j in duplicates}
+    return [box for i, box in enumerate(boxes) if i not in dropped]
 
 
 def _same_heights(a: Box, b: Box) -> bool:

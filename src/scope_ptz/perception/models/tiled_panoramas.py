@@ -14,13 +14,13 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError, RequestRecord
 from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.models.tile_geometry import PanoramaTile, merged, merged_points, tiles, without_seam_twins
+from scope_ptz.perception.models.tile_geometry import PanoramaTile, merge_boxes, merge_points, tiles, without_seam_duplicates
 
 MAX_CONCURRENT_PARTS = 4
 """Maximum number of parts that are processed at the same time."""
 
 SAME_POINT = 0.15
-"""Points of two parts within this share of the panorama's height are the same object."""
+"""Points in two parts that are within this share of the panorama's height mark the same object."""
 
 FULL_TURN_DEG = 359.5  # a panorama at least this wide wraps around
 
@@ -28,7 +28,7 @@ R = TypeVar("R", Detections, Points)
 
 
 class TiledPerception(Perception):
-    """Wraps a backend and passes stitched panoramas to its ``detect`` and ``point`` in overlapping parts.
+    """A wrapper that passes stitched panoramas to a backend's ``detect`` and ``point`` in overlapping parts.
 
     If one part fails, the whole call fails, because a count without it would be too low. Ordinary frames, questions and captions
     are passed on unchanged.
@@ -50,23 +50,23 @@ class TiledPerception(Perception):
         if len(parts) == 1:
             return await self.backend.detect(frame, description)
         began = perf_counter()
-        seen = await _all([(tile, partial(self.backend.detect, part, description)) for tile, part in parts])
-        boxes = merged(((tile, found.boxes) for tile, found in seen), frame.width)
+        results = await _all([(tile, partial(self.backend.detect, part, description)) for tile, part in parts])
+        boxes = merge_boxes(((tile, result.boxes) for tile, result in results), frame.width)
         if isinstance(frame.projection, Equirectangular) and frame.projection.pan_span_deg >= FULL_TURN_DEG:
-            boxes = without_seam_twins(boxes)
+            boxes = without_seam_duplicates(boxes)
         if all(box.score is not None for box in boxes):
             boxes.sort(key=lambda b: -(b.score or 0.0))
-        return _combined([found for _, found in seen], began).model_copy(update={"boxes": tuple(boxes)})
+        return _combined([result for _, result in results], began).model_copy(update={"boxes": tuple(boxes)})
 
     async def point(self, frame: Frame, description: str) -> Points:
         parts = _parts(frame)
         if len(parts) == 1:
             return await self.backend.point(frame, description)
         began = perf_counter()
-        seen = await _all([(tile, partial(self.backend.point, part, description)) for tile, part in parts])
-        near = SAME_POINT / 5 * frame.height / frame.width
-        points = merged_points(((tile, found.points) for tile, found in seen), frame.width, near)
-        return _combined([found for _, found in seen], began).model_copy(update={"points": tuple(points)})
+        results = await _all([(tile, partial(self.backend.point, part, description)) for tile, part in parts])
+        max_distance = SAME_POINT / 5 * frame.height / frame.width
+        points = merge_points(((tile, result.points) for tile, result in results), frame.width, max_distance)
+        return _combined([result for _, result in results], began).model_copy(update={"points": tuple(points)})
 
     async def close(self) -> None:
         await self.backend.close()
@@ -74,18 +74,18 @@ class TiledPerception(Perception):
 
 def _parts(frame: Frame) -> list[tuple[PanoramaTile, Frame]]:
     """Return the frame itself, or the overlapping parts of a panorama as frames."""
-    whole = frame.projection
-    cuts = tiles(frame.width, frame.height)
-    if len(cuts) == 1 or not isinstance(whole, Equirectangular):
+    panorama = frame.projection
+    panorama_tiles = tiles(frame.width, frame.height)
+    if len(panorama_tiles) == 1 or not isinstance(panorama, Equirectangular):
         return [(PanoramaTile(0, frame.width), frame)]
-    return [(tile, _part(frame, whole, tile)) for tile in cuts]
+    return [(tile, _part(frame, panorama, tile)) for tile in panorama_tiles]
 
 
-def _part(frame: Frame, whole: Equirectangular, tile: PanoramaTile) -> Frame:
-    density = whole.pan_span_deg / whole.width
-    left_deg, span_deg = whole.left_pan_deg + tile.left * density, (tile.right - tile.left) * density
+def _part(frame: Frame, panorama: Equirectangular, tile: PanoramaTile) -> Frame:
+    density = panorama.pan_span_deg / panorama.width
+    left_deg, span_deg = panorama.left_pan_deg + tile.left * density, (tile.right - tile.left) * density
     projection = Equirectangular(
-        left_deg, span_deg, whole.top_tilt_deg, whole.bottom_tilt_deg, tile.right - tile.left, whole.height
+        left_deg, span_deg, panorama.top_tilt_deg, panorama.bottom_tilt_deg, tile.right - tile.left, panorama.height
     )
     return Frame(np.ascontiguousarray(tile.crop(frame.image)), frame.pose, span_deg, frame.time_s, projection, frame.origin)
 
@@ -113,9 +113,9 @@ async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> 
         for index, (_, ask) in enumerate(calls):
             group.start_soon(run, index, ask)
     if errors:
-        tried: list[RequestRecord] = [attempt for found in results.values() for attempt in found.attempts]
-        tried += [attempt for error in errors for attempt in error.attempts]
-        raise PerceptionError(str(errors[0]), kind=errors[0].kind, attempts=tried) from errors[0]
+        attempts: list[RequestRecord] = [attempt for result in results.values() for attempt in result.attempts]
+        attempts += [attempt for error in errors for attempt in error.attempts]
+        raise PerceptionError(str(errors[0]), kind=errors[0].kind, attempts=attempts) from errors[0]
     return [(tile, results[index]) for index, (tile, _) in enumerate(calls)]
 
 

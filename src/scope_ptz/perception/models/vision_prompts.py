@@ -72,7 +72,7 @@ def places_schema(key: str, numbers: int) -> dict[str, Any]:
 
     Args:
         key: The key of a box or point.
-        numbers: The number of coordinates of each: 4 or 2.
+        numbers: The number of coordinates: 4 for a box, 2 for a point.
     """
     place = {"type": "array", "items": {"type": "number"}, "minItems": numbers, "maxItems": numbers}
     thing = {
@@ -103,4 +103,4 @@ def one_line(text: str) -> str:
 
 def place_error(source: str) -> PerceptionError:
     """Return the error for a model that returns neither boxes nor points."""
-    return PerceptionError(f"{source} gives no places in a picture. Use a detector, or a model that gives boxes.")
+    return PerceptionError(f"{source} cannot locate objects in a picture. Use a detector, or a model that returns boxes.")

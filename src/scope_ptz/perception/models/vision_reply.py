@@ -10,7 +10,7 @@ from typing import Any
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.base import Answer, Caption, Detections, Point, Points
-from scope_ptz.perception.models.coordinates import Convention, Located, located
+from scope_ptz.perception.models.coordinates import Convention, ReplyPlaces, places_in_frame
 from scope_ptz.perception.models.encoding import Size
 from scope_ptz.perception.models.reply_parsing import cannot_tell, excerpt, read_answer, read_places
 
@@ -21,8 +21,8 @@ MAX_RAW_CHARS = 20_000
 class VisionReply:
     """A model's reply about one frame, which can be converted to each type of perception result.
 
-    Results and errors include the ``attempts`` of the call. If the reply cannot be parsed, its last
-    attempt is recorded as a failure.
+    Results and errors include the ``attempts`` of the call. If the reply cannot be parsed, its last attempt is recorded as a
+    failure.
     """
 
     def __init__(self, source: str, text: str, began: float, attempts: tuple[Attempt, ...] = (), *, cut: bool = False) -> None:
@@ -58,30 +58,30 @@ class VisionReply:
 
     def detections(self, convention: Convention, sent: Size) -> Detections:
         """Return the boxes in the reply."""
-        found, complete, notes = self._located(convention, sent)
-        if found.points and not found.boxes:
+        places, complete, notes = self._places(convention, sent)
+        if places.points and not places.boxes:
             raise self.unreadable("points instead of boxes")
-        return Detections(boxes=found.boxes, complete=complete, **self._common(notes))
+        return Detections(boxes=places.boxes, complete=complete, **self._common(notes))
 
     def points(self, convention: Convention, sent: Size) -> Points:
         """Return the points in the reply, or the centres of its boxes."""
-        found, complete, notes = self._located(convention, sent)
-        points = found.points or tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in found.boxes)
+        places, complete, notes = self._places(convention, sent)
+        points = places.points or tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in places.boxes)
         return Points(points=points, complete=complete, **self._common(notes))
 
-    def _located(self, convention: Convention, sent: Size) -> tuple[Located, bool, tuple[str, ...]]:
+    def _places(self, convention: Convention, sent: Size) -> tuple[ReplyPlaces, bool, tuple[str, ...]]:
         with reply_errors(self.source, self.attempts):
-            read = read_places(self.text)
-            found = located(read.things, convention, sent)
-        whole = read.complete and not (self.cut and found.boxes + found.points)
-        notes = () if whole else ("The reply was cut off: there may be more.",)
-        return found, found.complete and whole, found.notes + notes
+            parsed = read_places(self.text)
+            places = places_in_frame(parsed.things, convention, sent)
+        complete = parsed.complete and not (self.cut and places.boxes + places.points)
+        notes = () if complete else ("The reply was cut off: there may be more.",)
+        return places, places.complete and complete, places.notes + notes
 
-    def unreadable(self, what: str) -> PerceptionError:
-        """Return the error for a reply that cannot be parsed. ``what`` says what the model gave instead."""
+    def unreadable(self, content: str) -> PerceptionError:
+        """Return the error for a reply that cannot be parsed. ``content`` describes what the reply contains."""
         kind = FailureKind.MALFORMED
         return PerceptionError(
-            f"{self.source} gave {what}: {excerpt(self.text)}", kind=kind.value, attempts=_with_kind(self.attempts, kind)
+            f"{self.source} returned {content}: {excerpt(self.text)}", kind=kind.value, attempts=_with_kind(self.attempts, kind)
         )
 
     def _common(self, notes: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -92,13 +92,13 @@ class VisionReply:
 
 @contextmanager
 def reply_errors(source: str, attempts: tuple[Attempt, ...]) -> Iterator[None]:
-    """Add the source to errors about its reply, and record them as failures of the last attempt."""
+    """Prefix errors about a reply with the source, and record them as failures of the last attempt."""
     try:
         yield
     except PerceptionError as error:
         kind = FailureKind(error.kind) if error.kind is not None else None
-        tried = _with_kind(attempts, kind) if kind is not None else attempts
-        raise PerceptionError(f"{source}: {error}", kind=error.kind, attempts=tried) from error
+        failed_attempts = _with_kind(attempts, kind) if kind is not None else attempts
+        raise PerceptionError(f"{source}: {error}", kind=error.kind, attempts=failed_attempts) from error
 
 
 def _with_kind(attempts: tuple[Attempt, ...], kind: FailureKind) -> tuple[Attempt, ...]:
@@ -111,4 +111,4 @@ def server_errors(source: str) -> Iterator[None]:
     try:
         yield
     except ServerFailure as failure:
-        raise PerceptionError(f"{source} could not look: {failure}", kind=failure.kind.value, attempts=failure.history) from failure
+        raise PerceptionError(f"{source} failed: {failure}", kind=failure.kind.value, attempts=failure.history) from failure

@@ -1,7 +1,7 @@
 """Convert the state S_t to chat messages.
 
 The messages are append-only: the messages of each step begin with exactly those of the previous step, so that the server's prefix
-cache works. The only exception is the last picture of planners that take images: the newest view replaces the previous one.
+cache works. The only exception is the current view, for planners that accept images: it replaces the previous view.
 """
 
 from __future__ import annotations
@@ -41,24 +41,24 @@ def build_messages(
         state: The state of the run.
         prompt: The system prompt.
         notation: How tool calls are exchanged.
-        sees: Whether the model takes images.
+        sees: Whether the model accepts images.
         switch: Text appended to the user messages to switch the model's reasoning on or off.
-        shorten_oldest: The number of the oldest exchanges to shorten to what later steps need.
+        shorten_oldest: The number of oldest exchanges to shorten.
     """
     writer = _Writer(notation, shorten_oldest, in_parts=sees)
     briefing = state.briefing
-    starts = [turn.start for turn in state.conversation] + [briefing.pose]
-    first = starts[0] or briefing.pose
+    start_poses = [turn.start for turn in state.conversation] + [briefing.pose]
+    first = start_poses[0] or briefing.pose
     system = prompt.fill(briefing.presets, briefing.limits, first, sees=sees)
     if notation == "text":
         system += _TEXT_TOOLS + "\n".join(json.dumps(tool["function"], ensure_ascii=False) for tool in plain_schemas(state.tools))
     writer.add({"role": "system", "content": system})
-    for turn, start in zip(state.conversation, starts[:-1], strict=True):
+    for turn, start in zip(state.conversation, start_poses[:-1], strict=True):
         writer.user(_instruction(turn.instruction, None if start == first else start, switch))
         for exchange in turn.exchanges:
             writer.exchange(exchange)
         writer.add({"role": "assistant", "content": turn.reply})
-    writer.user(_instruction(state.instruction, starts[-1] if state.conversation else None, switch))
+    writer.user(_instruction(state.instruction, start_poses[-1] if state.conversation else None, switch))
     for exchange in state.history:
         writer.exchange(exchange)
     if sees and state.view is not None:
@@ -75,14 +75,14 @@ def _instruction(text: str, start: Pose | None, switch: str) -> str:
 
 
 class _Writer:
-    """Builds the list of messages. Consecutive user messages become one, because chat templates require alternating roles."""
+    """A builder of the list of messages. Consecutive user messages are merged, because chat templates require alternating roles."""
 
     def __init__(self, notation: Notation, shorten_oldest: int, *, in_parts: bool) -> None:
         """Set up the writer.
 
         Args:
             notation: How tool calls are exchanged.
-            shorten_oldest: The number of the oldest exchanges to shorten.
+            shorten_oldest: The number of oldest exchanges to shorten.
             in_parts: Whether user messages are lists of parts, so that pictures can be appended.
         """
         self.messages: list[Message] = []
@@ -96,7 +96,7 @@ class _Writer:
     def user(self, content: str | list[Message]) -> None:
         last = self.messages[-1]
         if last["role"] == "user":
-            # A new object, because a caller may still have a reference to the old one.
+            # Not changed in place, because a caller may still have a reference to the old message.
             self.messages[-1] = {"role": "user", "content": [*_parts(last["content"]), *_parts(content)]}
         else:
             self.add({"role": "user", "content": _parts(content) if self._in_parts else content})
@@ -116,7 +116,7 @@ class _Writer:
             self.pictures(pictures)
 
     def _as_native_calls(self, exchange: Exchange, brief: bool) -> None:
-        ids = [self._unique(outcome.call.id) for outcome in exchange.outcomes]
+        ids = [self._unique_id(outcome.call.id) for outcome in exchange.outcomes]
         calls = [
             {"id": i, "type": "function", "function": {"name": callable_name(o.call.name), "arguments": _arguments(o.call)}}
             for i, o in zip(ids, exchange.outcomes, strict=True)
@@ -131,7 +131,7 @@ class _Writer:
         results = (f"<tool_response>\n{observation(o, brief=brief)}\n</tool_response>" for o in exchange.outcomes)
         self.user("\n".join(results))
 
-    def _unique(self, call_id: str) -> str:
+    def _unique_id(self, call_id: str) -> str:
         """Return the id of a call, or a new id if it is empty or already used. Some servers give every call the same id."""
         if not call_id or call_id in self._used:
             call_id = f"call{len(self._used) + 1:05d}"  # nine letters and digits, as Mistral's templates require

@@ -37,15 +37,15 @@ def _template(key: str, value: bool) -> Switch:
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """A model family, recognised by a regular expression for model names. The first matching family counts.
+    """A model family, recognised by a regular expression for model names. The first match is used.
 
     Attributes:
         thinks: Whether its models reason by default.
-        on: How to switch reasoning on; None if it cannot be switched.
-        off: How to switch reasoning off; None if it cannot be switched.
-        temperatures: The sampling temperatures with and without reasoning. Reasoning uses the temperature that the model's makers
-            recommend, because greedy reasoning tends to loop; None selects the server's default. Without reasoning, 0 makes the
-            calls reproducible.
+        on: The switch that turns reasoning on; None if it cannot be switched.
+        off: The switch that turns reasoning off; None if it cannot be switched.
+        temperatures: The sampling temperatures with and without reasoning; None selects the server's default. With reasoning,
+            greedy sampling tends to loop, so the value is the one that the model's authors recommend. Without reasoning, 0
+            makes calls reproducible.
     """
 
     name: str
@@ -105,7 +105,7 @@ def family_of(model: str) -> Family:
     return next((f for f in FAMILIES if re.search(f.pattern, name)), UNKNOWN)
 
 
-def likely_server(url: str) -> Server | None:
+def usual_server(url: str) -> Server | None:
     """Return the server program that usually listens at an address; None for other addresses."""
     address = urlsplit(url).netloc
     return next((server for part, server in _USUAL_ADDRESSES if part in address), None)

@@ -15,14 +15,14 @@ _RECIPIENT = re.compile(r"to=(?:functions\.)?([\w.-]+)")
 
 
 def read_harmony(text: str) -> tuple[str, list[str]]:
-    """Separate a reply into its visible text and its reasoning messages. A text in another format is returned unchanged.
+    """Separate a reply into its visible text and its reasoning messages. Text in another format is returned unchanged.
 
     Tool calls become ``<tool_call>`` elements of the visible text, with their arguments as written.
     """
     if "<|channel|>" not in text:
         return text, []
     visible: list[str] = []
-    thoughts: list[str] = []
+    reasoning_parts: list[str] = []
     header = ""
     in_body = False
     pieces = _TOKEN.split(text)
@@ -31,22 +31,22 @@ def read_harmony(text: str) -> tuple[str, list[str]]:
     for token, piece in zip(pieces[1::2], pieces[2::2], strict=True):
         if token == "message":  # noqa: S105 - a token of the format, not a password
             in_body = True
-            _append_message(header, piece.strip(), visible, thoughts)
+            _append_message(header, piece.strip(), visible, reasoning_parts)
         elif token in ("start", "channel", "constrain"):
             header = piece if in_body else f"{header} {piece}"
             in_body = False
         else:
             header, in_body = "", False
             visible.append(piece)
-    return "".join(visible), thoughts
+    return "".join(visible), reasoning_parts
 
 
-def _append_message(header: str, body: str, visible: list[str], thoughts: list[str]) -> None:
+def _append_message(header: str, body: str, visible: list[str], reasoning_parts: list[str]) -> None:
     """Append a message to the visible text or to the reasoning, depending on its header."""
     recipient = _RECIPIENT.search(header)
     if recipient:
         visible.append(f"<tool_call><function={recipient[1]}>{body}</function></tool_call>")
     elif "analysis" in header:
-        thoughts.append(body)
+        reasoning_parts.append(body)
     else:
         visible.append(body + "\n")

@@ -42,33 +42,33 @@ def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None)
         PlannerError: The reply contains no decision; ``kind`` gives the reason.
     """
     separated = separate_reasoning(reply.text, reply.reasoning)
-    found = _native_calls(reply, separated.text) or _text_calls(separated.text, separated.reasoning, state)
+    parsed = _native_calls(reply, separated.text) or _text_calls(separated.text, separated.reasoning, state)
     usage = Usage(input_tokens=reply.input_tokens, output_tokens=reply.output_tokens, cached_tokens=reply.cached_tokens)
     served = Served(
         model=reply.model,
         finish_reason=reply.finish_reason,
         first_token_s=reply.first_token_s,
         seconds=reply.seconds,
-        calls_from=found.notation,
+        calls_from=parsed.notation,
         attempts=reply.attempts,
     )
-    text = _truncated(_CONTROL_TOKENS.sub("", found.rest).strip())
-    if found.calls:
-        calls = _tool_calls(reply, found, len(state.history))
+    text = _truncated(_CONTROL_TOKENS.sub("", parsed.rest).strip())
+    if parsed.calls:
+        calls = _tool_calls(reply, parsed, len(state.history))
         return CallTools(calls=calls, thought=text, usage=usage, reasoning=separated.reasoning, served=served)
     if reply.finish_reason == "length":
         raise _cut_off_error(reply, context_tokens)
     if not text:
-        what = "only reasoning and no answer" if separated.reasoning else "nothing"
+        content = "only reasoning and no answer" if separated.reasoning else "nothing"
         raise PlannerError(
-            f"The planner's reply contains {what}.", kind=FailureKind.EMPTY.value, attempts=_attempts_with_usage(reply)
+            f"The planner's reply contains {content}.", kind=FailureKind.EMPTY.value, attempts=_attempts_with_usage(reply)
         )
     kind, text = _ending(text, called=any(exchange.outcomes for exchange in state.history))
     return Finish.model_validate({"kind": kind, "text": text, "usage": usage, "reasoning": separated.reasoning, "served": served})
 
 
 def _attempts_with_usage(reply: ChatReply) -> tuple[Attempt, ...]:
-    """Return the attempts of a reply without a decision; the last one gets the tokens that the reply used."""
+    """Return the attempts of a reply without a decision; the last attempt includes the tokens that the reply used."""
     cost = {"input_tokens": reply.input_tokens, "output_tokens": reply.output_tokens}
     return (*reply.attempts[:-1], *(last.model_copy(update=cost) for last in reply.attempts[-1:]))
 
@@ -86,35 +86,35 @@ def _native_calls(reply: ChatReply, text: str) -> FoundCalls | None:
 
 def _text_calls(text: str, reasoning: str, state: State) -> FoundCalls:
     tools = Signatures.of(state.tools)
-    found = find_calls(text, tools)
-    if not found.calls and not text:
+    parsed = find_calls(text, tools)
+    if not parsed.calls and not text:
         # If a model calls a tool before it closes its reasoning, the server returns the call as reasoning.
         inside = find_calls(reasoning, tools, tagged_only=True)
         if inside.calls:
             return FoundCalls(inside.calls, "", inside.notation)
-    return found
+    return parsed
 
 
-def _tool_calls(reply: ChatReply, found: FoundCalls, step: int) -> tuple[ToolCall, ...]:
-    ids = [raw.id for raw in reply.tool_calls] if found.notation == "native" else []
+def _tool_calls(reply: ChatReply, parsed: FoundCalls, step: int) -> tuple[ToolCall, ...]:
+    ids = [raw.id for raw in reply.tool_calls] if parsed.notation == "native" else []
     calls = []
-    for index, written in enumerate(found.calls[:MAX_CALLS]):
+    for index, written in enumerate(parsed.calls[:MAX_CALLS]):
         problem = None
         if written.malformed is not None:
             call = f"The call of {written.name or 'a tool'}"
             problem = f"{call} cannot be read: its arguments must be a JSON object, got {written.malformed}"
         call_id = ids[index] if index < len(ids) and ids[index] else f"s{step + 1:04d}c{index + 1:03d}"
         calls.append(ToolCall(id=call_id, name=written.name, arguments=written.arguments, problem=problem))
-    if (more := len(found.calls) - MAX_CALLS) > 0:
-        last = found.calls[MAX_CALLS]
-        problem = f"At most {MAX_CALLS} calls can be made in one step; this one and {more - 1} more were left out."
+    if (excess := len(parsed.calls) - MAX_CALLS) > 0:
+        last = parsed.calls[MAX_CALLS]
+        problem = f"At most {MAX_CALLS} calls can be made in one step; this one and {excess - 1} more were left out."
         calls.append(ToolCall(id=f"s{step + 1:04d}more", name=last.name, arguments=last.arguments, problem=problem))
     return tuple(calls)
 
 
 def _truncated(text: str) -> str:
-    more = len(text) - MAX_CHARS
-    return text if more <= 0 else f"{text[:MAX_CHARS]} (cut: it went on for {more} more characters)"
+    excess = len(text) - MAX_CHARS
+    return text if excess <= 0 else f"{text[:MAX_CHARS]} (cut: it went on for {excess} more characters)"
 
 
 def _ending(text: str, *, called: bool) -> tuple[str, str]:
@@ -125,12 +125,12 @@ def _ending(text: str, *, called: bool) -> tuple[str, str]:
 
 
 def _cut_off_error(reply: ChatReply, context_tokens: int | None) -> PlannerError:
-    """Return the error for a reply that was cut off, because of a full context if that is certain."""
+    """Return the error for a reply that was cut off at the context's limit or, if that is not certain, at a token limit."""
     if context_tokens is not None and reply.input_tokens + reply.output_tokens >= context_tokens * _FULL_SHARE:
-        words = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
-        return PlannerError(words, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=_attempts_with_usage(reply))
-    words = (
+        message = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
+        return PlannerError(message, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=_attempts_with_usage(reply))
+    message = (
         f"The planner's reply was cut off at a token limit, after {reply.output_tokens} tokens. "
         "Allow longer replies, or serve the model with a longer context."
     )
-    return PlannerError(words, kind=FailureKind.CUT_OFF.value, attempts=_attempts_with_usage(reply))
+    return PlannerError(message, kind=FailureKind.CUT_OFF.value, attempts=_attempts_with_usage(reply))

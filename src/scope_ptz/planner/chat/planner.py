@@ -15,7 +15,7 @@ from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import Decision, Planner, State
 from scope_ptz.planner.chat.chat_messages import Message, build_messages
 from scope_ptz.planner.chat.dialect import Dialect
-from scope_ptz.planner.chat.families import Server, Thinking, family_of, likely_server, switch_for, temperature_for
+from scope_ptz.planner.chat.families import Server, Thinking, family_of, switch_for, temperature_for, usual_server
 from scope_ptz.planner.chat.interpret import decide
 from scope_ptz.planner.chat.prompts import DEFAULT_PROMPT, Prompt, load_prompt
 from scope_ptz.planner.chat.schemas import plain_schemas
@@ -32,14 +32,14 @@ class ChatOptions(BaseModel):
     Attributes:
         tools: How tool calls are exchanged: in the server's own fields ("native"), in the text of messages ("text"), or
             natively until the server rejects tools ("auto").
-        sees: Whether the model takes images.
+        sees: Whether the model accepts images.
         summarise: Whether to shorten old observations, instead of ending the run, when the context is full. Never used in
             evaluations.
         context_tokens: The size of the model's context; None if it is unknown.
         max_tokens: The maximum length of a reply; None selects the server's default.
         temperature: The sampling temperature; None selects the default of the model's family.
-        server: The program that serves the model; None guesses it from the address.
-        family: The model name by which to select the family, if the server uses another name for the model.
+        server: The program that serves the model; None to guess it from the address.
+        family: The model name that determines the family, if the server uses a different name for the model.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -61,7 +61,7 @@ class ChatOptions(BaseModel):
 class ChatPlanner(Planner):
     """A planner that asks a chat model at each step.
 
-    Between steps it keeps the connection and the features that the server supports, but no state of the run.
+    Between steps it keeps the connection and the list of rejected features, but no state of the run.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class ChatPlanner(Planner):
         self.prompt = prompt or load_prompt(self.options.prompt)
         self.name, self.sees = endpoint.model or "chat", self.options.sees
         tools, model = self.options.tools, self.options.family or endpoint.model
-        server = self.options.server or likely_server(endpoint.url)
+        server = self.options.server or usual_server(endpoint.url)
         self._dialect = Dialect("text" if tools == "text" else "native", fixed=tools != "auto")
         self._switch = switch_for(model, self.options.thinking, server)
         temperature = self.options.temperature

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator, Sequence
 from typing import Any
 
-from scope_ptz.endpoints.chat_server_checks import Finding, ServerCheck, checked
+from scope_ptz.endpoints.chat_server_checks import Finding, ServerCheck, run_check
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, State, ToolCall, ToolOutcome
@@ -32,14 +32,14 @@ async def check_planning(
     """
     options = options or ChatOptions()
     for stream in (False, True):
-        how = ", streamed" if stream else ""
+        suffix = ", streamed" if stream else ""
         planner = ChatPlanner(
             endpoint.model_copy(update={"retries": 1}), options.model_copy(update={"stream": stream, "sees": False})
         )
         try:
-            yield await checked(f"a tool call{how}", lambda p=planner: _check_call(p, tools))  # type: ignore[misc]
-            yield await checked(f"arguments of the right type{how}", lambda p=planner: _check_arguments(p, tools))  # type: ignore[misc]
-            yield await checked(f"an answer from a tool's result{how}", lambda p=planner: _check_answer(p, tools))  # type: ignore[misc]
+            yield await run_check(f"a tool call{suffix}", lambda p=planner: _check_call(p, tools))  # type: ignore[misc]
+            yield await run_check(f"arguments of the right type{suffix}", lambda p=planner: _check_arguments(p, tools))  # type: ignore[misc]
+            yield await run_check(f"an answer from a tool's result{suffix}", lambda p=planner: _check_answer(p, tools))  # type: ignore[misc]
         finally:
             await planner.close()
 
@@ -50,8 +50,8 @@ def probe(instruction: str, tools: Sequence[dict[str, Any]], *history: Exchange)
     return State(instruction=instruction, briefing=briefing, history=history, tools=tuple(tools))
 
 
-def picture_taken() -> Exchange:
-    """Return the step in which a picture was taken."""
+def picture_step() -> Exchange:
+    """Return a step in which a picture was taken."""
     return Exchange(outcomes=(ToolOutcome(call=ToolCall(id="call-1", name="take_image"), result=_PICTURE_RESULT),))
 
 
@@ -78,7 +78,7 @@ async def _check_arguments(planner: ChatPlanner, tools: Sequence[dict[str, Any]]
 
 
 async def _check_answer(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
-    decision = await planner.step(probe(PICTURE_INSTRUCTION, tools, picture_taken()))
+    decision = await planner.step(probe(PICTURE_INSTRUCTION, tools, picture_step()))
     if not isinstance(decision, Finish):
         return "partly", f"it makes another call although the task is done: {_brief(decision)}"
     if "<think" in decision.text:

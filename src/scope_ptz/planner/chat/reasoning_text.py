@@ -44,31 +44,31 @@ def separate_reasoning(text: str, field: str = "") -> SeparatedReply:
         text: The content as the server returned it.
         field: The reasoning that the server returned in a separate field.
     """
-    rest, thoughts = read_harmony(text)
+    rest, reasoning_parts = read_harmony(text)
     if granite := _GRANITE.match(rest):
-        thoughts.append(granite["thought"])
+        reasoning_parts.append(granite["thought"])
         rest = rest[granite.end() :]
     for opening, closing in _TAG_PAIRS:
-        rest = _extract(rest, opening, closing, thoughts)
-    reasoning = "\n\n".join(t.strip() for t in (field, *thoughts) if t.strip())
+        rest = _extract(rest, opening, closing, reasoning_parts)
+    reasoning = "\n\n".join(t.strip() for t in (field, *reasoning_parts) if t.strip())
     return SeparatedReply(rest.strip(), reasoning)
 
 
-def _extract(text: str, opening: str, closing: str, thoughts: list[str]) -> str:
-    """Append the text between opening and closing tags to ``thoughts``, and return the other text."""
-    kept: list[str] = []
-    at, inside, seen = 0, False, False
+def _extract(text: str, opening: str, closing: str, reasoning_parts: list[str]) -> str:
+    """Append the text between opening and closing tags to ``reasoning_parts``, and return the other text."""
+    visible: list[str] = []
+    position, inside, tag_seen = 0, False, False
     for tag in re.finditer(f"{re.escape(opening)}|{re.escape(closing)}", text):
         opens = tag[0] == opening
         if inside and opens:
             continue
         # A closing tag without an opening one: the chat template put the opening tag into the prompt.
-        (thoughts if inside or not (opens or seen) else kept).append(text[at : tag.start()])
-        at, inside, seen = tag.end(), opens, True
-    rest = text[at:]
+        (reasoning_parts if inside or not (opens or tag_seen) else visible).append(text[position : tag.start()])
+        position, inside, tag_seen = tag.end(), opens, True
+    rest = text[position:]
     if not inside:
-        return "".join((*kept, rest))
+        return "".join((*visible, rest))
     call = _CALL_BEGINS.search(rest)
     cut = call.start() if call else len(rest)
-    thoughts.append(rest[:cut])
-    return "".join((*kept, rest[cut:]))
+    reasoning_parts.append(rest[:cut])
+    return "".join((*visible, rest[cut:]))

@@ -1,7 +1,7 @@
 """Tool schemas in a form that all servers accept.
 
-Some servers compile a schema into a grammar and reject what they cannot compile, such as a pattern without anchors; others do not
-support unions. Calls are validated before they run anyway, so these schemas only have to inform the model.
+Some servers compile a schema into a grammar and reject keywords that they cannot compile, such as a pattern without anchors;
+others do not support unions. Calls are validated before they run, so these schemas only have to inform the model.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ def strict_json(text: str) -> Any:
     """Parse JSON without NaN, infinities, numbers that overflow, or extreme nesting.
 
     Raises:
-        ValueError: The text is not valid JSON, or contains one of these.
+        ValueError: The text is not valid JSON, or contains a value that is not allowed.
     """
     try:
         value = json.loads(encodable(text), parse_constant=_reject_constant, parse_float=_finite)

@@ -35,7 +35,7 @@ class FoundCalls:
 
     Attributes:
         rest: The text without its calls.
-        notation: The name of the notation in which they were written; empty if there are no calls.
+        notation: The name of the notation of the calls; empty if there are no calls.
     """
 
     calls: tuple[WrittenCall, ...]
@@ -87,19 +87,19 @@ def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG
 
 
 def _json_chunks(body: str) -> list[str]:
-    """Split a text into JSON values. An incomplete value at the end is one more item."""
-    decoder, chunks, at = JSONDecoder(), [], 0
-    while at < len(body):
-        if body[at].isspace() or body[at] in ",;":
-            at += 1
+    """Split a text into JSON values. An incomplete value at the end becomes the last item."""
+    decoder, chunks, position = JSONDecoder(), [], 0
+    while position < len(body):
+        if body[position].isspace() or body[position] in ",;":
+            position += 1
             continue
         try:
-            _, end = decoder.raw_decode(body, at)
+            _, end = decoder.raw_decode(body, position)
         except (ValueError, RecursionError):
-            chunks.append(body[at:])
+            chunks.append(body[position:])
             break
-        chunks.append(body[at:end])
-        at = end
+        chunks.append(body[position:end])
+        position = end
     return chunks
 
 
@@ -122,9 +122,9 @@ def _xml_calls(body: str, tools: Signatures) -> list[WrittenCall]:
             arguments, malformed = read_arguments(inside)
             calls.append(WrittenCall(name, arguments, malformed))
             continue
-        given = {m["key"]: tools.value(name, m["key"], _unwrapped(m["value"])) for m in _PARAMETER.finditer(inside)}
-        leftover = _PARAMETER.sub("", inside).strip()
-        calls.append(WrittenCall(name, {}, inside[:MAX_QUOTED_CHARS]) if leftover else WrittenCall(name, given))
+        arguments = {m["key"]: tools.value(name, m["key"], _unwrapped(m["value"])) for m in _PARAMETER.finditer(inside)}
+        unparsed = _PARAMETER.sub("", inside).strip()
+        calls.append(WrittenCall(name, {}, inside[:MAX_QUOTED_CHARS]) if unparsed else WrittenCall(name, arguments))
     return calls or [malformed_call(body)]
 
 
@@ -162,13 +162,15 @@ def _python_call(node: ast.expr) -> WrittenCall | None:
         return None
     name = plain_name(ast.unparse(node.func))
     try:
-        given = {keyword.arg: ast.literal_eval(keyword.value) for keyword in node.keywords if keyword.arg}
+        arguments = {keyword.arg: ast.literal_eval(keyword.value) for keyword in node.keywords if keyword.arg}
     except (ValueError, RecursionError):
         return WrittenCall(name, {}, ast.unparse(node)[:MAX_QUOTED_CHARS])
-    plain = all(isinstance(v, str | int | bool | None) or (isinstance(v, float) and math.isfinite(v)) for v in given.values())
-    if node.args or len(given) != len(node.keywords) or not plain:
+    only_literals = all(
+        isinstance(v, str | int | bool | None) or (isinstance(v, float) and math.isfinite(v)) for v in arguments.values()
+    )
+    if node.args or len(arguments) != len(node.keywords) or not only_literals:
         return WrittenCall(name, {}, ast.unparse(node)[:MAX_QUOTED_CHARS])
-    return WrittenCall(name, given)
+    return WrittenCall(name, arguments)
 
 
 def _mistral_calls(body: str, tools: Signatures) -> list[WrittenCall]:
@@ -210,7 +212,7 @@ def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
         return FoundCalls(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
     if calls := _calls_of_tools(text, tools):
         return FoundCalls(tuple(calls), "", "bare")
-    # Prose, then only calls.
+    # Prose that is followed only by calls.
     for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MAX_START_LINES):
         if calls := _calls_of_tools(text[match.start() :], tools):
             return FoundCalls(tuple(calls), text[: match.start()].strip(), "bare")

@@ -93,19 +93,19 @@ def call_from_object(value: Any) -> WrittenCall | None:
     name = next((value[key] for key in ("name", "tool", "tool_name", "function") if isinstance(value.get(key), str)), None)
     if not name:
         return None
-    given: Any = next((value[key] for key in ("arguments", "parameters", "args", "input") if key in value), {})
-    if isinstance(given, dict):
-        return WrittenCall(plain_name(name), given)
-    if given is None:
+    raw_arguments: Any = next((value[key] for key in ("arguments", "parameters", "args", "input") if key in value), {})
+    if isinstance(raw_arguments, dict):
+        return WrittenCall(plain_name(name), raw_arguments)
+    if raw_arguments is None:
         return WrittenCall(plain_name(name), {})
-    arguments, malformed = read_arguments(given if isinstance(given, str) else repr(given))
+    arguments, malformed = read_arguments(raw_arguments if isinstance(raw_arguments, str) else repr(raw_arguments))
     return WrittenCall(plain_name(name), arguments, malformed)
 
 
 def malformed_call(text: str) -> WrittenCall:
     """Return a malformed call for tagged text that cannot be parsed, with the tool's name if the text contains one."""
-    found = _NAME.search(text)
-    return WrittenCall(plain_name(found["name"]) if found else "", {}, text.strip()[:MAX_QUOTED_CHARS] or "nothing")
+    match = _NAME.search(text)
+    return WrittenCall(plain_name(match["name"]) if match else "", {}, text.strip()[:MAX_QUOTED_CHARS] or "nothing")
 
 
 def plain_name(name: str) -> str:

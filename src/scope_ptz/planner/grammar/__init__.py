@@ -3,7 +3,7 @@
 ``lexing`` splits text into lexemes, ``parsing`` builds the steps of ``instruction_tree`` from them, ``binding`` resolves the names
 in the steps, and ``execution`` runs the steps against the history.
 
-The names of this package are loaded on first use: a plan without a camera needs no planner.
+Names are imported on first use, so that ``understand`` can be used without loading the planner class.
 """
 
 from importlib import import_module

@@ -118,7 +118,7 @@ class GoPreset:
 
 @dataclass(frozen=True, slots=True)
 class GoThere:
-    """Go to the preset that was mentioned last, or to the one that a comparison found."""
+    """Go to the preset that was mentioned last, or to the preset that a comparison found."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,7 +230,7 @@ class Loop:
 
 @dataclass(frozen=True, slots=True)
 class If:
-    """Run steps if a condition is met, and others if it is not."""
+    """Run steps if a condition is met, and other steps if it is not."""
 
     condition: Condition
     then: tuple[Step, ...]
@@ -262,10 +262,10 @@ class AtIntervals:
 
 @dataclass(frozen=True, slots=True)
 class ThanBefore:
-    """Compare a count with the one before the last moves ("are there more than before?").
+    """Compare a count with the count before the last moves ("are there more than before?").
 
     Attributes:
-        thing: What to count; if its text is empty, what was counted last.
+        thing: The objects to count; if its text is empty, the objects that were counted last.
     """
 
     thing: Thing

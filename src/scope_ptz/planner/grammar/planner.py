@@ -1,4 +1,4 @@
-"""The grammar planner behind the planner contract."""
+"""The grammar planner as an implementation of the planner contract."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from scope_ptz.english import number_word
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """An edit. Texts that ``apply`` returns unchanged are not measured again."""
+    """An edit of a text. If ``apply`` returns a text unchanged, that text is not measured again."""
 
     name: str
     where: Literal["prompt", "instruction"]
@@ -42,7 +42,7 @@ def _request(opening: str, ending: str) -> Callable[[str], str]:
     return lambda text: text if _QUESTION_START.match(text) else f"{opening}{_lower_first(text.rstrip('.!'))}{ending}"
 
 
-def _typo(text: str) -> str:
+def _misspell(text: str) -> str:
     """Swap two letters of the longest lower-case word, except units and presets."""
     words = [w for w in re.findall(r"[a-z]{6,}", text) if w not in _NOT_MISSPELLED]
     if not words:
@@ -73,7 +73,7 @@ INSTRUCTION_EDITS: tuple[Edit, ...] = (
     Edit("degree signs", "instruction", lambda t: re.sub(r"(\d) degrees?\b", r"\1°", t)),
     Edit("numbers in words", "instruction", _number_words),
     Edit("other words", "instruction", _other_words),
-    Edit("a typing error", "instruction", _typo),
+    Edit("a typing error", "instruction", _misspell),
     Edit("double spaces", "instruction", lambda t: t.replace(" ", "  ")),
 )
 

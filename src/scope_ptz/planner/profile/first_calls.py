@@ -1,6 +1,6 @@
 """Send one instruction to a planner without a camera, and check its first calls.
 
-The checks are whether a call is valid, whether it is the expected one, and whether it moves in the opposite direction (inverted).
+The checks test whether each call is valid, whether the first call is the expected one, and whether its direction is inverted.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from scope_ptz.planner.base import Briefing, CallTools, Planner, State, Usage
 from scope_ptz.tools.adjust_ptz import AdjustPtz
 from scope_ptz.tools.registry import parse_call, schemas
 
-PRESETS = ("gate", "highway")  # the presets that the planner is given
+PRESETS = ("gate", "highway")  # the camera's presets in the planner's briefing
 _TOLERANCE = 0.01  # numbers that differ by at most this are equal
 
 
@@ -49,7 +49,7 @@ class PlannerTrial(_Model):
     """The first step of a planner for an instruction.
 
     Attributes:
-        edit: The name of the edit; empty for none.
+        edit: The name of the edit that was applied to the instruction; empty for the original wording.
         asked: The instruction as it was sent, after the edit.
         calls: The valid calls.
         invalid: The number of invalid calls.
@@ -95,9 +95,9 @@ def read_rows(source: Path) -> tuple[InstructionRow, ...]:
         if not line.strip():
             continue
         try:
-            given = _Line.model_validate_json(line)
-            if given.calls:
-                rows.append(InstructionRow.model_validate(given.model_dump()))
+            parsed = _Line.model_validate_json(line)
+            if parsed.calls:
+                rows.append(InstructionRow.model_validate(parsed.model_dump()))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             where = ".".join(str(part) for part in first["loc"])
@@ -140,7 +140,7 @@ async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None =
         calls=calls,
         invalid=len(requested) - len(calls),
         text=decision.thought if isinstance(decision, CallTools) else decision.text,
-        right=bool(calls) and is_right(row, calls[0]),
+        right=bool(calls) and is_expected_call(row, calls[0]),
         inverted=is_inverted(row, calls),
         seconds=seconds,
         first_token_s=decision.served.first_token_s if decision.served else None,
@@ -156,7 +156,7 @@ def _valid(name: str, arguments: dict[str, Any]) -> bool:
     return True
 
 
-def is_right(row: InstructionRow, call: FirstCall) -> bool:
+def is_expected_call(row: InstructionRow, call: FirstCall) -> bool:
     """Return whether a call is the expected first one. Descriptions are compared by their words; questions are not compared."""
     expected = row.calls[0]
     if call.name in row.alternatives:
@@ -173,9 +173,11 @@ def same_arguments(one: FirstCall, other: FirstCall) -> bool:
     required_words = {
         key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value
     }
-    plain = FirstCall(name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in required_words.items()})
+    expected_call = FirstCall(
+        name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in required_words.items()}
+    )
     try:
-        a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (plain, other))
+        a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (expected_call, other))
     except ToolCallError:
         return False
     return all(set(_words(a[key])) <= set(_words(b[key])) if key in required_words else _same(a[key], b[key]) for key in a)
@@ -206,10 +208,10 @@ def same_calls(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
 
 
 def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
-    """Return whether the first move has the opposite direction of the expected one: right for left, up for down, or in for out."""
+    """Return whether the first move is opposite to the expected one: right for left, up for down, or in for out."""
     expected = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
-    made = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
-    return expected is not None and made is not None and any(e * m < 0 for e, m in zip(expected, made, strict=True))
+    actual = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
+    return expected is not None and actual is not None and any(e * a < 0 for e, a in zip(expected, actual, strict=True))
 
 
 def _directions(call: FirstCall) -> tuple[float, float, float]:

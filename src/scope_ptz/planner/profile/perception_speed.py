@@ -62,19 +62,19 @@ async def measure_perception(
     }
     times: dict[str, list[float]] = {name: [] for name in skills if name in perception.skills}
     failures: dict[str, int] = {}
-    first = ""
+    first_failure = ""
     for number, frame in enumerate([frames[0], *frames]):
-        counts = number > 0
+        is_measured = number > 0
         for name in times:
             began = perf_counter()
             try:
                 await skills[name](frame)
-                if counts:
+                if is_measured:
                     times[name].append(perf_counter() - began)
             except PerceptionError as error:
-                kind, first = error.kind or "perception", first or str(error)
-                failures[kind] = failures.get(kind, 0) + counts
-            if counts:
+                kind, first_failure = error.kind or "perception", first_failure or str(error)
+                failures[kind] = failures.get(kind, 0) + is_measured
+            if is_measured:
                 on_call()
     by_skill = {name: spread for name, values in times.items() if (spread := Spread.of(values)) is not None}
     return PerceptionSpeed(
@@ -82,5 +82,5 @@ async def measure_perception(
         by_skill=by_skill,
         never_worked=tuple(name for name in times if name not in by_skill),
         failures={kind: count for kind, count in failures.items() if count},
-        first_failure=first,
+        first_failure=first_failure,
     )

@@ -18,7 +18,7 @@ from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edi
 from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows, same_calls, same_choice
 
 AGAIN = "asked again unchanged"
-_Z = 1.96  # for a 95% interval
+_Z = 1.96  # the normal quantile of a 95% interval
 
 
 class _Model(BaseModel):
@@ -37,8 +37,8 @@ class Rate(_Model):
     @classmethod
     def over(cls, hits: Iterable[bool]) -> Rate:
         """Return the rate of the true values."""
-        found = list(hits)
-        count, of = sum(found), len(found)
+        values = list(hits)
+        count, of = sum(values), len(values)
         if not of:
             return cls(count=0, of=0, share=None, low=None, high=None)
         share, z2 = count / of, _Z * _Z
@@ -52,8 +52,8 @@ class EditEffect(_Model):
     """The effect of an edit.
 
     Attributes:
-        tools_changed: How often the planner chose different tools than without the edit.
-        calls_changed: How often the tools or their arguments changed.
+        tools_changed: The rate at which the planner chose different tools than without the edit.
+        calls_changed: The rate at which the tools or their arguments changed.
     """
 
     edit: str
@@ -89,6 +89,8 @@ class Sensitivity(_Model):
 
 @dataclass(frozen=True, slots=True)
 class _Case:
+    """A trial to run: an instruction with an edit, and the prompt to send it with."""
+
     row: InstructionRow
     edit: str
     where: str
@@ -102,24 +104,24 @@ async def measure_sensitivity(
     *,
     rows: Sequence[InstructionRow] | None = None,
     edits: Sequence[Edit] = (*PROMPT_EDITS, *INSTRUCTION_EDITS),
-    at_once: int = 4,
+    max_concurrent: int = 4,
     progress: Callable[[int, int], None] = lambda done, of: None,  # noqa: ARG005
 ) -> Sensitivity:
     """Run all instructions with all edits, and report how the calls change.
 
     Args:
-        make_planner: Makes a planner; called once for each variant of the prompt.
+        make_planner: Creates a planner; called once for each variant of the prompt.
         prompt: The unedited prompt.
         rows: The instructions; None selects the packaged ones.
         edits: The edits to try.
-        at_once: The maximum number of concurrent requests.
+        max_concurrent: The maximum number of concurrent requests.
         progress: Called after each trial with the number of completed trials and their total.
     """
     rows = load_rows() if rows is None else rows
     cases = _cases(rows, prompt, edits)
     planners = {text: make_planner(variant) for text, variant in {case.prompt.text: case.prompt for case in cases}.items()}
     trials: dict[int, PlannerTrial] = {}
-    limiter = anyio.CapacityLimiter(at_once)
+    limiter = anyio.CapacityLimiter(max_concurrent)
 
     async def ask(number: int, case: _Case) -> None:
         async with limiter:
@@ -157,7 +159,7 @@ def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Cas
     unedited = {trial.row.instruction: trial for trial in trials if not trial.edit}
     planned = [trial for trial in unedited.values() if trial.failure is None]
     pairs = _pairs(cases, trials, unedited)
-    by = {where: [pair for pair in pairs if pair.case.where == where] for where in ("prompt", "instruction")}
+    by_target = {where: [pair for pair in pairs if pair.case.where == where] for where in ("prompt", "instruction")}
     return Sensitivity(
         prompt=prompt.name,
         instructions=len(rows),
@@ -166,8 +168,8 @@ def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Cas
         inverted=_inverted(planned),
         failed=Rate.over(t.failure is not None for t in unedited.values()),
         noise=_changed(pair for pair in pairs if pair.case.edit == AGAIN),
-        by_prompt=_changed(by["prompt"]),
-        by_instruction=_changed(by["instruction"]),
+        by_prompt=_changed(by_target["prompt"]),
+        by_instruction=_changed(by_target["instruction"]),
         inverted_anywhere=_inverted(t for t in trials if t.failure is None),
         edits=_effects(cases, pairs),
         inversions=tuple(_example(t) for t in trials if t.inverted)[:20],
@@ -177,7 +179,7 @@ def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Cas
 
 @dataclass(frozen=True, slots=True)
 class _Pair:
-    """The trials of an instruction without and with an edit. The planner failed in neither."""
+    """The trials of an instruction without and with an edit. The planner succeeded in both."""
 
     case: _Case
     unedited: PlannerTrial
@@ -219,7 +221,7 @@ def _effect(name: str, where: str, pairs: Sequence[_Pair]) -> EditEffect:
 
 
 def _inverted(trials: Iterable[PlannerTrial]) -> Rate:
-    """Return the rate of inverted moves among the instructions that ask for a move."""
+    """Return the rate of inverted moves among the instructions that request a move."""
     return Rate.over(t.inverted for t in trials if _moves(t))
 
 

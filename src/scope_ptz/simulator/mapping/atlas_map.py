@@ -1,4 +1,4 @@
-"""Maps from a view to an atlas: for each pixel, where on the sheet the sharpest suitable picture shows it."""
+"""Maps from a view to an atlas: for each pixel, its position in the sharpest suitable picture on the sheet."""
 
 from __future__ import annotations
 
@@ -9,67 +9,63 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.mapping.cover import Cover, overlap
+from scope_ptz.simulator.mapping.cells import VisibleTile, visible_tiles
 from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.mapping.panorama import panorama_map
-from scope_ptz.simulator.mapping.tiles import Place, TileInView, Tiles
+from scope_ptz.simulator.mapping.tile_maps import tile_maps
+from scope_ptz.simulator.mapping.tiles import Place, Tiles
 from scope_ptz.simulator.models import Band
 from scope_ptz.simulator.sheets.atlas import Atlas
+from scope_ptz.simulator.sheets.layout import Slot
 
 TILE_GAIN = 1.1
 """Views that need more than this many times the panorama's density use tiles."""
 
 OVERSAMPLING = 1.2
-"""Smallest density of the source relative to the view. Bilinear look-up keeps the sharpness of a rendered view when the source is
+"""Minimum density of the source relative to the view. Bilinear look-up keeps the sharpness of a rendered view when the source is
 1.2 to 1.7 times as dense as the view; a sparser source blurs and a denser one shimmers."""
 
 Map = NDArray[np.float32]
 
 
 def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, part: Place | None = None) -> Map:
-    """Return the (H, W, 2) position (x, y) of each pixel of a view on the sheet of an atlas, and fill what the map needs.
+    """Return the (H, W, 2) position (x, y) of each pixel of a view on the sheet of an atlas, and fill the slots that the map needs.
 
     Args:
         tiles: Geometry of the viewpoint's tiles.
         band: The band of the sphere that the panorama covers.
         atlas: The atlas.
         projection: The view.
-        part: The rows and columns that are needed; the default is the whole view. The result is exactly that part of the whole.
+        part: The rows and columns that are needed; the default is the whole view. The result equals that part of the whole map.
     """
     step = step_px(projection)
     if part is None:
         part = slice(0, projection.height), slice(0, projection.width)
-    patches: list[tuple[Place, Map, NDArray[np.uint8] | None]] = []
-    cover = Cover(projection.width, projection.height)
+    visible: list[VisibleTile] = []
     rest: Place | None = part
     if projection.density > TILE_GAIN * panorama_density(atlas) and len(atlas.slots) > 1:
-        for showing in tiles.in_view(projection):
-            # Sharper tiles come first, so that what they hide is never computed.
-            visible = cover.gap(overlap(showing.place, part))
-            if visible is None:
-                continue
-            where, inside = _tile_map(tiles, showing, atlas, Grid(projection, step, showing.place), visible)
-            patches.append((visible, where, inside))
-            if inside is None:
-                cover.add_all()
-                break
-            if showing.polygon is not None:
-                cover.add(showing.polygon)
-        rest = cover.gap(part)
+        visible, rest = visible_tiles(tiles.in_view(projection), part)
     if rest == part:
         slot = atlas.need(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
-        found = panorama_map(band, slot, Grid(projection, step).inner(part), part)
+        positions = panorama_map(band, slot, Grid(projection, step).inner(part), part)
     else:
-        found = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
+        positions = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
         if rest is not None:
             slot = atlas.need(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
-            _within(found, part, rest)[...] = panorama_map(band, slot, Grid(projection, step).inner(rest), rest)
-    for visible, where, inside in reversed(patches):
-        if inside is None:
-            _within(found, part, visible)[...] = where
+            _within(positions, part, rest)[...] = panorama_map(band, slot, Grid(projection, step).inner(rest), rest)
+    slots = [
+        atlas.need(1 + index, suitable_scale(atlas, tiles.views[index].focal_px, projection.density))
+        for index in (tile.showing.tile for tile in visible)
+    ]
+    maps = tile_maps(tiles, projection, step, visible, slots)
+    # Start with the least sharp tile, over which the sharper ones are drawn.
+    for tile, slot, where in zip(reversed(visible), reversed(slots), reversed(list(maps)), strict=True):
+        target = _within(positions, part, tile.place)
+        if tile.whole:
+            target[...] = where
         else:
-            cv2.copyTo(where, inside, _within(found, part, visible))
-    return found
+            cv2.copyTo(where, _mask(tile, slot, where), target)
+    return positions
 
 
 def panorama_density(atlas: Atlas) -> float:
@@ -78,28 +74,21 @@ def panorama_density(atlas: Atlas) -> float:
 
 
 def suitable_scale(atlas: Atlas, density: float, needed: float) -> int:
-    """Return the scale at which a picture of full ``density`` (pixels per radian) suits a view of density ``needed``.
+    """Return the index of the scale at which a picture of full ``density`` (pixels per radian) suits a view of density ``needed``.
 
-    That is the coarsest that is still ``OVERSAMPLING`` times as dense as the view, or the first when none is.
+    This is the coarsest scale that is at least ``OVERSAMPLING`` times as dense as the view, or the first scale if none is.
     """
     enough = [k for k, scale in enumerate(atlas.scales) if scale.size * density >= OVERSAMPLING * needed]
     return enough[-1] if enough else 0
 
 
-def _tile_map(tiles: Tiles, showing: TileInView, atlas: Atlas, grid: Grid, visible: Place) -> tuple[Map, NDArray[np.uint8] | None]:
-    """Return a tile's map over its visible part, and the mask of the pixels it covers: None if it covers the whole view."""
-    projection = grid.projection
-    density = tiles.views[showing.tile].focal_px
-    slot = atlas.need(1 + showing.tile, suitable_scale(atlas, density, projection.density))
+def _mask(tile: VisibleTile, slot: Slot, where: Map) -> NDArray[np.uint8]:
+    """Return a mask of the pixels that a tile covers in the rows and columns in which it may be visible."""
+    inside = tile.showing.mask()
+    if inside is not None:
+        return _within(inside, tile.showing.place, tile.place)
     low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
-    may_cover_all = grid.covers_all
-    inner = grid if may_cover_all else grid.inner(visible)
-    nodes = tiles.points(showing, projection, inner.x, inner.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
-    where = inner.to_pixels(nodes, visible)
-    if may_cover_all and bool(np.all((nodes >= low) & (nodes <= high))):
-        return where, None
-    inside = showing.mask()
-    return where, cv2.inRange(where, low, high) if inside is None else _within(inside, showing.place, visible)
+    return np.asarray(cv2.inRange(where, low, high), dtype=np.uint8)
 
 
 def _within(whole: NDArray[np.generic], place: Place, part: Place) -> NDArray:  # type: ignore[type-arg]

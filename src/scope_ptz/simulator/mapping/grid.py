@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
-from copy import copy
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import cast
 
 import cv2
@@ -16,7 +15,7 @@ from scope_ptz.geometry import Equirectangular, Projection, pan_tilt_deg
 from scope_ptz.simulator.mapping.tiles import Place
 
 MAX_MAP_ERROR_PX = 0.04
-"""Largest permitted error of an interpolated map, in pixels of the view."""
+"""Maximum permitted error of an interpolated map, in pixels of the view."""
 
 MAX_STEP_PX = 32
 
@@ -32,9 +31,20 @@ class Grid:
     def __init__(self, projection: Projection, step: int, place: Place | None = None) -> None:
         self.projection, self.step = projection, step
         self.place = place or (slice(0, projection.height), slice(0, projection.width))
-        rows, columns = self.place
-        self.x: Floats = columns.start + (np.arange(-(-(columns.stop - columns.start) // step) + 2) - 0.5) * step
-        self.y: Floats = rows.start + (np.arange(-(-(rows.stop - rows.start) // step) + 2) - 0.5) * step
+        self._origin, self._first = self.place, (0, 0)
+
+    @cached_property
+    def x(self) -> Floats:
+        return self._nodes(1)
+
+    @cached_property
+    def y(self) -> Floats:
+        return self._nodes(0)
+
+    def _nodes(self, axis: int) -> Floats:
+        span, step, first = self.place[axis], self.step, self._first[axis]
+        count = -(-(span.stop - span.start) // step) + 2
+        return np.asarray(self._origin[axis].start + (np.arange(first, first + count) - 0.5) * step)
 
     @property
     def covers_all(self) -> bool:
@@ -48,31 +58,31 @@ class Grid:
         return self.projection.directions(points)
 
     def inner(self, part: Place) -> Grid:
-        """Return the grid of those nodes that a part of the picture needs. Values interpolated from it are exactly the same."""
-        found = copy(self)
-        spans = []
-        for whole, wanted, nodes in zip(self.place, part, ("y", "x"), strict=True):
-            first = (wanted.start - whole.start) // self.step
-            last = -(-(wanted.stop - whole.start) // self.step) + 2
-            setattr(found, nodes, getattr(self, nodes)[first:last])
-            spans.append(slice(whole.start + first * self.step, wanted.stop))
-        found.place = spans[0], spans[1]
-        return found
+        """Return a grid with only the nodes that a part of the picture needs. Interpolated values are identical."""
+        top, left = ((requested.start - whole.start) // self.step for whole, requested in zip(self.place, part, strict=True))
+        rows, columns = self.place
+        place = (
+            slice(rows.start + top * self.step, part[0].stop),
+            slice(columns.start + left * self.step, part[1].stop),
+        )
+        grid = Grid(self.projection, self.step, place)
+        grid._origin, grid._first = self._origin, (self._first[0] + top, self._first[1] + left)
+        return grid
 
-    def to_pixels(self, nodes: Floats, part: Place | None = None) -> NDArray[np.float32]:
+    def to_pixels(self, nodes: Floats | NDArray[np.float32], part: Place | None = None) -> NDArray[np.float32]:
         """Interpolate node values to the centre of each pixel.
 
         Args:
             nodes: (rows, columns) or (rows, columns, n) values at all nodes.
-            part: The rows and columns of the picture that are needed; the default is all that the grid covers. The result is
-                exactly that part of the whole.
+            part: The rows and columns of the picture that are needed; the default is all that the grid covers. The result
+                equals that part of the whole.
         """
         n, (rows, columns) = self.step, part or self.place
         top, left = rows.start - self.place[0].start, columns.start - self.place[1].start
         height, width = rows.stop - rows.start, columns.stop - columns.start
         first_row, first_column = top // n, left // n
         last_row, last_column = -(-(top + height) // n) + 2, -(-(left + width) // n) + 2
-        used = nodes[first_row:last_row, first_column:last_column].astype(np.float32)
+        used = nodes[first_row:last_row, first_column:last_column].astype(np.float32, copy=False)
         fine: NDArray[np.float32] = cv2.resize(used, (used.shape[1] * n, used.shape[0] * n), interpolation=cv2.INTER_LINEAR)
         y, x = n + top - first_row * n, n + left - first_column * n
         return fine[y : y + height, x : x + width]

@@ -19,7 +19,7 @@ def panorama_map(band: Band, slot: Slot, grid: Grid, part: Place | None = None) 
 
     Args:
         band: The band of the sphere that the panorama covers.
-        slot: The panorama's place on the sheet.
+        slot: The panorama's slot on the sheet.
         grid: The grid over the view.
         part: The rows and columns that are needed; the default is all that the grid covers.
     """
@@ -32,7 +32,7 @@ def panorama_map(band: Band, slot: Slot, grid: Grid, part: Place | None = None) 
     for beyond, turn_px in ((x < left, slot.width), (x > right, -slot.width)):
         columns = np.flatnonzero(beyond.any(axis=0))
         if columns.size:
-            # Pixels beyond the seam lie between the node before and the node after, so only these columns need the turn.
+            # Only columns between the nodes before and after the seam can be beyond it, so only these are shifted by a turn.
             first, last = (columns[0] - 2) * grid.step - skipped, (columns[-1] + 1) * grid.step - skipped
             seam = where[:, max(0, first) : max(0, last), 0]
             seam += np.float32(turn_px) * (seam < left if turn_px > 0 else seam > right)
@@ -40,7 +40,7 @@ def panorama_map(band: Band, slot: Slot, grid: Grid, part: Place | None = None) 
 
 
 def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
-    """Return the pan of the picture's centre and, for each node, its turn from there and its tilt, all in degrees."""
+    """Return the pan of the picture's centre and, for each node, its pan relative to the centre and its tilt, all in degrees."""
     projection = grid.projection
     if isinstance(projection, Equirectangular):
         fall = projection.bottom_tilt_deg - projection.top_tilt_deg
@@ -49,10 +49,10 @@ def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
         )
         return projection.left_pan_deg + projection.pan_span_deg / 2, turn, tilt
     if isinstance(projection, Perspective):
-        # A ray is (right, up, focal length) in the view. The tilt turns it in the plane of the last two.
+        # A ray is (right, up, focal length) in the view. Tilting rotates it in the plane of the last two components.
         sine, cosine = math.sin(math.radians(projection.tilt_deg)), math.cos(math.radians(projection.tilt_deg))
         right, up = grid.x - projection.width / 2, (projection.height / 2 - grid.y)[:, None]
         ahead, rise = projection.focal_px * cosine - up * sine, projection.focal_px * sine + up * cosine
         level = np.sqrt(right**2 + ahead**2)
         return projection.pan_deg, np.degrees(np.arctan2(right, ahead)), np.degrees(np.arctan2(rise, level))
-    raise TypeError(f"no map for {type(projection).__name__}")
+    raise TypeError(f"maps of {type(projection).__name__} are not supported")

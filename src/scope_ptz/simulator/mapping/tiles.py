@@ -1,4 +1,4 @@
-"""Geometry of a viewpoint's tiles: which tiles a view shows, where, and how pixels map between them."""
+"""Geometry of a viewpoint's tiles: which tiles are visible in a view, in which parts, and how pixels map between them."""
 
 from __future__ import annotations
 
@@ -16,27 +16,30 @@ Floats = NDArray[np.float64]
 Place = tuple[slice, slice]
 """A rectangle of a picture: rows and columns."""
 
-_BEHIND = 1e-6
+BEHIND = 1e-6
+BEHIND_POSITION = -1e3  # normalised coordinates of points behind a camera, far outside its picture
 _FAR_PX = 1e5
 _INSET_PX = 1.5
 POLYGON_SHIFT = 8
-"""Bits after the binary point of polygon coordinates, as OpenCV expects them."""
+"""Number of fractional bits of polygon coordinates, as passed to OpenCV."""
 _SIDE_POINTS = 8
 
-KEPT_ANSWERS = 4  # a view and its half-size version, for two cameras
+MAX_CACHED_RESULTS = 4  # enough for a view and its half-size version, for two cameras
 
 
 class TileInView(NamedTuple):
-    """A tile in a picture and the part of the picture in which it shows.
+    """A tile in a picture, and the part of the picture that it may cover.
 
     For perspective pictures, ``turn`` is the (3, 3) rotation from the picture's axes to the tile's, and ``polygon`` is a (4, 2)
-    outline at least one pixel inside the tile, in 1/256 pixels as OpenCV expects. Both are None for panoramas.
+    outline at least one pixel inside the tile, in 1/256 pixels. Both are None for panoramas. ``edges`` are the (4, 3) half-planes
+    (a, b, c) of the polygon, or of ``place`` without a polygon: ``a * x + b * y + c`` is the distance inside the edge in pixels.
     """
 
     tile: int
     place: Place
     turn: Floats | None
     polygon: NDArray[np.int32] | None
+    edges: Floats
 
     def mask(self) -> NDArray[np.uint8] | None:
         """Return an (H, W) mask of the part that is 255 inside the polygon, or None without a polygon."""
@@ -52,7 +55,7 @@ class TileInView(NamedTuple):
 
 
 class Tiles:
-    """Perspective pictures around one optical centre, the sharpest first; equally sharp ones keep their order."""
+    """Perspective pictures around one optical centre, sorted from the sharpest. Equally sharp pictures keep their order."""
 
     def __init__(self, views: Sequence[Perspective]) -> None:
         self.views = list(views)
@@ -60,17 +63,17 @@ class Tiles:
         self._order = np.array(order, dtype=np.int64)
         self._axes = np.array([camera_axes(v.pan_deg, v.tilt_deg) for v in views]).reshape(-1, 3, 3)
         self._reach_deg = np.array([v.reach_deg for v in views])
-        self._answers: list[tuple[Projection, list[TileInView]]] = []
+        self._results: list[tuple[Projection, list[TileInView]]] = []
         self._outlines = np.array([v.directions(OUTLINE) for v in views]).reshape(-1, len(OUTLINE), 3)
 
     def in_view(self, projection: Projection) -> list[TileInView]:
-        """Return every tile that may show in a picture. The last answers are kept, because several layers ask the same."""
-        for known, found in self._answers:
-            if known == projection:
-                return found
-        found = self._find(projection)
-        self._answers = [(projection, found), *self._answers[: KEPT_ANSWERS - 1]]
-        return found
+        """Return every tile that may be visible in a picture. Recent results are cached, because several layers need them."""
+        for cached, tiles in self._results:
+            if cached == projection:
+                return tiles
+        tiles = self._find(projection)
+        self._results = [(projection, tiles), *self._results[: MAX_CACHED_RESULTS - 1]]
+        return tiles
 
     def _find(self, projection: Projection) -> list[TileInView]:
         if not self.views:
@@ -80,12 +83,15 @@ class Tiles:
         size = np.array([projection.width, projection.height])
         outlines = projection.points(self._outlines[near])
         places = bounds(projection, outlines)
+        turns: list[Floats | None]
+        polygons: list[NDArray[np.int32] | None]
         if isinstance(projection, Perspective):
             turns = list(self._axes[near] @ camera_axes(projection.pan_deg, projection.tilt_deg).T)
             polygons = _inset(outlines[:, ::_SIDE_POINTS] * size)
-            shown = [TileInView(*fields) for fields in zip(near.tolist(), places, turns, polygons, strict=True)]
         else:
-            shown = [TileInView(i, place, None, None) for i, place in zip(near.tolist(), places, strict=True)]
+            turns, polygons = [None] * len(near), [None] * len(near)
+        edges = _edges(polygons, places)
+        shown = [TileInView(*fields) for fields in zip(near.tolist(), places, turns, polygons, edges, strict=True)]
         return [showing for showing in shown if showing.place[0].start < showing.place[0].stop]
 
     def points(self, showing: TileInView, projection: Projection, x: Floats, y: Floats) -> Floats:
@@ -101,17 +107,17 @@ class Tiles:
         else:
             points = np.stack(np.meshgrid(x / projection.width, y / projection.height), axis=-1)
             local = np.moveaxis(projection.directions(points) @ self._axes[showing.tile].T, -1, 0)
-        scale = tile.focal_px / np.maximum(local[2], _BEHIND)
-        found = np.empty((*local.shape[1:], 2))
-        found[..., 0] = local[0] * (scale / tile.width) + 0.5
-        found[..., 1] = local[1] * (scale / -tile.height) + 0.5
-        if local[2].min() <= _BEHIND:
-            found[local[2] <= _BEHIND] = -1e3
-        return found
+        scale = tile.focal_px / np.maximum(local[2], BEHIND)
+        normalised = np.empty((*local.shape[1:], 2))
+        normalised[..., 0] = local[0] * (scale / tile.width) + 0.5
+        normalised[..., 1] = local[1] * (scale / -tile.height) + 0.5
+        if local[2].min() <= BEHIND:
+            normalised[local[2] <= BEHIND] = BEHIND_POSITION
+        return normalised
 
 
 def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
-    """Shrink quadrilaterals (n, 4, 2) about their centres, so that rounding never reaches beyond the tile."""
+    """Shrink quadrilaterals (n, 4, 2) about their centres, so that they stay inside the tiles after rounding."""
     middle = corners.mean(axis=1, keepdims=True)
     sides, towards = np.roll(corners, -1, axis=1) - corners, middle - corners
     across = np.abs(sides[..., 0] * towards[..., 1] - sides[..., 1] * towards[..., 0])
@@ -122,17 +128,35 @@ def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
     return [polygon if fine else None for polygon, fine in zip(fixed, clear.tolist(), strict=True)]
 
 
+def _edges(polygons: Sequence[NDArray[np.int32] | None], places: Sequence[Place]) -> Floats:
+    """Return the (n, 4, 3) half-planes of convex polygons, or of the rectangles of places without a polygon."""
+    corners = np.array(
+        [
+            [(x.start, y.start), (x.stop - 1, y.start), (x.stop - 1, y.stop - 1), (x.start, y.stop - 1)]
+            if polygon is None
+            else polygon / (1 << POLYGON_SHIFT)
+            for polygon, (y, x) in zip(polygons, places, strict=True)
+        ]
+    ).reshape(-1, 4, 2)
+    sides = np.roll(corners, -1, axis=1) - corners
+    normals = np.stack([-sides[..., 1], sides[..., 0]], axis=-1) / np.maximum(np.sqrt((sides**2).sum(axis=-1)), 1e-9)[..., None]
+    offsets = -(normals * corners).sum(axis=-1)
+    # Orient the edges so that the centre of the polygon is inside.
+    inside = (normals * corners.mean(axis=1, keepdims=True)).sum(axis=-1) + offsets
+    return np.concatenate([normals, offsets[..., None]], axis=-1) * np.where(inside < 0, -1.0, 1.0)[..., None]
+
+
 def bounds(projection: Projection, points: Floats) -> list[Place]:
-    """Return the rows and columns that each outline (n, m, 2) spans; they are empty where it misses the picture."""
+    """Return the rows and columns that each outline (n, m, 2) spans; empty for outlines outside the picture."""
     size = np.array([projection.width, projection.height])
     unclear = np.isnan(points).any(axis=(1, 2))
     if isinstance(projection, Equirectangular):
         unclear |= np.ptp(points[..., 0], axis=1) > 0.5  # it crosses the seam
-    points = np.clip(np.where(np.isnan(points), 0.0, points), -1.0, 2.0)
+    points = np.minimum(np.maximum(np.where(np.isnan(points), 0.0, points), -1.0), 2.0)
     low = np.floor(points.min(axis=1) * size).astype(int) - 1
     high = np.ceil(points.max(axis=1) * size).astype(int) + 1
     low[unclear], high[unclear] = 0, size
-    low, high = np.clip(low, 0, size), np.clip(high, 0, size)
+    low, high = (np.minimum(np.maximum(corner, 0), size) for corner in (low, high))
     high[(low >= high).any(axis=1)] = 0
     return [(slice(y0, max(y0, y1)), slice(x0, x1)) for (x0, y0), (x1, y1) in zip(low.tolist(), high.tolist(), strict=True)]
 

@@ -1,1 +1,1 @@
-"""The sheets that hold a viewpoint's pictures."""
+"""The sheets that contain a viewpoint's pictures."""

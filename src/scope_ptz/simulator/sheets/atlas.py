@@ -1,8 +1,8 @@
-"""A sheet that holds all of a viewpoint's pictures of one kind side by side, so that a view is a single ``cv2.remap``.
+"""A sheet that contains all of a viewpoint's pictures of one kind side by side, so that a view is a single ``cv2.remap``.
 
-The sheet holds the panorama and every tile, each at the scales that views ask for. Borders are wrapped or repeated, so that
-bilinear look-ups never see a seam. Pictures are read on first use. The sheet may be large, because memory that is never used is
-never touched. A limit on the memory of tiles makes the sheet release those that were not used for longest.
+The sheet contains the panorama and every tile, each at the scales that views need. Borders are wrapped or repeated, so that
+bilinear look-ups are seamless. Pictures are read on first use. The sheet may be large, because unused parts take no
+memory. If the memory of tiles is limited, the sheet releases the least recently used tiles.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.simulator.sheets.kept import KeptPictures, KeptSheet
 from scope_ptz.simulator.sheets.layout import BORDER_PX, Size, Slot, lay_out
 from scope_ptz.simulator.sheets.memory import CAN_RELEASE, ReleasableArray
+from scope_ptz.simulator.sheets.picture_cache import CachedSheet, PictureCache
 
 SHARPENING_SIGMA_PX = 0.7
 SHARPENING_REACH_PX = 2  # OpenCV's Gaussian of this sigma has 5 taps for 8-bit pictures
@@ -28,46 +28,46 @@ STRIP_PX = 256  # rows that are decoded or sharpened at once, to keep intermedia
 
 
 class Scale(NamedTuple):
-    """A size at which pictures are kept, relative to the stored one, and the amount of sharpening applied."""
+    """A size of pictures on the sheet, relative to the stored one, and the amount of sharpening."""
 
     size: float
     sharpening: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
-class Keep:
-    """Where a sheet stays on disk.
+class SheetCache:
+    """The cache of a sheet on disk.
 
     Attributes:
-        pictures: The folder.
-        source: What the pixels of the sheet depend on, besides its layout.
+        pictures: The cache folder.
+        source: Identifies the content of the sheet, apart from its layout.
         verify: Verifies the file of picture ``i``. Raises ``PackError`` if it is damaged.
     """
 
-    pictures: KeptPictures
+    pictures: PictureCache
     source: str
     verify: Callable[[int], object]
 
-    def open(self, slots: Sequence[tuple[Slot, ...]], shape: tuple[int, ...], dtype: type[np.generic]) -> KeptSheet | None:
-        """Return the sheet, None if nothing can be kept."""
+    def open(self, slots: Sequence[tuple[Slot, ...]], shape: tuple[int, ...], dtype: type[np.generic]) -> CachedSheet | None:
+        """Return the sheet; None if it cannot be cached."""
         return self.pictures.sheet(self.pictures.name(self.source, slots, shape), shape, dtype)
 
 
 class Atlas:
     """One sheet with every picture of one kind, each at every scale. Safe to share between threads.
 
-    ``slots[0]`` holds the panorama's places, one per scale; ``slots[1 + i]`` those of tile ``i``.
+    ``slots[0]`` are the panorama's slots, one per scale; ``slots[1 + i]`` are those of tile ``i``.
 
     Args:
         sizes: Width and height of the panorama and of each tile, at full size.
         load: ``load(atlas, 0)`` reads the panorama and ``load(atlas, 1 + i)`` tile ``i``, at full size.
         dtype: Type of a pixel's channel.
         channels: Channels per pixel.
-        scales: Scales at which every picture is kept.
-        decode: Turns rows of a loaded picture into pixels; the default takes them as they are.
-        pans_deg: Directions of the tiles; see ``lay_out``. Needed for a limit.
-        tile_bytes: Limit on the memory of tiles. The panorama is always kept.
-        kept: Where the sheet stays on disk. Without it, or with a limit, the sheet is only in memory.
+        scales: Scales of every picture on the sheet.
+        decode: Converts rows of a loaded picture to pixels; by default, they are used unchanged.
+        pans_deg: Pans of the tiles; see ``lay_out``. Required with ``tile_bytes``.
+        tile_bytes: Limit on the memory of tiles. The panorama always stays in memory.
+        disk_cache: Cache of the sheet on disk. Without it, or with a limit, the sheet is only in memory.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class Atlas:
         decode: Callable[[NDArray[Any]], NDArray[Any]] | None = None,
         pans_deg: Sequence[float] | None = None,
         tile_bytes: int | None = None,
-        kept: Keep | None = None,
+        disk_cache: SheetCache | None = None,
     ) -> None:
         self.scales = tuple(scales)
         self.slots, self._shelves, (width, height) = lay_out(sizes, [scale.size for scale in scales], pans_deg)
@@ -90,23 +90,28 @@ class Atlas:
         self._lock = RLock()
         self._tile_bytes = tile_bytes if CAN_RELEASE else None
         shape = (height, width, channels) if channels > 1 else (height, width)
-        self._keep = None if self._tile_bytes is not None else kept
-        self._kept = self._keep.open(self.slots, shape, dtype) if self._keep is not None else None
+        self._disk_cache = None if self._tile_bytes is not None else disk_cache
+        self._cached = self._disk_cache.open(self.slots, shape, dtype) if self._disk_cache is not None else None
         self._memory: ReleasableArray | None = None
         self.sheet: NDArray[Any]
-        if self._kept is not None:
-            self.sheet = self._kept.array
+        if self._cached is not None:
+            self.sheet = self._cached.array
         else:
             self._memory = ReleasableArray(shape, dtype)
             self.sheet = self._memory.array
         self._clock = 0
-        self._last_used: dict[int, int] = {}  # of each shelf of tiles that holds something
+        self._last_used: dict[int, int] = {}  # by shelf of tiles that is in use
         self._readers: list[int] = []
 
     @property
     def unlimited(self) -> bool:
-        """Whether everything that was read stays in memory."""
+        """Whether all pictures that were read stay in memory."""
         return self._tile_bytes is None
+
+    @property
+    def in_use(self) -> bool:
+        """Whether any picture has been read."""
+        return bool(self._ready)
 
     def need(self, index: int, scale: int = 0) -> Slot:
         """Fill one picture at one scale and return its slot.
@@ -126,8 +131,8 @@ class Atlas:
                 self._clock += 1
                 self._last_used |= {self.slots[index][scale].shelf: self._clock for scale in scales}
             missing = [scale for scale in scales if (index, scale) not in self._ready]
-            if missing and self._kept is not None:
-                self._find_or_fill(self._kept, index, missing)
+            if missing and self._cached is not None:
+                self._find_or_fill(self._cached, index, missing)
             elif missing:
                 self._fill_scales(index, missing)
                 self._release_oldest()
@@ -139,84 +144,86 @@ class Atlas:
             self._ready.add((index, scale))
 
     def _verify(self, index: int) -> None:
-        if self._keep is not None:
-            self._keep.verify(index)
+        if self._disk_cache is not None:
+            self._disk_cache.verify(index)
 
-    def _find_or_fill(self, kept: KeptSheet, index: int, scales: Sequence[int]) -> None:
-        """Use what is complete on disk, after verifying the file that it was read from, and fill the rest."""
+    def _find_or_fill(self, cached: CachedSheet, index: int, scales: Sequence[int]) -> None:
+        """Use the scales that are complete on disk, after verifying the picture's file, and fill the others."""
         pairs = {(index, scale) for scale in scales}
-        if pairs <= kept.complete():
+        if pairs <= cached.complete():
             self._verify(index)
             self._ready |= pairs
             return
-        with kept.filling():
-            found = pairs & kept.complete()
-            if found:
+        with cached.filling():
+            complete = pairs & cached.complete()
+            if complete:
                 self._verify(index)
-            self._ready |= found
-            missing = sorted(scale for _, scale in pairs - found)
+            self._ready |= complete
+            missing = sorted(scale for _, scale in pairs - complete)
             if missing:
                 self._fill_scales(index, missing)
             for scale in missing:
                 slot = self.slots[index][scale]
-                kept.completed(index, scale, (slot.y - BORDER_PX, slot.y + slot.height + BORDER_PX))
+                cached.completed(index, scale, (slot.y - BORDER_PX, slot.y + slot.height + BORDER_PX))
 
     @contextmanager
     def reading(self) -> Iterator[None]:
-        """Keep all slots that are needed inside the context until it ends."""
+        """Keep the content of all slots that are needed inside the context until it ends."""
         if self._tile_bytes is None:
             yield
             return
         with self._lock:
             self._clock += 1
-            began = self._clock
-            self._readers.append(began)
+            start = self._clock
+            self._readers.append(start)
         try:
             yield
         finally:
             with self._lock:
-                self._readers.remove(began)
+                self._readers.remove(start)
                 self._release_oldest()
 
     def _release_oldest(self) -> None:
-        """Release shelves of tiles, the least recently used first, until the limit holds or every shelf is in use."""
+        """Release shelves of tiles, the least recently used first, until the limit is met or every shelf is in use."""
         memory = self._memory
         if self._tile_bytes is None or memory is None:
             return
         free_before = min(self._readers, default=self._clock)
         row_bytes = self.sheet[0].nbytes
-        held = {shelf: (self._shelves[shelf].bottom - self._shelves[shelf].top) * row_bytes for shelf in self._last_used}
-        total = sum(held.values())
+        shelf_bytes = {shelf: (self._shelves[shelf].bottom - self._shelves[shelf].top) * row_bytes for shelf in self._last_used}
+        total = sum(shelf_bytes.values())
         for shelf in sorted(self._last_used, key=self._last_used.__getitem__):
             if total <= self._tile_bytes or self._last_used[shelf] >= free_before:
                 return
             self._ready.difference_update(self._shelves[shelf].pictures)
             memory.release_rows(self._shelves[shelf].top, self._shelves[shelf].bottom)
             del self._last_used[shelf]
-            total -= held[shelf]
+            total -= shelf_bytes[shelf]
 
     def _fill(self, slot: Slot, picture: NDArray[Any], sharpening: float, index: int) -> None:
         if (slot.width, slot.height) != (picture.shape[1], picture.shape[0]):
             picture = cv2.resize(picture, (slot.width, slot.height), interpolation=cv2.INTER_AREA)
-        b = BORDER_PX
-        place = self.sheet[slot.y - b : slot.y + slot.height + b, slot.x - b : slot.x + slot.width + b]
+        border = BORDER_PX
+        place = self.sheet[slot.y - border : slot.y + slot.height + border, slot.x - border : slot.x + slot.width + border]
         for top in range(0, slot.height, STRIP_PX):
             rows = picture[top : top + STRIP_PX]
-            place[b + top : b + top + len(rows), b:-b] = rows if self._decode is None else self._decode(rows)
-        place[b:-b, :b], place[b:-b, -b:] = (
-            (place[b:-b, -2 * b : -b], place[b:-b, b : 2 * b]) if index == 0 else (place[b:-b, b : b + 1], place[b:-b, -b - 1 : -b])
+            place[border + top : border + top + len(rows), border:-border] = rows if self._decode is None else self._decode(rows)
+        place[border:-border, :border], place[border:-border, -border:] = (
+            (place[border:-border, -2 * border : -border], place[border:-border, border : 2 * border])
+            if index == 0
+            else (place[border:-border, border : border + 1], place[border:-border, -border - 1 : -border])
         )
-        place[:b], place[-b:] = place[b], place[-b - 1]
+        place[:border], place[-border:] = place[border], place[-border - 1]
         if sharpening:
             _sharpen(place, sharpening)
 
 
 def _sharpen(picture: NDArray[Any], sharpening: float) -> None:
-    """Sharpen a picture in place, strip by strip, with the same result as in one piece."""
+    """Sharpen a picture in place, strip by strip, with the same result as sharpening it whole."""
     reach, above = SHARPENING_REACH_PX, picture[:0]
     for top in range(0, len(picture), STRIP_PX):
         bottom = min(top + STRIP_PX, len(picture))
-        # The rows above have been sharpened already, so their original content is kept from the previous round.
+        # The rows above are already sharpened, so their original content is saved in the previous iteration.
         strip = np.concatenate([above, picture[top : bottom + reach]])
         skip = len(above)
         above = picture[bottom - reach : bottom].copy()

@@ -1,4 +1,4 @@
-"""Where the pictures of an atlas lie on its sheet."""
+"""Lay out the pictures of an atlas on its sheet."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from typing import NamedTuple
 from scope_ptz.errors import PackError
 
 MAX_SIDE_PX = 32766
-"""OpenCV's remap addresses its source with 16-bit integers."""
+"""Maximum side of a sheet, because OpenCV's remap addresses its source with 16-bit integers."""
 
 BORDER_PX = 2
-"""Border around every slot: one pixel for the bilinear neighbour, one for rounding."""
+"""Border around every slot in pixels: one for the bilinear neighbour, one for rounding."""
 
 HEIGHT_CLASS_PX = 32
-"""Tiles whose heights differ by less share shelves, so that neighbouring tiles lie side by side."""
+"""Tiles whose heights differ by less than this share shelves, so that neighbouring tiles are next to each other."""
 
 Size = tuple[int, int]
-"""Width, height."""
+"""Width and height in pixels."""
 
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """The place of one picture at one scale: its first pixel in the sheet, without the border, its size and its shelf."""
+    """The slot of one picture at one scale: its first pixel on the sheet, without the border, its size, and its shelf."""
 
     x: int
     y: int
@@ -35,7 +35,7 @@ class Slot:
 class Shelf(NamedTuple):
     """A range of whole rows of the sheet, from ``top`` to ``bottom - 1``, with the pictures that lie side by side in it.
 
-    ``pictures`` holds (index of the picture, index of the scale) pairs.
+    ``pictures`` are (index of the picture, index of the scale) pairs.
     """
 
     top: int
@@ -52,13 +52,13 @@ class Layout(NamedTuple):
 
 
 def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[float] | None = None) -> Layout:
-    """Place the pictures on shelves of falling height, and widen the sheet until it is low enough.
+    """Place the pictures on shelves of decreasing height, and widen the sheet until its height is within the limit.
 
     Args:
         sizes: Width and height of the panorama and of each tile.
-        scales: Sizes at which each picture is kept, relative to its own.
-        pans_deg: Directions of the tiles. If given, tiles are ordered by scale and direction, so that a shelf holds tiles that
-            are seen together, and the panorama has shelves of its own.
+        scales: Sizes of each picture on the sheet, relative to its full size.
+        pans_deg: Pans of the tiles. If given, tiles are ordered by scale and direction, so that a shelf holds tiles that
+            are seen together, and the panorama has separate shelves.
 
     Raises:
         PackError: The pictures do not fit.
@@ -66,14 +66,14 @@ def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[f
     scaled = [[(max(1, round(w * s)), max(1, round(h * s))) for s in scales] for w, h in sizes]
     flat = [(i, k) for i, sized in enumerate(scaled) for k in range(len(sized))]
 
-    def falling_height(at: tuple[int, int]) -> tuple[float, ...]:
+    def by_decreasing_height(at: tuple[int, int]) -> tuple[float, ...]:
         i, k = at
         height = scaled[i][k][1]
         if pans_deg is None:
             return (-height,)
         return (0.0, -height) if i == 0 else (1.0, -(-height // HEIGHT_CLASS_PX), k, pans_deg[i - 1])
 
-    flat.sort(key=falling_height)
+    flat.sort(key=by_decreasing_height)
     sheet_width = max(w for sized in scaled for w, _ in sized) + 2 * BORDER_PX
     while sheet_width <= MAX_SIDE_PX:
         rows = _rows(flat, scaled, sheet_width, apart=pans_deg is not None)
@@ -94,7 +94,9 @@ def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[f
         if sheet_width == MAX_SIDE_PX:
             break
         sheet_width = min(MAX_SIDE_PX, sheet_width * 5 // 4)
-    raise PackError("This viewpoint has more pixels than one sheet of 32766 x 32766 holds. Bake it with fewer or smaller tiles.")
+    raise PackError(
+        "The pictures of this viewpoint do not fit on a sheet of 32766 x 32766 pixels. Bake it with fewer or smaller tiles."
+    )
 
 
 def _rows(

@@ -1,1 +1,1 @@
-"""Stored pictures of moving actors: reading them and choosing among them."""
+"""The stored pictures of moving actors: reading and selecting them."""

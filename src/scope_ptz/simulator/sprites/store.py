@@ -1,4 +1,4 @@
-"""The sprites of a viewpoint's actors. Sheets are decoded once; sprites are kept compressed and expanded when they are needed."""
+"""The sprites of a viewpoint's actors. Sheets are decoded once. Sprites stay compressed in memory and are expanded when needed."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ from numpy.typing import NDArray
 from scope_ptz.errors import PackError
 from scope_ptz.simulator.models import ActorSheet, Sprite
 from scope_ptz.simulator.pictures import Pictures
-from scope_ptz.simulator.sheets.kept import KeptPictures
+from scope_ptz.simulator.sheets.picture_cache import PictureCache
 
 EXPANDED_BYTES = 32_000_000
-"""Limit on the memory of expanded sprites. Expanding one takes about a millisecond."""
+"""Limit on the memory of expanded sprites in bytes. Expanding a sprite takes about a millisecond."""
+
+SHRUNK_BYTES = 8_000_000
+"""Limit on the memory of shrunk sprites in bytes. A distant actor has the same size in many successive frames."""
 
 EDGE_PX = 2
-"""Search radius for covered pixels around a half-covered pixel of a sprite."""
+"""Search radius in pixels for covered pixels around a half-covered pixel of a sprite."""
 
 MIN_COVERED = 3
 """Number of covered pixels needed to recolour a half-covered one."""
@@ -37,18 +40,20 @@ class SpriteStore:
     Uncompressed, the sprites of a viewpoint take up to 300 MB; compressed, about 20 MB.
     """
 
-    def __init__(self, pictures: Pictures, kept: KeptPictures | None = None) -> None:
+    def __init__(self, pictures: Pictures, picture_cache: PictureCache | None = None) -> None:
         """Set up the store.
 
         Args:
             pictures: The files of the viewpoint.
-            kept: Where compressed sprites stay on disk.
+            picture_cache: Cache on disk for compressed sprites.
         """
-        self._pictures, self._kept = pictures, kept
+        self._pictures, self._picture_cache = pictures, picture_cache
         self._packed: dict[Key, bytes] = {}
         self._boxes: dict[tuple[int, int, int], tuple[int, int, int, int]] = {}
         self._expanded: OrderedDict[Key, NDArray[Any]] = OrderedDict()
         self._expanded_bytes = 0
+        self._shrunk: OrderedDict[tuple[Key, int, int], NDArray[np.uint8]] = OrderedDict()
+        self._shrunk_bytes = 0
         self._lock = RLock()
 
     def distances(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint16]:
@@ -56,12 +61,30 @@ class SpriteStore:
         return self._get("distances", sheet, sprite)
 
     def colour(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint8]:
-        """Return a sprite's (h, w, 4) colour premultiplied by alpha. The ground truth never needs it.
+        """Return a sprite's (h, w, 4) colour premultiplied by alpha. Ground truth does not use it.
 
         Raises:
             PackError: The actor's sheet has no transparency.
         """
         return self._get("colour", sheet, sprite)
+
+    def shrunk_colour(self, sheet: ActorSheet, sprite: Sprite, width: int, height: int) -> NDArray[np.uint8]:
+        """Return a sprite's premultiplied colour, shrunk to (height, width, 4)."""
+        picture: Key = ("colour", sheet.number, sprite.left, sprite.top)
+        key = picture, width, height
+        with self._lock:
+            if key in self._shrunk:
+                self._shrunk.move_to_end(key)
+                return self._shrunk[key]
+        shrunk = np.asarray(cv2.resize(self.colour(sheet, sprite), (width, height), interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        shrunk.flags.writeable = False
+        with self._lock:
+            if key not in self._shrunk:
+                self._shrunk[key] = shrunk
+                self._shrunk_bytes += shrunk.nbytes
+            while self._shrunk_bytes > SHRUNK_BYTES and len(self._shrunk) > 1:
+                self._shrunk_bytes -= self._shrunk.popitem(last=False)[1].nbytes
+        return shrunk
 
     def box(self, sheet: ActorSheet, sprite: Sprite) -> tuple[int, int, int, int]:
         """Return the rectangle (left, top, width, height) of a sprite's pixels that are not empty."""
@@ -72,7 +95,7 @@ class SpriteStore:
         return self._boxes[key]
 
     def load(self, sheets: Iterable[ActorSheet]) -> None:
-        """Read the sheets of actors, so that no later request has to."""
+        """Read the sheets of actors, so that later requests need not wait."""
         for sheet in sheets:
             with self._lock:
                 self._read("distances", sheet)
@@ -94,27 +117,29 @@ class SpriteStore:
             return expanded
 
     def _read(self, part: Part, sheet: ActorSheet) -> None:
-        """Decode a sheet and pack its sprites, unless that was done before."""
+        """Decode a sheet and compress its sprites, if that has not been done yet."""
         places = {(s.left, s.top): s for s in sheet.sprites}
         first = next(iter(places))
-        if (part, sheet.number, *first) in self._packed or self._read_kept(part, sheet, list(places)):
+        if (part, sheet.number, *first) in self._packed or self._read_cached(part, sheet, list(places)):
             return
         whole = self._pictures.numbers(sheet.depth) if part == "distances" else self._pictures.colour(sheet.colour)
         if part == "colour" and (whole.ndim != 3 or whole.shape[2] != 4):
-            raise PackError(f"{self._pictures.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
+            raise PackError(
+                f"{self._pictures.folder / sheet.colour.file} has no transparency, so it is not a sheet of sprites. Bake it again."
+            )
         for (left, top), sprite in places.items():
             crop = whole[top : top + sprite.height, left : left + sprite.width]
             self._packed[part, sheet.number, left, top] = zlib.compress(crop.tobytes(), 1)
-        if self._kept is not None:
+        if self._picture_cache is not None:
             packed = [self._packed[part, sheet.number, *place] for place in places]
             lengths = np.array([len(sprite) for sprite in packed], np.uint32)
-            self._kept.keep_blob(self._kept_name(self._kept, part, sheet), lengths.tobytes() + b"".join(packed))
+            self._picture_cache.store_blob(self._cache_name(self._picture_cache, part, sheet), lengths.tobytes() + b"".join(packed))
 
-    def _read_kept(self, part: Part, sheet: ActorSheet, places: list[tuple[int, int]]) -> bool:
-        """Use compressed sprites that are on disk, after verifying the sheet's file. Return whether there were any."""
-        if self._kept is None:
+    def _read_cached(self, part: Part, sheet: ActorSheet, places: list[tuple[int, int]]) -> bool:
+        """Load compressed sprites from the cache, after verifying the sheet's file. Return whether they were in the cache."""
+        if self._picture_cache is None:
             return False
-        blob = self._kept.blob(self._kept_name(self._kept, part, sheet))
+        blob = self._picture_cache.blob(self._cache_name(self._picture_cache, part, sheet))
         if blob is None:
             return False
         self._pictures.checked(sheet.depth if part == "distances" else sheet.colour)
@@ -125,9 +150,9 @@ class SpriteStore:
         return True
 
     @staticmethod
-    def _kept_name(kept: KeptPictures, part: Part, sheet: ActorSheet) -> str:
+    def _cache_name(picture_cache: PictureCache, part: Part, sheet: ActorSheet) -> str:
         layer = sheet.depth if part == "distances" else sheet.colour
-        return kept.name("sprites", part, layer.sha256, [(s.left, s.top, s.width, s.height) for s in sheet.sprites])
+        return picture_cache.name("sprites", part, layer.sha256, [(s.left, s.top, s.width, s.height) for s in sheet.sprites])
 
     def _expand(self, key: Key, sheet: ActorSheet, sprite: Sprite) -> NDArray[Any]:
         pixels = zlib.decompress(self._packed[key])
@@ -137,7 +162,7 @@ class SpriteStore:
         return _premultiplied(straight, self.distances(sheet, sprite) > 0)
 
 
-def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray[np.uint8]:
+def _premultiplied(colour: NDArray[np.uint8], actor_pixels: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """Return (H, W, 4) colour times alpha.
 
     Lossy coding mixes the black of empty pixels into an actor's half-covered edge, so edge pixels take their colour from the
@@ -145,14 +170,14 @@ def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray
     """
     alpha = np.ascontiguousarray(colour[..., 3])
     sheet = cv2.multiply(colour, cv2.merge([alpha, alpha, alpha, np.full_like(alpha, 255)]), scale=1 / 255)
-    covered = own & (alpha > 250)
-    rows, columns = np.nonzero(own & (alpha <= 250))
+    covered = actor_pixels & (alpha > 250)
+    rows, columns = np.nonzero(actor_pixels & (alpha <= 250))
     total, count = np.zeros((len(rows), 3)), np.zeros(len(rows))
     for down, right in product(range(-EDGE_PX, EDGE_PX + 1), repeat=2):
-        beside = rows + down, columns + right
-        there = np.clip(beside[0], 0, alpha.shape[0] - 1), np.clip(beside[1], 0, alpha.shape[1] - 1)
-        counts = covered[there] & (there[0] == beside[0]) & (there[1] == beside[1])
-        total += colour[..., :3][there] * counts[:, None]
+        neighbours = rows + down, columns + right
+        clipped = np.clip(neighbours[0], 0, alpha.shape[0] - 1), np.clip(neighbours[1], 0, alpha.shape[1] - 1)
+        counts = covered[clipped] & (clipped[0] == neighbours[0]) & (clipped[1] == neighbours[1])
+        total += colour[..., :3][clipped] * counts[:, None]
         count += counts
     enough = count >= MIN_COVERED
     rows, columns = rows[enough], columns[enough]

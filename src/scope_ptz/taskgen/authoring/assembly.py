@@ -40,7 +40,7 @@ class BuiltTasks:
 
 
 class Builder:
-    """Builds the tasks of a dataset. The arguments are those of ``build``."""
+    """A builder of the tasks of a dataset. Its arguments are those of ``build``."""
 
     def __init__(
         self,
@@ -104,19 +104,19 @@ class Builder:
     def _paraphrases(self, chosen: dict[Category, list[ChosenDraft]]) -> list[Task]:
         """Return additional wordings of tasks, taken from the categories in turn."""
         number = max(1, PARAPHRASED * sum(self.quotas.values()) // sum(QUOTAS.values()))
-        found = list[Task]()
+        paraphrases = list[Task]()
         candidates = {c: [row for row in rows if len(row.variants) >= WORDINGS] for c, rows in chosen.items()}
         for rows in candidates.values():
             rows.sort(key=lambda row: row.draft.digest(f"{self.seed}:paraphrases"))
-        done = 0
-        while done < number and any(candidates.values()):
+        paraphrased = 0
+        while paraphrased < number and any(candidates.values()):
             for rows in candidates.values():
-                if rows and done < number:
-                    row, done = rows.pop(), done + 1
+                if rows and paraphrased < number:
+                    row, paraphrased = rows.pop(), paraphrased + 1
                     texts = [text for text in dict.fromkeys(row.variants) if text not in self.shared.texts][:WORDINGS]
                     self.shared.texts.update(texts)
-                    found += [_task(row, text, n) for n, text in enumerate(texts, 1)]
-        return found
+                    paraphrases += [_task(row, text, n) for n, text in enumerate(texts, 1)]
+        return paraphrases
 
 
 def _task(row: ChosenDraft, text: str, wording: int = 0) -> Task:

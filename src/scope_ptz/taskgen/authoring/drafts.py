@@ -34,7 +34,7 @@ _AROUND = (
     "All around the camera, {d}", "Over the full scene, tell me {i}.", "{D} Not in this view only, but all around.",
     "Looking in every direction, {d}",
 )  # fmt: skip
-_STAYING = (
+_IN_CURRENT_VIEW = (
     "{D}", "In the current view, {d}", "In this view, tell me {i}.", "Looking straight at what the camera shows now, {d}",
     "Without moving the camera, {d}", "Right here in this view, {d}",
 )  # fmt: skip
@@ -47,7 +47,7 @@ class Question:
     forms: tuple[tuple[str, str], ...]
 
 
-def same_form(*questions: str) -> tuple[tuple[str, str], ...]:
+def identical_forms(*questions: str) -> tuple[tuple[str, str], ...]:
     """Return wordings that read the same as a question and as a clause ("which is nearer, ...")."""
     return tuple((question, question.rstrip("?")) for question in questions)
 
@@ -59,7 +59,7 @@ class TaskDraft:
     Attributes:
         category: The category of the task.
         question_type: The question type, which the selection balances.
-        key: Identifies the question, so that it is asked only once about a view.
+        key: A key for the question, so that it is asked only once about a view.
         place: The start of the task, and the view that it is about.
         expected: The expected answer.
         question: The wordings of the question; None for a task with ``instructions``.
@@ -134,7 +134,7 @@ class TaskDraft:
 
 
 class SentenceFrames:
-    """Words the drafts of a category. It uses all sentence frames equally often, and no text twice."""
+    """A writer of the instructions of a category. It uses all sentence frames equally often, and no text twice."""
 
     def __init__(self, texts: set[str]) -> None:
         self.used: Counter[str] = Counter()
@@ -154,8 +154,8 @@ class SentenceFrames:
         options = [o for o in self._options(draft, rng) if o[0] not in self.texts and (like is None or o[1] == like)]
         if not options:
             return None
-        least = min(self.used[frame] for _, frame in options)
-        text, frame = rng.choice([o for o in options if self.used[o[1]] == least])
+        lowest = min(self.used[frame] for _, frame in options)
+        text, frame = rng.choice([o for o in options if self.used[o[1]] == lowest])
         return text, frame
 
     def take(self, text: str, frame: str) -> None:
@@ -171,7 +171,7 @@ class SentenceFrames:
             words = {"d": direct, "D": capital(direct), "i": inside}
             name = f"{draft.question_type}/{n}"
             if place.is_start_view:
-                options += [(w.format(**words), f"{name}/stay{k}") for k, w in enumerate(_STAYING)]
+                options += [(w.format(**words), f"{name}/stay{k}") for k, w in enumerate(_IN_CURRENT_VIEW)]
                 continue
             if place.preset is not None and not place.swept:
                 options += [(w.format(p=place.preset, **words), f"{name}/preset{k}") for k, w in enumerate(_AT_PRESET)]

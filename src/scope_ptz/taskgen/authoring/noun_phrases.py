@@ -24,7 +24,7 @@ UNCOUNTED = frozenset({
     "pedestrian", "door sign", "window notice", "wall sign", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp",
     "lane signal", "wheel stop", "wheel guide", "walkway", "cycle shelter", "clock tower", "sign", "gantry", "parking space",
 })  # fmt: skip
-"""Categories that people count differently, because their objects are not clearly separate or extend into the distance."""
+"""Categories that people would count inconsistently, because the objects are not clearly separate or extend into the distance."""
 
 _COLOUR_SYNONYMS: dict[str, Wordings] = {
     "white": ("off-white",), "black": (), "grey": ("gray", "silver", "dark grey", "light grey"),

@@ -53,22 +53,22 @@ def unique_things(truth: RobustTruth, *, coloured: bool, min_pixels: int = 350) 
         coloured: Whether a colour may be part of the kind, as in "red car".
         min_pixels: Minimum size of an object in pixels.
     """
-    found = []
+    named = []
     categories = sorted({s.instance.category for s in truth.clear})
     for category in categories:
-        alone = truth.all_of(Kind(category))
-        if alone is not None and len(alone) == 1 and is_only_candidate(truth, Kind(category), alone[0]):
-            found.append(NamedThing(alone[0], everyday_name(category), Kind(category)))
+        only_things = truth.all_of(Kind(category))
+        if only_things is not None and len(only_things) == 1 and is_only_candidate(truth, Kind(category), only_things[0]):
+            named.append(NamedThing(only_things[0], everyday_name(category), Kind(category)))
             continue
         if not coloured:
             continue
-        own = (own_colour(s.instance) for s in truth.clear if s.instance.category == category)
-        colours = sorted({colour for colour in own if colour is not None and " and " not in colour})
+        colours_in_view = (own_colour(s.instance) for s in truth.clear if s.instance.category == category)
+        colours = sorted({colour for colour in colours_in_view if colour is not None and " and " not in colour})
         for colour in colours:
             things = truth.all_of(Kind(category, colour))
             if things is not None and len(things) == 1 and is_only_candidate(truth, Kind(category, colour), things[0]):
-                found.append(NamedThing(things[0], noun_of(Kind(category, colour)), Kind(category, colour)))
-    return tuple(n for n in found if n.thing.pixels >= min_pixels and n.kind.category not in UNCOUNTED)
+                named.append(NamedThing(things[0], noun_of(Kind(category, colour)), Kind(category, colour)))
+    return tuple(n for n in named if n.thing.pixels >= min_pixels and n.kind.category not in UNCOUNTED)
 
 
 def is_only_candidate(truth: RobustTruth, kind: Kind, thing: Sighting) -> bool:
@@ -85,7 +85,7 @@ def named_things(truth: RobustTruth, min_pixels: int = 350, min_text_px: float =
         min_pixels: Minimum size of an object in pixels.
         min_text_px: Minimum height of capital letters, in pixels, if a person needs to read them to recognise the object.
     """
-    found = []
+    named = []
     for sighting in truth.clear:
         thing, name = sighting.instance, name_in_instruction(sighting.instance.name)
         words = name.lower().split()
@@ -106,8 +106,8 @@ def named_things(truth: RobustTruth, min_pixels: int = 350, min_text_px: float =
             or any(name_could_refer_to(other, name, thing) for other in truth.others(sighting))
         ):
             continue
-        found.append(NamedThing(sighting, name, Kind(thing.category)))
-    return tuple(found)
+        named.append(NamedThing(sighting, name, Kind(thing.category)))
+    return tuple(named)
 
 
 def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_px: float) -> bool:
@@ -116,8 +116,8 @@ def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_
     If the name of an object comes from its lettering, as for signs and numbered bays, the lettering must be large enough.
     """
     thing = sighting.instance
-    own = _words(name) - _FUNCTION_WORDS - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
-    by_number, by_text = name[-1].isdigit(), thing.category in _KNOWN_BY_TEXT and not own <= COLOUR_WORDS
+    distinctive = _words(name) - _FUNCTION_WORDS - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
+    by_number, by_text = name[-1].isdigit(), thing.category in _KNOWN_BY_TEXT and not distinctive <= COLOUR_WORDS
     if not by_number and not by_text:
         return True
     parts = with_parts(truth.scene, thing.id)
@@ -125,7 +125,7 @@ def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_
     lettering = {word for t in texts for word in _words(t.text.text)}
     if by_number:
         return name.split()[-1] in lettering
-    return any(a[:_STEM_CHARS] == b[:_STEM_CHARS] for a in own for b in lettering)
+    return any(a[:_STEM_CHARS] == b[:_STEM_CHARS] for a in distinctive for b in lettering)
 
 
 _STEM_CHARS = 4
@@ -174,8 +174,8 @@ def name_could_refer_to(other: SceneThing, name: str, thing: SceneThing) -> bool
         return True
     if other.category != thing.category and not Kind(thing.category).ambiguous_with(other):
         return False
-    own = named - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
-    return all(word in described or any(similar_colours(word, colour) for colour in described) for word in own)
+    distinctive = named - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
+    return all(word in described or any(similar_colours(word, colour) for colour in described) for word in distinctive)
 
 
 def _words(text: str) -> set[str]:
@@ -229,9 +229,9 @@ def extreme_things(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedT
             end = outermost(truth, things, which)
             if end is not None and end.pixels >= min_pixels:
                 yield NamedThing(end, f"{axis_name} {everyday_name(category)}", kind, positional=True)
-        near = sorted(things, key=lambda s: s.distance_m)
-        if near[1].distance_m > near[0].distance_m * 1.2 and near[0].pixels >= min_pixels:
-            yield NamedThing(near[0], f"nearest {everyday_name(category)}", kind, positional=True)
+        by_distance = sorted(things, key=lambda s: s.distance_m)
+        if by_distance[1].distance_m > by_distance[0].distance_m * 1.2 and by_distance[0].pixels >= min_pixels:
+            yield NamedThing(by_distance[0], f"nearest {everyday_name(category)}", kind, positional=True)
 
 
 def coloured_boards(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedThing]:
@@ -275,7 +275,7 @@ def is_complete_group(truth: RobustTruth, kind: Kind) -> bool:
 
 
 def outermost(truth: RobustTruth, things: Sequence[Sighting], which: int) -> Sighting | None:
-    """Return the leftmost (0) or rightmost (-1) object; None if its neighbour is too close to it."""
+    """Return the leftmost object (``which`` is 0) or the rightmost one (-1); None if its neighbour is too close to it."""
     order = sorted(things, key=lambda s: (s.box[0] + s.box[2]) / 2)
     pair = order[:2] if which == 0 else order[-2:]
     return order[which] if truth.in_order(pair, 0, 0.05) is not None else None

@@ -31,7 +31,7 @@ _MISSING_TEXTS = (
     "Bring up the {p} view, please.",
     "Move the camera to {p} and zoom in twice.",
 )
-_UNABLE = (
+_INABILITY_PHRASES = (
     "Open the gate for the van.",
     "Switch the lights on over there.",
     "Sound the alarm.",
@@ -58,7 +58,7 @@ _UNSAFE = (
 _REQUEST_TYPES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("unclear", _UNCLEAR),
     ("no-such-preset", _MISSING_TEXTS),
-    ("not-able", _UNABLE),
+    ("not-able", _INABILITY_PHRASES),
     ("unsafe", _UNSAFE),
 )
 
@@ -80,8 +80,8 @@ def reactions(scenes: list[Scene], seed: int, number: int = 44) -> tuple[list[Ta
     texts = list[tuple[str, str]]()
     for request_type, forms in _REQUEST_TYPES:
         if request_type == "no-such-preset":
-            known = {p.name for scene in scenes for p in scene.file.presets}
-            missing = [name for name in _MISSING if name not in known]
+            preset_names = {p.name for scene in scenes for p in scene.file.presets}
+            missing = [name for name in _MISSING if name not in preset_names]
             wordings = [form.format(p=name) for name in missing for form in forms]
             rng.shuffle(wordings)
             texts += [(request_type, text) for text in wordings[:14]]

@@ -38,7 +38,7 @@ _READING_VIEWS = 36  # maximum number of views that are close enough to read a t
 
 
 class SceneDrafts:
-    """Creates the drafts of a scene, in an order that depends on the seed. The ground truth of a view is read on first use.
+    """A generator of the drafts of a scene, in an order that depends on the seed. The ground truth of a view is read on first use.
 
     Args:
         scene: The scene.
@@ -87,7 +87,7 @@ class SceneDrafts:
     @cached_property
     def reading_views(self) -> list[TaskPlace]:
         """Views that are close enough to read a text, one for each object with lettering."""
-        found: dict[str, TaskPlace] = {}
+        by_object: dict[str, TaskPlace] = {}
         texts = list(self.scene.file.texts)
         self._rng("reading").shuffle(texts)
         for text in texts:
@@ -96,7 +96,7 @@ class SceneDrafts:
                 centre = np.array(text.centre_m, dtype=np.float64)
                 towards = origin.position_m - centre
                 angle = float(angle_between_deg(np.cross(np.array(text.right), np.array(text.up)), towards))
-                if angle > 42 or text.parent in found:
+                if angle > 42 or text.parent in by_object:
                     continue
                 # Capitals of 22 px are legible under the strictest threshold.
                 cap_deg = np.degrees(text.cap_height_m / float(np.linalg.norm(towards)))
@@ -107,10 +107,10 @@ class SceneDrafts:
                 zoom = TASK_CAMERA.optics.zoom_for_hfov(min(hfov, TASK_CAMERA.optics.hfov_deg(1.0)))
                 place = self.places.towards(viewpoint.name, float(pan), float(tilt), zoom)
                 if place is not None and any(t.text.id == text.id and t.legible for t in place.truth.first.texts):
-                    found[text.parent] = place
-                if len(found) == _READING_VIEWS:
-                    return list(found.values())
-        return list(found.values())
+                    by_object[text.parent] = place
+                if len(by_object) == _READING_VIEWS:
+                    return list(by_object.values())
+        return list(by_object.values())
 
     def drafts(self, category: Category) -> Iterator[TaskDraft]:
         """Yield all drafts of a category."""

@@ -12,7 +12,7 @@ from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.taskgen.authoring.drafts import SentenceFrames, TaskDraft
 from scope_ptz.taskgen.authoring.task_places import preset_at
-from scope_ptz.taskgen.facts.answer_phrasing import offered
+from scope_ptz.taskgen.facts.answer_phrasing import offered_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
 PAIR_QUOTAS: dict[Category, int] = {"counting": 31, "descriptor": 16, "location": 12, "multi_step_reasoning": 16}
@@ -27,7 +27,7 @@ MAX_SAME_ANSWER: dict[Category, int] = {
 """Maximum number of tasks with the same correct answer per category, without pairs: at most 3% of all tasks in total."""
 
 MAX_SAME_YES_NO = 1
-"""Maximum number of tasks with the answer "yes" and of those with "no" per question type, without pairs."""
+"""Maximum number of tasks with the answer "yes", and with the answer "no", per question type, without pairs."""
 
 MAX_SAME_QUESTION = 2
 """Maximum number of tasks in a scene that have the same question and answer, about different views."""
@@ -42,13 +42,13 @@ _NO_LIMIT = 1000.0
 MAX_FRAME_SHARE = 0.06  # maximum share of a category's tasks with the same sentence frame
 MAX_FROM_START = 3  # maximum number of tasks per category that can be answered from the start view
 
-# Weights of the traits in the cost of selecting a further draft with the same trait.
+# Weights of the traits in the cost of selecting another draft with the same trait.
 _WEIGHTS = {"scene": 3.0, "viewpoint": 1.5, "question type": 2.0, "answer": 4.0, "subject": 1.5, "place": 1.0, "start": 0.3}
 
 CanAnswer = Callable[[TaskDraft], bool]
-"""Returns whether ground-truth perception can answer the perception calls of a draft's reference program."""
+"""A function that returns whether ground-truth perception can answer the perception calls of a draft's reference program."""
 
-_Take = Callable[[TaskDraft], bool]
+_AddDraft = Callable[[TaskDraft], bool]
 
 
 @dataclass
@@ -90,7 +90,7 @@ class SharedLimits:
 
 
 class Selection:
-    """Fills the quota of one category from the drafts of all scenes."""
+    """The selection of drafts for one category, from the drafts of all scenes."""
 
     def __init__(self, category: Category, quota: int, shared: SharedLimits, seed: int) -> None:
         self.category, self.quota, self.shared = category, quota, shared
@@ -118,11 +118,11 @@ class Selection:
                 pass
         return self.rows
 
-    def _best(self, pool: list[TaskDraft], take: _Take) -> bool:
-        """Select the draft that improves the balance most, and remove it from the pool with any draft that ``take`` rejected."""
+    def _best(self, pool: list[TaskDraft], add_draft: _AddDraft) -> bool:
+        """Select the draft that improves the balance most. Remove it and the drafts that ``add_draft`` rejected from the pool."""
         while pool:
-            at = min(range(len(pool)), key=lambda n: self._cost(pool[n]))
-            if take(pool.pop(at)):
+            index = min(range(len(pool)), key=lambda n: self._cost(pool[n]))
+            if add_draft(pool.pop(index)):
                 return True
         return False
 
@@ -153,32 +153,32 @@ class Selection:
         row = self._add(draft)
         if row is None:
             return False
-        if self._add(twin, like=row.frame.split("/", 1)[1]) is None:
+        if self._add(twin, frame=row.frame.split("/", 1)[1]) is None:
             self._drop(row)
             return False
         self.used["pairs"][draft.question_type] += 1
         return True
 
-    def _add(self, draft: TaskDraft, like: str | None = None) -> ChosenDraft | None:
+    def _add(self, draft: TaskDraft, frame: str | None = None) -> ChosenDraft | None:
         """Add a draft to the selection and return it.
 
         Return None if its question is already used, it can be answered from the start view, a limit is reached, or no wording is
-        left. ``like`` is the frame of the draft's twin, which it must share.
+        left. ``frame`` is the frame of the draft's twin, which it must share.
         """
         if draft.full_key in self.shared.asked or answerable_from_start(draft):
             return None
         if self.shared.can_answer is not None and not self.shared.can_answer(draft):
             return None
-        stays = draft.place.is_start_view and not draft.calls_move
-        if stays and self.category != "single_call" and self.used["stays"][True] >= self.shared.scaled(MAX_FROM_START):
+        from_start_view = draft.place.is_start_view and not draft.calls_move
+        if from_start_view and self.category != "single_call" and self.used["stays"][True] >= self.shared.scaled(MAX_FROM_START):
             return None
         rng = random.Random(draft.digest(self.seed))
-        worded = self.frames.word(draft, rng, like and f"{draft.question_type}/{like}")
+        worded = self.frames.word(draft, rng, frame and f"{draft.question_type}/{frame}")
         if worded is None or self.frames.used[worded[1]] >= self.max_per_frame:
             return None
-        unpaired, limited = like is None and draft.twin is None, self.slack < _NO_LIMIT
+        unpaired, limited = frame is None and draft.twin is None, self.slack < _NO_LIMIT
         limit = self.shared.scaled(MAX_AT_ONE_POSITION.get(self.category, self.quota))
-        if unpaired and limited and any(self.used["position"][at] >= limit for at in offered_positions(draft, worded[0])):
+        if unpaired and limited and any(self.used["position"][index] >= limit for index in answer_positions(draft, worded[0])):
             return None
         self.frames.take(*worded)
         self.shared.asked.add(draft.full_key)
@@ -186,7 +186,7 @@ class Selection:
         row = ChosenDraft(draft, *worded, variants=[o[0] for o in others if o is not None])
         self.rows.append(row)
         self._count_use(row, 1, paired=not unpaired)
-        self.used["stays"][True] += stays
+        self.used["stays"][True] += from_start_view
         return row
 
     def _count_use(self, row: ChosenDraft, step: int, *, paired: bool) -> None:
@@ -197,8 +197,8 @@ class Selection:
             return
         self.used["unpaired"][row.draft.answer_key] += step
         self.used["polar"][row.draft.question_type, row.draft.answer_key] += step
-        for at in offered_positions(row.draft, row.text):
-            self.used["position"][at] += step
+        for index in answer_positions(row.draft, row.text):
+            self.used["position"][index] += step
 
     def _drop(self, row: ChosenDraft) -> None:
         self.rows.remove(row)
@@ -208,16 +208,16 @@ class Selection:
         self.frames.used[row.frame] -= 1
 
 
-def offered_positions(draft: TaskDraft, text: str) -> list[str]:
+def answer_positions(draft: TaskDraft, text: str) -> list[str]:
     """Return the position of the correct answer among the options in a wording, and "last" if it is the last option.
 
     The list is empty if the wording does not contain the answer.
     """
-    names, value = offered(draft.expected, text), getattr(draft.expected, "value", None)
+    names, value = offered_answers(draft.expected, text), getattr(draft.expected, "value", None)
     if isinstance(value, tuple) and len(value) == 1:
         (value,) = value  # a set of names with one element
-    at = names.index(value) if value in names else -1
-    return [] if at < 0 else [str(at), *(["last"] if at == len(names) - 1 else [])]
+    index = names.index(value) if value in names else -1
+    return [] if index < 0 else [str(index), *(["last"] if index == len(names) - 1 else [])]
 
 
 def answerable_from_start(draft: TaskDraft) -> bool:

@@ -98,15 +98,15 @@ class TaskPlace:
     @property
     def needs(self) -> tuple[Need, ...]:
         """The actions that an agent must take to see the view: change the preset, move, zoom, sweep."""
-        found: list[Need] = []
+        needs: list[Need] = []
         for call in self.calls:
             if call.tool in ("go_to_preset", "go_home"):
-                found.append("preset")
+                needs.append("preset")
             elif call.arguments.get("pan_deg") or call.arguments.get("tilt_deg"):
-                found.append("move")
+                needs.append("move")
             if "zoom_factor" in call.arguments:
-                found.append("zoom")
-        return tuple(dict.fromkeys([*found, *(["sweep"] if self.swept else [])]))  # type: ignore[list-item]
+                needs.append("zoom")
+        return tuple(dict.fromkeys([*needs, *(["sweep"] if self.swept else [])]))  # type: ignore[list-item]
 
     def move_phrases(self, rng: random.Random) -> tuple[str, str]:
         """Return the moves in words, without a capital letter or a full stop.
@@ -154,14 +154,14 @@ def preset_at(preset: ScenePreset) -> CameraPosition:
 
 def move(at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
     """Return the camera position after an adjustment; None if a limit of the camera would clamp it."""
-    pose, cut = TASK_CAMERA.limits.clamp(requested_pose(at.pose, AdjustPtz.model_validate(call.arguments), TASK_CAMERA.limits))
-    return None if cut else CameraPosition(at.viewpoint, pose)
+    pose, clamped = TASK_CAMERA.limits.clamp(requested_pose(at.pose, AdjustPtz.model_validate(call.arguments), TASK_CAMERA.limits))
+    return None if clamped else CameraPosition(at.viewpoint, pose)
 
 
 def adjust(pan: float = 0.0, tilt: float = 0.0, factor: float | None = None) -> ProgramCall:
     """Return a call that turns and zooms. Arguments of zero are omitted."""
-    given = {"pan_deg": float(pan), "tilt_deg": float(tilt), "zoom_factor": factor}
-    return ProgramCall(tool="adjust_ptz", arguments={k: v for k, v in given.items() if v})
+    values = {"pan_deg": float(pan), "tilt_deg": float(tilt), "zoom_factor": factor}
+    return ProgramCall(tool="adjust_ptz", arguments={k: v for k, v in values.items() if v})
 
 
 def go(preset: str) -> ProgramCall:
@@ -183,7 +183,7 @@ def comparison_start(one: TaskPlace, two: TaskPlace) -> TaskPlace:
 
 
 class ScenePlaces:
-    """Samples places in a scene with a seeded random generator."""
+    """A sampler of places in a scene, with a seeded random generator."""
 
     def __init__(self, scene: Scene, rng: random.Random) -> None:
         self.scene, self.presets = scene, {p.name: p for p in scene.file.presets}
@@ -216,14 +216,14 @@ class ScenePlaces:
             name = names[attempt % len(names)]
             call = self._adjustment()
             at = preset_at(self.presets[name])
-            there = move(at, call)
-            if there is None:
+            destination = move(at, call)
+            if destination is None:
                 continue
             if self._rng.random() < 0.45:
                 start = self._rng.choice([p for p in names if p != name] or [name])
-                yield TaskPlace(self.scene, start, (go(name), call), there)
+                yield TaskPlace(self.scene, start, (go(name), call), destination)
             else:
-                yield TaskPlace(self.scene, name, (call,), there)
+                yield TaskPlace(self.scene, name, (call,), destination)
 
     def _adjustment(self) -> ProgramCall:
         rng = self._rng
@@ -247,10 +247,10 @@ class ScenePlaces:
         Returns:
             The place; None if the viewpoint has no preset, or if a limit of the camera prevents the move.
         """
-        near = [p for p in self.presets.values() if p.viewpoint == viewpoint]
-        if not near:
+        nearby_presets = [p for p in self.presets.values() if p.viewpoint == viewpoint]
+        if not nearby_presets:
             return None
-        preset = min(near, key=lambda p: abs((pan_deg - p.pan_deg + 180) % 360 - 180))
+        preset = min(nearby_presets, key=lambda p: abs((pan_deg - p.pan_deg + 180) % 360 - 180))
         at = preset_at(preset)
         pan, tilt = (pan_deg - at.pose.pan_deg + 180) % 360 - 180, tilt_deg - at.pose.tilt_deg
         factor = next((f for f in (1.5, 2.0, 2.5, 3.0, 4.0) if at.pose.zoom * f >= zoom), None)
@@ -259,10 +259,10 @@ class ScenePlaces:
         # A turn by one or two degrees would sound unnatural, because the object is in view without it.
         pan, tilt = (round(angle) if abs(angle) > _MIN_TURN_DEG else 0 for angle in (pan, tilt))
         call = adjust(pan, tilt, factor)
-        there = move(at, call)
-        if there is None:
+        destination = move(at, call)
+        if destination is None:
             return None
         if self._rng.random() < 0.4:
             start = self._rng.choice([p for p in self.presets if p != preset.name] or [preset.name])
-            return TaskPlace(self.scene, start, (go(preset.name), call), there)
-        return TaskPlace(self.scene, preset.name, (call,), there)
+            return TaskPlace(self.scene, start, (go(preset.name), call), destination)
+        return TaskPlace(self.scene, preset.name, (call,), destination)

@@ -38,7 +38,7 @@ _UNASKED_NOUNS = frozenset({
 @lru_cache(maxsize=512)
 def countable(truth: RobustTruth) -> tuple[tuple[Kind, int], ...]:
     """Return the kinds in a view with an unambiguous count, with that count (at least one)."""
-    found = []
+    counts = []
     for kind in kinds_in(s.instance for s in truth.clear):
         if kind.category in UNCOUNTED:
             continue
@@ -48,8 +48,8 @@ def countable(truth: RobustTruth) -> tuple[tuple[Kind, int], ...]:
             special = kind.colour is not None or kind.attribute is not None
             redundant = special and len(things) == len(truth.all_of(Kind(kind.category)) or ())
             if not redundant:  # if all cars are red, "red cars" asks the same as "cars"
-                found.append((kind, len(things)))
-    return tuple(found)
+                counts.append((kind, len(things)))
+    return tuple(counts)
 
 
 def plain_counts(truth: RobustTruth) -> list[tuple[Kind, int]]:
@@ -67,7 +67,7 @@ def absent_kinds(truth: RobustTruth, nouns: frozenset[str]) -> tuple[Kind, ...]:
     categories = sorted({s.instance.category for s in truth.clear if own_colour(s.instance) is not None} - UNCOUNTED)
     colours = {(t.category, own_colour(t)) for t in truth.scene.things if t.category in categories}
     kinds += [Kind(category, colour) for category, colour in sorted(colours, key=str) if colour in _ABSENT_COLOURS]
-    return tuple(kind for kind in kinds if kind.category not in UNCOUNTED and truth.lacks(kind))
+    return tuple(kind for kind in kinds if kind.category not in UNCOUNTED and truth.certainly_lacks(kind))
 
 
 def disjoint(truth: RobustTruth, kinds: Sequence[Kind]) -> bool:

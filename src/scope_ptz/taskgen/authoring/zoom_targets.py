@@ -61,10 +61,10 @@ def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace
     limits = TASK_CAMERA.limits
     if extent is None:
         return None
-    found = close_pose(extent.hull, (limits.min_zoom, limits.max_zoom))
-    if found is None or limits.clamp(found[0])[1] or found[0].zoom < place.at.pose.zoom * 1.1:
+    close_up = close_pose(extent.hull, (limits.min_zoom, limits.max_zoom))
+    if close_up is None or limits.clamp(close_up[0])[1] or close_up[0].zoom < place.at.pose.zoom * 1.1:
         return None
-    return TaskPlace(place.scene, place.start, place.calls, CameraPosition(place.at.viewpoint, found[0]))
+    return TaskPlace(place.scene, place.start, place.calls, CameraPosition(place.at.viewpoint, close_up[0]))
 
 
 def framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing | None:

@@ -23,9 +23,9 @@ PROGRESS_INTERVAL = 100
 """Number of validated tasks between two progress notes."""
 
 ValidateTasks = Callable[[Sequence[Task], int, Callable[[int, int], None]], ValidationReport]
-"""Validates tasks with a seed, and reports progress to a callback."""
+"""A function that validates tasks with a seed, and reports progress to a callback."""
 MakeGold = Callable[[Sequence[Task], int], list[GoldRun]]
-"""Creates the gold runs of tasks with a seed."""
+"""A function that creates the gold runs of tasks with a seed."""
 
 
 def build_dataset(
@@ -60,7 +60,7 @@ def build_dataset(
     """
     core = build(list(scenes.values()), seed, quotas, notify, can_answer)
     unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda text: notify(f"unseen {text}"), can_answer)
-    short = [shortfall(core), shortfall(unseen, " unseen")]
+    short = [missing_tasks_message(core), missing_tasks_message(unseen, " unseen")]
     for text in filter(None, short):
         notify(text)
     written = write_splits(core.tasks, unseen.tasks, out, seed=seed)
@@ -82,7 +82,7 @@ def build_dataset(
     return not any(short) and all(result.sound for result in reports.values())
 
 
-def shortfall(built: BuiltTasks, split: str = "") -> str:
+def missing_tasks_message(built: BuiltTasks, split: str = "") -> str:
     """Return a message about unmet quotas; empty if all quotas are met. ``split`` qualifies the tasks, such as " unseen"."""
     missing = ", ".join(f"{number} of {name} are missing" for name, number in built.short.items())
     return f"too few{split} tasks: {missing}" if missing else ""

@@ -36,8 +36,10 @@ def viewpoint(task: Task) -> str:
 
     The viewpoint is "several" if there is more than one, and "any" if there is none.
     """
-    aims = [view.aim.viewpoint for view in task.evidence] or ([task.behaviour.final.viewpoint] if task.behaviour.final else [])
-    names = sorted(set(aims))
+    viewpoints = [view.aim.viewpoint for view in task.evidence] or (
+        [task.behaviour.final.viewpoint] if task.behaviour.final else []
+    )
+    names = sorted(set(viewpoints))
     return f"{task.scene} {names[0]}" if len(names) == 1 else f"{task.scene} several" if names else f"{task.scene} any"
 
 

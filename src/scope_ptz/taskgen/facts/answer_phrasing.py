@@ -1,4 +1,4 @@
-"""Wordings of correct and wrong answers for every type of expected answer. Validation uses them as the answers of its runs."""
+"""Wordings of correct and wrong answers for every type of expected answer. Validation uses them as answers of runs."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ def correct_answers(expected: AnyExpected) -> tuple[str, ...]:
             return _sets(expected.value)
         case Ordering():
             listed = ", ".join(expected.value)
-            then = ", then ".join(expected.value)
+            in_sequence = ", then ".join(expected.value)
             numbered = "\n".join(f"{n}. {name}" for n, name in enumerate(expected.value, 1))
-            return listed, f"The order is {listed}.", then.capitalize() + ".", " > ".join(expected.value), numbered
+            return listed, f"The order is {listed}.", in_sequence.capitalize() + ".", " > ".join(expected.value), numbered
         case Relation():
             return _relations(expected, expected.value)
         case Description():
@@ -64,17 +64,17 @@ def correct_answers(expected: AnyExpected) -> tuple[str, ...]:
             return "Done.", "Ready.", "The camera is there.", "OK.", "I have done that."
 
 
-def offered(expected: AnyExpected, question: str) -> tuple[str, ...]:
+def offered_answers(expected: AnyExpected, question: str) -> tuple[str, ...]:
     """Return the answers that a question offers ("on the left or on the right?"), in its order; empty if it offers none."""
     if not isinstance(expected, Choice | NameSet | Ordering):
         return ()
-    found = list[tuple[int, int, str]]()
+    mentions = list[tuple[int, int, str]]()
     for name, others in expected.options.items():
         for word in (name, *others):
-            found += [(m.start(), m.end(), name) for m in re.finditer(rf"\b{re.escape(word)}\b", question, re.IGNORECASE)]
-    found.sort(key=lambda at: (at[0], -at[1]))
+            mentions += [(m.start(), m.end(), name) for m in re.finditer(rf"\b{re.escape(word)}\b", question, re.IGNORECASE)]
+    mentions.sort(key=lambda mention: (mention[0], -mention[1]))
     names = list[str]()
-    for (_, end, one), (start, _, other) in pairwise(found):
+    for (_, end, one), (start, _, other) in pairwise(mentions):
         if one != other and 0 < start - end <= _MAX_OFFER_GAP and not set(question[end:start]) & set(".?!:;"):
             names += [other] if names else [one, other]
         elif len(names) > 1 and start >= end:
@@ -136,7 +136,7 @@ def plural(words: str) -> str:
     return words + ("es" if words.endswith(("s", "x", "ch", "sh")) else "" if words.endswith("people") else "s")
 
 
-def in_words(number: int) -> str:
+def number_in_words(number: int) -> str:
     """Return a whole number in words if it is from 0 to 99, otherwise in digits."""
     if not 0 <= number < 100:
         return str(number)
@@ -145,7 +145,7 @@ def in_words(number: int) -> str:
 
 def _numbers(value: float, unit: Sequence[str]) -> tuple[str, ...]:
     number = f"{value:g}"
-    word = in_words(int(value)) if value == int(value) else number
+    word = number_in_words(int(value)) if value == int(value) else number
     noun = unit[0] if unit else "thing"
     things = noun if value == 1 else plural(noun)
     be = "is" if value == 1 else "are"
@@ -189,10 +189,10 @@ def _relations(expected: Relation, value: str) -> tuple[str, ...]:
     words = expected.forward if value == "forward" else expected.backward
     opposite = expected.backward if value == "forward" else expected.forward
     wordings = []
-    for way, this, that in ((words, one, two), (opposite, two, one)):
-        for word in way[:2]:
+    for options, first, second in ((words, one, two), (opposite, two, one)):
+        for word in options[:2]:
             link = "of" if word in _DIRECTIONS else "than"
-            wordings += [f"The {this} is {word} {link} the {that}.", f"{this}: {word} {link} {that}"]
+            wordings += [f"The {first} is {word} {link} the {second}.", f"{first}: {word} {link} {second}"]
     wordings.append(f"I would say that {wordings[0][0].lower()}{wordings[0][1:]}")
     if not any(word in _DIRECTIONS for word in (*words, *opposite)):
         wordings += [f"The {one if value == 'forward' else two}."]
@@ -220,7 +220,9 @@ def _other_set(expected: NameSet, rng: random.Random) -> tuple[str, ...]:
 
 def _misread(text: str, rng: random.Random) -> str:
     """Return a text with one letter or digit replaced by a different one. "0" and "O" do not replace each other."""
-    positions = [at for at, letter in enumerate(text) if letter.isalnum()]
-    at = rng.choice(positions)
-    others = [letter for letter in _MISREADINGS if letter.lower() != text[at].lower() and {letter, text[at].upper()} != {"0", "O"}]
-    return text[:at] + rng.choice(others) + text[at + 1 :]
+    positions = [index for index, letter in enumerate(text) if letter.isalnum()]
+    index = rng.choice(positions)
+    others = [
+        letter for letter in _MISREADINGS if letter.lower() != text[index].lower() and {letter, text[index].upper()} != {"0", "O"}
+    ]
+    return text[:index] + rng.choice(others) + text[index + 1 :]

@@ -1,7 +1,7 @@
 """Kinds of objects that a question can be about, and rules for objects that people might count as another kind.
 
-One person's litter bin is a recycling bin to another. If people could disagree about an object in a view, no question is asked
-about its kind, so that every expected number is unambiguous.
+For example, people disagree whether a litter bin is a recycling bin. If people could disagree about an object in a view, no
+question is asked about its kind, so that every expected number is unambiguous.
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ class Kind:
             _OTHER_NAMES.get(self.category, frozenset()) & set(thing.name.lower().split())
         )
 
-    def may_ride_on(self, thing: SceneThing) -> bool:
+    def may_be_driver_of(self, thing: SceneThing) -> bool:
         """Return whether a vehicle may show a person of this kind who is not an object in the ground truth."""
         return self.category in GROUPS["person"] and thing.category in _WITH_VISIBLE_DRIVER
 
@@ -173,8 +173,8 @@ class Kind:
             return True
         if thing.category not in GROUPS.get(self.category, {self.category}):
             words, name = set(self.category.split()), set(f"{thing.category} {thing.name}".lower().split())
-            alike = any({self.category, thing.category} <= group for group in _CONFUSED_CATEGORIES)
-            return words <= name or alike or thing.category.split()[-1] == self.category
+            confusable = any({self.category, thing.category} <= group for group in _CONFUSED_CATEGORIES)
+            return words <= name or confusable or thing.category.split()[-1] == self.category
         if self.attribute is not None:
             return self.attribute[0] not in thing.attributes
         colour = own_colour(thing) or ""
@@ -187,7 +187,7 @@ def own_colour(thing: SceneThing) -> str | None:
     if not isinstance(colour, str) or thing.category in GROUPS["person"] or not has_colour(thing):
         return None
     words = thing.name.lower().split()
-    contents = next((words[at + 1 :] for at, word in enumerate(words) if word in _PREPOSITIONS), [])
+    contents = next((words[index + 1 :] for index, word in enumerate(words) if word in _PREPOSITIONS), [])
     return None if set(colour.split()) & set(contents) else colour
 
 
@@ -203,9 +203,9 @@ def colour_shows(thing: SceneThing) -> bool:
     """
     facts = thing.attributes
     striped = facts.get("pattern", "plain") != "plain"
-    open_door = "door" in thing.category and facts.get("state", "closed") != "closed"
+    is_open_door = "door" in thing.category and facts.get("state", "closed") != "closed"
     implied = not _COLOUR_IMPLYING.isdisjoint(thing.name.lower().split())
-    return thing.category not in SIGNS and not striped and not open_door and not implied
+    return thing.category not in SIGNS and not striped and not is_open_door and not implied
 
 
 _COLOUR_IMPLYING = frozenset({"concrete", "aluminium", "steel", "galvanised", "timber", "wooden", "brick"})
@@ -243,8 +243,8 @@ COUNTED_STATES: tuple[tuple[str, str, str], ...] = (
 def kinds_in(things: Iterable[SceneThing]) -> list[Kind]:
     """Return the kinds of the given objects in a fixed order: categories with and without colour, groups, and states."""
     present = list(things)
-    found = {(t.category, c) for t in present for c in (None, own_colour(t)) if c is None or " and " not in c}
-    plain = [Kind(category, colour) for category, colour in sorted(found, key=str)]
+    coloured = {(t.category, c) for t in present for c in (None, own_colour(t)) if c is None or " and " not in c}
+    plain = [Kind(category, colour) for category, colour in sorted(coloured, key=str)]
     groups = [Kind(group) for group in GROUPS if Kind(group) not in plain]
     grouped = [kind for kind in groups if any(kind.fits(thing) for thing in present)]
     states = [Kind(category, None, (key, value)) for category, key, value in COUNTED_STATES]

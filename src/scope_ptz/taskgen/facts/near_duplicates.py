@@ -20,8 +20,8 @@ MIN_SIMILARITY = 0.75
 
 def shingles(text: str) -> frozenset[str]:
     """Return all substrings of five characters of a text, in lower case and with single spaces."""
-    plain = f" {' '.join(re.findall(r'[a-z0-9]+', text.lower()))} "
-    return frozenset(plain[at : at + SHINGLE_CHARS] for at in range(max(1, len(plain) - SHINGLE_CHARS + 1)))
+    normalised = f" {' '.join(re.findall(r'[a-z0-9]+', text.lower()))} "
+    return frozenset(normalised[index : index + SHINGLE_CHARS] for index in range(max(1, len(normalised) - SHINGLE_CHARS + 1)))
 
 
 def similarity(one: frozenset[str], two: frozenset[str]) -> float:
@@ -77,7 +77,7 @@ class KnownTasks:
         key = question_key(task)
         if key is not None and key in self._questions:
             return NearDuplicate(self._questions[key], 1.0)
-        own = shingles(task.instruction)
-        found = [NearDuplicate(name, similarity(own, other)) for name, other in self._texts.get(task.world, ())]
-        best = max(found, key=lambda near: near.similarity, default=None)
+        new = shingles(task.instruction)
+        candidates = [NearDuplicate(name, similarity(new, other)) for name, other in self._texts.get(task.world, ())]
+        best = max(candidates, key=lambda candidate: candidate.similarity, default=None)
         return best if best is not None and best.similarity >= MIN_SIMILARITY else None

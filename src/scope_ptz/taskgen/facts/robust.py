@@ -1,7 +1,7 @@
 """Robust ground truth: facts about a view that remain true if the pose, time and visibility thresholds change slightly.
 
 The ground truth of a view is read at its pose and at eight nearby poses and later times. A fact is reported only if it is true in
-all of them, and with visibility thresholds that are 30% lower and 30% higher. This module neither reads nor writes language.
+all of them, and with visibility thresholds that are 30% lower and 30% higher. This module does not process language.
 """
 
 from __future__ import annotations
@@ -92,8 +92,10 @@ class RobustTruth:
     def samples(self) -> tuple[ViewTruth, ...]:
         """The ground truth at the pose, then at eight nearby poses, each at another time."""
         if self.pose is None:
-            moments = LATER_S[1::3]
-            return self.first, *(self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + s) for s in moments)
+            later_times_s = LATER_S[1::3]
+            return self.first, *(
+                self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + s) for s in later_times_s
+            )
         corners = product((-1, 1), repeat=3)
         nearby = [
             Pose(self.pose.pan_deg + a * JITTER_DEG, self.pose.tilt_deg + b * JITTER_DEG, self.pose.zoom * (1 + c * JITTER_ZOOM))
@@ -107,20 +109,22 @@ class RobustTruth:
     @cached_property
     def passing_actors(self) -> frozenset[int]:
         """Numbers of the actors that are in view at some time."""
-        found = _all_appearances(self.scene, self.viewpoint)
-        return frozenset(number for number, seen in found.items() if any(shows(a, self.projection) for a in seen))
+        by_actor = _all_appearances(self.scene, self.viewpoint)
+        return frozenset(
+            number for number, seen_appearances in by_actor.items() if any(shows(a, self.projection) for a in seen_appearances)
+        )
 
     @cached_property
     def _visible(self) -> dict[int, set[bool]]:
-        """For each object in any sample: the set of results of its visibility over all samples and thresholds."""
-        found: dict[int, set[bool]] = {}
+        """The visibility results of each object over all samples and thresholds, by the object's number."""
+        results: dict[int, set[bool]] = {}
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings}
         for truth in self.samples:
             by_number = {s.instance.number: s for s in truth.sightings}
             for number in numbers:
                 sighting = by_number.get(number)
-                found.setdefault(number, set()).update(sighting is not None and visible(sighting, scale) for scale in THRESHOLDS)
-        return found
+                results.setdefault(number, set()).update(sighting is not None and visible(sighting, scale) for scale in THRESHOLDS)
+        return results
 
     def visibility(self, number: int) -> bool | None:
         """Return True if an object is certainly visible, False if it is certainly not, and None if that is uncertain."""
@@ -143,8 +147,8 @@ class RobustTruth:
             return False  # a market stall with a rolled-up canopy looks like a bare frame
         if thing.category not in RECOGNISED_BY_TEXT:
             return True
-        eye = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)
-        return any(_faces(text, eye) for text in lettering(self.scene, thing.id)) or not lettering(self.scene, thing.id)
+        camera_position = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)
+        return any(_faces(text, camera_position) for text in lettering(self.scene, thing.id)) or not lettering(self.scene, thing.id)
 
     def unreliable(self, category: str) -> bool:
         """Return whether objects of a category cannot be recognised, or are not all in the ground truth of this scene."""
@@ -154,14 +158,14 @@ class RobustTruth:
         """Return all visible objects of a kind; None if their number is uncertain or people could disagree about it."""
         if self.unreliable(kind.category):
             return None
-        found = []
+        members = []
         for sighting in self.samples[0].sightings:
             counts = self._counts_as(kind, sighting)
             if counts is None:
                 return None
             if counts:
-                found.append(sighting)
-        return None if self._may_appear(kind) else tuple(found)
+                members.append(sighting)
+        return None if self._may_appear(kind) else tuple(members)
 
     def _counts_as(self, kind: Kind, sighting: Sighting) -> bool | None:
         """Return whether an object certainly counts as a visible one of a kind; None if people could disagree about it."""
@@ -170,7 +174,7 @@ class RobustTruth:
         if not kind.fits(thing):
             return None if visible is not False and kind.ambiguous_with(thing) else False
         if visible is False:
-            return None if thing.number in self.faint else False
+            return None if thing.number in self.noticeable else False
         behind_glass = thing.attributes.get("behind") == "glass"  # people disagree whether objects behind a window count
         if visible is None or behind_glass or not self.recognisable(thing) or self.split_by_sweep(sighting):
             return None
@@ -178,7 +182,7 @@ class RobustTruth:
 
     def _may_appear(self, kind: Kind) -> bool:
         """Return whether objects of a kind that do not show in the view itself may show around it or later."""
-        if any(kind.fits(a) or kind.may_ride_on(a) for a in self.scene.file.actors if a.number in self.passing_actors):
+        if any(kind.fits(a) or kind.may_be_driver_of(a) for a in self.scene.file.actors if a.number in self.passing_actors):
             return True
         shown = {s.instance.number for s in self.samples[0].sightings}
         others = (s for truth in self.samples[1:] for s in truth.sightings if s.instance.number not in shown)
@@ -188,7 +192,7 @@ class RobustTruth:
         """Return whether an object extends over both ends of a sweep, so that it has no single position."""
         return self.pose is None and sighting.box[2] - sighting.box[0] > 0.5
 
-    def lacks(self, kind: Kind) -> bool:
+    def certainly_lacks(self, kind: Kind) -> bool:
         """Return whether the view certainly shows no object of a kind, nor a similar one, at any time."""
         if self.unreliable(kind.category) or any(
             kind.fits(a) or kind.ambiguous_with(a) for a in self.scene.file.actors if a.number in self.passing_actors
@@ -197,7 +201,7 @@ class RobustTruth:
         return not any(kind.fits(thing) or kind.ambiguous_with(thing) for thing in self.traces)
 
     @cached_property
-    def faint(self) -> frozenset[int]:
+    def noticeable(self) -> frozenset[int]:
         """Numbers of the objects that are large enough in some sample for an attentive person to count them."""
         return frozenset(s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > FAINT_PX)
 
@@ -208,14 +212,14 @@ class RobustTruth:
         return tuple(self.scene.by_number[number] for number in sorted(numbers))
 
     @cached_property
-    def _ever_shown(self) -> tuple[SceneThing, ...]:
+    def _shown_in_any_sample(self) -> tuple[SceneThing, ...]:
         """Objects with more than ``TRACE_PX`` visible pixels in any sample, and the actors that pass through the view."""
         passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing_actors)
         return tuple(thing for thing in self.traces if thing not in passing) + passing
 
     def others(self, sighting: Sighting) -> tuple[SceneThing, ...]:
         """Return all other objects that are in the view at any time."""
-        return tuple(thing for thing in self._ever_shown if thing.number != sighting.instance.number)
+        return tuple(thing for thing in self._shown_in_any_sample if thing.number != sighting.instance.number)
 
     def centres(self, sighting: Sighting) -> list[tuple[float, float]]:
         """Return the centre of an object in the frame (x and y from 0 to 1) for each sample that shows it."""
@@ -240,17 +244,17 @@ class RobustTruth:
             0 for left or upper, 1 for right or lower; None if the object is too close to the middle line.
         """
         low, high = sighting.box[axis], sighting.box[axis + 2]
-        middles = [spot[axis] for spot in self.centres(sighting)]
+        middles = [centre[axis] for centre in self.centres(sighting)]
         if max(middles) < 0.5 - margin and high < 0.5 + margin / 2:
             return 0
         return 1 if min(middles) > 0.5 + margin and low > 0.5 - margin / 2 else None
 
     def in_order(self, things: Sequence[Sighting], axis: int, margin: float = 0.05) -> tuple[Sighting, ...] | None:
         """Return objects from left to right (axis 0) or top to bottom (axis 1); None if two of them are too close together."""
-        spots = {s.instance.number: self.centres(s) for s in things}
-        order = sorted(things, key=lambda s: spots[s.instance.number][0][axis])
+        centres = {s.instance.number: self.centres(s) for s in things}
+        order = sorted(things, key=lambda s: centres[s.instance.number][0][axis])
         for one, two in pairwise(order):
-            pairs = zip(spots[one.instance.number], spots[two.instance.number], strict=False)
+            pairs = zip(centres[one.instance.number], centres[two.instance.number], strict=False)
             if any(b[axis] - a[axis] < margin for a, b in pairs):
                 return None
         return tuple(order)
@@ -258,11 +262,11 @@ class RobustTruth:
     @cached_property
     def legible(self) -> tuple[TextSighting, ...]:
         """Texts that are certainly legible, sorted from top to bottom and left to right."""
-        sure = [{t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples]
-        ids = frozenset.intersection(*(frozenset(names) for names in sure))
+        legible_ids = [{t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples]
+        ids = frozenset.intersection(*(frozenset(names) for names in legible_ids))
         for later_s in SOON_S if ids and self.passing_actors else ():
-            soon = self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
-            ids &= {text.text.id for text in soon.legible}
+            later_truth = self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
+            ids &= {text.text.id for text in later_truth.legible}
         return tuple(sorted((t for t in self.samples[0].texts if t.text.id in ids), key=lambda t: (round(t.box[1], 2), t.box[0])))
 
     def texts_on(self, thing: SceneThing) -> tuple[TextSighting, ...] | None:
@@ -298,28 +302,30 @@ class RobustTruth:
             x0, x1, y0, y1 = (v + (m - v) * 0.15 for v, m in ((x0, middle_x), (x1, middle_x), (y0, middle_y), (y1, middle_y)))
             x0, x1, y0, y1 = (min(max(v, 0.015), 0.985) for v in (x0, x1, y0, y1))
         size = (points.max(axis=0) - points.min(axis=0)) * (self.projection.width, self.projection.height)
-        cap = None if cap_deg is None else round(cap_deg * 0.97, 4)
-        return Item(instance=name, value=value, box_deg=deg, min_px=round(0.7 * float(size.max()), 1), cap_height_deg=cap)
+        cap_height_deg = None if cap_deg is None else round(cap_deg * 0.97, 4)
+        return Item(
+            instance=name, value=value, box_deg=deg, min_px=round(0.7 * float(size.max()), 1), cap_height_deg=cap_height_deg
+        )
 
 
 @lru_cache(maxsize=16)
 def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance, ...]]:
     """Return the positions of each actor by its number, every 0.5 s during the first two minutes."""
-    origin, found = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
+    origin, by_actor = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
     longest = max((actor.period_s for actor in scene.file.actors), default=0.0)
-    for moment in np.arange(0.0, min(longest, 120.0), 0.5):
-        for appearance in appearances(scene, origin, float(moment)):
-            found.setdefault(appearance.actor.number, []).append(appearance)
-    return {number: tuple(seen) for number, seen in found.items()}
+    for time_s in np.arange(0.0, min(longest, 120.0), 0.5):
+        for appearance in appearances(scene, origin, float(time_s)):
+            by_actor.setdefault(appearance.actor.number, []).append(appearance)
+    return {number: tuple(seen_appearances) for number, seen_appearances in by_actor.items()}
 
 
 @lru_cache(maxsize=4096)
 def with_parts(scene: Scene, whole: str) -> frozenset[str]:
     """Return the ids of an object, its parts, and their parts."""
-    found = {whole}
-    while grown := {part.id for part in scene.file.instances if part.parent in found} - found:
-        found |= grown
-    return frozenset(found)
+    ids = {whole}
+    while new := {part.id for part in scene.file.instances if part.parent in ids} - ids:
+        ids |= new
+    return frozenset(ids)
 
 
 @lru_cache(maxsize=4096)
@@ -331,9 +337,9 @@ def lettering(scene: Scene, whole: str) -> tuple[SceneText, ...]:
 
 def _faces(text: SceneText, point: NDArray[np.float64]) -> bool:
     """Return whether the front of a text faces a point and is not seen edge-on."""
-    ahead = np.cross(text.right, text.up)
-    towards = point - np.array(text.centre_m)
-    return float(ahead @ towards) > _MIN_FACING_COSINE * float(np.linalg.norm(towards))
+    normal = np.cross(text.right, text.up)
+    direction = point - np.array(text.centre_m)
+    return float(normal @ direction) > _MIN_FACING_COSINE * float(np.linalg.norm(direction))
 
 
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:

@@ -30,7 +30,7 @@ class _Solution:
 
     Attributes:
         expected: The correct answer.
-        evidence: The views from which it follows.
+        evidence: The views from which the answer follows.
         program: The reference program.
         size: Number of objects to tell apart.
         tags: Tags of the task.
@@ -58,9 +58,9 @@ def task_of(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
     if draft.program not in ALLOWED[draft.category]:
         raise DraftRejectedError(f"'{draft.program}' makes no task of the category {draft.category}")
     places = places_of(draft, scene)
-    known = {thing.category for thing in scene.things} | set(scene.file.absent)
+    categories = {thing.category for thing in scene.things} | set(scene.file.absent)
     for kind in _kinds(draft):
-        if kind.category not in known:
+        if kind.category not in categories:
             raise DraftRejectedError(f"the inventory has no '{kind.category}'")
         if not names_any(draft.instruction, about(kind)):
             raise DraftRejectedError(f"the instruction does not name the {kind.category}")
@@ -124,7 +124,7 @@ def _counted(place: TaskPlace, kind: Kind) -> tuple[Number | NoneThere, Evidence
     if things is None:
         raise DraftRejectedError(f"the number of {many_of(kind)} in that view is uncertain")
     if not things:
-        if not place.truth.lacks(kind):
+        if not place.truth.certainly_lacks(kind):
             raise DraftRejectedError(f"it is uncertain whether that view shows a {noun_of(kind)}")
         none = NoneThere(subject=unit_of(kind))
         return none, evidence_view(place, none, about(kind), whole=True), 0
@@ -143,17 +143,17 @@ def _only_object(place: TaskPlace, kind: Kind) -> Sighting:
 
 def _count(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     place, kind = _single(places), _one(draft)
-    expected, seen, number = _counted(place, kind)
+    expected, evidence, number = _counted(place, kind)
     tag = "sort:none" if not number else "sort:count"
-    return _Solution(expected, (seen,), (*place.calls, count_call(many_of(kind), place)), number, (tag,))
+    return _Solution(expected, (evidence,), (*place.calls, count_call(many_of(kind), place)), number, (tag,))
 
 
 def _exists(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     place, kind = _single(places), _one(draft)
-    expected, seen, number = _counted(place, kind)
-    there = YesNo(value=True, affirms=unit_of(kind)) if number else expected
-    seen = seen.model_copy(update={"shows": there})
-    return _Solution(there, (seen,), (*place.calls, count_call(many_of(kind), place)), 1, ("sort:exists",))
+    expected, evidence, number = _counted(place, kind)
+    answer = YesNo(value=True, affirms=unit_of(kind)) if number else expected
+    evidence = evidence.model_copy(update={"shows": answer})
+    return _Solution(answer, (evidence,), (*place.calls, count_call(many_of(kind), place)), 1, ("sort:exists",))
 
 
 def _colour(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
@@ -165,9 +165,9 @@ def _colour(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     if colour in draft.instruction.lower():
         raise DraftRejectedError("the instruction contains its answer")
     choice = Choice(value=colour, options=colour_options())
-    seen = evidence_view(place, choice, about(kind), [place.truth.item(thing, colour)], whole=False)
+    evidence = evidence_view(place, choice, about(kind), [place.truth.item(thing, colour)], whole=False)
     question = ask_call(f"what colour is the {noun_of(kind)}?", place)
-    return _Solution(choice, (seen,), (*place.calls, question), 1, ("attribute", "sort:colour"))
+    return _Solution(choice, (evidence,), (*place.calls, question), 1, ("attribute", "sort:colour"))
 
 
 def _text(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
@@ -178,9 +178,9 @@ def _text(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
         raise DraftRejectedError(f"the text on the {noun_of(kind)} is not certainly legible in that view")
     words = " / ".join(dict.fromkeys(t.text.text.strip() for t in texts))
     text = Text(accepted=(words,), ocr=True)
-    seen = evidence_view(place, text, about(kind), [place.truth.text_item(t) for t in texts], whole=False)
+    evidence = evidence_view(place, text, about(kind), [place.truth.text_item(t) for t in texts], whole=False)
     question = ask_call(f"what does the {noun_of(kind)} say?", place)
-    return _Solution(text, (seen,), (*place.calls, question), len(texts), ("sort:text",))
+    return _Solution(text, (evidence,), (*place.calls, question), len(texts), ("sort:text",))
 
 
 def _side(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
@@ -194,9 +194,9 @@ def _side(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
         raise DraftRejectedError(f"it is uncertain in which half the {noun_of(kind)} is")
     further = {"upper": ("top", "above"), "lower": ("bottom", "below")}
     choice = Choice(value=names[side], options={name: further.get(name, ()) for name in names})
-    seen = evidence_view(place, choice, about(kind), [place.truth.item(thing, names[side])], whole=False)
+    evidence = evidence_view(place, choice, about(kind), [place.truth.item(thing, names[side])], whole=False)
     question = ask_call(f"is the {noun_of(kind)} in the {names[0]} or the {names[1]} half of the picture?", place)
-    return _Solution(choice, (seen,), (*place.calls, question), 1, ("frame", "sort:side"))
+    return _Solution(choice, (evidence,), (*place.calls, question), 1, ("frame", "sort:side"))
 
 
 def _most(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
@@ -210,31 +210,31 @@ def _most(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
         raise DraftRejectedError("'most' compares several kinds in one view, or one kind in several views")
     if len({name for _, _, name in pairs}) < len(pairs):
         raise DraftRejectedError("something is compared with itself")
-    found = [_counted(place, kind) for place, kind, _ in pairs]
-    numbers = [number for _, _, number in found]
+    counts = [_counted(place, kind) for place, kind, _ in pairs]
+    numbers = [number for _, _, number in counts]
     names = [name for _, _, name in pairs]
     best = max(numbers)
     if numbers.count(best) > 1:
         raise DraftRejectedError(f"no number is the single largest: {', '.join(map(str, numbers))}")
     options: dict[str, tuple[str, ...]] = dict.fromkeys(names, ())
     choice = Choice(value=names[numbers.index(best)], options=options, picks=("more", "most"))
-    return _Solution(choice, tuple(seen for _, seen, _ in found), _visits(pairs), sum(numbers), ("sort:more",))
+    return _Solution(choice, tuple(evidence for _, evidence, _ in counts), _visits(pairs), sum(numbers), ("sort:more",))
 
 
 def _sum(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     kind = _one(draft)
     if len(places) < 2:
         raise DraftRejectedError("a sum is taken over several views")
-    found = [_counted(place, kind) for place in places]
-    shown = [item.instance for _, seen, _ in found for item in seen.items]
+    counts = [_counted(place, kind) for place in places]
+    shown = [item.instance for _, evidence, _ in counts for item in evidence.items]
     if len(set(shown)) < len(shown):
         raise DraftRejectedError("one thing shows in two of the views: a sum would count it twice")
-    total = sum(number for _, _, number in found)
+    total = sum(number for _, _, number in counts)
     if not 0 < total <= _MAX_COUNT:
         raise DraftRejectedError(f"the sum is {total}")
     number = Number(value=float(total), unit=unit_of(kind))
     visits = _visits([(place, kind, "") for place in places])
-    return _Solution(number, tuple(seen for _, seen, _ in found), visits, total, ("sort:sum",))
+    return _Solution(number, tuple(evidence for _, evidence, _ in counts), visits, total, ("sort:sum",))
 
 
 def _action(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
@@ -248,10 +248,10 @@ def _action(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
 
 def _visits(pairs: Sequence[tuple[TaskPlace, Kind, str]]) -> tuple[ProgramCall, ...]:
     """Return the moves from view to view, with a count call at each view."""
-    program, done = list[ProgramCall](), 0
+    program, call_count = list[ProgramCall](), 0
     for place, kind, _ in pairs:
-        program += [*place.calls[done:], count_call(many_of(kind), place)]
-        done = len(place.calls)
+        program += [*place.calls[call_count:], count_call(many_of(kind), place)]
+        call_count = len(place.calls)
     return tuple(program)
 
 

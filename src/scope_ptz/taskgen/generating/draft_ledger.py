@@ -1,4 +1,4 @@
-"""The record of all drafts on disk, from which generation resumes after an interruption. It also writes a list for review."""
+"""The record of all drafts on disk, from which generation resumes after an interruption, and a list of tasks for review."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.bench.tasks.task_wording import expected_in_words
 from scope_ptz.errors import InputError, OutputError
 
 RECORD, TASKS, REVIEW = "drafts.jsonl", "tasks.jsonl", "review.md"
-Fate = Literal["kept", "dropped", "near-duplicate", "no reply"]
+DraftFate = Literal["kept", "dropped", "near-duplicate", "no reply"]
 
 
 class LedgerEntry(BaseModel):
@@ -33,7 +33,7 @@ class LedgerEntry(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     batch: int
-    fate: Fate
+    fate: DraftFate
     reason: str = ""
     draft: Any = None
     task: Task | None = None
@@ -104,11 +104,11 @@ def _entry(line: str, path: Path, number: int) -> LedgerEntry:
 
 def _review(entries: Sequence[LedgerEntry]) -> list[str]:
     """Return the review list as Markdown. The model's text is in code spans, so that it is not interpreted as markup."""
-    fates = Counter(entry.fate for entry in entries)
+    counts_by_fate = Counter(entry.fate for entry in entries)
     lines = [
         "# Drafted tasks for review",
         "",
-        ", ".join(f"{number} {fate}" for fate, number in fates.most_common()) or "none",
+        ", ".join(f"{number} {fate}" for fate, number in counts_by_fate.most_common()) or "none",
         "",
     ]
     lines += ["Tick the tasks to keep. View each one with `scope bench browse ID --tasks tasks.jsonl --out pictures`.", ""]

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from scope_ptz.bench.tasks.task import ProgramCall
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.task_places import TaskPlace, adjust, go, move, preset_at
-from scope_ptz.taskgen.facts.answer_phrasing import in_words
+from scope_ptz.taskgen.facts.answer_phrasing import number_in_words
 from scope_ptz.taskgen.generating.draft_schema import Draft, Move
 
 _AROUND = re.compile(
@@ -19,7 +19,7 @@ _MAX_CALLS = 6
 
 
 class DraftRejectedError(Exception):
-    """A draft cannot become a task. The message is the reason."""
+    """An error for a draft that cannot become a task. The message is the reason."""
 
 
 def places_of(draft: Draft, scene: Scene) -> list[TaskPlace]:
@@ -31,7 +31,7 @@ def places_of(draft: Draft, scene: Scene) -> list[TaskPlace]:
     presets = {preset.name: preset for preset in scene.file.presets}
     if draft.start not in presets:
         raise DraftRejectedError(f"the scene has no preset '{draft.start}' to start from")
-    at, calls = preset_at(presets[draft.start]), list[ProgramCall]()
+    position, calls = preset_at(presets[draft.start]), list[ProgramCall]()
     places = list[TaskPlace]()
     for view in draft.views:
         for step in view.moves:
@@ -40,15 +40,15 @@ def places_of(draft: Draft, scene: Scene) -> list[TaskPlace]:
             if step.preset is not None:
                 if step.preset not in presets:
                     raise DraftRejectedError(f"the scene has no preset '{step.preset}'")
-                call, at = go(step.preset), preset_at(presets[step.preset])
+                call, position = go(step.preset), preset_at(presets[step.preset])
             else:
                 call = adjust(step.pan_deg, step.tilt_deg, step.zoom_factor)
-                there = move(at, call)
-                if there is None:
+                next_position = move(position, call)
+                if next_position is None:
                     raise DraftRejectedError("a move goes beyond the camera's limits")
-                at = there
+                position = next_position
             calls.append(call)
-        places.append(TaskPlace(scene, draft.start, tuple(calls), at, swept=view.sweep))
+        places.append(TaskPlace(scene, draft.start, tuple(calls), position, swept=view.sweep))
     if len(calls) > _MAX_CALLS:
         raise DraftRejectedError(f"more than {_MAX_CALLS} moves")
     if wrong := next(unstated_moves(draft), None):
@@ -78,4 +78,4 @@ def _states(text: str, amount: float) -> bool:
         return True
     if any(float(number) == amount for number in re.findall(r"\d+(?:\.\d+)?", text)):
         return True
-    return amount == int(amount) and f" {in_words(int(amount))} " in text
+    return amount == int(amount) and f" {number_in_words(int(amount))} " in text

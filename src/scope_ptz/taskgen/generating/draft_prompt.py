@@ -79,31 +79,31 @@ def messages(
 
 def inventory(scene: Scene) -> dict[str, Any]:
     """Return the number of objects of each category and colour in the scene."""
-    found: dict[str, Counter[str]] = {}
+    counts: dict[str, Counter[str]] = {}
     for thing in scene.things:
-        found.setdefault(thing.category, Counter())[str(thing.attributes.get("colour", "no colour"))] += 1
-    return {category: dict(colours) for category, colours in sorted(found.items())}
+        counts.setdefault(thing.category, Counter())[str(thing.attributes.get("colour", "no colour"))] += 1
+    return {category: dict(colours) for category, colours in sorted(counts.items())}
 
 
 def view_facts(scene: Scene, preset: ScenePreset) -> dict[str, Any]:
     """Return the objects that the view of a preset certainly shows, and how they change with each adjustment."""
-    at = preset_at(preset)
-    here = TaskPlace(scene, preset.name, (), at)
-    base = certain_counts(here)
+    position = preset_at(preset)
+    preset_view = TaskPlace(scene, preset.name, (), position)
+    base = certain_counts(preset_view)
     changes = {}
     for pan, tilt, factor in ADJUSTMENTS:
-        there = move(at, adjust(pan, tilt, factor))
-        if there is not None:
-            after = certain_counts(TaskPlace(scene, preset.name, (), there))
+        destination = move(position, adjust(pan, tilt, factor))
+        if destination is not None:
+            after = certain_counts(TaskPlace(scene, preset.name, (), destination))
             words = f"pan {pan:+g}" if pan else f"tilt {tilt:+g}" if tilt else f"zoom {factor:g}x"
             changes[words] = {name: f"{base.get(name, 0)} -> {n}" for name, n in _changed(base, after)}
-    pose = at.pose
+    pose = position.pose
     return {
         "preset": preset.name,
         "described as": preset.description,
-        "pose": f"{at.viewpoint}: pan {pose.pan_deg:g}, tilt {pose.tilt_deg:g}, zoom {pose.zoom:g}",
+        "pose": f"{position.viewpoint}: pan {pose.pan_deg:g}, tilt {pose.tilt_deg:g}, zoom {pose.zoom:g}",
         "surely shows": base,
-        "texts that can be read": [text.text.text for text in here.truth.legible],
+        "texts that can be read": [text.text.text for text in preset_view.truth.legible],
         "changes": changes,
     }
 

@@ -107,9 +107,9 @@ def read_reply(text: str) -> list[Any]:
     """
     if len(text) > MAX_REPLY_CHARS:
         raise ValueError(f"the reply is longer than {MAX_REPLY_CHARS} characters")
-    fenced = _FENCE.match(text)
+    fenced_block = _FENCE.match(text)
     try:
-        content = json.loads(fenced.group(1) if fenced else text)
+        content = json.loads(fenced_block.group(1) if fenced_block else text)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"the reply is not JSON: {error}") from error
     rows = content.get("drafts") if isinstance(content, dict) else content

@@ -22,10 +22,10 @@ from scope_ptz.taskgen.generating.operator_runs import OperatorRun
 BATCH_SIZE = 8  # drafts per request
 
 ValidateTask = Callable[[Task], Awaitable[str | None]]
-"""Returns the reason why a task is invalid; None if its reference program passes and adversarial attempts fail."""
+"""A function that returns the reason why a task is invalid; None if its reference program passes and adversarial attempts fail."""
 
 Progress = Callable[[str], None]
-"""Receives a line of text."""
+"""A function that receives a line of text."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ async def generate(
     Raises:
         NoReplyError: The model repeatedly gave no usable reply. The ledger still contains the tasks that were kept before.
     """
-    known = KnownTasks([*request.known, *ledger.kept])
+    known_tasks = KnownTasks([*request.known, *ledger.kept])
     examples = [task for task in request.known if task.scene == request.scene.file.name] or list(request.known)
     failures = 0
     for batch in range(ledger.batches + 1, request.max_requests + 1):
@@ -85,39 +85,56 @@ async def generate(
             progress(f"request {batch}: {error}")
             failures += 1
             if failures == request.max_failures:
-                raise NoReplyError(f"{failures} consecutive requests returned no drafts. The last error: {error}") from error
+                raise NoReplyError(
+                    f"{failures} consecutive requests returned no drafts. Check the model and its server. The last error: {error}"
+                ) from error
             continue
         failures = 0
         for row in rows:
-            entry = await _ledger_entry(row, request, known, ledger, validate, batch)
+            entry = await _ledger_entry(row, request, known_tasks, ledger, validate, batch)
             ledger.add(entry)
             if entry.fate == "kept" and entry.task is not None:
-                known.add(entry.task)
+                known_tasks.add(entry.task)
         if not rows:
             ledger.add(LedgerEntry(batch=batch, fate="no reply", reason="an empty list"))
-        fates = Counter(entry.fate for entry in ledger.entries if entry.batch == batch)
-        progress(f"request {batch}: " + ", ".join(f"{number} {fate}" for fate, number in fates.items()))
+        counts_by_fate = Counter(entry.fate for entry in ledger.entries if entry.batch == batch)
+        progress(f"request {batch}: " + ", ".join(f"{number} {fate}" for fate, number in counts_by_fate.items()))
 
 
 async def _ledger_entry(
-    row: object, request: GenerationRequest, known: KnownTasks, ledger: DraftLedger, validate: ValidateTask, batch: int
+    row: object, request: GenerationRequest, known_tasks: KnownTasks, ledger: DraftLedger, validate: ValidateTask, batch: int
 ) -> LedgerEntry:
     """Validate one draft, and return its entry for the ledger."""
     draft = read_draft(row)
     if not isinstance(draft, Draft):
         return LedgerEntry(batch=batch, fate="dropped", reason=draft, draft=_shortened(row))
-    number = len(ledger.kept) + 1
-    category = draft.category.replace("_", "-")
-    name = f"{DATASET}-{request.scene.name}-generated-{category}-{number:03d}"
     if not ledger.missing(request.requested).get(draft.category):
         reason = f"no more tasks of the category {draft.category} are needed"
         return LedgerEntry(batch=batch, fate="dropped", reason=reason, draft=_shortened(row))
+    return await entry_of(draft, row, request.scene, known_tasks, ledger, validate, batch)
+
+
+async def entry_of(
+    draft: Draft, row: object, scene: Scene, known_tasks: KnownTasks, ledger: DraftLedger, validate: ValidateTask, batch: int
+) -> LedgerEntry:
+    """Make a task of a draft, validate it, and return the entry for the ledger.
+
+    Args:
+        draft: The draft.
+        row: The draft as it was written.
+        scene: The scene of the task.
+        known_tasks: Tasks that must not be repeated.
+        ledger: The ledger, which numbers the tasks.
+        validate: Validates a task by running it.
+        batch: Number of the request.
+    """
+    name = f"{DATASET}-{scene.name}-generated-{draft.category.replace('_', '-')}-{len(ledger.kept) + 1:03d}"
     try:
-        task = task_of(draft, request.scene, name, DATASET)
+        task = task_of(draft, scene, name, DATASET)
     except DraftRejectedError as rejected:
         return LedgerEntry(batch=batch, fate="dropped", reason=str(rejected), draft=_shortened(row))
-    if (near := known.nearest(task)) is not None:
-        reason = f"{near.similarity:.0%} similar to {near.task}"
+    if (similar_task := known_tasks.nearest(task)) is not None:
+        reason = f"{similar_task.similarity:.0%} similar to {similar_task.task}"
         return LedgerEntry(batch=batch, fate="near-duplicate", reason=reason, draft=_shortened(row))
     if (fault := await validate(task)) is not None:
         return LedgerEntry(batch=batch, fate="dropped", reason=f"validation failed: {fault}", draft=_shortened(row))

@@ -14,7 +14,7 @@ from typing import Any
 from scope_ptz.bench.answers import ParsedValue, parse_answer
 from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, FrameGeometry, observations_of
 from scope_ptz.bench.scoring.required_calls import missing_in_order
-from scope_ptz.bench.scoring.verdict import MOVERS
+from scope_ptz.bench.scoring.verdict import MOVING_TOOLS
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
     AnyExpected,
@@ -37,20 +37,22 @@ class FaultSetting:
 
 def replayed(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetting) -> Episode:
     """Return the run with other calls, and with recomputed poses and observations."""
-    at, replayed_calls = episode.start, list[EpisodeCall]()
+    position, replayed_calls = episode.start, list[EpisodeCall]()
     for call in calls:
-        after = _position_after(call, at, episode, setting)
-        moved = replace(call, before=at, after=after, observations=())
+        after = _position_after(call, position, episode, setting)
+        moved = replace(call, before=position, after=after, observations=())
         replayed_calls.append(replace(moved, observations=observations_of(moved, setting.camera) if moved.succeeded else ()))
-        at = after
-    kept = {str((call.result or {}).get("file")) for call in replayed_calls if call.name == "take_image"}
-    return replace(episode, calls=tuple(replayed_calls), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
+        position = after
+    files = {str((call.result or {}).get("file")) for call in replayed_calls if call.name == "take_image"}
+    return replace(
+        episode, calls=tuple(replayed_calls), final=position, pictures=tuple(p for p in episode.pictures if p.file in files)
+    )
 
 
-def _position_after(call: EpisodeCall, at: CameraPosition, episode: Episode, setting: FaultSetting) -> CameraPosition:
+def _position_after(call: EpisodeCall, position: CameraPosition, episode: Episode, setting: FaultSetting) -> CameraPosition:
     """Return the camera position after a call that begins at a different position from that in the original run."""
-    if not call.succeeded or call.name not in MOVERS:
-        return at
+    if not call.succeeded or call.name not in MOVING_TOOLS:
+        return position
     if call.name == "go_to_preset":
         return setting.presets[call.arguments["name"]]
     if call.name == "go_home":
@@ -59,8 +61,8 @@ def _position_after(call: EpisodeCall, at: CameraPosition, episode: Episode, set
         one, two = call.before.pose, call.after.pose
         pan, tilt, zoom = two.pan_deg - one.pan_deg, two.tilt_deg - one.tilt_deg, two.zoom / one.zoom
         limits = setting.camera.limits
-        return CameraPosition(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
-    return CameraPosition(at.viewpoint, call.after.pose)
+        return CameraPosition(position.viewpoint, limits.clamp(position.pose.turned(pan, tilt).zoomed(zoom))[0])
+    return CameraPosition(position.viewpoint, call.after.pose)
 
 
 def with_result(call: EpisodeCall, **changes: Any) -> EpisodeCall:
@@ -127,9 +129,9 @@ def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.
         return None
     indices = list(range(len(episode.calls) - 1))
     rng.shuffle(indices)
-    for at in indices:
+    for position in indices:
         calls = list(episode.calls)
-        calls[at], calls[at + 1] = calls[at + 1], calls[at]
+        calls[position], calls[position + 1] = calls[position + 1], calls[position]
         if missing_in_order(task.behaviour.calls, calls) is not None:
             return replayed(episode, calls, setting)
     return None

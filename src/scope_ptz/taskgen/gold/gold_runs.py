@@ -95,7 +95,7 @@ def gold_runs(
         per_mode: Number of runs per error mode, taken from the categories in turn.
     """
     runs = [(task, run) for task, run in runs if not wrong_counts(task, run, None) and not wrong_reads(task, run)]
-    found = list[GoldRun]()
+    gold = list[GoldRun]()
     for mode in ErrorMode:
         rng = random.Random(f"{seed}:{mode}")
         by_category: dict[str, list[tuple[Task, Episode]]] = {}
@@ -108,12 +108,12 @@ def gold_runs(
             for rows in by_category.values():
                 while rows and len(of_mode) < per_mode:
                     task, episode = rows.pop()
-                    one = mutate(task, episode, mode, settings[task.world], random.Random(f"{seed}:{mode}:{task.id}"))
-                    if one is not None:
-                        of_mode.append(one)
+                    faulty = mutate(task, episode, mode, settings[task.world], random.Random(f"{seed}:{mode}:{task.id}"))
+                    if faulty is not None:
+                        of_mode.append(faulty)
                         break
-        found += of_mode
-    return found
+        gold += of_mode
+    return gold
 
 
 def confusion_matrix(gold: Iterable[GoldRun]) -> ConfusionMatrix:
@@ -207,12 +207,12 @@ def _episode(row: Mapping[str, Any]) -> Episode:
 
     at = start = position(row["start"])
     calls = list[EpisodeCall]()
-    for given in row["calls"]:
-        further = {name: given.get(name) for name in ("result", "error", "fault")}
+    for stored in row["calls"]:
+        optional = {name: stored.get(name) for name in ("result", "error", "fault")}
         calls.append(
             with_observations(
                 EpisodeCall(
-                    given["name"], given["arguments"], at, after := position(given["after"]), time_s=given["time_s"], **further
+                    stored["name"], stored["arguments"], at, after := position(stored["after"]), time_s=stored["time_s"], **optional
                 ),
                 TASK_CAMERA,
             )

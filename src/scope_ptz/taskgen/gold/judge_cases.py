@@ -62,7 +62,7 @@ async def judge_all(
     """
     name = server.client.endpoint.model
     version = prompt_version()
-    done = {
+    judged = {
         (verdict.key, verdict.judgement.repeat)
         for verdict in earlier
         if (verdict.judgement.judge, verdict.judgement.prompt) == (name, version) and verdict.judgement.verdict != "failed"
@@ -75,9 +75,9 @@ async def judge_all(
         append_line(out, json.dumps(verdict.model_dump(mode="json"), ensure_ascii=False))
 
     for repeat in range(repeats):
-        remaining = [case for case in cases if (case.key, repeat) not in done]
+        remaining = [case for case in cases if (case.key, repeat) not in judged]
         notify(f"{name}: {len(remaining)} of {len(cases)} runs to judge" + (f", judgement {repeat + 1}" if repeats > 1 else ""))
-        judge = Judge(name, server.repeated(repeat))
+        judge = Judge(name, server.for_repeat(repeat))
         await judge_cases(judge, remaining, concurrency=concurrency, repeat=repeat, note=note)
     return JudgementTally.of(judgements)
 
@@ -123,14 +123,14 @@ def result_lines(result: GoldResult) -> Iterator[str]:
     modes = [mode.value for mode in ErrorMode]
     columns = [*modes, "correct", *WITHOUT_VERDICT]
     judgements = sum(result.cells.values())
-    times = f", {judgements} judgements" if judgements != result.runs else ""
+    judgement_count = f", {judgements} judgements" if judgements != result.runs else ""
     runs = f"{result.runs} gold run{'' if result.runs == 1 else 's'}"
-    yield f"{result.judge}: {runs}{times}; rows: inserted fault, columns: verdict of the judge"
+    yield f"{result.judge}: {runs}{judgement_count}; rows: inserted fault, columns: verdict of the judge"
     yield f"{'':<20}" + "".join(f"{COLUMN_NAMES.get(name, name):>12}" for name in columns)
     for row in (*modes, PASSES):
         if any(fault == row for fault, _ in result.cells):
             yield f"{row.replace('_', ' '):<20}" + "".join(f"{result.cells.get((row, name), 0) or '.':>12}" for name in columns)
-    for what, share in (("false accepts", result.false_accept_rate), ("false rejects", result.false_reject_rate)):
-        yield f"{what}: {f'{share:.1%}' if share is not None else 'not measured'}"
+    for name, share in (("false accepts", result.false_accept_rate), ("false rejects", result.false_reject_rate)):
+        yield f"{name}: {f'{share:.1%}' if share is not None else 'not measured'}"
     yield f"correct or not: {figures(result.verdicts)}"
     yield f"error mode of the faulty runs that it rejected: {figures(result.modes)}"

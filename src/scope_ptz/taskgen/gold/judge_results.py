@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from scope_ptz.bench.judging.agreement import RatedRun, Rater, add_rating, judgements_with_raters
 from scope_ptz.bench.judging.case import JudgeCase, case_of_episode
-from scope_ptz.bench.judging.json_lines import whole_lines
+from scope_ptz.bench.judging.json_lines import complete_lines
 from scope_ptz.bench.judging.judge import Judge
 from scope_ptz.bench.judging.kappa import KappaResult, cohen
 from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints
@@ -94,7 +94,7 @@ async def judge_gold(
     """
     limit = anyio.Semaphore(concurrency)
 
-    async def one(gold: GoldCase) -> None:
+    async def judge_run(gold: GoldCase) -> None:
         async with limit:
             judgement = await judge.judge_case(gold.facts, gold.case, repeat=repeat)
         note(GoldVerdict(key=gold.key, task=gold.facts.id, fault=gold.fault, judgement=judgement))
@@ -102,7 +102,7 @@ async def judge_gold(
     try:
         async with anyio.create_task_group() as group:
             for gold in cases:
-                group.start_soon(one, gold)
+                group.start_soon(judge_run, gold)
     except BaseExceptionGroup as errors:
         raise errors.exceptions[0] from None
 
@@ -175,16 +175,16 @@ def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldRe
         seed: Seed for the confidence intervals.
     """
     rows = [(_fault(verdict), _verdict(verdict.judgement), verdict) for verdict in verdicts]
-    given = [row for row in rows if row[1] not in WITHOUT_VERDICT]
-    rejected = [row for row in given if row[0] != PASSES and row[1] != "correct"]
+    judged_rows = [row for row in rows if row[1] not in WITHOUT_VERDICT]
+    rejected = [row for row in judged_rows if row[0] != PASSES and row[1] != "correct"]
     return GoldResult(
         judge=judge,
         runs=len({verdict.key for verdict in verdicts}),
         cells=Counter((fault, verdict) for fault, verdict, _ in rows),
         verdicts=cohen(
-            ["correct" if fault == PASSES else "incorrect" for fault, _, _ in given],
-            ["correct" if verdict == "correct" else "incorrect" for _, verdict, _ in given],
-            [row.task for _, _, row in given],
+            ["correct" if fault == PASSES else "incorrect" for fault, _, _ in judged_rows],
+            ["correct" if verdict == "correct" else "incorrect" for _, verdict, _ in judged_rows],
+            [row.task for _, _, row in judged_rows],
             seed,
         ),
         modes=cohen([r[0] for r in rejected], [r[1] for r in rejected], [r[2].task for r in rejected], seed),
@@ -200,20 +200,20 @@ def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
     return [result(judge, rows, seed) for judge, rows in by_judge.items()]
 
 
-def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
+def gold_raters(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
     """Return one rater for the known faults and one for every judge."""
     newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
-    known, judges = Rater("the known faults", "gold", "gold"), dict[str, Rater]()
+    known_faults, judges = Rater("the known faults", "gold", "gold"), dict[str, Rater]()
     by_key: dict[str, list[GoldVerdict]] = {}
     for verdict in sorted(newest.values(), key=lambda v: v.judgement.repeat):
         by_key.setdefault(verdict.key, []).append(verdict)
     for key, rows in by_key.items():
         item = RatedRun("gold", key, rows[0].task)
-        add_rating(known, item, "incorrect" if rows[0].fault else "correct", rows[0].fault)
+        add_rating(known_faults, item, "incorrect" if rows[0].fault else "correct", rows[0].fault)
         for name, group, judgement in judgements_with_raters([row.judgement for row in rows]):
             rater = judges.setdefault(name, Rater(name, "judge", f"judge:{group}"))
             add_rating(rater, item, judgement.verdict, judgement.error_mode)
-    return [known, *judges.values()] if by_key else []
+    return [known_faults, *judges.values()] if by_key else []
 
 
 def alternating_modes(runs: Sequence[GoldRun]) -> list[GoldRun]:
@@ -229,7 +229,7 @@ def read_verdicts(path: Path) -> tuple[GoldVerdict, ...]:
         InputError: Another line is damaged.
     """
     rows = list[GoldVerdict]()
-    for number, line in whole_lines(path):
+    for number, line in complete_lines(path):
         try:
             rows.append(GoldVerdict.model_validate_json(line))
         except ValidationError as error:

@@ -22,16 +22,17 @@ from scope_ptz.taskgen.importing.paper_names import (
     scope_of,
 )
 from scope_ptz.taskgen.importing.structured_cells import structure
-from scope_ptz.taskgen.importing.tool_steps import are_of_single_call, shown, steps_in, unused_arguments
+from scope_ptz.taskgen.importing.tool_steps import belong_to_single_call, cell_excerpt, steps_in, unused_arguments
 from scope_ptz.tools.registry import TOOLS as SCOPE_TOOLS
 from scope_ptz.tools.registry import parse_call
 
-DEGREES_TOLERANCE, ZOOM_TOLERANCE, SECONDS_TOLERANCE = 0.5, 0.03, 0.5  # of expected arguments; that of zoom is a share
+DEGREES_TOLERANCE, ZOOM_TOLERANCE, SECONDS_TOLERANCE = 0.5, 0.03, 0.5
+"""Tolerances of expected arguments. The zoom tolerance is a share."""
 _UNITS_S = {"": 1.0, "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 0.001, "min": 60.0, "minute": 60.0, "minutes": 60.0}
 _STOP_WORDS = frozenset({"the", "a", "an", "all", "any", "of", "in", "on", "with", "and", "view", "scene"})
 TOOL_FIELDS = {name: frozenset(tool.arguments.model_fields) for name, tool in SCOPE_TOOLS.items()}
 PresetOf = Callable[[str], str | None]
-"""Returns the preset of the scene for a name in the file; None if there is none."""
+"""A function that returns the preset of the scene for a name in the file; None if there is none."""
 
 
 @dataclass
@@ -68,13 +69,13 @@ def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, prese
         names = [(name, {}) for name in given]  # only the arguments are given, by tool
     for detail in unused_arguments(given, [name for name, _ in names]):
         expectation.note("unchecked-argument", detail)
-    for at, (name, own) in enumerate(names):
+    for index, (name, call_arguments) in enumerate(names):
         tool = TOOLS.get(normalise(name))
         if tool is None:
             expectation.note("unknown-tool", name)
             continue
-        further = _arguments_of(given, name, at, [n for n, _ in names[:at]].count(name), alone=len(names) == 1)
-        mapped = _mapped(tool, {**further, **own}, preset_of, expectation)
+        other_arguments = _arguments_of(given, name, index, [n for n, _ in names[:index]].count(name), only_call=len(names) == 1)
+        mapped = _map_arguments(tool, {**other_arguments, **call_arguments}, preset_of, expectation)
         expectation.calls.append(RequiredCall(tool=tool, arguments=mapped if compare else {}))
     return expectation
 
@@ -87,34 +88,34 @@ def _parse(cell: str, column: str, expectation: Expectation) -> Any:
         return None
 
 
-def _arguments_of(given: Any, name: str, at: int, earlier_calls: int, *, alone: bool) -> Mapping[str, Any]:
+def _arguments_of(given: Any, name: str, index: int, earlier_calls: int, *, only_call: bool) -> Mapping[str, Any]:
     """Return the arguments of one expected call, from a list by position or from an object by tool.
 
     Args:
         given: The arguments of all calls.
         name: The name of the tool in the file.
-        at: Position of the call.
+        index: Position of the call.
         earlier_calls: Number of earlier calls of the same tool.
-        alone: Whether this is the only call. Arguments without a tool name then belong to it.
+        only_call: Whether this is the only call. Arguments without a tool name then belong to it.
     """
     if isinstance(given, list):
-        one = given[at] if at < len(given) else None
+        one = given[index] if index < len(given) else None
         if not isinstance(one, dict):
             return {}
         inner = next((one[key] for key in ("args", "arguments", "parameters", name) if isinstance(one.get(key), dict)), None)
         return inner if inner is not None else {key: value for key, value in one.items() if key not in ("tool", "tool_name")}
     if not isinstance(given, dict):
         return {}
-    own: Any = given.get(name, given.get(str(at)))
-    if isinstance(own, list):
-        own = own[min(earlier_calls, len(own) - 1)] if own else {}
-    if isinstance(own, dict):
-        return dict(own)
+    call_arguments: Any = given.get(name, given.get(str(index)))
+    if isinstance(call_arguments, list):
+        call_arguments = call_arguments[min(earlier_calls, len(call_arguments) - 1)] if call_arguments else {}
+    if isinstance(call_arguments, dict):
+        return dict(call_arguments)
     flat = not any(isinstance(value, dict | list) for value in given.values())
-    return dict(given) if at == 0 and (flat or (alone and are_of_single_call(given, [name]))) else {}
+    return dict(given) if index == 0 and (flat or (only_call and belong_to_single_call(given, [name]))) else {}
 
 
-def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, expectation: Expectation) -> dict[str, Argument]:
+def _map_arguments(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, expectation: Expectation) -> dict[str, Argument]:
     """Return the required arguments under SCOPE's names. Arguments that cannot be mapped are reported and not compared."""
     given = {normalise(name): value for name, value in given.items() if value is not None and value != ""}
     required, call, used = dict[str, Argument](), dict[str, Any](), set[str]()
@@ -143,9 +144,9 @@ def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, expec
     texts = set(TEXT_ARGUMENTS.get(tool, ()))
     for name in sorted(texts & set(given) - used):
         if not isinstance(given[name], str):
-            expectation.note("wrong-arguments", f"{tool}: {name} is {shown(given[name])}, which is no text")
+            expectation.note("wrong-arguments", f"{tool}: {name} is {cell_excerpt(given[name])}, which is no text")
         elif tool != "query_answer":  # any wording of a question is accepted
-            expectation.note("unchecked-argument", f"{tool}: {name} is {shown(given[name])}, and {text} was read")
+            expectation.note("unchecked-argument", f"{tool}: {name} is {cell_excerpt(given[name])}, and {text} was read")
     unused = sorted(set(given) - used - texts)
     if unused:
         expectation.note("wrong-arguments", f"{tool} takes no {', '.join(unused)}")
@@ -153,11 +154,11 @@ def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, expec
     return required
 
 
-Take = Callable[[str, Any, Argument | None], None]
-"""Adds an argument to a call by its name, with its value and its requirement; None for no requirement."""
+TakeArgument = Callable[[str, Any, Argument | None], None]
+"""A function that adds an argument to a call by its name, with its value and its requirement (None for no requirement)."""
 
 
-def _moves(given: Mapping[str, Any], take: Take, used: set[str], expectation: Expectation) -> None:
+def _moves(given: Mapping[str, Any], take: TakeArgument, used: set[str], expectation: Expectation) -> None:
     for name in ("pan_deg", "tilt_deg"):
         if name in given:
             used.add(name)
@@ -191,7 +192,7 @@ def _moves(given: Mapping[str, Any], take: Take, used: set[str], expectation: Ex
     )
 
 
-def _text(tool: ToolName, text: str, preset_of: PresetOf, take: Take, expectation: Expectation) -> None:
+def _text(tool: ToolName, text: str, preset_of: PresetOf, take: TakeArgument, expectation: Expectation) -> None:
     if tool == "go_to_preset":
         preset = preset_of(text)
         if preset is None:
@@ -206,7 +207,7 @@ def _text(tool: ToolName, text: str, preset_of: PresetOf, take: Take, expectatio
         take("description", text, Argument(mentions=tuple(dict.fromkeys((" ".join(words), *head)))) if words else None)
 
 
-def _duration(given: Mapping[str, Any], take: Take, used: set[str], expectation: Expectation) -> None:
+def _duration(given: Mapping[str, Any], take: TakeArgument, used: set[str], expectation: Expectation) -> None:
     name = next((name for name in DURATION_ARGUMENTS if name in given), None)
     used.add("unit")
     if name is None:

@@ -128,7 +128,7 @@ def policy_of(text: str) -> Policy | None:
 
 
 def order_of(text: str) -> Literal["ordered", "any"] | None:
-    """Return "ordered" if the order of calls matters, "any" if not (as for a single step), and None for an unknown word."""
+    """Return "ordered" if the order of calls matters, "any" if it does not (as for a single step), and None for an unknown word."""
     name = normalise(text)
     return "ordered" if name in _ORDERED else "any" if name in _UNORDERED or name in _SINGLE else None
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from scope_ptz.bench.answers import plain_words
 from scope_ptz.bench.tasks.findings import FindingKind, RowFinding
-from scope_ptz.taskgen.facts.answer_phrasing import in_words
+from scope_ptz.taskgen.facts.answer_phrasing import number_in_words
 from scope_ptz.taskgen.importing.row_reading import ParsedRow
 
 _NOW = re.compile(
@@ -31,19 +31,19 @@ _ASSERTS_NOTHING = re.compile(
     re.IGNORECASE,
 )
 _QUOTED = re.compile(r"[\"“”'‘]([^\"“”'’]{2,60})[\"“”'’]")
-_NUMBERS = {in_words(number): str(number) for number in range(21)}
+_NUMBERS = {number_in_words(number): str(number) for number in range(21)}
 _UNINFORMATIVE = frozenset("the a an is are it there of in on yes no none not say says read reads i see".split())  # noqa: SIM905
 _MAX_ANSWER_WORDS = 6
 
 
 def check_rows(rows: Sequence[ParsedRow]) -> dict[int, tuple[RowFinding, ...]]:
     """Return the findings about questionable rows, by line number."""
-    found: dict[int, list[RowFinding]] = defaultdict(list)
+    by_line: dict[int, list[RowFinding]] = defaultdict(list)
     for row in rows:
-        found[row.line] += _single_row_findings(row)
+        by_line[row.line] += _single_row_findings(row)
     for line, finding in _row_group_findings(rows):
-        found[line].append(finding)
-    return {line: tuple(findings) for line, findings in found.items()}
+        by_line[line].append(finding)
+    return {line: tuple(findings) for line, findings in by_line.items()}
 
 
 def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
@@ -54,8 +54,8 @@ def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
         yield _finding("then-unordered", ", ".join(call.tool for call in row.calls))
     if _ASSERTS_NOTHING.fullmatch(row.answer):
         yield _finding("empty-assertion", row.answer)
-    if (given := answer_in_question(row.question, row.answer)) is not None:
-        yield _finding("answer-in-question", given)
+    if (part := answer_in_question(row.question, row.answer)) is not None:
+        yield _finding("answer-in-question", part)
     if row.question and not row.moves and not row.sweeps:
         yield _finding("no-viewpoint-change")
 
@@ -68,14 +68,16 @@ def answer_in_question(question: str, answer: str) -> str | None:
     """
     if re.search(r"\bor\b", question, re.IGNORECASE):
         return None
-    asked = comparable(question)
+    question_words = comparable(question)
     candidates: list[str] = _QUOTED.findall(answer)
     words = comparable(answer)
     if 0 < len(words) <= _MAX_ANSWER_WORDS:
         candidates.append(answer)
     for candidate in candidates:
         words = [word for word in comparable(candidate) if word not in _UNINFORMATIVE]
-        if words and any(asked[at : at + len(words)] == words for at in range(len(asked) - len(words) + 1)):
+        if words and any(
+            question_words[index : index + len(words)] == words for index in range(len(question_words) - len(words) + 1)
+        ):
             return candidate
     return None
 
@@ -86,38 +88,38 @@ def _row_group_findings(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFin
     for row in rows:
         if row.question:
             by_question[tuple(comparable(row.question))].append(row)
-    for alike in by_question.values():
+    for same_question in by_question.values():
         by_view: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
-        for row in alike:
+        for row in same_question:
             by_view[row.view].append(row)
-        for same in by_view.values():
-            yield from _same_view(same)
-        if len(by_view) > 1 and len({_answer_key(row.answer) for row in alike}) == 1:
-            lines = _line_list(alike)
-            yield from ((row.line, _finding("same-at-every-preset", lines)) for row in alike)
-    for name, same in _by_id(rows).items():
-        if len(same) > 1:
-            yield from ((row.line, _finding("id-repeated", f"{name}: {_line_list(same)}")) for row in same)
+        for same_rows in by_view.values():
+            yield from _same_view(same_rows)
+        if len(by_view) > 1 and len({_answer_key(row.answer) for row in same_question}) == 1:
+            lines = _line_list(same_question)
+            yield from ((row.line, _finding("same-at-every-preset", lines)) for row in same_question)
+    for name, same_rows in _by_id(rows).items():
+        if len(same_rows) > 1:
+            yield from ((row.line, _finding("id-repeated", f"{name}: {_line_list(same_rows)}")) for row in same_rows)
 
 
 def _same_view(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFinding]]:
     by_answer: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
     for row in rows:
         by_answer[_answer_key(row.answer)].append(row)
-    for same in by_answer.values():
-        if len(same) > 1:
-            yield from ((row.line, _finding("duplicate", _line_list(same))) for row in same)
+    for same_rows in by_answer.values():
+        if len(same_rows) > 1:
+            yield from ((row.line, _finding("duplicate", _line_list(same_rows))) for row in same_rows)
     if len(by_answer) > 1:
-        answers = "; ".join(f"line {same[0].line}: {same[0].answer[:60]}" for same in by_answer.values())
+        answers = "; ".join(f"line {same_rows[0].line}: {same_rows[0].answer[:60]}" for same_rows in by_answer.values())
         yield from ((row.line, _finding("contradiction", answers)) for row in rows)
 
 
 def _by_id(rows: Iterable[ParsedRow]) -> Mapping[str, list[ParsedRow]]:
-    found: dict[str, list[ParsedRow]] = defaultdict(list)
+    by_id: dict[str, list[ParsedRow]] = defaultdict(list)
     for row in rows:
         if row.row.cells.get("question_id"):
-            found[row.row.cells["question_id"]].append(row)
-    return found
+            by_id[row.row.cells["question_id"]].append(row)
+    return by_id
 
 
 def _answer_key(answer: str) -> tuple[str, ...]:

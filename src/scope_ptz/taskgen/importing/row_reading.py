@@ -19,14 +19,14 @@ from scope_ptz.taskgen.importing.paper_names import category_of, compares_argume
 from scope_ptz.taskgen.importing.scene_names import SceneNames
 from scope_ptz.tools.registry import TOOLS
 
-MOVERS = TOOLS.moving
+MOVING_TOOLS = TOOLS.moving
 _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
     "easy": "easy", "simple": "easy", "low": "easy", "1": "easy", "medium": "medium", "moderate": "medium", "mid": "medium",
     "normal": "medium", "2": "medium", "hard": "hard", "difficult": "hard", "high": "hard", "3": "hard",
 }  # fmt: skip
 _MAX_QUESTION_CHARS = 4000  # longer questions are truncated
 Note = Callable[[FindingKind, str], None]
-"""Adds a finding with its type and its detail."""
+"""A function that adds a finding with its type and its detail."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class ParsedRow:
 
     @property
     def view(self) -> tuple[str, ...]:
-        """Scene and preset of the question. Those that were not found have their name in the file."""
+        """Scene and preset of the question. A scene or preset that was not found has its name in the file."""
         return (self.scene or self.place[0], self.preset or self.place[1])
 
     @property
@@ -68,7 +68,7 @@ class ParsedRow:
     @property
     def moves(self) -> bool:
         """Whether one of the expected calls moves the camera."""
-        return any(call.tool in MOVERS for call in self.calls)
+        return any(call.tool in MOVING_TOOLS for call in self.calls)
 
     def task(self, dataset: str, name: str, scene_names: SceneNames, findings: tuple[RowFinding, ...]) -> ImportedTask | None:
         """Return the task of the row; None if it cannot be run.
@@ -94,7 +94,7 @@ class ParsedRow:
             scope=self.scope,
             difficulty=self.difficulty,
             expected=self.answer or "no answer is given; the expected calls decide",
-            demands=tuple(_demands(self.calls, self.policy, self.order, notes)),
+            demands=tuple(_requirements(self.calls, self.policy, self.order, notes)),
         )
         return ImportedTask(
             facts=facts,
@@ -168,15 +168,15 @@ def _slug(text: str) -> str:
 
 def _category(cells: Mapping[str, str], note: Note) -> Category | None:
     columns = ("eval_category", "category", "question_type")
-    given = {column: cells[column] for column in columns if cells.get(column)}
-    found = next(((name, category) for name, text in given.items() if (category := category_of(text)) is not None), None)
-    if found is None:
-        note("unknown-category", next(iter(given.values()), ""))
+    filled = {column: cells[column] for column in columns if cells.get(column)}
+    match = next(((name, category) for name, text in filled.items() if (category := category_of(text)) is not None), None)
+    if match is None:
+        note("unknown-category", next(iter(filled.values()), ""))
         return None
-    column, category = found
-    first = next(iter(given))
+    column, category = match
+    first = next(iter(filled))
     if column != first:
-        note("unknown-value", f"{first}: {given[first]}; read as {category}, by {column}: {given[column]}")
+        note("unknown-value", f"{first}: {filled[first]}; read as {category}, by {column}: {filled[column]}")
     return category
 
 
@@ -207,22 +207,22 @@ def _modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal["order
 
 
 def _scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
-    """Return the scope in the cell ``answer_view``. If it names none, return "full" if an expected call has that scope."""
-    given = cells.get("answer_view", "")
-    scope = scope_of(given)
+    """Return the scope in the cell ``answer_view``. If the cell has no scope, return "full" if an expected call has that scope."""
+    cell = cells.get("answer_view", "")
+    scope = scope_of(cell)
     if scope is not None:
         return scope
-    if given and normalise(given) not in ("none", "na", "n_a", "null", "any", "either"):
-        note("unknown-value", f"answer_view: {given}")
+    if cell and normalise(cell) not in ("none", "na", "n_a", "null", "any", "either"):
+        note("unknown-value", f"answer_view: {cell}")
     views = {call.arguments["view"].equals for call in expectation.calls if "view" in call.arguments}
     return "full" if "full" in views else "current"
 
 
-def _difficulty(given: str, note: Note) -> Literal["easy", "medium", "hard"]:
-    found = _DIFFICULTIES.get(normalise(given))
-    if found is None and given:
-        note("unknown-value", f"difficulty: {given}")
-    return found or "medium"
+def _difficulty(cell: str, note: Note) -> Literal["easy", "medium", "hard"]:
+    difficulty = _DIFFICULTIES.get(normalise(cell))
+    if difficulty is None and cell:
+        note("unknown-value", f"difficulty: {cell}")
+    return difficulty or "medium"
 
 
 _POLICY_WORDS: dict[Policy, str] = {
@@ -233,9 +233,9 @@ _POLICY_WORDS: dict[Policy, str] = {
 }
 
 
-def _demands(calls: Sequence[RequiredCall], policy: Policy, order: str, notes: str) -> Iterator[str]:
+def _requirements(calls: Sequence[RequiredCall], policy: Policy, order: str, notes: str) -> Iterator[str]:
     if calls:
-        how = ", in this order" if order == "ordered" and policy in ("all", "exact") and len(calls) > 1 else ""
-        yield f"{_POLICY_WORDS[policy]}{how}: {'; '.join(call_in_words(call) for call in calls)}."
+        order_note = ", in this order" if order == "ordered" and policy in ("all", "exact") and len(calls) > 1 else ""
+        yield f"{_POLICY_WORDS[policy]}{order_note}: {'; '.join(call_in_words(call) for call in calls)}."
     if notes:
         yield f"Notes of the author of the task: {notes}"

@@ -57,30 +57,30 @@ class SceneNames:
 
         The mapping takes precedence. Otherwise the name of the file without its suffix, or of its folder, must match a scene.
         """
-        given = self.mapping.scenes
+        mapped = self.mapping.scenes
         path = PurePosixPath(location.replace("\\", "/"))
         stem = path.stem if path.suffix else path.name
         for name in (location, path.name, stem):
-            if name in given:
-                return given[name] if given[name] in self.scenes else None
+            if name in mapped:
+                return mapped[name] if mapped[name] in self.scenes else None
         by_name = {_normalised(name): name for name in self.scenes}
         for name in (stem, path.parent.name):
             if name and _normalised(name) in by_name:
                 return by_name[_normalised(name)]
-        return given[ANY_NAME] if given.get(ANY_NAME) in self.scenes else None
+        return mapped[ANY_NAME] if mapped.get(ANY_NAME) in self.scenes else None
 
     def preset(self, scene: str, name: str) -> str | None:
         """Return the preset of a scene by its name in the file; None if it is not found. An empty name is the home preset."""
-        known, given = self.scenes[scene], self.mapping.presets.get(scene, {})
-        if name in given:
-            return given[name] if given[name] in known.presets else None
+        scene_presets, mapped = self.scenes[scene], self.mapping.presets.get(scene, {})
+        if name in mapped:
+            return mapped[name] if mapped[name] in scene_presets.presets else None
         if not name.strip() or _normalised(name) == "home":
-            return known.home
-        by_name = {_normalised(preset): preset for preset in known.presets}
-        found = by_name.get(_normalised(name)) or by_name.get(
+            return scene_presets.home
+        by_name = {_normalised(preset): preset for preset in scene_presets.presets}
+        match = by_name.get(_normalised(name)) or by_name.get(
             _normalised(re.sub(r"(?i)^preset[\s_:-]*|[\s_:-]*preset$", "", name.strip()))
         )
-        return found or (given[ANY_NAME] if given.get(ANY_NAME) in known.presets else None)
+        return match or (mapped[ANY_NAME] if mapped.get(ANY_NAME) in scene_presets.presets else None)
 
     def viewpoint(self, scene: str, preset: str) -> str:
         """Return the viewpoint of a preset."""

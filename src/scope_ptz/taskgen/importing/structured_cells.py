@@ -57,8 +57,8 @@ def _plain(value: Any) -> Any:
         raise ValueError("a number that is not finite")
     if value is None or isinstance(value, str | int | float | bool):
         return value
-    raise ValueError(f"{type(value).__name__} is no JSON")
+    raise ValueError(f"{type(value).__name__} is not a JSON value")
 
 
 def _no_number(name: str) -> Any:
-    raise ValueError(f"{name} is no number")
+    raise ValueError(f"{name} is not a number")

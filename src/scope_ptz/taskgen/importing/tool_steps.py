@@ -1,4 +1,4 @@
-"""Find the tool steps in a cell, and the arguments that belong to none of them."""
+"""Find the tool steps in a cell of an imported table, and the arguments that belong to no step."""
 
 from __future__ import annotations
 
@@ -11,42 +11,42 @@ from scope_ptz.taskgen.importing.paper_names import TOOLS, normalise
 _TOOL_KEYS = ("tool", "name", "tool_name", "function")
 
 
-def shown(value: Any) -> str:
+def cell_excerpt(value: Any) -> str:
     """Return a part of a cell as JSON text for a finding, truncated to 120 characters."""
     return json.dumps(value, ensure_ascii=False, default=str)[:120]
 
 
-def steps_in(order: Any, note: Callable[[str], None]) -> Iterator[tuple[str, Mapping[str, Any]]]:
+def steps_in(content: Any, note: Callable[[str], None]) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Yield the tools in a cell, each with the arguments that are given together with it. Lists and objects may be nested.
 
     Args:
-        order: The parsed content of the cell.
+        content: The parsed content of the cell.
         note: Receives a line of text for every part that names no tool.
     """
-    if isinstance(order, str):
-        yield order, {}
-    elif isinstance(order, dict):
-        name = next((order[key] for key in _TOOL_KEYS if isinstance(order.get(key), str)), None)
+    if isinstance(content, str):
+        yield content, {}
+    elif isinstance(content, dict):
+        name = next((content[key] for key in _TOOL_KEYS if isinstance(content.get(key), str)), None)
         if name is not None:
-            own: Mapping[str, Any] = next(
-                (order[key] for key in ("args", "arguments", "parameters") if isinstance(order.get(key), dict)), {}
+            arguments: Mapping[str, Any] = next(
+                (content[key] for key in ("args", "arguments", "parameters") if isinstance(content.get(key), dict)), {}
             )
-            yield name, own
-        elif any(key in order for key in _TOOL_KEYS):
-            note(f"{shown(order)} names no tool")
+            yield name, arguments
+        elif any(key in content for key in _TOOL_KEYS):
+            note(f"{cell_excerpt(content)} names no tool")
         else:
-            for key, value in order.items():
+            for key, value in content.items():
                 if normalise(key) in TOOLS:
                     yield key, value if isinstance(value, dict) else {}
                 else:
                     yield from steps_in(value, note)
-    elif isinstance(order, list):
-        for step in order:
+    elif isinstance(content, list):
+        for step in content:
             if step is None:
                 note("null names no tool")
             yield from steps_in(step, note)
-    elif order is not None:
-        note(f"{shown(order)} names no tool")
+    elif content is not None:
+        note(f"{cell_excerpt(content)} names no tool")
 
 
 def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
@@ -58,19 +58,19 @@ def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
     if given in (None, "", [], {}):
         return
     if not names:
-        yield f"{shown(given)}: no call is expected that would take it"
+        yield f"{cell_excerpt(given)}: the row expects no call that could have arguments"
     elif isinstance(given, list):
-        for at, one in enumerate(given):
-            if one is not None and (at >= len(names) or not isinstance(one, dict)):
-                yield f"{shown(one)} (number {at + 1}): arguments of no expected call"
+        for index, one in enumerate(given):
+            if one is not None and (index >= len(names) or not isinstance(one, dict)):
+                yield f"{cell_excerpt(one)} (number {index + 1}) does not match an expected call"
     elif not isinstance(given, dict):
-        yield f"{shown(given)}: no arguments"
-    elif any(isinstance(value, dict | list) for value in given.values()) and not are_of_single_call(given, names):
+        yield f"{cell_excerpt(given)} is not a set of arguments"
+    elif any(isinstance(value, dict | list) for value in given.values()) and not belong_to_single_call(given, names):
         for name, value in given.items():
             yield from _unused_arguments_of(name, value, names)
 
 
-def are_of_single_call(given: dict[str, Any], names: Sequence[str]) -> bool:
+def belong_to_single_call(given: dict[str, Any], names: Sequence[str]) -> bool:
     """Return whether these are the arguments of a single call, and not the arguments of several calls by name or number."""
     return len(names) == 1 and not any(name in names or name == "0" or normalise(name) in TOOLS for name in given)
 
@@ -78,10 +78,10 @@ def are_of_single_call(given: dict[str, Any], names: Sequence[str]) -> bool:
 def _unused_arguments_of(name: str, value: Any, names: Sequence[str]) -> Iterator[str]:
     numbered = name.isdecimal() and int(name) < len(names)
     if name not in names and not numbered:
-        yield f"{name}: {shown(value)}: arguments of no expected call"
+        yield f"{name}: {cell_excerpt(value)} does not match an expected call"
     elif isinstance(value, list):
-        for at, one in enumerate(value):
-            if one is not None and (at >= max(names.count(name), 1) or not isinstance(one, dict)):
-                yield f"{name}: {shown(one)} (number {at + 1}): arguments of no expected call"
+        for index, one in enumerate(value):
+            if one is not None and (index >= max(names.count(name), 1) or not isinstance(one, dict)):
+                yield f"{name}: {cell_excerpt(one)} (number {index + 1}) does not match an expected call"
     elif not isinstance(value, dict) and value not in (None, ""):
-        yield f"{name}: {shown(value)}: no arguments"
+        yield f"{name}: {cell_excerpt(value)} is not a set of arguments"

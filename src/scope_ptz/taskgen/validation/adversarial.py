@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number
 from scope_ptz.bench.tasks.task import ProgramCall, Task
-from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, offered, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, offered_answers, wrong_answer
 from scope_ptz.tools.registry import TOOLS
 
 PERCEPTION_TOOLS = frozenset({"count_objects", "query_answer"})
@@ -45,8 +45,8 @@ def correct_attempts(task: Task) -> Iterator[Attempt]:
     yield Attempt("reference", task.reference, texts[0], outcome)
     if outcome != "answered":
         return
-    yield Attempt("detour", detour(task), texts[1], outcome)
-    yield Attempt("twice", tuple(twice(task.reference)), texts[2], outcome)
+    yield Attempt("detour", with_detour(task), texts[1], outcome)
+    yield Attempt("twice", tuple(with_doubled_calls(task.reference)), texts[2], outcome)
 
 
 def other_correct_wordings(task: Task) -> tuple[str, ...]:
@@ -54,7 +54,7 @@ def other_correct_wordings(task: Task) -> tuple[str, ...]:
     return correct_answers(task.expected)[3:] if task.behaviour.outcomes[0] == "answered" else ()
 
 
-def detour(task: Task) -> tuple[ProgramCall, ...]:
+def with_detour(task: Task) -> tuple[ProgramCall, ...]:
     """Return the reference program with additional calls before it.
 
     They list the presets and, if the program begins by going to a preset, turn the camera.
@@ -66,7 +66,7 @@ def detour(task: Task) -> tuple[ProgramCall, ...]:
     return (*before, ProgramCall(tool="adjust_ptz", arguments={"pan_deg": -7.0, "tilt_deg": -2.0}), *task.reference)
 
 
-def twice(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
+def with_doubled_calls(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
     """Yield a program with every perception call made twice, and with every move split into two equal moves."""
     for call in program:
         if call.tool in PERCEPTION_TOOLS:
@@ -111,32 +111,34 @@ def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: rand
         rng: Random generator for the wrong answer.
     """
     blind = tuple(call for call in task.reference if call.tool not in PERCEPTION_TOOLS and call.tool != "zoom_to_object")
-    right = correct_answers(task.expected)[0]
+    correct = correct_answers(task.expected)[0]
     yield Attempt("nothing", (), "")
     for text in ("None.", "0", "Yes.", common):
         yield Attempt("guess", (), text)
     if any(view.must_look for view in task.evidence):
-        yield Attempt("blind", blind, right)
+        yield Attempt("blind", blind, correct)
     if task.needs and task.behaviour.outcomes == ("answered",):
-        yield Attempt("stay", tuple(stay(task.reference)), right)
+        yield Attempt("stay", tuple(without_moves(task.reference)), correct)
     wrong = wrong_answer(task.expected, rng)
     if wrong is not None and task.behaviour.outcomes == ("answered",):
         yield Attempt("wrong-answer", task.reference, wrong)
     if sibling is not None:
         yield Attempt("ignored", task.reference, sibling)
     if task.behaviour.final is not None or task.behaviour.framing is not None:
-        aside = ProgramCall(tool="adjust_ptz", arguments={"pan_deg": -13.0, "tilt_deg": 4.0})
-        back = ProgramCall(tool="adjust_ptz", arguments={"pan_deg": 6.0, "tilt_deg": -3.0})
-        yield Attempt("wrong-pose", (*task.reference, aside, back), right)
+        first_turn = ProgramCall(tool="adjust_ptz", arguments={"pan_deg": -13.0, "tilt_deg": 4.0})
+        second_turn = ProgramCall(tool="adjust_ptz", arguments={"pan_deg": 6.0, "tilt_deg": -3.0})
+        yield Attempt("wrong-pose", (*task.reference, first_turn, second_turn), correct)
 
 
 def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
     """Yield fixed answers after the perception calls of the reference program. They pass only if they happen to be correct."""
-    perceiving = [at for at, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"]
+    perceiving = [
+        index for index, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"
+    ]
     if not perceiving or isinstance(task.expected, ActionOnly):
         return
     program = task.reference[: perceiving[-1] + 1]
-    names = offered(task.expected, task.instruction)
+    names = offered_answers(task.expected, task.instruction)
     answers: dict[str, str | None] = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common}
     answers |= {f"{place} offered": name for place, name in zip(("first", "second", "third"), names, strict=False)}
     answers |= {"last offered": names[-1]} if names else {}
@@ -145,7 +147,7 @@ def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
             yield Attempt(f"looked-and-guessed: {name}", program, text)
 
 
-def stay(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
+def without_moves(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
     """Yield a program without its moves, so that all perception calls are made at the start view."""
     for call in program:
         if call.tool in PERCEPTION_TOOLS:

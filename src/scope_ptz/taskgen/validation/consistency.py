@@ -30,12 +30,12 @@ def inconsistencies(task: Task, scene: Scene, read_truth: TruthReader = view_tru
         return [f"the scene has no preset {task.preset}"]
     if missing := {view.aim.viewpoint for view in task.evidence} - {viewpoint.name for viewpoint in scene.file.viewpoints}:
         return [f"the scene has no viewpoint {', '.join(sorted(missing))}"]
-    found = [reason for view in task.evidence for reason in _view(task, view, scene, read_truth)]
+    differences = [reason for view in task.evidence for reason in _view(task, view, scene, read_truth)]
     computed = _answer_from_counts(task)
     if computed is not None and computed != _value(task.expected):
-        found.append(f"the evidence gives {computed}, but {_value(task.expected)} is expected")
-    found += _facts(task, scene)
-    return found
+        differences.append(f"the evidence gives {computed}, but {_value(task.expected)} is expected")
+    differences += _facts(task, scene)
+    return differences
 
 
 def _value(expected: AnyExpected) -> object:
@@ -53,8 +53,8 @@ def _view(task: Task, view: EvidenceView, scene: Scene, read_truth: TruthReader)
     """Recount the objects in a view, and yield the differences."""
     if not view.must_look:
         return
-    at = None if view.scope == "full" else Pose(view.aim.pan_deg, view.aim.tilt_deg, view.aim.zoom)
-    projection = RobustTruth(scene, view.aim.viewpoint, at, task.time_s).projection
+    pose = None if view.scope == "full" else Pose(view.aim.pan_deg, view.aim.tilt_deg, view.aim.zoom)
+    projection = RobustTruth(scene, view.aim.viewpoint, pose, task.time_s).projection
     truth = read_truth(scene, view.aim.viewpoint, projection, task.time_s)
     shown = [s for s in truth.sightings if visible(s)]
     kinds = {noun_of(kind): kind for kind in kinds_in(scene.things)}
@@ -123,8 +123,8 @@ def _facts(task: Task, scene: Scene) -> Iterator[str]:
                 facts = {str(v) for v in thing.attributes.values()} | {plain_colour(v) or "" for v in thing.attributes.values()}
                 if _value(task.expected) not in facts:
                     yield f"{item.instance} has no attribute with the value {_value(task.expected)}"
-            placed = "frame" in task.tags and isinstance(task.expected, Choice)
-            if placed and not set(str(_value(task.expected)).split()) <= _halves(view, item):
+            states_position = "frame" in task.tags and isinstance(task.expected, Choice)
+            if states_position and not set(str(_value(task.expected)).split()) <= _halves(view, item):
                 yield f"{item.instance} is not {_value(task.expected)}"
     if isinstance(task.expected, Text):
         words = {lettering.id: lettering.text.strip() for lettering in scene.file.texts}

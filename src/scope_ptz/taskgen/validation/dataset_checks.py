@@ -37,7 +37,7 @@ def structural_faults(tasks: Sequence[Task], dataset: Sequence[Task] = ()) -> li
             and (original := by_id.get(task.paraphrase_of)) is not None
             and original.expected != task.expected
         ):
-            faults.append(ValidationFault(task.id, "paraphrase", f"{task.paraphrase_of} has another expected answer"))
+            faults.append(ValidationFault(task.id, "paraphrase", f"{task.paraphrase_of} has a different expected answer"))
     return faults
 
 
@@ -47,19 +47,19 @@ def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
     Only answers that are wrong for the task itself are included.
     """
     by_id = {task.id: task for task in tasks}
-    found = {}
-    for at, task in enumerate(tasks):
+    answers = {}
+    for index, task in enumerate(tasks):
         if isinstance(task.expected, ActionOnly):
             continue
         twin = by_id.get(task.pair or "")
-        later = (*tasks[at + 1 :], *tasks[:at])
+        later = (*tasks[index + 1 :], *tasks[:index])
         others = [twin] if twin else [t for t in later if t.category == task.category and t.expected.kind == task.expected.kind]
         for other in others:
             text = correct_answers(other.expected)[0]
             if agrees(task.expected, parse_answer(task.expected, text)) is not True:
-                found[task.id] = text
+                answers[task.id] = text
                 break
-    return found
+    return answers
 
 
 def check_guesses(report: ValidationReport, tasks: Sequence[Task]) -> None:

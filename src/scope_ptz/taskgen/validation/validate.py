@@ -28,7 +28,7 @@ from scope_ptz.taskgen.validation.dataset_checks import check_guesses, sibling_a
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 Progress = Callable[[int, int], None]
-"""Receives the number of validated tasks and the total."""
+"""A function that receives the number of validated tasks and the total."""
 
 _FALLBACK_GUESS = "2"  # used as the most common answer of a category that has none
 
@@ -92,7 +92,7 @@ def _count(report: ValidationReport, task: Task) -> None:
 
 
 class _TaskValidation:
-    """Runs all attempts at one task. A program that several attempts share is run only once."""
+    """The validation of one task, which runs all attempts. A program that several attempts share is run only once."""
 
     def __init__(self, report: ValidationReport, task: Task, runner: ProgramRunner) -> None:
         self.report, self.task, self.runner = report, task, runner
@@ -105,11 +105,11 @@ class _TaskValidation:
         for text in other_correct_wordings(self.task):
             await self._check(Attempt("worded", self.task.reference, text, self.task.behaviour.outcomes[0]), "worded", passes=True)
         self._compare_with_evidence(await self._episode(Attempt("reference", self.task.reference, "")))
-        tried = set[str]()
+        counted_names = set[str]()
         for attempt in adversarial_attempts(self.task, common, sibling, random.Random(f"{seed}:{self.task.id}")):
             # The four guesses count as one attempt.
-            counted = attempt.name in tried
-            tried.add(attempt.name)
+            counted = attempt.name in counted_names
+            counted_names.add(attempt.name)
             await self._check(attempt, attempt.name, passes=False, counted=counted)
 
     async def guess(self, common: str) -> None:

@@ -34,11 +34,11 @@ class ValidationReport:
         by_category: Number of core tasks per category.
         by_stratum: Number of tasks per stratum.
         passed: Number of passes of each attempt.
-        tried: Number of tasks for which each attempt was made.
+        tried: Number of tasks at which each attempt was made.
         absences: Number of core tasks with the answer "there is none", each of which has a twin.
         from_start: Number of core tasks that can be answered from the start view.
         guessed: Ids of the core tasks that a fixed answer passes, by the name of the guess.
-        pairs_passed: Number of those tasks, if a task of a pair counts only if both tasks of the pair pass.
+        pairs_passed: Number of tasks in ``guessed``, where a task of a pair counts only if both tasks of the pair pass.
         faults: Correct attempts that failed, and failed checks.
         adversarial_passes: Adversarial attempts that passed.
         disagreements: Counts and answers of ground-truth perception that differ from the evidence. They do not make a dataset

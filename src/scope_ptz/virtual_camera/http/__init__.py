@@ -1,1 +1,1 @@
-"""The HTTP server of virtual cameras: sign-in, faults, pictures and streams. Each camera has a port of its own."""
+"""The HTTP server of virtual cameras: sign-in, faults, pictures and streams. Each camera has its own port."""

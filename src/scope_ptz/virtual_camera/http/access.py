@@ -1,4 +1,4 @@
-"""Who may do what: sign-in by digest, and the roles of accounts."""
+"""Access control: digest authentication, and the roles of accounts."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ Handler = Callable[[Request, Client], Awaitable[Response]]
 
 
 class Gate:
-    """Admits the clients of one camera. Passwords in plain text (Basic) are never asked for and never accepted.
+    """Admits the clients of one camera. Plain-text passwords (Basic) are neither requested nor accepted.
 
     Args:
-        accounts: Who may use the camera.
-        realm: Name of what is protected.
+        accounts: The accounts that may use the camera.
+        realm: The authentication realm, which clients show.
     """
 
     def __init__(self, accounts: Accounts, realm: str) -> None:
@@ -75,6 +75,6 @@ def is_local(connection: HTTPConnection) -> bool:
 
 
 def is_foreign_page(request: Request) -> bool:
-    """Return whether a web page from elsewhere made a browser send a request."""
+    """Return whether a browser sent a request on behalf of a web page from another site."""
     origin = request.headers.get("origin")
     return origin is not None and origin.partition("://")[2] != request.headers.get("host")

@@ -28,17 +28,17 @@ PAGE = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</ti
 
 
 class CameraApplication:
-    """What a camera answers on its port.
+    """The web application of a camera.
 
     Args:
-        unit: The camera as VAPIX shows it.
+        unit: The VAPIX state of the camera.
         source: Its live picture.
-        truth: The ground truth of its frames, None if it is not offered.
-        onvif: An application that answers below ``/onvif/`` and signs its clients in by itself; None for none.
+        truth: The ground truth of its frames; None if it is not offered.
+        onvif: An application for addresses below ``/onvif/``, which authenticates its own clients; None if there is none.
 
     Attributes:
         app: The ASGI application.
-        closing: Set when the server ends; streams end then.
+        closing: Set when the server shuts down, which ends all streams.
         jpegs: The encoder that all pictures share.
     """
 

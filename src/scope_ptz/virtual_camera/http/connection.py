@@ -1,4 +1,4 @@
-"""Connections that an application can break off, which HTTP alone does not offer."""
+"""HTTP connections that an application can abort in the middle of a reply."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 _ABORT = "scope_ptz.abort"
 
 
-class BreakableProtocol(H11Protocol):
-    """uvicorn's HTTP/1.1 with a way for the application to break the connection off."""
+class AbortableProtocol(H11Protocol):
+    """uvicorn's HTTP/1.1 protocol, extended so that the application can abort the connection."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -23,9 +23,14 @@ class BreakableProtocol(H11Protocol):
 
         self.app = app
 
+    def connection_lost(self, exc: Exception | None) -> None:
+        super().connection_lost(exc)
+        # uvicorn keeps the timer of a reset connection, and therefore the connection, until the timer expires.
+        self._unset_keepalive_if_required()
 
-async def break_off(scope: Scope, receive: Receive) -> None:
-    """Close the connection of a request at once, without another byte."""
+
+async def abort_connection(scope: Scope, receive: Receive) -> None:
+    """Close the connection of a request immediately, without sending any more data."""
     scope["extensions"][_ABORT]()
     while (await receive())["type"] != "http.disconnect":
         pass

@@ -1,4 +1,4 @@
-"""The faults of a camera at the level of HTTP, applied to every request but those that switch faults."""
+"""Apply a camera's faults to HTTP requests, except to those that switch faults."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.access import Gate
-from scope_ptz.virtual_camera.http.connection import break_off
+from scope_ptz.virtual_camera.http.connection import abort_connection
 
 CONTROL_PATH = "/virtual/"
-"""Requests below this path see no faults, so that faults can be switched off."""
+"""Path prefix of requests that are exempt from faults, so that faults can be switched off."""
 
 GARBAGE = b"\x00\xff<<<%%garbage}{"
 
 
-class _BrokenOffError(Exception):
+class _ConnectionAbortedError(Exception):
     """The connection was closed while a reply was being sent."""
 
 
 class FaultMiddleware:
-    """Drops, delays, refuses and damages replies as the device's faults say.
+    """Drops, delays, refuses or corrupts replies according to the device's faults.
 
     Args:
-        app: The application behind.
+        app: The application that handles the requests.
         device: The camera.
-        gate: Refuses clients as it does for a wrong password.
-        closing: Set when the server ends; no reply is delayed after that.
+        gate: Creates the reply for a refused account.
+        closing: Set when the server shuts down, which ends all delays.
     """
 
     def __init__(self, app: ASGIApp, device: VirtualDevice, gate: Gate, closing: anyio.Event) -> None:
@@ -44,7 +44,7 @@ class FaultMiddleware:
             with anyio.move_on_after(faults.stall_s):
                 await self._closing.wait()
         if faults.down or self._random.random() < faults.drop:
-            await break_off(scope, receive)
+            await abort_connection(scope, receive)
         elif faults.unauthorized:
             await self._gate.refusal()(scope, receive, send)
         else:
@@ -53,17 +53,17 @@ class FaultMiddleware:
     async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
         async def faulty(message: Message) -> None:
             if self._device.faults.down:
-                raise _BrokenOffError
+                raise _ConnectionAbortedError
             await send(_damaged(message) if self._device.faults.garbage else message)
 
         try:
             await self._app(scope, receive, faulty)
-        except* _BrokenOffError:
-            await break_off(scope, receive)
+        except* _ConnectionAbortedError:
+            await abort_connection(scope, receive)
 
 
 def _damaged(message: Message) -> Message:
-    """Return a message with garbage in place of what it says."""
+    """Return a message with its body replaced by garbage."""
     if message["type"] == "http.response.start":
         kept = [(name, value) for name, value in message["headers"] if name.lower() != b"content-length"]
         return {**message, "status": 200 if message["status"] == 204 else message["status"], "headers": kept}

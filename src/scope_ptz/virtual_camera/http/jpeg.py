@@ -1,4 +1,4 @@
-"""JPEGs of exposures. Clients that want the same size and compression share one encoding."""
+"""JPEGs of exposures. Clients that request the same size and compression share one encoding."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class PictureFormat:
 
 
 def picture_format(device: VirtualDevice, resolution: str, compression: str) -> PictureFormat:
-    """Return the format that a client asks for. Empty texts stand for the defaults.
+    """Return the format that a client requests. Empty texts mean the defaults.
 
     Raises:
         InputError: The resolution is not WIDTHxHEIGHT or larger than the camera's, or the compression is not 0 to 100.
@@ -42,10 +42,10 @@ def picture_format(device: VirtualDevice, resolution: str, compression: str) -> 
     return PictureFormat(width, height, int(compression) if compression else DEFAULT_COMPRESSION)
 
 
-def encode(image: NDArray[np.uint8], wanted: PictureFormat) -> bytes:
-    """Return an RGB picture as JPEG. A picture of another shape is cropped at its sides or at top and bottom, never stretched."""
-    image = fitted(image, wanted.width, wanted.height)
-    quality = round(98 - 0.85 * wanted.compression)
+def encode(image: NDArray[np.uint8], requested: PictureFormat) -> bytes:
+    """Return an RGB picture as a JPEG. A picture of another shape is cropped at its sides or at top and bottom, never stretched."""
+    image = fitted(image, requested.width, requested.height)
+    quality = round(98 - 0.85 * requested.compression)
     done, content = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])
     if not done:
         raise CameraError("The picture cannot be encoded.")
@@ -71,26 +71,26 @@ class SharedJpegs:
         self.encodings = 0
         """Number of encodings so far."""
 
-    async def snapshot(self, wanted: PictureFormat) -> tuple[Exposure, bytes]:
+    async def snapshot(self, requested: PictureFormat) -> tuple[Exposure, bytes]:
         """Take a picture and return it with its JPEG."""
         exposure = await to_thread.run_sync(self._device.expose)
-        return exposure, await self.jpeg(exposure, wanted)
+        return exposure, await self.jpeg(exposure, requested)
 
-    async def jpeg(self, exposure: Exposure, wanted: PictureFormat) -> bytes:
+    async def jpeg(self, exposure: Exposure, requested: PictureFormat) -> bytes:
         """Return the JPEG of an exposure."""
-        known = self._newest.get(wanted)
+        known = self._newest.get(requested)
         if known is None or known[0] is not exposure:
-            known = exposure, asyncio.create_task(self._encode(exposure, wanted))
-            self._newest[wanted] = known
-            self._newest.move_to_end(wanted)
+            known = exposure, asyncio.create_task(self._encode(exposure, requested))
+            self._newest[requested] = known
+            self._newest.move_to_end(requested)
             if len(self._newest) > MAX_SHARED:
                 self._newest.popitem(last=False)
         content = await asyncio.shield(known[1])
         return content[: len(content) // 2] if self._device.faults.picture == "truncated" else content
 
-    async def _encode(self, exposure: Exposure, wanted: PictureFormat) -> bytes:
+    async def _encode(self, exposure: Exposure, requested: PictureFormat) -> bytes:
         self.encodings += 1
         if self._device.faults.picture == "size":
             height, width = exposure.image.shape[:2]
-            wanted = PictureFormat(min(width, wanted.width // 2), min(height, wanted.height // 2), wanted.compression)
-        return await to_thread.run_sync(encode, exposure.image, wanted)
+            requested = PictureFormat(min(width, requested.width // 2), min(height, requested.height // 2), requested.compression)
+        return await to_thread.run_sync(encode, exposure.image, requested)

@@ -1,4 +1,4 @@
-"""Serves virtual cameras, each on a port of its own, in the running event loop."""
+"""Serve virtual cameras, each on its own port, in the running event loop."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ from starlette.types import ASGIApp
 from scope_ptz.errors import ConfigError
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.application import CameraApplication
-from scope_ptz.virtual_camera.http.connection import BreakableProtocol
+from scope_ptz.virtual_camera.http.certificate import Certificate
+from scope_ptz.virtual_camera.http.connection import AbortableProtocol
 from scope_ptz.virtual_camera.live_source import LiveSource
 from scope_ptz.virtual_camera.truth import TruthLog
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 SHUTDOWN_S = 3
-"""Seconds that replies have to end when the server ends."""
+"""Seconds that open replies have to finish when the server shuts down."""
 
 RETRY_S = 1.0  # pause of the live picture after a failure
 
@@ -36,11 +37,12 @@ class ServedCamera:
 
     Attributes:
         device: The camera.
-        unit: Its state in VAPIX.
-        source: Its live picture, for further servers of the same camera.
-        application: What answers on the port.
-        host: Address that the camera listens at.
-        port: Port of HTTP.
+        unit: Its VAPIX state.
+        source: Its live picture, for other servers of the same camera.
+        application: The web application on the port.
+        host: Address that the camera listens on.
+        port: Port of HTTP, or of HTTPS if there is a certificate.
+        certificate: Its certificate for HTTPS; None for HTTP.
     """
 
     device: VirtualDevice
@@ -49,11 +51,12 @@ class ServedCamera:
     application: CameraApplication
     host: str
     port: int
+    certificate: Certificate | None = None
 
     @property
     def url(self) -> str:
         """The address for a client on this machine, such as ``http://127.0.0.1:8080``."""
-        return f"http://{self._reachable}:{self.port}"
+        return f"{'http' if self.certificate is None else 'https'}://{self._reachable}:{self.port}"
 
     @property
     def rtsp_url(self) -> str | None:
@@ -77,31 +80,36 @@ async def serve(
     onvif: Callable[[VirtualDevice], ASGIApp] | None = None,
     rate_hz: float = 25.0,
     latency_s: float = 0.0,
+    certificates: Sequence[Certificate] = (),
 ) -> AsyncIterator[tuple[ServedCamera, ...]]:
     """Serve cameras while the context is open.
 
     Args:
         devices: The cameras.
-        host: Address to listen at. Beyond this machine, all cameras must have accounts.
-        ports: A port for each camera; 0, or none at all, lets the system choose.
+        host: Address to listen on. Unless it is a loopback address, all cameras must have accounts.
+        ports: A port for each camera; 0 for any free one. If the list is empty, the system chooses all ports.
         truth: Whether clients on this machine get the ground truth of frames.
-        onvif: Makes the application that answers below ``/onvif/`` for a camera.
+        onvif: A function that creates the application for addresses below ``/onvif/`` of a camera.
         rate_hz: Frames per second of live pictures.
         latency_s: Time from exposure until a frame is sent.
+        certificates: A certificate for each camera, which then serves HTTPS instead of HTTP; empty for HTTP.
 
     Raises:
-        ConfigError: A port is taken or not allowed, or a camera without accounts would be open to the network.
+        ConfigError: A port is in use or not permitted, or a camera without accounts would be open to the network.
     """
     ports = ports or [0] * len(devices)
     if len(ports) != len(devices):
         raise ConfigError(f"There are {len(devices)} cameras and {len(ports)} ports. Give one port for each camera.")
+    if certificates and len(certificates) != len(devices):
+        raise ConfigError(f"There are {len(devices)} cameras and {len(certificates)} certificates. Give one for each camera.")
     if not _is_loopback(host) and any(device.accounts.open_to_all for device in devices):
         raise ConfigError(f"A camera without accounts would be open to the network at {host}. Give it an account.")
     logs = [TruthLog(device) if truth else None for device in devices]
     sockets = listen(host, ports)
+    shown: Sequence[Certificate | None] = certificates or [None] * len(devices)
     cameras = tuple(
-        _camera(device, listener, log, onvif, LiveSource(device, rate_hz=rate_hz, latency_s=latency_s))
-        for device, listener, log in zip(devices, sockets, logs, strict=True)
+        _camera(device, listener, log, onvif, LiveSource(device, rate_hz=rate_hz, latency_s=latency_s), certificate)
+        for device, listener, log, certificate in zip(devices, sockets, logs, shown, strict=True)
     )
     servers = [_Server(_configuration(camera)) for camera in cameras]
     running = [asyncio.create_task(server.serve([listener])) for server, listener in zip(servers, sockets, strict=True)]
@@ -126,7 +134,7 @@ async def serve(
 
 
 class _Server(uvicorn.Server):
-    """A server that says when it listens, and leaves signals to the program around it."""
+    """A server that sets ``ready`` once it listens, and leaves the handling of process signals to the surrounding program."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)
@@ -147,39 +155,42 @@ def _camera(
     log: TruthLog | None,
     onvif: Callable[[VirtualDevice], ASGIApp] | None,
     source: LiveSource,
+    certificate: Certificate | None,
 ) -> ServedCamera:
     unit = VapixUnit(device)
     application = CameraApplication(unit, source, log, onvif(device) if onvif is not None else None)
     host, port = listener.getsockname()[:2]
-    return ServedCamera(device, unit, source, application, host, port)
+    return ServedCamera(device, unit, source, application, host, port, certificate)
 
 
 def _configuration(camera: ServedCamera) -> uvicorn.Config:
+    certificate = camera.certificate
     return uvicorn.Config(
         camera.application.app,
-        http=BreakableProtocol,
+        http=AbortableProtocol,
         ws="none",
         lifespan="off",
         log_config=None,
         access_log=False,
         server_header=False,
-        proxy_headers=False,  # what a client says about its address is not believed
+        proxy_headers=False,  # address headers from clients are not trusted
         timeout_keep_alive=15,
         timeout_graceful_shutdown=SHUTDOWN_S,
+        ssl_context_factory=None if certificate is None else lambda _config, _default: certificate.server_context(),
     )
 
 
 def listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
-    """Return listening sockets, and close all of them if one cannot be had.
+    """Return listening sockets. If one cannot be opened, close all of them.
 
     Raises:
-        ConfigError: A port is taken or not allowed.
+        ConfigError: A port is in use or not permitted.
     """
     sockets: list[socket.socket] = []
     try:
         for port in ports:
             sockets.append(socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET))
-            # asyncio sets it only for sockets that name their protocol. Without it, replies wait up to 40 ms for an ACK.
+            # asyncio sets TCP_NODELAY only for sockets with an explicit protocol. Without it, replies wait up to 40 ms for an ACK.
             sockets[-1].setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     except (OSError, OverflowError) as error:
         for opened in sockets:
@@ -202,5 +213,5 @@ async def _keep_running(source: LiveSource) -> None:
         try:
             await source.run()
         except* Exception as group:
-            logger.warning("The live picture of %s failed and is started again: %s", source.device.name, group.exceptions[0])
+            logger.warning("The live picture of %s failed and will be restarted: %s", source.device.name, group.exceptions[0])
             await asyncio.sleep(RETRY_S)

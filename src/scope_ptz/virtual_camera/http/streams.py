@@ -10,25 +10,26 @@ from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
 from scope_ptz.virtual_camera.device import Exposure
-from scope_ptz.virtual_camera.http.connection import break_off
+from scope_ptz.virtual_camera.http.connection import abort_connection
 from scope_ptz.virtual_camera.http.jpeg import PictureFormat, SharedJpegs, with_comment
 from scope_ptz.virtual_camera.live_source import LiveSource
+from scope_ptz.virtual_camera.pace import Pace
 
 BOUNDARY = "myboundary"
 STUCK_S = 20.0
-"""Seconds after which a client that takes no bytes is dropped."""
+"""Seconds after which a client that reads nothing is disconnected."""
 
 
 @dataclass(frozen=True, slots=True)
 class StreamOptions:
-    """What a client asks for. ``fps``, ``frames`` and ``duration_s`` are 0 for no limit.
+    """The options of a stream. ``fps``, ``frames`` and ``duration_s`` are 0 for no limit.
 
     Attributes:
         picture: Size and compression.
-        fps: Frames per second at most.
+        fps: Maximum number of frames per second.
         frames: Number of frames after which the stream ends.
         duration_s: Seconds after which it ends.
-        truth: Returns the headers of a part and the comment of its JPEG; None for none.
+        truth: A function that returns the headers of a part and the comment of its JPEG; None if there are none.
     """
 
     picture: PictureFormat
@@ -39,7 +40,10 @@ class StreamOptions:
 
 
 class MotionJpeg(Response):
-    """A stream of JPEGs. It ends when its client leaves or does not read, when its limits are reached, or when the server ends."""
+    """A stream of JPEGs.
+
+    It ends when its client disconnects or stops reading, when its limits are reached, or when the server shuts down.
+    """
 
     def __init__(self, source: LiveSource, jpegs: SharedJpegs, options: StreamOptions, closing: anyio.Event) -> None:
         super().__init__(media_type=f"multipart/x-mixed-replace; boundary={BOUNDARY}", headers={"Cache-Control": "no-cache"})
@@ -65,19 +69,16 @@ class MotionJpeg(Response):
         if complete:
             await send({"type": "http.response.body", "body": f"--{BOUNDARY}--\r\n".encode()})
         else:
-            await break_off(scope, receive)
+            await abort_connection(scope, receive)
 
     async def _send_parts(self, send: Send) -> bool:
         """Send frames until a limit. Return False if the client is stuck."""
-        options, sent, due_s = self._options, 0, 0.0
+        options, sent, pace = self._options, 0, Pace(self._source.rate_hz, self._options.fps)
         started_s = anyio.current_time()
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
-                # Half a frame early is in time: otherwise a rate that does not divide the camera's would become a lower one.
-                if options.fps:
-                    if exposure.taken_s < due_s - 0.5 / self._source.rate_hz:
-                        continue
-                    due_s = (due_s if exposure.taken_s < due_s + 1 / options.fps else exposure.taken_s) + 1 / options.fps
+                if not pace.takes(exposure.taken_s):
+                    continue
                 part = await self._part(exposure)
                 with anyio.move_on_after(STUCK_S) as patience:
                     await send({"type": "http.response.body", "body": part, "more_body": True})

@@ -1,4 +1,4 @@
-"""The ground truth beside a picture: headers of the reply or of the part, and a comment in the JPEG."""
+"""The ground truth that accompanies a picture: headers of the reply or of the part, and a comment in the JPEG."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class TruthHeaders:
         self.log = log
 
     def of(self, exposure: Exposure) -> tuple[Mapping[str, str], str]:
-        """Return the headers for an exposure, and the same as a JSON text for a comment.
+        """Return the headers for an exposure, and the same data as JSON for a comment.
 
         ``X-Scope-Time`` is the scene time and ``X-Scope-Taken`` the Unix time of the exposure, both in seconds.
         """

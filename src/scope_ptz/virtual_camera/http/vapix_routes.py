@@ -36,11 +36,11 @@ class VapixRoutes:
     """The addresses below ``/axis-cgi/`` of one camera.
 
     Args:
-        unit: The camera as VAPIX shows it.
+        unit: The VAPIX state of the camera.
         source: Its live picture.
         gate: Admits clients.
         truth: Adds the ground truth to pictures for local clients; None if it is not offered.
-        closing: Set when the server ends.
+        closing: Set when the server shuts down.
     """
 
     def __init__(self, unit: VapixUnit, source: LiveSource, gate: Gate, truth: TruthHeaders | None, closing: anyio.Event) -> None:
@@ -66,10 +66,10 @@ class VapixRoutes:
     async def _image(self, request: Request, _: Client) -> Response:
         arguments = await read_arguments(request)
         try:
-            wanted = picture_format(self._unit.device, arguments.text("resolution"), arguments.text("compression"))
+            requested = picture_format(self._unit.device, arguments.text("resolution"), arguments.text("compression"))
         except InputError as problem:
             return PlainTextResponse(f"Error: {problem}\n", 400)
-        exposure, jpeg = await self.jpegs.snapshot(wanted)
+        exposure, jpeg = await self.jpegs.snapshot(requested)
         headers = {"Cache-Control": "no-cache"}
         if self._truth is not None and is_local(request):
             extra, comment = self._truth.of(exposure)
@@ -98,7 +98,7 @@ async def read_body(request: Request) -> bytes:
     """Return the body of a request.
 
     Raises:
-        HTTPException: It is too large, or the client left.
+        HTTPException: The body is too large, or the client disconnected.
     """
     content = bytearray()
     try:
@@ -112,7 +112,7 @@ async def read_body(request: Request) -> bytes:
 
 
 async def read_arguments(request: Request) -> Arguments:
-    """Return the arguments in the query and in the body, which is read whatever its media type is."""
+    """Return the arguments in the query and in the body. The body is parsed regardless of its media type."""
     query = request.scope["query_string"].decode("latin-1")
     body = (await read_body(request)).decode("utf-8", "replace").strip()
     try:

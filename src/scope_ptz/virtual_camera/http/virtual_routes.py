@@ -16,11 +16,14 @@ from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.faults import Faults, checked_faults
 from scope_ptz.virtual_camera.http.access import Gate, Handler, is_foreign_page, is_local
 from scope_ptz.virtual_camera.http.vapix_routes import read_arguments, read_body
-from scope_ptz.virtual_camera.truth import TruthLog, origin_fields
+from scope_ptz.virtual_camera.truth import TOLERANCE_S, TruthLog, origin_fields
 from scope_ptz.virtual_camera.vapix.replies import Client
 
 DOWN_S = 10.0
-"""Seconds for which a camera is off the network while it reboots, by default."""
+"""Default number of seconds for which a rebooting camera is off the network."""
+
+MAX_WITHIN_S = 5.0
+"""Maximum difference between the requested time of a frame and the time of its exposure, in seconds."""
 
 
 class VirtualRoutes:
@@ -29,7 +32,7 @@ class VirtualRoutes:
     Args:
         device: The camera.
         gate: Admits clients.
-        truth: The ground truth, None if it is not offered.
+        truth: The ground truth; None if it is not offered.
     """
 
     def __init__(self, device: VirtualDevice, gate: Gate, truth: TruthLog | None) -> None:
@@ -47,7 +50,7 @@ class VirtualRoutes:
         return found
 
     def close(self) -> None:
-        """End a reboot that is under way."""
+        """End a reboot in progress."""
         if self._reboot is not None:
             self._reboot.cancel()
 
@@ -56,7 +59,7 @@ class VirtualRoutes:
 
         async def endpoint(request: Request) -> Response:
             if not is_local(request) or is_foreign_page(request):
-                return JSONResponse({"error": "This address answers programs on the same machine only."}, 403)
+                return JSONResponse({"error": "Only programs on the same machine may use this address."}, 403)
             return await admitted(request)
 
         return endpoint
@@ -93,19 +96,22 @@ class VirtualRoutes:
         try:
             arguments = await read_arguments(request)
             asked = {name: arguments.numbers(name, 1)[0] for name in ("time", "taken") if name in arguments}
+            within_s = arguments.number("within", TOLERANCE_S, MAX_WITHIN_S) if "within" in arguments else TOLERANCE_S
         except InputError as problem:
             return JSONResponse({"error": str(problem)}, 400)
-        origin = self._truth.at(time_s=asked.get("time"), taken_s=asked.get("taken"))
-        if origin is None:
-            return JSONResponse({"error": "No frame of that time is remembered."}, 404)
-        return JSONResponse(origin_fields(origin))
+        found = self._truth.at(time_s=asked.get("time"), taken_s=asked.get("taken"), within_s=within_s)
+        if found is None:
+            return JSONResponse({"error": "No frame of that time is stored."}, 404)
+        taken_s, origin = found
+        hfov_deg = self._device.optics.hfov_deg(origin.pose.zoom)
+        return JSONResponse({**origin_fields(origin), "hfov_deg": hfov_deg, "taken_s": taken_s})
 
 
 def changed(faults: Faults, body: bytes) -> Faults:
     """Return faults with the changes of a JSON object.
 
     Raises:
-        InputError: The body is no JSON object, or a fault is unknown or has a wrong value.
+        InputError: The body is not a JSON object, or a fault is unknown or has an invalid value.
     """
     try:
         changes = json.loads(body)

@@ -16,6 +16,7 @@ from scope_ptz.virtual_camera.digest import DigestAuthenticator, Verdict
 from scope_ptz.virtual_camera.identity import serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_time_s
 from scope_ptz.virtual_camera.onvif.device_service import PATHS, DeviceService
+from scope_ptz.virtual_camera.onvif.imaging_service import ImagingService
 from scope_ptz.virtual_camera.onvif.login import Stamp, UsernameTokens, created, not_authorized
 from scope_ptz.virtual_camera.onvif.media2_service import Media2Service
 from scope_ptz.virtual_camera.onvif.media_service import MediaService
@@ -30,7 +31,7 @@ from scope_ptz.virtual_camera.onvif.soap import (
     as_bytes,
     parse_envelope,
 )  # fmt: skip
-from scope_ptz.virtual_camera.onvif.wsdl import DEVICE, MEDIA, MEDIA2, PTZ, load_document, load_operations
+from scope_ptz.virtual_camera.onvif.wsdl import DEVICE, IMAGING, MEDIA, MEDIA2, PTZ, load_document, load_operations
 
 CONTENT_TYPE = "application/soap+xml; charset=utf-8"
 
@@ -44,12 +45,12 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """How a client reached the device, and what it proved over HTTP.
+    """The address that a client used for the device, and the result of its HTTP authentication.
 
     Attributes:
-        host: The host, as it appears in an address.
+        host: The host, in the form used in URLs.
         origin: Scheme, host and port.
-        verdict: The result of HTTP digest authentication, None if the client did not try it.
+        verdict: The result of HTTP digest authentication; None if the client did not use it.
     """
 
     host: str
@@ -58,11 +59,11 @@ class Caller:
 
 
 class OnvifApp:
-    """The ONVIF services of one camera. Clients sign in with a WS-UsernameToken or by HTTP digest.
+    """The ONVIF services of one camera. Clients sign in with a WS-UsernameToken or with HTTP digest authentication.
 
     Args:
         device: The camera.
-        rtsp_port: Where its streams are, for the addresses in replies.
+        rtsp_port: Port of its RTSP server, which replies contain.
 
     Raises:
         ConfigError: The WSDL files are not installed.
@@ -78,6 +79,7 @@ class OnvifApp:
         self._operations: dict[str, Operations] = {
             DEVICE: DeviceService(device, self._capabilities, rtsp_port).operations(),
             MEDIA: MediaService(device, configuration, rtsp_port).operations(),
+            IMAGING: ImagingService(device).operations(),
             MEDIA2: Media2Service(device, configuration, rtsp_port).operations(),
             PTZ: {
                 **ptz.operations(),
@@ -128,10 +130,13 @@ class OnvifApp:
         return as_bytes(self._serialized(namespace, name, reply))
 
     def _admit(self, envelope: Envelope, caller: Caller, role: Role) -> Stamp | None:
-        """Check that the sender of a request may make it, and return when it was created, None if it does not state that.
+        """Check that the sender has the role that a request requires.
+
+        Returns:
+            The time at which the request was created; None if the request does not state it.
 
         Raises:
-            SoapFault: The sender may not.
+            SoapFault: The sender is not permitted to make this request.
         """
         if self._device.faults.unauthorized:
             raise not_authorized("The user name or the password is wrong.")
@@ -142,7 +147,7 @@ class OnvifApp:
         if account is None:
             raise not_authorized("The operation needs a login.", status=401)
         if account.role < role:
-            raise not_authorized(f"The account may not do this: it needs the role {role.name.lower()}.")
+            raise not_authorized(f"The operation requires the role {role.name.lower()}.")
         return sender.stamp if sender else None
 
     def _caller(self, scope: Scope) -> Caller:
@@ -164,7 +169,7 @@ class OnvifApp:
 
 
 def _address(scope: Scope, stated: str) -> tuple[str, str]:
-    """Return the host, and scheme with host and port, by which a client says that it reached the server."""
+    """Return the host and the origin (scheme, host and port) of the server according to the client's ``Host`` header."""
     found = _HOST.fullmatch(stated)
     if found is None:
         host, port = scope.get("server") or ("localhost", None)
@@ -174,10 +179,10 @@ def _address(scope: Scope, stated: str) -> tuple[str, str]:
 
 
 async def _read(receive: Receive) -> bytes | None:
-    """Return the body of a request, None if the client has gone.
+    """Return the body of a request; None if the client has disconnected.
 
     Raises:
-        SoapFault: It is too large.
+        SoapFault: The body is too large.
     """
     parts, size = [], 0
     while True:
@@ -186,7 +191,7 @@ async def _read(receive: Receive) -> bytes | None:
             return None
         size += len(message.get("body", b""))
         if size > MAX_REQUEST_BYTES:
-            raise SoapFault(f"A request has at most {MAX_REQUEST_BYTES} bytes.", "WellFormed", status=413)
+            raise SoapFault(f"A request must have at most {MAX_REQUEST_BYTES} bytes.", "WellFormed", status=413)
         parts.append(message.get("body", b""))
         if not message.get("more_body", False):
             return b"".join(parts)

@@ -9,10 +9,10 @@ from scope_ptz.virtual_camera.device import VirtualDevice
 
 
 def device_time_s(device: VirtualDevice) -> float:
-    """Return what the device takes for the current time, in Unix seconds."""
+    """Return the current time of the device's clock in Unix seconds."""
     return time() + device.faults.clock_skew_s
 
 
 def device_datetime(device: VirtualDevice) -> datetime:
-    """Return what the device takes for the current time, in UTC."""
+    """Return the current time of the device's clock in UTC."""
     return datetime.fromtimestamp(device_time_s(device), UTC)

@@ -1,4 +1,4 @@
-"""The Device service: which services there are, the time, and what the device is."""
+"""The Device service: the list of services, the time, and information about the device."""
 
 from __future__ import annotations
 
@@ -12,25 +12,26 @@ from scope_ptz.virtual_camera.identity import BRAND, FIRMWARE, PRODUCT, device_u
 from scope_ptz.virtual_camera.onvif.clock import device_datetime
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
 from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
-from scope_ptz.virtual_camera.onvif.wsdl import DEVICE, MEDIA, MEDIA2, PTZ
+from scope_ptz.virtual_camera.onvif.wsdl import DEVICE, IMAGING, MEDIA, MEDIA2, PTZ
 
 PATHS = {
     DEVICE: "/onvif/device_service",
     MEDIA: "/onvif/media_service",
     MEDIA2: "/onvif/media2_service",
     PTZ: "/onvif/ptz_service",
+    IMAGING: "/onvif/imaging_service",
 }
-"""Where each service is offered, by its namespace."""
+"""The path of each service, by its namespace."""
 
 VERSION = {"Major": 19, "Minor": 12}
-"""Version of the ONVIF specifications that the services follow."""
+"""Version of the ONVIF specifications that the services implement."""
 
-_CATEGORIES = {"Device": DEVICE, "Media": MEDIA, "PTZ": PTZ}
-_ABSENT = {"Analytics", "Events", "Imaging"}
+_CATEGORIES = {"Device": DEVICE, "Media": MEDIA, "PTZ": PTZ, "Imaging": IMAGING}
+_ABSENT = {"Analytics", "Events"}
 
 
 def scopes(device: VirtualDevice) -> list[str]:
-    """Return the scopes by which WS-Discovery clients choose devices."""
+    """Return the scopes by which WS-Discovery clients select devices."""
     items = ("type/ptz", "type/video_encoder", "type/Network_Video_Transmitter", "Profile/Streaming")
     named = (f"hardware/{quote(PRODUCT)}", f"name/{quote(device.name)}", f"location/{quote(device.scene.name)}")
     return [f"onvif://www.onvif.org/{item}" for item in (*items, *named)]
@@ -41,15 +42,15 @@ class DeviceService:
 
     Args:
         device: The camera.
-        capabilities: Returns the capabilities of a service as an element, by its namespace.
-        rtsp_port: Where its streams are.
+        capabilities: A function that returns the capabilities of a service, given its namespace, as an element.
+        rtsp_port: Port of its RTSP server.
     """
 
     def __init__(self, device: VirtualDevice, capabilities: Callable[[str], Any], rtsp_port: int) -> None:
         self._device, self._capabilities_of, self._rtsp_port = device, capabilities, rtsp_port
 
     def operations(self) -> Operations:
-        """Return the operations by name. Those that a client needs before it can log in are open to all."""
+        """Return the operations by name. Operations that a client needs before it can sign in require no login."""
         return {
             "GetServices": Operation(self._services, None),
             "GetServiceCapabilities": Operation(self._service_capabilities, None),
@@ -164,6 +165,6 @@ _DEVICE_DETAILS: Mapping[str, Any] = {
 
 
 def require_token(name: str, token: str | None, known: str, subcode: str) -> None:
-    """Raise a fault unless a token is the known one."""
+    """Raise a fault if a token differs from the only valid one."""
     if token != known:
         raise invalid_argument(f"There is no {name} '{str(token)[:64]}'.", subcode)

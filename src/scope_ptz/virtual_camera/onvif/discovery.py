@@ -24,7 +24,7 @@ PORT = 3702
 """The multicast address and port of WS-Discovery."""
 
 MAX_DATAGRAM_BYTES = 8192
-"""Larger datagrams are ignored."""
+"""Maximum size of a datagram in bytes. Larger ones are ignored."""
 
 logger = logging.getLogger(__name__)
 
@@ -33,10 +33,17 @@ Address = tuple[str, int]
 
 @dataclass(frozen=True, slots=True)
 class Discoverable:
-    """A device with the port of its HTTP server."""
+    """A device with the port of its web server.
+
+    Attributes:
+        device: The device.
+        http_port: The port.
+        tls: Whether the port serves HTTPS.
+    """
 
     device: VirtualDevice
     http_port: int
+    tls: bool = False
 
 
 class _Responder(asyncio.DatagramProtocol):
@@ -49,7 +56,7 @@ class _Responder(asyncio.DatagramProtocol):
         self._transport = cast("asyncio.DatagramTransport", transport)
 
     def announce(self, group: Address, *, leaving: bool = False) -> None:
-        """Tell everyone that the devices are there, or that they leave."""
+        """Announce that the devices have appeared, or that they are leaving."""
         for camera, sender in self._senders:
             if not camera.device.faults.down:
                 self._send(sender.bye() if leaving else sender.hello(), group)
@@ -58,7 +65,7 @@ class _Responder(asyncio.DatagramProtocol):
         query = parse_query(data) if len(data) <= MAX_DATAGRAM_BYTES else None
         for camera, sender in self._senders:
             if query is not None and not camera.device.faults.down and query.matches(sender.target):
-                xaddr = sender.target.xaddr or _xaddr(_own_address(address), camera.http_port)
+                xaddr = sender.target.xaddr or _xaddr(_own_address(address), camera)
                 self._send(sender.match(query, xaddr), address)
 
     def error_received(self, error: Exception) -> None:
@@ -71,12 +78,12 @@ class _Responder(asyncio.DatagramProtocol):
 
 @asynccontextmanager
 async def discoverable(cameras: Sequence[Discoverable], *, host: str = "127.0.0.1", port: int = PORT) -> AsyncIterator[int]:
-    """Announce cameras and answer probes while the context is open. Its value is the port.
+    """Announce cameras and answer probes while the context is open, and yield the port.
 
     Args:
         cameras: The cameras.
-        host: Address of the network interface, at which the HTTP servers listen too; ``0.0.0.0`` for the default one.
-        port: The UDP port; 0 lets the system choose, which only clients that know it find.
+        host: Address of the network interface on which the HTTP servers also listen; ``0.0.0.0`` for the default interface.
+        port: The UDP port. With 0, the system chooses a port, which clients must then know.
 
     Raises:
         ConfigError: The interface cannot be used for multicast.
@@ -101,9 +108,9 @@ async def discoverable(cameras: Sequence[Discoverable], *, host: str = "127.0.0.
 def _listen(interface: str, port: int) -> socket.socket:
     listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        # Other programs on this machine may be discoverable too: multicast reaches all sockets of the port.
+        # Other programs on this machine may share the port, because multicast reaches all of its sockets.
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        # Bound to the group, so that nothing but multicast arrives, where the system allows it (Windows does not).
+        # Bind to the group where the system allows it (Windows does not), so that only multicast arrives.
         try:
             listener.bind((GROUP, port))
         except OSError:
@@ -119,16 +126,16 @@ def _listen(interface: str, port: int) -> socket.socket:
 
 
 def _target(camera: Discoverable, host: str) -> Target:
-    xaddr = "" if ip_address(host).is_unspecified else _xaddr(host, camera.http_port)
+    xaddr = "" if ip_address(host).is_unspecified else _xaddr(host, camera)
     return Target(device_uuid(camera.device), tuple(scopes(camera.device)), xaddr)
 
 
-def _xaddr(host: str, port: int) -> str:
-    return f"http://{host}:{port}{PATHS[DEVICE]}"
+def _xaddr(host: str, camera: Discoverable) -> str:
+    return f"{'https' if camera.tls else 'http'}://{host}:{camera.http_port}{PATHS[DEVICE]}"
 
 
 def _own_address(client: Address) -> str:
-    """Return the address of this machine as a client sees it."""
+    """Return the address of this machine from which it would reach a client."""
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
-        probe.connect(client)  # sends nothing: it only asks the routing table
+        probe.connect(client)  # only looks up the route; nothing is sent
         return str(probe.getsockname()[0])

@@ -1,4 +1,4 @@
-"""The messages of WS-Discovery (April 2005, as ONVIF uses it): probes that are read, and what is answered."""
+"""Parse the queries of WS-Discovery (April 2005, the version that ONVIF uses), and build the messages of a device."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NETWORK = "http://www.onvif.org/ver10/network/wsdl"
 EVERYONE = "urn:schemas-xmlsoap-org:ws:2005:04:discovery"
 
 TYPES = {(NETWORK, "NetworkVideoTransmitter"), (DEVICE, "Device")}
-"""What the device is, as namespaces and names."""
+"""The types of the device, as pairs of namespace and name."""
 
 _ANONYMOUS = "http://schemas.xmlsoap.org/ws/2004/08/addressing/role/anonymous"
 _NAMESPACES = {"env": ENVELOPE, "wsa": MEMBER_ADDRESSING, "d": DISCOVERY, "dn": NETWORK, "tds": DEVICE}
@@ -31,12 +31,12 @@ _METADATA_VERSION = "1"
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A device that can be found.
+    """A discoverable device.
 
     Attributes:
         uuid: Its identity.
-        scopes: What it says of itself.
-        xaddr: The address of its Device service; empty if it depends on who asks.
+        scopes: The scopes that describe it.
+        xaddr: The address of its Device service; empty if it depends on the client.
     """
 
     uuid: UUID
@@ -45,20 +45,20 @@ class Target:
 
     @property
     def address(self) -> str:
-        """The identity as an address."""
+        """The identity as a URN."""
         return f"urn:uuid:{self.uuid}"
 
 
 @dataclass(frozen=True, slots=True)
 class Query:
-    """A Probe or a Resolve.
+    """A Probe or Resolve message.
 
     Attributes:
-        message_id: What the answer relates to.
-        resolves: The address that a Resolve asks for, None for a Probe.
-        types: The types that a Probe asks for.
-        scopes: The scopes that a Probe asks for.
-        match_by: How scopes are compared.
+        message_id: The id of the message, to which the answer refers.
+        resolves: The address in a Resolve; None for a Probe.
+        types: The types in a Probe.
+        scopes: The scopes in a Probe.
+        match_by: The rule for comparing scopes.
     """
 
     message_id: str
@@ -68,7 +68,7 @@ class Query:
     match_by: str = ""
 
     def matches(self, target: Target) -> bool:
-        """Return whether a device is meant."""
+        """Return whether the query matches a device."""
         if self.resolves is not None:
             return self.resolves == target.address
         if not self.types <= TYPES:
@@ -80,7 +80,7 @@ class Query:
 
 
 def parse_query(data: bytes) -> Query | None:
-    """Parse a datagram. Return None for everything that is neither a Probe nor a Resolve."""
+    """Parse a datagram. Return None if it is neither a Probe nor a Resolve."""
     try:
         envelope = parse_envelope(data)
         if envelope.header is None:
@@ -108,30 +108,30 @@ def parse_query(data: bytes) -> Query | None:
 
 
 class Sender:
-    """Builds the messages of one device, with the sequence numbers that clients order them by.
+    """Builds the messages of one device, with sequence numbers for ordering.
 
     Args:
         target: The device.
-        instance: A number that grows with each start of the device.
+        instance: A number that increases with each start of the device.
     """
 
     def __init__(self, target: Target, instance: int) -> None:
         self.target, self._instance, self._number = target, instance, 0
 
     def hello(self) -> bytes:
-        """Return the announcement that the device is there."""
+        """Return the Hello message."""
         return self._message("Hello", EVERYONE, None, _D.Hello(*self._description(self.target.xaddr)))
 
     def bye(self) -> bytes:
-        """Return the announcement that the device leaves."""
+        """Return the Bye message."""
         return self._message("Bye", EVERYONE, None, _D.Bye(self._reference()))
 
     def match(self, query: Query, xaddr: str) -> bytes:
-        """Return the answer to a query that means the device.
+        """Return the answer to a query that matches the device.
 
         Args:
             query: The query.
-            xaddr: The address of the Device service, as the client can reach it.
+            xaddr: The address of the Device service that the client can reach.
         """
         kind = "Probe" if query.resolves is None else "Resolve"
         found = _D(f"{kind}Match", *self._description(xaddr))
@@ -161,9 +161,9 @@ def _qname(element: etree._Element, name: str) -> tuple[str, str]:
     return element.nsmap.get(prefix or None, ""), local
 
 
-def _begins(scope: str, wanted: str) -> bool:
-    """Return whether a scope lies below another one: same scheme and host, and a path that begins with its segments."""
-    ours, theirs = urlsplit(scope), urlsplit(wanted)
+def _begins(scope: str, prefix: str) -> bool:
+    """Return whether a scope begins with another one: the same scheme and host, and a path that begins with its segments."""
+    ours, theirs = urlsplit(scope), urlsplit(prefix)
     if (ours.scheme.lower(), ours.netloc.lower()) != (theirs.scheme.lower(), theirs.netloc.lower()):
         return False
     segments = theirs.path.strip("/").split("/") if theirs.path.strip("/") else []

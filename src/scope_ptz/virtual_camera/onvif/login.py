@@ -1,4 +1,4 @@
-"""WS-Security: who sent a request (UsernameToken Profile with a digest), and when."""
+"""WS-Security: determine who sent a request (UsernameToken Profile with a digest), and when."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from scope_ptz.virtual_camera.accounts import Account, Accounts
 from scope_ptz.virtual_camera.onvif.soap import SECURITY, SoapFault
 
 CLOCK_TOLERANCE_S = 60.0
-"""Seconds by which the clocks of client and device may differ."""
+"""Maximum difference between the clocks of client and device, in seconds."""
 
 _UTILITY = "http://docs.oasis-open.org/wss/2004/01/oasis-200401-wss-wssecurity-utility-1.0.xsd"
 _DIGEST = "#PasswordDigest"
-_MAX_FIELD = 512  # characters of a field of a token
+_MAX_FIELD = 512  # maximum number of characters in a field of a token
 _FRACTION = re.compile(r"\.\d")
 
 
 @dataclass(frozen=True, slots=True)
 class Stamp:
-    """When a client created a request, in Unix seconds. Most clients state whole seconds, so it is an interval."""
+    """The time at which a client created a request, as an interval in Unix seconds, because most clients state whole seconds."""
 
     earliest_s: float
     latest_s: float
@@ -35,22 +35,22 @@ class Stamp:
 
 @dataclass(frozen=True, slots=True)
 class Sender:
-    """An account that proved its password, and when it created the request."""
+    """An authenticated account, and the time at which it created the request."""
 
     account: Account
     stamp: Stamp
 
 
 def not_authorized(reason: str, *, status: int = 400) -> SoapFault:
-    """Return the fault for a request that its sender may not make."""
+    """Return the fault for a request that the sender is not permitted to make."""
     return SoapFault(reason, "NotAuthorized", status=status)
 
 
 class UsernameTokens:
-    """Checks the tokens of requests. Each is accepted once, and only near the time of its creation.
+    """Checks the tokens of requests. Each token is accepted only once, within ``CLOCK_TOLERANCE_S`` of its creation.
 
     Args:
-        accounts: Who may sign in.
+        accounts: The accounts that may sign in.
         clock_s: The device's clock in Unix seconds.
     """
 
@@ -59,10 +59,10 @@ class UsernameTokens:
         self._used: dict[tuple[bytes, str], float] = {}
 
     def sender(self, header: Any) -> Sender | None:
-        """Return who sent a request, None if its header has no token.
+        """Return the sender of a request; None if its header has no token.
 
         Raises:
-            SoapFault: The token is wrong, too old, or was used before.
+            SoapFault: The token is invalid, too old, or was used before.
         """
         if (token := _token(header)) is None:
             return None
@@ -73,9 +73,9 @@ class UsernameTokens:
         nonce = _decoded(_text(token, SECURITY, "Nonce"))
         digest = _decoded(_text(token, SECURITY, "Password"))
         account = self._accounts.find(_text(token, SECURITY, "Username"))
-        # An unknown name costs as much time as a wrong password, so that names cannot be found by timing.
+        # An unknown name takes as long to reject as a wrong password, so that names cannot be found by timing.
         secret = secrets.token_hex(16) if account is None else account.password
-        expected = hashlib.sha1(nonce + created.encode() + secret.encode()).digest()  # noqa: S324 - the profile says SHA-1
+        expected = hashlib.sha1(nonce + created.encode() + secret.encode()).digest()  # noqa: S324 - the profile requires SHA-1
         if not hmac.compare_digest(expected, digest) or account is None:
             raise not_authorized("The user name or the password is wrong.")
         stamp = _stamp(created)
@@ -94,7 +94,7 @@ class UsernameTokens:
 
 
 def created(header: Any) -> Stamp | None:
-    """Return when a request to a device without accounts was created, None if the request does not state it."""
+    """Return the creation time of a request to a device without accounts; None if the request does not state it."""
     token = _token(header)
     text = None if token is None else token.findtext(f"{{{_UTILITY}}}Created")
     return _stamp(text.strip()) if text else None

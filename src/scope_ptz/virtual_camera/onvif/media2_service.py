@@ -1,4 +1,4 @@
-"""The Media2 service: the same profiles in the types of Media2."""
+"""The Media2 service: the profiles of the Media service, in the types of Media2."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Media2Service:
     Args:
         device: The camera.
         ptz: Its PTZ configuration.
-        rtsp_port: Where its streams are.
+        rtsp_port: Port of its RTSP server.
     """
 
     def __init__(self, device: VirtualDevice, ptz: PtzConfiguration, rtsp_port: int) -> None:
@@ -62,16 +62,16 @@ class Media2Service:
         found = profiles.media_profiles(self._device)
         if request.Token:
             found = (profiles.find_profile(self._device, request.Token),)
-        wanted = set(request.Type or ())
-        return {"Profiles": [self._profile(profile, wanted) for profile in found]}
+        requested = set(request.Type or ())
+        return {"Profiles": [self._profile(profile, requested) for profile in found]}
 
-    def _profile(self, profile: profiles.MediaProfile, wanted: set[str]) -> dict[str, Any]:
+    def _profile(self, profile: profiles.MediaProfile, requested: set[str]) -> dict[str, Any]:
         kinds = {
             "VideoSource": lambda: profiles.source_configuration(self._device),
             "VideoEncoder": lambda: _encoder(profile),
             "PTZ": self._ptz.values,
         }
-        configurations = {kind: values() for kind, values in kinds.items() if wanted & {"All", kind}}
+        configurations = {kind: values() for kind, values in kinds.items() if requested & {"All", kind}}
         described: dict[str, Any] = {"token": profile.token, "fixed": True, "Name": profile.name}
         if configurations:
             described["Configurations"] = configurations
@@ -86,11 +86,11 @@ class Media2Service:
         return {"Options": profiles.source_options(self._device)}
 
     def _encoder_configurations(self, request: Request) -> Reply:
-        return {"Configurations": [_encoder(profile) for profile in profiles.asked_encoders(self._device, request)]}
+        return {"Configurations": [_encoder(profile) for profile in profiles.selected_encoders(self._device, request)]}
 
     def _encoder_options(self, request: Request) -> Reply:
-        sizes = [profile.resolution for profile in profiles.asked_encoders(self._device, request)]
-        rates = [profile.bitrate_kbps for profile in profiles.asked_encoders(self._device, request)]
+        sizes = [profile.resolution for profile in profiles.selected_encoders(self._device, request)]
+        rates = [profile.bitrate_kbps for profile in profiles.selected_encoders(self._device, request)]
         return {
             "Options": [
                 {
@@ -125,7 +125,7 @@ class Media2Service:
         return {}
 
     def _check_source(self, request: Request) -> None:
-        """Raise a fault if a request names a video source configuration or a profile that is not there."""
+        """Raise a fault if a request names a video source configuration or a profile that does not exist."""
         if request.ConfigurationToken:
             profiles.require_configuration(request.ConfigurationToken, profiles.SOURCE_CONFIGURATION)
         if request.ProfileToken:

@@ -1,4 +1,4 @@
-"""The media profiles and their configurations, which Media and Media2 describe in their own types."""
+"""The media profiles and their configurations, which the Media and Media2 services share."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STREAM_PATH = "/axis-media/media.amp"
 SNAPSHOT_PATH = "/axis-cgi/jpg/image.cgi"
 
 MULTICAST = {"Address": {"Type": "IPv4", "IPv4Address": "0.0.0.0"}, "Port": 0, "TTL": 1, "AutoStart": False}  # noqa: S104
-"""There is no multicast stream, but the types demand an address."""
+"""A placeholder for the multicast address, which the types require although there is no multicast stream."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class MediaProfile:
 
     @property
     def resolution(self) -> dict[str, int]:
-        """The size as replies have it."""
+        """The size in the form of replies."""
         return {"Width": self.width, "Height": self.height}
 
 
@@ -78,11 +78,11 @@ def find_encoder(device: VirtualDevice, token: str | None) -> MediaProfile:
     raise invalid_argument(f"There is no configuration '{str(token)[:64]}'.", "NoConfig")
 
 
-def asked_encoders(device: VirtualDevice, request: Request) -> tuple[MediaProfile, ...]:
-    """Return the profiles whose encoders a request means: by configuration, by profile, or all.
+def selected_encoders(device: VirtualDevice, request: Request) -> tuple[MediaProfile, ...]:
+    """Return the profiles whose encoders a request selects: by configuration, by profile, or all.
 
     Raises:
-        SoapFault: It names what is not there.
+        SoapFault: The request names an unknown configuration or profile.
     """
     found = media_profiles(device)
     if request.ConfigurationToken:
@@ -94,7 +94,7 @@ def asked_encoders(device: VirtualDevice, request: Request) -> tuple[MediaProfil
 
 
 def require_configuration(token: str | None, known: str) -> None:
-    """Raise a fault unless a token of a configuration is the known one."""
+    """Raise a fault if the token of a configuration differs from the only valid one."""
     require_token("configuration", token, known, "NoConfig")
 
 
@@ -110,7 +110,7 @@ def source_configuration(device: VirtualDevice) -> dict[str, Any]:
 
 
 def source_options(device: VirtualDevice) -> dict[str, Any]:
-    """Return the options of the video source's configuration: the whole picture, nothing else."""
+    """Return the options of the video source's configuration, which allow only the whole picture."""
     zero = {"Min": 0, "Max": 0}
     return {
         "BoundsRange": {
@@ -124,11 +124,11 @@ def source_options(device: VirtualDevice) -> dict[str, Any]:
 
 
 def stream_uri(request: Request, profile: MediaProfile, rtsp_port: int) -> str:
-    """Return the address of a stream as the client can reach it."""
+    """Return the address of a stream that the client can reach."""
     port = "" if rtsp_port == 554 else f":{rtsp_port}"
     return f"rtsp://{request.host}{port}{STREAM_PATH}{profile.query}"
 
 
 def snapshot_uri(request: Request, profile: MediaProfile) -> str:
-    """Return the address of the current picture as the client can reach it."""
+    """Return the address of the current picture that the client can reach."""
     return f"{request.origin}{SNAPSHOT_PATH}?resolution={profile.width}x{profile.height}"

@@ -1,4 +1,4 @@
-"""The Media service (version 1): profiles with an H.264 stream each."""
+"""The Media service (version 1): profiles, each with an H.264 stream."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class MediaService:
     Args:
         device: The camera.
         ptz: Its PTZ configuration.
-        rtsp_port: Where its streams are.
+        rtsp_port: Port of its RTSP server.
     """
 
     def __init__(self, device: VirtualDevice, ptz: PtzConfiguration, rtsp_port: int) -> None:
@@ -98,7 +98,7 @@ class MediaService:
     def _encoder_options(self, request: Request) -> Reply:
         rate, gop = profiles.FRAME_RATE, profiles.GOP_FRAMES
         h264 = {
-            "ResolutionsAvailable": [profile.resolution for profile in profiles.asked_encoders(self._device, request)],
+            "ResolutionsAvailable": [profile.resolution for profile in profiles.selected_encoders(self._device, request)],
             "GovLengthRange": {"Min": gop, "Max": gop},
             "FrameRateRange": {"Min": rate, "Max": rate},
             "EncodingIntervalRange": {"Min": 1, "Max": 1},

@@ -1,4 +1,4 @@
-"""What services are made of: operations with the role that they need, and the request that they get."""
+"""Types that the services share: operations with the roles that they require, requests and replies."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ class Request:
     """A request with parsed arguments.
 
     Attributes:
-        arguments: The arguments by name, as zeep parsed them with the types of the WSDL.
-        host: The host by which the client reached the device, as it appears in an address (with brackets for IPv6).
-        origin: Scheme, host and port by which the client reached the device.
-        stamp: When the client created the request, None if it did not say so.
+        arguments: The arguments by name, parsed by zeep with the types of the WSDL.
+        host: The host that the client used for the device, in the form used in URLs (with brackets for IPv6).
+        origin: The scheme, host and port that the client used for the device.
+        stamp: The time at which the client created the request; None if the request does not state it.
     """
 
     arguments: Any
@@ -27,7 +27,7 @@ class Request:
     stamp: Stamp | None = None
 
     def __getattr__(self, name: str) -> Any:
-        """Return an argument, None if the request has none of this name."""
+        """Return an argument; None if the request does not contain it."""
         return getattr(self.arguments, name, None)
 
 
@@ -37,7 +37,7 @@ Reply = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """What an operation does, and the role that an account needs for it; None for no login."""
+    """The function of an operation, and the role that it requires; None if it requires no login."""
 
     run: Callable[[Request], Reply]
     role: Role | None = Role.VIEWER

@@ -16,25 +16,25 @@ from scope_ptz.virtual_camera.onvif.soap import invalid_argument
 NODE = "ptz-node"
 CONFIGURATION = "ptz-configuration"
 MIN_TIMEOUT_S, MAX_TIMEOUT_S = 0.1, 60.0
-"""Shortest and longest time of a continuous move, in seconds."""
+"""Minimum and maximum duration of a continuous move in seconds."""
 
 
 def duration_s(value: Any) -> float | None:
-    """Return a duration of a request in seconds, None if it is not one within the limits."""
-    seconds = value.total_seconds() if isinstance(value, timedelta) else None  # isodate keeps months and years apart
+    """Return a duration of a request in seconds; None if it is invalid or outside the limits."""
+    seconds = value.total_seconds() if isinstance(value, timedelta) else None  # isodate has a separate type for months and years
     return seconds if seconds is not None and MIN_TIMEOUT_S <= seconds <= MAX_TIMEOUT_S else None
 
 
 class PtzConfiguration:
-    """The PTZ configuration, whose defaults clients may change.
+    """The PTZ configuration. Clients can change its defaults.
 
     Attributes:
         spaces: The spaces of the camera.
-        position: The space of positions in status and presets, and of absolute moves that name none.
-        translation: The space of relative moves that name none.
-        timeout_s: Seconds of a continuous move that names no timeout.
-        speed: Share of the top speed of moves that name none.
-        zoom_speed: The same for the zoom.
+        position: The space of positions in status and presets, and the default space of absolute moves.
+        translation: The default space of relative moves.
+        timeout_s: The default duration of a continuous move in seconds.
+        speed: The default speed of pan and tilt, as a share of the top speed.
+        zoom_speed: The default speed of the zoom, as a share of the top speed.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
@@ -57,7 +57,7 @@ class PtzConfiguration:
         }
 
     def values(self) -> dict[str, Any]:
-        """Return the configuration as a reply has it."""
+        """Return the configuration in the form of a reply."""
         pan_tilt = self.spaces.positions[0]
         return {
             "token": CONFIGURATION,
@@ -116,27 +116,27 @@ class PtzConfiguration:
         return {"PTZConfigurationOptions": {"Spaces": self._all_spaces(), "PTZTimeout": timeout}}
 
     def _set(self, request: Request) -> Reply:
-        wanted = request.PTZConfiguration
-        self._require(wanted.token)
-        position = _known(self.spaces.positions, wanted.DefaultAbsolutePantTiltPositionSpace, self.position)
-        translation = _known(self.spaces.translations, wanted.DefaultRelativePanTiltTranslationSpace, self.translation)
-        _known(self.spaces.zoom_positions, wanted.DefaultAbsoluteZoomPositionSpace, s.ZOOM_POSITION)
-        _known(self.spaces.zoom_translations, wanted.DefaultRelativeZoomTranslationSpace, s.ZOOM_TRANSLATION)
-        _known(self.spaces.velocities, wanted.DefaultContinuousPanTiltVelocitySpace, s.VELOCITY)
-        _known(self.spaces.zoom_velocities, wanted.DefaultContinuousZoomVelocitySpace, s.ZOOM_VELOCITY)
-        speed, zoom_speed = self.shares(wanted.DefaultPTZSpeed, "ConfigModify")
+        requested = request.PTZConfiguration
+        self._require(requested.token)
+        position = _known(self.spaces.positions, requested.DefaultAbsolutePantTiltPositionSpace, self.position)
+        translation = _known(self.spaces.translations, requested.DefaultRelativePanTiltTranslationSpace, self.translation)
+        _known(self.spaces.zoom_positions, requested.DefaultAbsoluteZoomPositionSpace, s.ZOOM_POSITION)
+        _known(self.spaces.zoom_translations, requested.DefaultRelativeZoomTranslationSpace, s.ZOOM_TRANSLATION)
+        _known(self.spaces.velocities, requested.DefaultContinuousPanTiltVelocitySpace, s.VELOCITY)
+        _known(self.spaces.zoom_velocities, requested.DefaultContinuousZoomVelocitySpace, s.ZOOM_VELOCITY)
+        speed, zoom_speed = self.shares(requested.DefaultPTZSpeed, "ConfigModify")
         timeout_s: float | None = self.timeout_s
-        if wanted.DefaultPTZTimeout is not None:
-            timeout_s = duration_s(wanted.DefaultPTZTimeout)
-        if wanted.NodeToken != NODE or timeout_s is None:
+        if requested.DefaultPTZTimeout is not None:
+            timeout_s = duration_s(requested.DefaultPTZTimeout)
+        if requested.NodeToken != NODE or timeout_s is None:
             raise invalid_argument("The node or the default timeout is not one of the options.", "ConfigModify")
-        self.name = (wanted.Name or self.name)[:64]
+        self.name = (requested.Name or self.name)[:64]
         self.position, self.translation, self.timeout_s = position, translation, timeout_s
         self.speed, self.zoom_speed = speed, zoom_speed
         return {}
 
     def shares(self, speed: Any, subcode: str = "InvalidSpeed") -> tuple[float, float]:
-        """Return shares of the top speeds of pan and tilt, and of the zoom. Absent ones and zeros mean the default.
+        """Return the requested shares of the top speeds of pan and tilt, and of the zoom. Missing values and 0 mean the default.
 
         Raises:
             SoapFault: A number is not from 0 to 1, or the space is unknown.

@@ -18,7 +18,7 @@ class PresetOperations:
     Args:
         device: The camera.
         configuration: Its PTZ configuration.
-        service: The service that the operations belong to.
+        service: The PTZ service, which converts positions.
     """
 
     def __init__(self, device: VirtualDevice, configuration: PtzConfiguration, service: PtzService) -> None:

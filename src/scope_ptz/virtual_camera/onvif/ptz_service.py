@@ -49,7 +49,7 @@ class PtzService:
         }
 
     def _capabilities(self, _: Request) -> Reply:
-        # The two last ones are younger than the WSDL files that onvif-zeep-async ships.
+        # The last two are newer than the WSDL files of onvif-zeep-async.
         reports = self._device.reported_moving() is not None
         more = {"MoveStatus": "true" if reports else "false", "StatusPosition": "true"}
         return {"Capabilities": {"EFlip": False, "Reverse": False, "GetCompatibleConfigurations": True, "_attr_1": more}}
@@ -107,7 +107,7 @@ class PtzService:
         if velocity == Velocity():
             self._device.stop(sent_s=self._sent_s(request, latest=False))
             return {}
-        # A command that a stop has overtaken on its way is dropped. The reply is the same: it was carried out and is over.
+        # A move that was sent before a stop but arrives after it is dropped. The reply is that of a completed move.
         self._device.drive(velocity, timeout_s=timeout_s, sent_s=self._sent_s(request, latest=True))
         return {}
 
@@ -121,9 +121,9 @@ class PtzService:
         return {}
 
     def _sent_s(self, request: Request, *, latest: bool) -> float | None:
-        """Return when a request was created: for a move the latest, for a stop the earliest moment that its time stamp allows.
+        """Return the creation time of a request in Unix seconds: the latest possible time of a move, the earliest of a stop.
 
-        Both err towards carrying out the move. A client whose clock is ahead must not hold up others.
+        In case of doubt, the move is therefore carried out. A client whose clock is ahead must not block others.
         """
         if request.stamp is None:
             return None
@@ -136,8 +136,8 @@ class PtzService:
 
 
 def _axes(vector: Any) -> tuple[Any, Any]:
-    """Return the parts of a vector for pan and tilt, and for the zoom."""
+    """Return the pan/tilt part and the zoom part of a vector."""
     pan_tilt, zoom = getattr(vector, "PanTilt", None), getattr(vector, "Zoom", None)
     if pan_tilt is None and zoom is None:
-        raise SoapFault("The move names neither pan and tilt nor zoom.", "InvalidArgs")
+        raise SoapFault("The move must specify pan and tilt, zoom, or both.", "InvalidArgs")
     return pan_tilt, zoom

@@ -1,4 +1,4 @@
-"""SOAP 1.2: reading requests within bounds, writing replies, and faults."""
+"""Parse SOAP 1.2 requests of limited size, and build replies and faults."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ ADDRESSING = "http://www.w3.org/2005/08/addressing"
 MEMBER_ADDRESSING = "http://schemas.xmlsoap.org/ws/2004/08/addressing"
 
 MAX_REQUEST_BYTES = 65536
-"""Size of a request above which it is refused. The largest sensible one (SetConfiguration) has about 4 kB."""
+"""Maximum size of a request in bytes. The largest common request (SetConfiguration) has about 4 kB."""
 
 _UNDERSTOOD = {SECURITY, ADDRESSING, MEMBER_ADDRESSING}
 _E = ElementMaker(namespace=ENVELOPE, nsmap={"env": ENVELOPE, "ter": ERRORS})
 _LANGUAGE = "{http://www.w3.org/XML/1998/namespace}lang"
 
 
-class SoapFault(Exception):  # noqa: N818 - the word of the SOAP specification
-    """A request that is refused. It becomes the reply.
+class SoapFault(Exception):  # noqa: N818 - the term of the SOAP specification
+    """A refused request. The fault is sent as the reply.
 
     Args:
-        reason: What is wrong, for people.
-        subcodes: The codes below Sender or Receiver, in the namespace of ONVIF errors.
-        receiver: Whether the fault is the device's and not the request's.
+        reason: A message for people.
+        subcodes: The subcodes of Sender or Receiver, in the namespace of ONVIF errors.
+        receiver: Whether the device rather than the request caused the fault.
         status: Status of the HTTP reply; the default is 400 for a sender's fault, 500 for a receiver's.
     """
 
@@ -38,10 +38,10 @@ class SoapFault(Exception):  # noqa: N818 - the word of the SOAP specification
         self.status = status or (500 if receiver else 400)
 
     code: str | None = None
-    """The top code where it is neither Sender nor Receiver."""
+    """The top-level code of the fault, if it is neither Sender nor Receiver."""
 
     def envelope(self) -> bytes:
-        """Return the fault as a message."""
+        """Return the fault as a SOAP message."""
         subcode: Any = None
         for name in reversed(self.subcodes):
             inner = [] if subcode is None else [subcode]
@@ -55,31 +55,31 @@ class SoapFault(Exception):  # noqa: N818 - the word of the SOAP specification
 
 
 class NotUnderstood(SoapFault):
-    """A mandatory header that the device does not know."""
+    """The fault for a mandatory header that the device does not support."""
 
     code = "MustUnderstand"
 
 
 def invalid_argument(reason: str, *subcodes: str) -> SoapFault:
-    """Return the fault for an argument that is wrong, such as ``NoProfile`` below ``InvalidArgVal``."""
+    """Return the fault for an invalid argument. ``subcodes`` follow ``InvalidArgVal``, for example ``NoProfile``."""
     return SoapFault(reason, "InvalidArgVal", *subcodes)
 
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """A request: its header blocks, and the element in its body."""
+    """A parsed request: its header blocks, and the element in its body."""
 
     header: Any
     body: Any
 
 
 def parse_xml(data: bytes) -> Any:
-    """Parse XML from the network: no document type, no entities, no network access, and lxml's bounds on depth and size.
+    """Parse untrusted XML without document types, entities and network access, and with lxml's limits on depth and size.
 
     Raises:
-        SoapFault: It is not well-formed, or has a document type.
+        SoapFault: The document is not well-formed, or has a document type.
     """
-    # A parser for each document: one that failed may not be used again from another thread.
+    # Each document needs a new parser, because a parser that failed must not be used in another thread.
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, dtd_validation=False, huge_tree=False, remove_comments=True,
         remove_pis=True,
@@ -97,7 +97,7 @@ def parse_envelope(data: bytes) -> Envelope:
     """Parse a SOAP 1.2 request.
 
     Raises:
-        SoapFault: It is not a SOAP 1.2 envelope with one element in its body.
+        SoapFault: The request is not a SOAP 1.2 envelope with one element in its body.
     """
     root = parse_xml(data)
     name = etree.QName(root)
@@ -107,14 +107,14 @@ def parse_envelope(data: bytes) -> Envelope:
         raise fault
     header, body = root.find(f"{{{ENVELOPE}}}Header"), root.find(f"{{{ENVELOPE}}}Body")
     if body is None or len(body) != 1:
-        raise SoapFault("A request has one element in the body of its envelope.", "WellFormed")
+        raise SoapFault("A request must have one element in the body of its envelope.", "WellFormed")
     for block in () if header is None else header:
         needed = block.get(f"{{{ENVELOPE}}}mustUnderstand", "").strip() in ("1", "true")
         if needed and etree.QName(block).namespace not in _UNDERSTOOD:
-            raise NotUnderstood("The request has a mandatory header that the device does not know.")
+            raise NotUnderstood("The request has a mandatory header that the device does not support.")
     return Envelope(header, body[0])
 
 
 def as_bytes(element: Any) -> bytes:
-    """Return an element as a document."""
+    """Serialise an element as an XML document."""
     return bytes(etree.tostring(element, xml_declaration=True, encoding="UTF-8"))

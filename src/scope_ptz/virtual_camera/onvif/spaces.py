@@ -1,4 +1,4 @@
-"""The coordinate spaces of ONVIF, and what their numbers mean for this camera.
+"""The coordinate spaces of ONVIF, and conversions between them and poses of this camera.
 
 Positive x is right and positive y is up in all of them.
 """
@@ -27,7 +27,7 @@ ZOOM_TRANSLATION = _ZOOM + "TranslationGenericSpace"
 ZOOM_VELOCITY = _ZOOM + "VelocityGenericSpace"
 ZOOM_SPEED = _ZOOM + "ZoomGenericSpeedSpace"
 
-_TOLERANCE = 1e-4  # clients that calculate in single precision miss an end of a range by a little
+_TOLERANCE = 1e-4  # clients that calculate in single precision exceed the end of a range slightly
 
 Range = tuple[float, float]
 UNIT: Range = (-1.0, 1.0)
@@ -36,31 +36,31 @@ SHARE: Range = (0.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """A space with its ranges; a space of one dimension has no y."""
+    """A space with its ranges. A one-dimensional space has no y."""
 
     uri: str
     x: Range
     y: Range | None = None
 
     def check(self, vector: Any, subcode: str) -> None:
-        """Raise a fault if a vector is not within the ranges, or has a number that is not finite."""
+        """Raise a fault if a vector is outside the ranges or has a number that is not finite."""
         for axis, limits in (("x", self.x), ("y", self.y)):
             if limits is None:
                 continue
             value = getattr(vector, axis)
             if value is None or not limits[0] - _TOLERANCE <= value <= limits[1] + _TOLERANCE:
-                raise invalid_argument(f"{axis} must be from {limits[0]:g} to {limits[1]:g}, got {value}.", subcode)
+                raise invalid_argument(f"{axis} must be from {limits[0]:g} to {limits[1]:g}; got {value}.", subcode)
 
 
 def chosen(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:
-    """Return the space of a vector: the one that it names, else the default.
+    """Return the space that a vector names, or the default.
 
     Raises:
-        SoapFault: The device does not have it.
+        SoapFault: The device does not support the space.
     """
-    wanted = getattr(vector, "space", None) or default
+    requested = getattr(vector, "space", None) or default
     for space in spaces:
-        if space.uri == wanted:
+        if space.uri == requested:
             return space
     raise invalid_argument("The device does not support this space.", "SpaceNotSupported")
 
@@ -108,7 +108,7 @@ class Spaces:
         return replace(pose, pan_deg=x, tilt_deg=y)
 
     def at_zoom_position(self, pose: Pose, x: float) -> Pose:
-        """Return a pose at a position of the zoom."""
+        """Return ``pose`` with the zoom at a position."""
         low, high = self._zoom
         return replace(pose, zoom=low + x * (high - low))
 

@@ -14,21 +14,29 @@ from zeep.wsdl import Document
 from scope_ptz.errors import ConfigError
 
 DEVICE = "http://www.onvif.org/ver10/device/wsdl"
+IMAGING = "http://www.onvif.org/ver20/imaging/wsdl"
 MEDIA = "http://www.onvif.org/ver10/media/wsdl"
 MEDIA2 = "http://www.onvif.org/ver20/media/wsdl"
 PTZ = "http://www.onvif.org/ver20/ptz/wsdl"
 SCHEMA = "http://www.onvif.org/ver10/schema"
 
-_PREFIXES = {"tds": DEVICE, "trt": MEDIA, "tr2": MEDIA2, "tptz": PTZ, "tt": SCHEMA}  # those of the specifications
+_PREFIXES = {
+    "tds": DEVICE,
+    "trt": MEDIA,
+    "tr2": MEDIA2,
+    "tptz": PTZ,
+    "timg": IMAGING,
+    "tt": SCHEMA,
+}  # the prefixes of the specifications
 _OWN_FOLDER = Path(__file__).parent / "wsdl"
 _INSTALL = "Install them with: pip install 'scope-ptz[serve]'"
 
 
 @cache
 def load_document() -> Document:
-    """Return the WSDL document of all services. It takes some 0.3 s the first time.
+    """Return the WSDL document of all services. The first call takes about 0.3 s.
 
-    Device, Media and PTZ come from the files that onvif-zeep-async ships, Media2 from a file of this package.
+    Device, Media, PTZ and Imaging come from files of onvif-zeep-async, and Media2 from a file of this package.
 
     Raises:
         ConfigError: The WSDL files are not installed.
@@ -36,7 +44,7 @@ def load_document() -> Document:
     folders = (_OWN_FOLDER, _shipped_folder())
 
     class LocalFiles(Transport):
-        """Finds documents by file name in the two folders, and never on the network."""
+        """Loads documents by file name from the two folders, and never from the network."""
 
         def load(self, url: str) -> bytes:
             name = Path(url).name
@@ -64,7 +72,7 @@ def load_operations() -> dict[tuple[str, str], Any]:
 
 
 def _shipped_folder() -> Path:
-    # The package is located without importing it, because an import starts its client with all dependencies.
+    # The package is located without importing it, because an import would load its client with all dependencies.
     spec = find_spec("onvif")
     for place in (spec.submodule_search_locations if spec else None) or ():
         if (folder := Path(place) / "wsdl") and (folder / "ptz.wsdl").is_file():

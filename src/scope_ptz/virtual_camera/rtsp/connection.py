@@ -1,4 +1,4 @@
-"""One RTSP connection: reads requests one after the other, and answers them."""
+"""One RTSP connection, which reads and answers requests one after the other."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class RtspConnection:
         source: Its live picture.
         sessions: The sessions of all connections.
         digest: Checks passwords.
-        chance: Decides which requests are dropped if the camera drops some.
-        reader: What the client sends.
-        writer: What it gets.
+        chance: Random generator that selects the requests to drop.
+        reader: The incoming stream.
+        writer: The outgoing stream.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class RtspConnection:
         }
 
     def abort(self) -> None:
-        """Break the connection off. ``run`` ends then."""
+        """Abort the connection, which ends ``run``."""
         self._writer.transport.abort()
 
     async def run(self) -> None:
@@ -87,7 +87,7 @@ class RtspConnection:
             while await self._serve_next():
                 pass
         except (OSError, EOFError, TimeoutError):
-            pass  # the client left, or takes forever
+            pass  # the client disconnected or is too slow
         finally:
             for session in list(self._own.values()):
                 session.connected = False
@@ -160,7 +160,7 @@ class RtspConnection:
             self._account = verdict.account.name
         return await handler(request)
 
-    def _wanted(self, url: StreamUrl) -> StreamFormat:
+    def _requested(self, url: StreamUrl) -> StreamFormat:
         return stream_format(url, self._device, self._source.rate_hz)
 
     def _session(self, request: Request) -> Session:
@@ -172,7 +172,7 @@ class RtspConnection:
 
     async def _options(self, request: Request) -> Reply:
         if "session" in request.headers:
-            with suppress(RefusedError):  # a sign of life, and no more than that
+            with suppress(RefusedError):  # only a keep-alive
                 self._session(request)
         return Reply(headers=(("Public", ", ".join(self._handlers)),))
 
@@ -181,9 +181,9 @@ class RtspConnection:
         accepted = request.headers.get("accept", "*/*").lower()
         if not any(each in accepted for each in ("application/sdp", "application/*", "*/*")):
             raise RefusedError(406)
-        wanted = self._wanted(url)
-        sets = await to_thread.run_sync(parameter_sets, wanted.width, wanted.height, wanted.fps)
-        body = describe(url, wanted, sets, name=self._device.name, host=self._here)
+        requested = self._requested(url)
+        sets = await to_thread.run_sync(parameter_sets, requested.width, requested.height, requested.fps)
+        body = describe(url, requested, sets, name=self._device.name, host=self._here)
         head = (("Content-Type", "application/sdp"), ("Content-Base", url.content_base), ("Cache-Control", "no-cache"))
         return Reply(headers=head, body=body)
 
@@ -198,7 +198,7 @@ class RtspConnection:
                 session.sink.close()
                 session.sink = None
         else:
-            session = self._sessions.open(self._wanted(url), (self._peer, self._account))
+            session = self._sessions.open(self._requested(url), (self._peer, self._account))
         try:
             transport = await (self._set_up_tcp(session, offer) if offer.interleaved else self._set_up_udp(session, offer))
         except RefusedError:
@@ -248,7 +248,7 @@ class RtspConnection:
         return Reply()
 
     async def _parameter(self, request: Request) -> Reply:
-        """Answer a request that clients send as a sign of life. There are no parameters."""
+        """Answer a keep-alive request. There are no parameters."""
         head = (self._session_header(self._session(request)),) if "session" in request.headers else ()
         if request.body:
             raise RefusedError(451)

@@ -1,4 +1,4 @@
-"""H.264 by libx264, for live pictures: no reordering, no look-ahead, one thread."""
+"""Encode live pictures as H.264 with libx264, without reordering and look-ahead, in one thread."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 QUALITY_CRF = 23
 BITS_PER_PIXEL_S = 6.5
-"""Cap of the bit rate: 6 Mbit/s at 1280x720."""
+"""Maximum bit rate in bits per second and pixel: 6 Mbit/s at 1280x720."""
 
-MIN_BITS_PER_S = 500_000  # cap for small pictures, whose headers weigh more
+MIN_BITS_PER_S = 500_000  # maximum bit rate of small pictures, whose headers take a larger share
 
 BURST_S = 0.33
-"""Seconds of the capped bit rate that one picture may take, which bounds keyframes."""
+"""Maximum size of a picture, in seconds of the maximum bit rate. It limits keyframes."""
 
 _START_CODE = re.compile(b"\x00{2,3}\x01")
 _SEI = 6
@@ -37,14 +37,14 @@ _LIMITED_RANGE = 1
 
 @dataclass(frozen=True, slots=True)
 class ParameterSets:
-    """What a decoder needs before the first picture: sequence and picture parameter sets, without start codes."""
+    """The sequence and picture parameter sets that a decoder needs before the first picture, without start codes."""
 
     sps: bytes
     pps: bytes
 
     @property
     def profile_level_id(self) -> str:
-        """Profile and level as SDP has them."""
+        """Profile and level in the form of SDP."""
         return self.sps[1:4].hex()
 
 
@@ -72,7 +72,7 @@ class H264Encoder:
 
         Args:
             image: Array of shape ``(H, W, 3)``, RGB. Another size is fitted to that of the encoder.
-            time_s: When it was taken, in seconds from any start.
+            time_s: The time at which it was taken, in seconds from an arbitrary origin.
             keyframe: Whether decoding can begin here. The parameter sets come first then.
 
         Raises:
@@ -136,5 +136,5 @@ def _open_codec(width: int, height: int, fps: float) -> VideoCodecContext:
         }
         codec.open()
     except (av.FFmpegError, ValueError) as error:
-        raise ConfigError(f"This build of PyAV cannot encode H.264 by libx264 ({error}). Install PyAV from PyPI.") from error
+        raise ConfigError(f"This build of PyAV cannot encode H.264 with libx264 ({error}). Install PyAV from PyPI.") from error
     return codec

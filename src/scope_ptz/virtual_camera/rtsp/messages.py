@@ -53,7 +53,7 @@ class RefusedError(CameraError):
 
 
 class MalformedError(RefusedError):
-    """What arrived is no RTSP request. The connection cannot be used any further."""
+    """The data is not an RTSP request. The connection cannot be used any longer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +109,8 @@ async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | 
         The message; None for an empty line between messages.
 
     Raises:
-        MalformedError: It is no RTSP request, or a part of it is too large.
-        asyncio.IncompleteReadError: The client left in the middle of it.
+        MalformedError: The message is not an RTSP request, or a part of it is too large.
+        asyncio.IncompleteReadError: The client disconnected in the middle of the message.
     """
     if first == _INTERLEAVED:
         head = await reader.readexactly(3)

@@ -1,4 +1,4 @@
-"""Sends a live stream to one client, newest pictures first of all: a client that is slow misses some."""
+"""Send a live stream to one client. A slow client misses pictures, so that it always gets recent ones."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from scope_ptz.virtual_camera.rtsp.rtp import RtpClock
 from scope_ptz.virtual_camera.rtsp.sinks import BATCH_PACKETS, Sink
 
 MAX_AGE_S = 0.5
-"""Age above which a picture is not sent any more, beside the configured latency of the stream."""
+"""Maximum age of a picture that is sent, in addition to the configured latency of the stream."""
 
-MAX_QUEUED = 6  # pictures that wait for a client
+MAX_QUEUED = 6  # maximum number of queued pictures for a client
 
 
 @dataclass(slots=True)
 class StreamStatistics:
-    """What a server has sent so far.
+    """Statistics of the pictures that a server has sent.
 
     Attributes:
         sessions: Number of sessions that were opened.
-        sent: Number of pictures that were sent whole.
+        sent: Number of pictures that were sent completely.
         dropped: Number of pictures that clients missed because they were slow.
         oldest_s: Greatest age of a packet when it was sent, without the configured latency.
     """
@@ -40,12 +40,12 @@ class Playback:
     """Sends pictures from ``run`` until it is cancelled.
 
     Args:
-        sink: Where packets go.
-        clock: The sender's numbers.
+        sink: The destination of the packets.
+        clock: The sender's RTP numbers.
         latency_s: The configured latency of the stream.
         clock_skew_s: Returns the seconds by which the camera's clock is ahead.
-        statistics: Where to count.
-        on_sent: Called after each picture that the client took.
+        statistics: The counters to update.
+        on_sent: Called after each picture that was sent completely.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class Playback:
         self._reported_s = -rtcp.REPORT_INTERVAL_S
 
     def offer(self, unit: AccessUnit) -> None:
-        """Take a picture without waiting."""
+        """Queue a picture for sending, without waiting."""
         if unit.taken_s < self.start_s:
             return
         if len(self._queue) >= MAX_QUEUED:
@@ -82,7 +82,7 @@ class Playback:
         self._changed.set()
 
     def end(self) -> None:
-        """Note that the stream has failed."""
+        """Record that the stream has ended."""
         self._ended = True
         self._changed.set()
 
@@ -90,7 +90,7 @@ class Playback:
         """Send pictures until the stream ends.
 
         Raises:
-            OSError: The client has vanished.
+            OSError: The client has disconnected.
         """
         while not self._ended:
             if not self._queue:
@@ -107,7 +107,7 @@ class Playback:
                 self._drop_waiting()
 
     def goodbye(self) -> None:
-        """Tell the client that the stream ends."""
+        """Notify the client that the stream ends."""
         self._sink.report(rtcp.goodbye(self._clock.ssrc))
 
     async def _send(self, unit: AccessUnit) -> bool:
@@ -123,7 +123,7 @@ class Playback:
         return True
 
     def _drop_waiting(self) -> None:
-        """Drop what waits. What follows cannot be decoded without it, up to the next keyframe."""
+        """Drop the queued pictures. Those that follow cannot be decoded without them, up to the next keyframe."""
         self._statistics.dropped += len(self._queue)
         self._queue.clear()
         self._needs_keyframe = True

@@ -29,10 +29,10 @@ def sender_report(ssrc: int, unix_s: float, timestamp: int, packets: int, octets
     counts = packets & 0xFFFFFFFF, octets & 0xFFFFFFFF
     report = _SENDER_REPORT.pack(_VERSION, _SR, 6, ssrc, seconds, fraction, timestamp, *counts)
     item = bytes((1, len(CNAME))) + CNAME
-    item += bytes(4 - len(item) % 4)  # the list of items ends with at least one zero, at a multiple of four bytes
+    item += bytes(4 - len(item) % 4)  # the list of items ends with at least one zero byte and is padded to a multiple of four bytes
     return report + _HEAD.pack(_VERSION | 1, _SDES, 1 + len(item) // 4, ssrc) + item
 
 
 def goodbye(ssrc: int) -> bytes:
-    """Return the packet that says that a source ends."""
+    """Return a BYE packet, which announces that a source ends."""
     return _HEAD.pack(_VERSION | 1, _BYE, 1, ssrc)

@@ -9,7 +9,7 @@ from struct import Struct
 CLOCK_HZ = 90_000
 PAYLOAD_TYPE = 96
 MAX_PAYLOAD_BYTES = 1400
-"""Bytes after the RTP header, so that a packet fits into an Ethernet frame with room for tunnels."""
+"""Maximum size of a payload in bytes, so that a packet fits into an Ethernet frame even through a tunnel."""
 
 _HEADER = Struct("!BBHII")
 _VERSION = 2 << 6
@@ -18,7 +18,7 @@ _FU_A, _FU_START, _FU_END = 28, 0x80, 0x40
 
 
 def payloads(nal_units: Iterable[bytes]) -> list[bytes]:
-    """Return the payloads of a picture's NAL units: those that fit as they are, the others in fragments (FU-A)."""
+    """Return the payloads of a picture's NAL units. Units that are too large are split into fragments (FU-A)."""
     found: list[bytes] = []
     for nal in nal_units:
         if len(nal) <= MAX_PAYLOAD_BYTES:
@@ -54,7 +54,7 @@ class RtpClock:
 
         Args:
             contents: The payloads.
-            taken_s: When the picture was taken, on ``time.monotonic``.
+            taken_s: The time at which the picture was taken, on ``time.monotonic``.
         """
         timestamp, last = self.timestamp(taken_s), len(contents) - 1
         found = []

@@ -9,12 +9,12 @@ from scope_ptz.virtual_camera.rtsp.rtp import CLOCK_HZ, PAYLOAD_TYPE
 from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat, StreamUrl
 
 
-def describe(url: StreamUrl, wanted: StreamFormat, sets: ParameterSets, *, name: str, host: str) -> bytes:
+def describe(url: StreamUrl, requested: StreamFormat, sets: ParameterSets, *, name: str, host: str) -> bytes:
     """Return the description of a stream.
 
     Args:
         url: The address that the client used.
-        wanted: Size and rate.
+        requested: Size and rate.
         sets: The parameter sets of the encoder.
         name: Name of the camera.
         host: Its address.
@@ -33,8 +33,8 @@ def describe(url: StreamUrl, wanted: StreamFormat, sets: ParameterSets, *, name:
         f"c=IN {family} {'::' if ':' in host else '0.0.0.0'}",  # noqa: S104 - no address is bound
         f"a=rtpmap:{PAYLOAD_TYPE} H264/{CLOCK_HZ}",
         f"a=fmtp:{PAYLOAD_TYPE} packetization-mode=1;profile-level-id={sets.profile_level_id};sprop-parameter-sets={sprop}",
-        f"a=framerate:{wanted.fps:.6f}",
-        f"a=framesize:{PAYLOAD_TYPE} {wanted.width}-{wanted.height}",
+        f"a=framerate:{requested.fps:.6f}",
+        f"a=framesize:{PAYLOAD_TYPE} {requested.width}-{requested.height}",
         f"a=control:{url.track}",
     ]
     return ("\r\n".join(lines) + "\r\n").encode()

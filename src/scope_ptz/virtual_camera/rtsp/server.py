@@ -23,16 +23,16 @@ from scope_ptz.virtual_camera.rtsp.sessions import Sessions
 
 SESSION_TIMEOUT_S = 60.0
 MAX_CONNECTIONS = 64
-WATCH_INTERVAL_S = 0.1  # how often faults and the ages of sessions are looked at
+WATCH_INTERVAL_S = 0.1  # interval between checks of faults and session timeouts
 
 
 class RtspServer:
     """Serves the live picture of a camera.
 
     Args:
-        source: The live picture, which runs elsewhere.
-        realm: Name of what a password protects.
-        session_timeout_s: Seconds without a sign of life after which a session ends.
+        source: The live picture. The caller runs it.
+        realm: The authentication realm, which clients show.
+        session_timeout_s: Seconds of client inactivity after which a session ends.
     """
 
     def __init__(self, source: LiveSource, *, realm: str, session_timeout_s: float = SESSION_TIMEOUT_S) -> None:
@@ -49,7 +49,7 @@ class RtspServer:
 
     @property
     def statistics(self) -> StreamStatistics:
-        """What was sent so far."""
+        """Statistics of the pictures that have been sent."""
         return self._sessions.statistics
 
     @property
@@ -69,13 +69,13 @@ class RtspServer:
 
     @asynccontextmanager
     async def listen(self, listener: socket.socket) -> AsyncIterator[RtspServer]:
-        """Serve at a listening socket while the context is open, and close it.
+        """Serve on a listening socket while the context is open, then close the socket.
 
         Raises:
             ConfigError: PyAV is missing, or lacks libx264.
         """
         device = self.device
-        # A build without an encoder is noticed now, and the first client does not wait for it to be loaded.
+        # Load the encoder now: a build without one fails early, and the first client does not have to wait.
         await to_thread.run_sync(parameter_sets, device.width, device.height, self._source.rate_hz)
         server = await asyncio.start_server(self._connected, sock=listener, limit=MAX_LINE_BYTES)
         watcher = asyncio.create_task(self._watch())
@@ -86,7 +86,7 @@ class RtspServer:
                 server.close()
                 watcher.cancel()
                 await self._sessions.close()
-                self._break_off()
+                self._abort()
                 await asyncio.gather(watcher, *self._connections, return_exceptions=True)
                 await server.wait_closed()
 
@@ -94,8 +94,8 @@ class RtspServer:
         if len(self._connections) >= MAX_CONNECTIONS or self.device.faults.down:
             writer.transport.abort()
             return
-        # Many RTSP clients do not know the quality of protection that HTTP clients use, and ignore answers to signs of life.
-        # So a nonce is good for one connection, while that lasts; an answer that was overheard is worth nothing on others.
+        # Many RTSP clients do not support qop, and ignore replies to keep-alive requests.
+        # So a nonce is valid for the lifetime of one connection, and an intercepted response is useless on others.
         digest = DigestAuthenticator(self.device.accounts, self._realm, qop=False, nonce_lifetime_s=inf)
         connection = RtspConnection(self.device, self._source, self._sessions, digest, self._chance, reader, writer)
         task = asyncio.create_task(connection.run())
@@ -105,12 +105,12 @@ class RtspServer:
     async def _watch(self) -> None:
         while True:
             if self.device.faults.down:
-                self._break_off()
+                self._abort()
                 await self._sessions.end_all()
             await self._sessions.end_expired()
             await asyncio.sleep(WATCH_INTERVAL_S)
 
-    def _break_off(self) -> None:
+    def _abort(self) -> None:
         for task, connection in self._connections.items():
             connection.abort()
             task.cancel()

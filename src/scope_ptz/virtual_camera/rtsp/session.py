@@ -1,4 +1,4 @@
-"""A session: what a client has set up, and whether it plays."""
+"""An RTSP session: the transport that a client has set up, and its playback."""
 
 from __future__ import annotations
 
@@ -22,25 +22,30 @@ class Session:
     """One client's stream.
 
     Args:
-        wanted: What it plays.
-        owner: Address and account of the client. Requests of others do not reach the session.
+        requested: The format of the stream.
+        owner: Address and account of the client. Other clients cannot access the session.
         source: The live picture.
         streams: The encoded streams.
-        statistics: Where to count.
+        statistics: The counters to update.
 
     Attributes:
         token: The identifier that the client repeats.
-        sink: Where packets go; None until a transport is set up.
-        alive_s: When the client last gave a sign of life, on ``time.monotonic``.
+        sink: The destination of the packets; None until a transport is set up.
+        alive_s: Time of the client's last activity, on ``time.monotonic``.
         connected: Whether the connection that set it up is open.
         ended: Whether the session is over.
-        on_lost: Called when the client vanishes while it plays.
+        on_lost: Called when the client disconnects during playback.
     """
 
     def __init__(
-        self, wanted: StreamFormat, owner: tuple[str, str], source: LiveSource, streams: LiveStreams, statistics: StreamStatistics
+        self,
+        requested: StreamFormat,
+        owner: tuple[str, str],
+        source: LiveSource,
+        streams: LiveStreams,
+        statistics: StreamStatistics,
     ) -> None:
-        self.wanted, self.owner = wanted, owner
+        self.requested, self.owner = requested, owner
         self._source, self._streams, self._statistics = source, streams, statistics
         self.token = secrets.token_hex(8)
         self.clock = RtpClock()
@@ -58,15 +63,15 @@ class Session:
         return self._playback is not None
 
     def touch(self) -> None:
-        """Note a sign of life."""
+        """Record that the client is active."""
         self.alive_s = monotonic()
 
     def lost(self) -> None:
-        """Note that the client has vanished."""
+        """Record that the client has disconnected."""
         self.on_lost()
 
     def play(self) -> tuple[int, int]:
-        """Start to send.
+        """Start sending.
 
         Returns:
             Sequence number of the first packet, and the time stamp at which the stream starts.
@@ -82,23 +87,23 @@ class Session:
                 latency_s=self._source.latency_s,
                 clock_skew_s=lambda: self._source.device.faults.clock_skew_s,
                 statistics=self._statistics,
-                # TCP confirms that the client took the bytes; by UDP its reports do.
+                # With TCP, a sent picture shows that the client is active; with UDP, its reports do.
                 on_sent=self.touch if isinstance(self.sink, InterleavedSink) else lambda: None,
             )
-            self._streams.join(self.wanted, playback, playback.start_s)
+            self._streams.join(self.requested, playback, playback.start_s)
             self._playback = playback
             self._task = asyncio.create_task(self._run(playback))
         return self.clock.sequence, self.clock.timestamp(self._playback.start_s)
 
     def pause(self) -> None:
-        """Stop to send."""
+        """Stop sending."""
         playback, self._playback = self._playback, None
         if playback is not None and self._task is not None:
-            self._streams.leave(self.wanted, playback)
+            self._streams.leave(self.requested, playback)
             self._task.cancel()
 
     async def close(self) -> None:
-        """End the session, and say goodbye to a client that plays."""
+        """End the session, and send a BYE packet to a client that is playing."""
         self.ended = True
         playback, task = self._playback, self._task
         self.pause()
@@ -115,5 +120,5 @@ class Session:
         try:
             await playback.run()
         except OSError as error:
-            logger.info("A client of %s vanished: %s", self._source.device.name, error)
-        self.lost()  # the client vanished, or the stream failed
+            logger.info("A client of %s disconnected: %s", self._source.device.name, error)
+        self.lost()  # the client disconnected, or the stream failed

@@ -1,4 +1,4 @@
-"""The sessions of a camera: how many there may be, to whom they belong, and when they end."""
+"""The RTSP sessions of a camera: their maximum number, their owners and their timeouts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat
 
 MAX_SESSIONS = 32
 ORPHAN_S = 15.0
-"""Seconds that a session outlives its connection without a sign of life. Clients by UDP may come back to it."""
+"""Seconds of inactivity after which a session without a connection ends. A UDP client may reconnect until then."""
 
 
 class Sessions:
@@ -22,10 +22,10 @@ class Sessions:
 
     Args:
         source: The live picture.
-        timeout_s: Seconds without a sign of life after which a session ends.
+        timeout_s: Seconds of client inactivity after which a session ends.
 
     Attributes:
-        statistics: What was sent.
+        statistics: Statistics of the pictures that have been sent.
         streams: The encoded streams.
     """
 
@@ -40,15 +40,15 @@ class Sessions:
     def __len__(self) -> int:
         return len(self._sessions)
 
-    def open(self, wanted: StreamFormat, owner: tuple[str, str]) -> Session:
+    def open(self, requested: StreamFormat, owner: tuple[str, str]) -> Session:
         """Return a new session.
 
         Raises:
-            RefusedError: There are too many.
+            RefusedError: There are too many sessions.
         """
         if len(self._sessions) >= MAX_SESSIONS:
             raise RefusedError(453)
-        session = Session(wanted, owner, self._source, self.streams, self.statistics)
+        session = Session(requested, owner, self._source, self.streams, self.statistics)
         self._sessions[session.token] = session
         self.statistics.sessions += 1
         return session
@@ -81,7 +81,7 @@ class Sessions:
         await asyncio.gather(*(self.end(session) for session in list(self._sessions.values())))
 
     async def end_expired(self) -> None:
-        """End the sessions whose clients gave no sign of life for too long."""
+        """End the sessions whose clients have been inactive for too long."""
         now_s = monotonic()
         for session in list(self._sessions.values()):
             limit_s = self.timeout_s if session.connected else min(ORPHAN_S, self.timeout_s)

@@ -1,4 +1,4 @@
-"""Where packets go: channels of the RTSP connection, or a pair of UDP sockets."""
+"""Destinations of packets: channels of the RTSP connection, or a pair of UDP sockets."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from typing import Protocol
 from scope_ptz.virtual_camera.rtsp.messages import RefusedError
 
 STUCK_S = 10.0
-"""Seconds after which a client that takes no bytes has vanished."""
+"""Seconds after which a client that reads nothing counts as disconnected."""
 
 UNSENT_BYTES = 32 * 1024
-"""Bytes that wait in the kernel for a slow client at most. More would turn old there, where they cannot be dropped."""
+"""Maximum number of bytes in the kernel's send buffer. Packets there cannot be dropped when they become too old."""
 
-BATCH_PACKETS = 12  # packets that are written at once, and before which the age of a picture is checked
+BATCH_PACKETS = 12  # packets per write; the age of a picture is checked before each write
 _PORT_ATTEMPTS = 50
 
 
@@ -27,18 +27,18 @@ class Sink(Protocol):
         """Send RTP packets. Return False if they were dropped.
 
         Raises:
-            OSError: The client has vanished.
+            OSError: The client has disconnected.
         """
 
     def report(self, packet: bytes) -> None:
         """Send an RTCP packet."""
 
     def close(self) -> None:
-        """Release what belongs to this client alone."""
+        """Release the resources of this client."""
 
 
 def bound_unsent(writer: asyncio.StreamWriter) -> None:
-    """Let writes wait as soon as a client does not keep up, in place of filling buffers."""
+    """Limit the send buffers, so that writes wait when a client is too slow."""
     writer.transport.set_write_buffer_limits(high=0)
     raw = writer.get_extra_info("socket")
     if hasattr(socket, "TCP_NOTSENT_LOWAT"):
@@ -63,7 +63,7 @@ class InterleavedSink:
             async with asyncio.timeout(STUCK_S):
                 await self._writer.drain()
         except TimeoutError:
-            raise ConnectionError("The client takes no bytes.") from None
+            raise ConnectionError("The client reads nothing.") from None
         return True
 
     def report(self, packet: bytes) -> None:
@@ -71,7 +71,7 @@ class InterleavedSink:
             self._writer.write(_framed(self.channels[1], packet))
 
     def close(self) -> None:
-        """Leave the connection open, which belongs to requests as well."""
+        """Leave the connection open, because requests use it too."""
 
 
 def _framed(channel: int, packet: bytes) -> bytes:
@@ -92,8 +92,8 @@ class UdpSink:
 
     async def send(self, packets: Sequence[bytes]) -> bool:
         if self._rtp.is_closing():
-            raise ConnectionError("The client is gone.")
-        if self._rtp.get_write_buffer_size():  # type: ignore[attr-defined] # a full network: packets that wait would only turn old
+            raise ConnectionError("The client has disconnected.")
+        if self._rtp.get_write_buffer_size():  # type: ignore[attr-defined] # the network is congested, and queued packets would only become too old
             return False
         for packet in packets:
             self._rtp.sendto(packet)
@@ -117,7 +117,7 @@ class _Receiver(asyncio.DatagramProtocol):
         self._on_packet()
 
     def error_received(self, exc: Exception) -> None:
-        if isinstance(exc, ConnectionRefusedError):  # nobody listens at the client's port any more
+        if isinstance(exc, ConnectionRefusedError):  # the client's port is closed
             self._on_gone()
 
 
@@ -131,10 +131,10 @@ async def open_udp(
         remote_host: Address of the other end. Packets are never sent elsewhere.
         ports: Ports of the client.
         on_packet: Called for every report that the client sends.
-        on_gone: Called when nobody listens at the client's ports.
+        on_gone: Called when the client's ports are closed.
 
     Raises:
-        RefusedError: No ports are free, or the client's cannot be reached.
+        RefusedError: No ports are free, or those of the client cannot be reached.
     """
     loop = asyncio.get_running_loop()
     try:

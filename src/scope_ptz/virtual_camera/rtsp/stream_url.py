@@ -13,7 +13,7 @@ from scope_ptz.virtual_camera.rtsp.messages import RefusedError
 
 PATHS = ("/axis-media/media.amp", "/onvif-media/media.amp")
 TRACK = "stream=0"
-"""The name of the one track of a stream."""
+"""The name of a stream's only track."""
 
 MAX_FIELDS = 50
 MIN_FPS, MAX_FPS = 0.1, 1000.0
@@ -23,7 +23,7 @@ _AUTHORITY = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(:\d{1,5})?")
 
 @dataclass(frozen=True, slots=True)
 class StreamFormat:
-    """What a client wants. Clients with equal formats share an encoder.
+    """The format that a client requests. Clients with equal formats share an encoder.
 
     Attributes:
         width: Width in pixels.
@@ -45,7 +45,7 @@ class StreamUrl:
 
     @property
     def content_base(self) -> str:
-        """The address of the whole stream, as replies say it."""
+        """The address of the whole stream, as it appears in replies."""
         return f"{self.base}/{self._suffix}"
 
     @property
@@ -62,7 +62,7 @@ def parse_url(uri: str) -> StreamUrl:
     """Return the stream that a client addresses.
 
     Raises:
-        RefusedError: It is no RTSP address, or there is no such stream.
+        RefusedError: The address is not an RTSP address, or there is no such stream.
     """
     try:
         parts = urlsplit(uri)
@@ -71,7 +71,7 @@ def parse_url(uri: str) -> StreamUrl:
     authority = parts.netloc.rpartition("@")[2]
     if parts.scheme.lower() != "rtsp" or not _AUTHORITY.fullmatch(authority):
         raise RefusedError(400)
-    # Some clients append the track to the whole address, query and all.
+    # Some clients append the track to the whole address, after the query.
     path = parts.path.removesuffix("/").removesuffix(f"/{TRACK}")
     query = parts.query.removesuffix("/").removesuffix(f"/{TRACK}")
     if path not in PATHS:
@@ -80,7 +80,7 @@ def parse_url(uri: str) -> StreamUrl:
 
 
 def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> StreamFormat:
-    """Return the format that an address asks for. Options that the camera does not know are ignored, as by AXIS cameras.
+    """Return the format that an address asks for. Options that the camera does not know are ignored, as on AXIS cameras.
 
     Args:
         url: The address.
@@ -88,7 +88,7 @@ def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> Stre
         rate_hz: Its frames per second.
 
     Raises:
-        RefusedError: An option has a value that the camera cannot fulfil.
+        RefusedError: An option has a value that the camera does not support.
     """
     try:
         options = {name.lower(): value for name, value in parse_qsl(url.query, max_num_fields=MAX_FIELDS)}

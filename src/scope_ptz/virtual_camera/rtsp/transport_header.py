@@ -1,4 +1,4 @@
-"""The ``Transport`` header: how a client wants its packets."""
+"""Parse the ``Transport`` header, in which a client requests a transport of its packets."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from scope_ptz.virtual_camera.rtsp.messages import RefusedError
 
 MAX_OFFERS = 16
-MIN_PORT = 1024  # a client is not sent packets to the ports of system services
+MIN_PORT = 1024  # packets are never sent to the ports of system services
 
 _TCP, _UDP = ("RTP/AVP/TCP",), ("RTP/AVP", "RTP/AVP/UDP")
 
@@ -17,7 +17,7 @@ class TransportOffer:
     """A transport that a client offers.
 
     Attributes:
-        interleaved: Whether packets go over the RTSP connection, in place of UDP.
+        interleaved: Whether packets go over the RTSP connection, instead of UDP.
         pair: Channels (TCP) or ports of the client (UDP) for RTP and RTCP; None lets the server choose channels.
     """
 
@@ -29,7 +29,7 @@ def choose_transport(header: str) -> TransportOffer:
     """Return the first transport in a header that the server supports.
 
     Raises:
-        RefusedError: There is none.
+        RefusedError: The server supports none of them.
     """
     for offer in header.split(",")[:MAX_OFFERS]:
         protocol, *rest = (part.strip() for part in offer.split(";"))

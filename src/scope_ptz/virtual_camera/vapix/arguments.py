@@ -1,4 +1,4 @@
-"""The arguments of a VAPIX request, with conversions that say which argument is wrong."""
+"""The arguments of a VAPIX request, with conversions whose errors name the wrong argument."""
 
 from __future__ import annotations
 

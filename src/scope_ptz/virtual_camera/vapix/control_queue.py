@@ -1,4 +1,4 @@
-"""The queue for control of the camera: who may move it, and who waits."""
+"""The queue of clients that request control of the camera."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CONTROL_S = 60.0
 """Seconds after its last command for which a client keeps control."""
 
 PRIORITIES = {Role.ADMINISTRATOR: 10, Role.OPERATOR: 30, Role.VIEWER: 50}
-"""The lowest number goes first."""
+"""Priority of a client; the lowest number goes first."""
 
 
 @dataclass(slots=True)
@@ -26,7 +26,7 @@ class _Place:
 
 @dataclass(frozen=True, slots=True)
 class QueueStatus:
-    """Where a client stands: ``position`` 1 is in control, 0 is not in the queue; ``seconds`` until control changes."""
+    """The place of a client: ``position`` 1 is in control, 0 is not in the queue; ``seconds`` until control changes."""
 
     position: int
     seconds: int
@@ -40,8 +40,8 @@ class ControlQueue:
         now_s: The clock of its timeouts.
 
     Attributes:
-        enabled: Whether control is needed to move the camera.
-        limit: How many clients the queue takes.
+        enabled: Whether clients need control to move the camera.
+        limit: Maximum number of clients in the queue.
         poll_s: Seconds after which a waiting client that does not poll loses its place.
     """
 
@@ -51,7 +51,7 @@ class ControlQueue:
         self._places: list[_Place] = []
 
     def request(self, client: Client) -> QueueStatus:
-        """Join the queue, or renew control if nobody else waits.
+        """Join the queue, or renew control if no other client waits.
 
         Raises:
             CameraError: The queue is full.
@@ -79,7 +79,7 @@ class ControlQueue:
         return self.status(client)
 
     def status(self, client: Client) -> QueueStatus:
-        """Return where a client stands, and note that it asked."""
+        """Return the place of a client, and record that it polled."""
         place = self._place(client)
         if place is None:
             return QueueStatus(0, 0, self.poll_s)
@@ -92,7 +92,7 @@ class ControlQueue:
         """Check that a client may move the camera, and renew its control.
 
         Raises:
-            CameraError: Somebody else has control, or nobody has. The message says who.
+            CameraError: Another client has control, or no client has control.
         """
         if not self.enabled:
             return
@@ -104,7 +104,7 @@ class ControlQueue:
         raise CameraError(f"{holder}; request control with /axis-cgi/com/ptzqueue.cgi?control=request")
 
     def _place(self, client: Client) -> _Place | None:
-        """Remove clients whose time is over, and return the place of a client."""
+        """Remove clients whose time has expired, and return the place of a client."""
         now_s = self._now_s()
         while self._places and now_s - self._places[0].active_s > CONTROL_S:
             over_s = self._places.pop(0).active_s + CONTROL_S

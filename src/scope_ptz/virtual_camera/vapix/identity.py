@@ -1,4 +1,4 @@
-"""What the camera says about itself."""
+"""The identity of the camera in VAPIX."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ APIS = (
 INVALID_VALUE, ONLY_POST, WRONG_VERSION, UNKNOWN_METHOD, INVALID_JSON, MISSING = 1000, 2002, 2003, 2004, 4000, 4002
 
 
-def api_discovery(unit: VapixUnit, method: str, body: bytes) -> Reply:  # noqa: ARG001 - all JSON interfaces have one signature
+def api_discovery(unit: VapixUnit, method: str, body: bytes) -> Reply:  # noqa: ARG001 - the signature of all JSON interfaces
     """Answer ``apidiscovery.cgi``."""
     apis = [{"id": key, "version": version, "name": name, "docLink": "", "status": "official"} for key, name, version in APIS]
 

@@ -15,7 +15,7 @@ from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 STEP_SHARE = 0.25
-"""Share of the picture by which ``move=left`` and the like turn the camera."""
+"""Share of the picture by which commands such as ``move=left`` turn the camera."""
 
 DIRECTIONS = {
     "up": (0, 1),
@@ -41,7 +41,7 @@ def move(unit: VapixUnit, arguments: Arguments) -> None:
     """Carry out the movement commands of one request.
 
     Raises:
-        InputError: An argument is wrong, or there is no such preset. Nothing has moved then.
+        InputError: An argument is wrong, or there is no such preset. In that case, nothing moves.
     """
     device = unit.device
     if "move" in arguments:
@@ -73,7 +73,7 @@ def _move_word(unit: VapixUnit, word: str) -> None:
 
 
 def _target(device: VirtualDevice, arguments: Arguments) -> Pose:
-    """Return the pose that absolute and relative arguments ask for. Axes that are not named go on to where they go."""
+    """Return the pose that absolute and relative arguments request. Axes that are not named keep their destination."""
     here, end = device.pose(), device.destination
     pan, tilt, zoom = end.pan_deg, end.tilt_deg, end.zoom
     if "pan" in arguments:

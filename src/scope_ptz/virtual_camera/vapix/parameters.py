@@ -15,13 +15,14 @@ from scope_ptz.virtual_camera.vapix.replies import Client, Reply
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 ABILITIES = (
-    "AbsolutePan", "AbsoluteTilt", "AbsoluteZoom", "AreaZoom", "AutoFocus", "AutoIris", "ContinuousPan", "ContinuousTilt",
-    "ContinuousZoom", "RelativePan", "RelativeTilt", "RelativeZoom", "ServerPreset", "SpeedCtl",
+    "AbsoluteFocus", "AbsoluteIris", "AbsolutePan", "AbsoluteTilt", "AbsoluteZoom", "AreaZoom", "AutoFocus", "AutoIris",
+    "ContinuousFocus", "ContinuousPan", "ContinuousTilt", "ContinuousZoom", "RelativeFocus", "RelativeIris", "RelativePan",
+    "RelativeTilt", "RelativeZoom", "ServerPreset", "SpeedCtl",
 )  # fmt: skip
 INABILITIES = (
-    "AbsoluteBrightness", "AbsoluteFocus", "AbsoluteIris", "ActionNotification", "AutoIrCutFilter", "Auxiliary", "BackLight",
-    "ContinuousBrightness", "ContinuousFocus", "ContinuousIris", "DevicePreset", "DigitalZoom", "GenericHTTP", "IrCutFilter",
-    "JoyStickEmulation", "LensOffset", "OSDMenu", "ProportionalSpeed", "RelativeBrightness", "RelativeFocus", "RelativeIris",
+    "AbsoluteBrightness", "ActionNotification", "AutoIrCutFilter", "Auxiliary", "BackLight", "ContinuousBrightness",
+    "ContinuousIris", "DevicePreset", "DigitalZoom", "GenericHTTP", "IrCutFilter", "JoyStickEmulation", "LensOffset", "OSDMenu",
+    "ProportionalSpeed", "RelativeBrightness",
 )  # fmt: skip
 
 QUEUE = "PTZ.Various.V1"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from scope_ptz.errors import CameraError, InputError
 from scope_ptz.virtual_camera.identity import PRODUCT
-from scope_ptz.virtual_camera.vapix import moves, replies
+from scope_ptz.virtual_camera.vapix import lens, moves, replies
 from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
 from scope_ptz.virtual_camera.vapix.control_queue import QueueStatus
 from scope_ptz.virtual_camera.vapix.queries import QUERIES, query
@@ -12,10 +12,9 @@ from scope_ptz.virtual_camera.vapix.replies import DONE, Client, Reply
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 UNSUPPORTED = (
-    "focus", "rfocus", "continuousfocusmove", "iris", "riris", "continuousirismove", "brightness", "rbrightness",
-    "continuousbrightnessmove", "ircutfilter", "backlight", "auxiliary",
+    "continuousirismove", "brightness", "rbrightness", "continuousbrightnessmove", "ircutfilter", "backlight", "auxiliary",
 )  # fmt: skip
-"""Commands of other AXIS cameras. This one has automatic focus and iris only."""
+"""Commands of other AXIS cameras."""
 
 FORBIDDEN_IN_NAMES = '"<>~:'
 """Characters that preset names of AXIS cameras cannot have."""
@@ -36,8 +35,13 @@ zoom=[n]
 rpan=[offset]
 rtilt=[offset]
 rzoom=[offset]
-autofocus={{ on }}
-autoiris={{ on }}
+focus=[n]
+rfocus=[offset]
+autofocus={{ on | off }}
+continuousfocusmove=[speed]
+iris=[n]
+riris=[offset]
+autoiris={{ on | off }}
 continuouspantiltmove=[x-speed],[y-speed]
 continuouszoommove=[speed]
 setserverpresetname=[name]
@@ -72,16 +76,14 @@ def _command(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
     for name in arguments:
         if name in UNSUPPORTED:
             raise InputError(f"{name}: not supported by this camera")
-    for name in ("autofocus", "autoiris"):
-        if name in arguments and arguments.choice(name, ("on", "off")) == "off":
-            raise InputError(f"{name}: this camera has automatic focus and iris only")
     moving = any(name in arguments for name in moves.COMMANDS)
-    known = moving or any(name in arguments for name in ("speed", "autofocus", "autoiris"))
+    known = moving or any(name in arguments for name in ("speed", *lens.COMMANDS))
     if not known:
         raise InputError("no command; info=1 lists the commands")
     unit.queue.check(client)
     if "speed" in arguments:
         unit.speed = arguments.integer("speed", 1, 100)
+    lens.adjust(unit.device.lens, arguments)
     if moving:
         moves.move(unit, arguments)
     return DONE

@@ -7,7 +7,7 @@ from typing import Any
 
 from scope_ptz.geometry import Limits
 from scope_ptz.virtual_camera.device import DevicePreset, VirtualDevice
-from scope_ptz.virtual_camera.vapix import replies, scales
+from scope_ptz.virtual_camera.vapix import lens, replies, scales
 from scope_ptz.virtual_camera.vapix.arguments import Arguments
 from scope_ptz.virtual_camera.vapix.replies import Reply
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
@@ -32,8 +32,7 @@ def _position(unit: VapixUnit, _: Arguments) -> Reply:
         "pan": f"{pose.pan_deg:.4f}",
         "tilt": f"{pose.tilt_deg:.4f}",
         "zoom": scales.zoom_step(pose.zoom, unit.device.limits),
-        "autofocus": "on",
-        "autoiris": "on",
+        **lens.state(unit.device.lens),
     }
     return replies.values(content)
 
@@ -48,6 +47,7 @@ def limit_values(device: VirtualDevice) -> dict[str, object]:
         "MaxTilt": f"{limits.max_tilt_deg:g}",
         "MinZoom": 1,
         "MaxZoom": scales.MAX_ZOOM_STEP,
+        **lens.LIMITS,
         "MinFieldAngle": round(10 * optics.hfov_deg(limits.max_zoom)),
         "MaxFieldAngle": round(10 * optics.hfov_deg(limits.min_zoom)),
     }
@@ -66,7 +66,7 @@ def _presets(unit: VapixUnit, arguments: Arguments) -> Reply:
 
 
 def preset_data(preset: DevicePreset, limits: Limits) -> str:
-    """Return the pose of a preset as AXIS cameras write it: ``tilt=...:pan=...:zoom=...``."""
+    """Return the pose of a preset in the format of AXIS cameras: ``tilt=...:pan=...:zoom=...``."""
     pose = preset.pose
     return f"tilt={pose.tilt_deg:.6f}:pan={pose.pan_deg:.6f}:zoom={scales.zoom_step(pose.zoom, limits)}"
 

@@ -1,4 +1,4 @@
-"""Replies of VAPIX requests, and who asks."""
+"""Replies to VAPIX requests, and the clients that send the requests."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.virtual_camera.accounts import Role
 
 @dataclass(frozen=True, slots=True)
 class Client:
-    """Who sends a request. ``name`` is the account, or the address of a client of a camera without accounts."""
+    """The client that sends a request. ``name`` is the account, or the address of a client of a camera without accounts."""
 
     name: str
     role: Role
@@ -28,7 +28,7 @@ class Reply:
 
 
 DONE = Reply(204)
-"""A command is carried out. There is nothing else to say."""
+"""The reply to a successful command. It has no body."""
 
 
 def error(message: str) -> Reply:

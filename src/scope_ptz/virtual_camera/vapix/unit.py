@@ -1,4 +1,4 @@
-"""What VAPIX keeps for a device beside the device itself: its identity, the move speed and the control queue."""
+"""The VAPIX state of a device in addition to the device itself: identity, move speed and control queue."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ RESOLUTIONS = ((1920, 1080), (1280, 720), (1024, 576), (800, 450), (640, 360), (
 
 
 class VapixUnit:
-    """A device as VAPIX shows it.
+    """The VAPIX state of a device.
 
     Args:
         device: The camera.
 
     Attributes:
         speed: The move speed of pan and tilt, 1 to 100.
-        queue: Who controls the camera.
+        queue: The queue of clients that request control.
         serial: The serial number, which is constant for a viewpoint of a scene.
-        rtsp_port: The port of its RTSP server, None if there is none.
+        rtsp_port: The port of its RTSP server; None if there is none.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
@@ -31,7 +31,7 @@ class VapixUnit:
 
     @property
     def realm(self) -> str:
-        """The name of what a password protects."""
+        """The authentication realm, which clients show."""
         return f"AXIS_{self.serial}"
 
     def resolutions(self) -> list[str]:

@@ -1,1 +1,1 @@
-"""Buildings, their shop fronts and wall materials, bridges and other structures, and lit buildings on a distant skyline."""
+"""Buildings, their shop fronts and wall materials, bridges and other structures, and distant buildings with lit windows."""

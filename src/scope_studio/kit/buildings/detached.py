@@ -25,7 +25,7 @@ def shed(
     docks: int = 3,
     windows: int = 0,
 ) -> Built:
-    """Build an industrial shed facing north: low-pitched roof, plinth, loading doors, office windows, and a name over the doors."""
+    """Build an industrial shed facing north, with a low-pitched roof, loading doors, office windows and a name over the doors."""
     tag = f"{colour[0]:.2f} {colour[1]:.2f} {colour[2]:.2f}"
     skin = cladding_material(f"cladding {tag}", colour)
     edge = plain(f"trim {trim[0]:.2f} {trim[1]:.2f} {trim[2]:.2f}", trim, 0.45)

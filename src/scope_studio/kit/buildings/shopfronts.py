@@ -1,6 +1,6 @@
 """Shop fronts with transparent display windows: pilasters, glass, fascias, and doors of shops and houses.
 
-All parts are modelled in the frame of their building: its wall is the plane y = 0, and the street lies towards +y.
+All parts are modelled in the coordinates of their building, whose wall is the plane y = 0. The street is towards +y.
 """
 
 from __future__ import annotations
@@ -20,17 +20,19 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import write
 
 SILL_M = 0.60
-"""Height of the display shelf behind the glass."""
+"""Height in metres of the display shelf behind the glass."""
 PILASTER_M = 0.34
+"""Width in metres of the pilasters at both ends of a shop front."""
 INSIDE_M = 2.6
+"""Depth in metres of the room behind the glass."""
 
 
 @dataclass(frozen=True)
 class Front:
-    """A shop front ``width_m`` wide, with the middle of its door at ``door_x``.
+    """Parameters of a shop front. It is ``width_m`` wide, and the middle of its door is at ``door_x``.
 
-    For a viewer in front of it, x increases to the left. ``room`` is the colour of the walls inside; ``lit`` turns on the
-    lamps inside.
+    For a viewer in front of it, x increases to the left. ``room`` is the colour of the inside walls, and ``lit`` turns on
+    the lamps.
     """
 
     width_m: float
@@ -42,7 +44,7 @@ class Front:
 
 
 def shop_front(spec: Front) -> Built:
-    """Build the woodwork, the glass and the room behind it as one object. The door and the fascia are built separately."""
+    """Build the woodwork, the glass and the room behind the glass as one object. The door and the fascia are built separately."""
     s = Solid("shop front")
     wood = paint(spec.colour, dirt=0.10, roughness=0.34)
     w = spec.width_m / 2
@@ -96,7 +98,7 @@ def _doorway(s: Solid, spec: Front, wood: bpy.types.Material) -> None:
 
 
 def _room(s: Solid, spec: Front) -> None:
-    """Add the room behind the glass: five inside faces and a row of ceiling lamps."""
+    """Add the room behind the glass: five inner faces and a row of ceiling lamps."""
     w, d, z1 = spec.width_m / 2 - 0.06, -INSIDE_M, 2.74
     walls = _inside(f"{spec.room} {spec.lit}", PALETTE[spec.room], 0.42 if spec.lit else 0.03)
     floor = _inside(f"floor {spec.lit}", (0.16, 0.105, 0.065), 0.25 if spec.lit else 0.02)
@@ -129,22 +131,22 @@ def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
         x = -half_m
         while x < half_m - 0.3:
             tint = rng.choice(STOCK)
-            wide, tall = rng.uniform(0.07, 0.22), rng.uniform(0.12, 0.36)
+            width, height = rng.uniform(0.07, 0.22), rng.uniform(0.12, 0.36)
             goods = _inside(f"stock {tint}", PALETTE[tint], 0.30)
             for _ in range(rng.randrange(2, 6)):
                 if x > half_m - 0.3:
                     break
-                s.box((wide, 0.22, tall), (x + wide / 2, y, z + tall / 2), goods, 0.006)
-                x += wide + 0.012
+                s.box((width, 0.22, height), (x + width / 2, y, z + height / 2), goods, 0.006)
+                x += width + 0.012
             x += rng.choice((0.02, 0.05, 0.25))
 
 
 def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.types.Material:
-    """Return a slightly emissive indoor material. It renders faster and with less noise than lamps behind glass."""
+    """Return a slightly emissive indoor material. Emission renders faster and with less noise than lamps behind glass."""
     full = f"inside {name}"
-    found = bpy.data.materials.get(full)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(full)
+    if existing is not None:
+        return existing
     s = Shader(full)
     patch = s.ramp(s.noise(s.object_coords(), 1.2, 3.0), 0.3, 0.7, 0.75, 1.1)
     warm = tuple(c * t for c, t in zip(colour, (1.0, 0.90, 0.74), strict=True))
@@ -153,16 +155,16 @@ def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.t
 
 def shop_glass() -> bpy.types.Material:
     """Return the material of a clean, mostly transparent pane that reflects the street more strongly at grazing angles."""
-    found = bpy.data.materials.get("shop glass")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("shop glass")
+    if existing is not None:
+        return existing
     s = Shader("shop glass")
     clear, shine = s.node("ShaderNodeBsdfTransparent"), s.node("ShaderNodeBsdfGlossy")
     clear.inputs["Color"].default_value = (0.90, 0.93, 0.92, 1.0)
     shine.inputs["Roughness"].default_value = 0.015
-    share = s.ramp(s.node("ShaderNodeLayerWeight").outputs["Facing"], 0.25, 0.95, 0.10, 0.36)
+    fraction = s.ramp(s.node("ShaderNodeLayerWeight").outputs["Facing"], 0.25, 0.95, 0.10, 0.36)
     mixed = s.node("ShaderNodeMixShader")
-    s.feed(mixed.inputs[0], share)
+    s.feed(mixed.inputs[0], fraction)
     s.tree.links.new(clear.outputs[0], mixed.inputs[1])
     s.tree.links.new(shine.outputs[0], mixed.inputs[2])
     output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
@@ -173,9 +175,9 @@ def shop_glass() -> bpy.types.Material:
 def _tiles(colour: str) -> bpy.types.Material:
     """Return the material of glazed tiles below a shop window."""
     name = f"glazed tiles {colour}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     x, _, z = s.xyz(s.object_coords())
     grid = s.math("MINIMUM", s.math("PINGPONG", x, 0.075), s.math("PINGPONG", z, 0.075))
@@ -184,7 +186,7 @@ def _tiles(colour: str) -> bpy.types.Material:
 
 
 def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | None = None, cap_m: float = 0.27) -> Built:
-    """Build the name board over a shop at its height on the building, with an optional line of ``small`` text at its right end."""
+    """Build the name board over a shop, at its height on the building. ``small`` is an optional small text at the right end."""
     s = Solid(f"{name} sign")
     board = width_m - 2 * PILASTER_M - 0.04
     s.box((board, 0.10, 0.52), (0, 0.08, 3.085), paint(colour, dirt=0.15, roughness=0.30), 0.012)
@@ -205,13 +207,13 @@ def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | Non
 
 
 def shop_door(colour: str, *, number: str | None = None) -> Built:
-    """Build a closed, half-glazed shop door with the middle of its foot at the origin. The number is on the glass."""
+    """Build a closed, half-glazed shop door with the middle of its lower edge at the origin. The number is on the glass."""
     s = Solid(f"{colour} door")
     wood = paint(colour, dirt=0.16, roughness=0.28)
     for x in (-0.42, 0.42):
         s.box((0.14, 0.05, 2.02), (x, 0, 1.01), wood, 0.008)
-    for z, tall in ((0.16, 0.32), (0.88, 0.14), (1.95, 0.14)):
-        s.box((0.72, 0.05, tall), (0, 0, z), wood, 0.008)
+    for z, height in ((0.16, 0.32), (0.88, 0.14), (1.95, 0.14)):
+        s.box((0.72, 0.05, height), (0, 0, z), wood, 0.008)
     s.box((0.70, 0.03, 0.54), (0, -0.005, 0.57), wood, 0.004)
     s.box((0.50, 0.02, 0.36), (0, 0.012, 0.57), wood, 0.012)
     _pane(s, -0.36, 0.36, 0.94, 1.89, 0.0)
@@ -225,14 +227,14 @@ def shop_door(colour: str, *, number: str | None = None) -> Built:
 
 
 def house_door(colour: str, *, number: str | None = None) -> Built:
-    """Build a six-panel front door with knocker, letter plate and number, with the middle of its foot at the origin."""
+    """Build a six-panel front door with a knocker, letter plate and number. The middle of its lower edge is at the origin."""
     s = Solid(f"{colour} door")
     wood = paint(colour, dirt=0.12, roughness=0.22)
     s.box((0.96, 0.045, 2.02), (0, 0, 1.01), wood, 0.006)
     for x in (-0.22, 0.22):
-        for z, tall in ((0.42, 0.50), (1.02, 0.42), (1.64, 0.50)):
-            s.box((0.34, 0.02, tall), (x, 0.024, z), wood, 0.008)
-            s.box((0.26, 0.02, tall - 0.08), (x, 0.030, z), wood, 0.010)
+        for z, height in ((0.42, 0.50), (1.02, 0.42), (1.64, 0.50)):
+            s.box((0.34, 0.02, height), (x, 0.024, z), wood, 0.008)
+            s.box((0.26, 0.02, height - 0.08), (x, 0.030, z), wood, 0.010)
     brass = plain("brass", (0.55, 0.36, 0.11), 0.25, 1.0)
     s.box((0.28, 0.014, 0.07), (0, 0.032, 0.76), brass, 0.004)
     s.tube([(-0.035, 0.05, 1.42), (-0.03, 0.055, 1.34), (0.03, 0.055, 1.34), (0.035, 0.05, 1.42)], 0.009, brass)
@@ -244,21 +246,21 @@ def house_door(colour: str, *, number: str | None = None) -> Built:
 
 
 def plate(lines: Sequence[str], cap_m: float, colour: str, ink: str, *, border: bool = True, pad: float = 0.6) -> Built:
-    """Build a flat sign for a wall or pane, such as a name plate or a card, with centred lines.
+    """Build a flat sign with centred lines for a wall or pane, such as a name plate or a card.
 
     It is centred on the origin and faces +y.
     """
     s = Solid(f"{lines[0]} sign")
-    wide = max(extent(line, cap_m) for line in lines) + cap_m * 2 * pad
-    tall = cap_m * (1.55 * len(lines) - 0.55 + 2 * pad)
-    corner = min(0.02, tall * 0.1)
-    s.prism(rounded(wide, tall, corner), (-0.012, 0.0), paint(colour, dirt=0.10, roughness=0.35), "XZ")
+    width = max(extent(line, cap_m) for line in lines) + cap_m * 2 * pad
+    height = cap_m * (1.55 * len(lines) - 0.55 + 2 * pad)
+    corner = min(0.02, height * 0.1)
+    s.prism(rounded(width, height, corner), (-0.012, 0.0), paint(colour, dirt=0.10, roughness=0.35), "XZ")
     if border:
         edge = cap_m * 0.10
-        for z in (-tall / 2 + edge * 2, tall / 2 - edge * 2):
-            s.box((wide - edge * 4, 0.003, edge), (0, 0.0, z), paint(ink, dirt=0.1), 0.0)
-        for x in (-wide / 2 + edge * 2, wide / 2 - edge * 2):
-            s.box((edge, 0.003, tall - edge * 4), (x, 0.0, 0), paint(ink, dirt=0.1), 0.0)
+        for z in (-height / 2 + edge * 2, height / 2 - edge * 2):
+            s.box((width - edge * 4, 0.003, edge), (0, 0.0, z), paint(ink, dirt=0.1), 0.0)
+        for x in (-width / 2 + edge * 2, width / 2 - edge * 2):
+            s.box((edge, 0.003, height - edge * 4), (x, 0.0, 0), paint(ink, dirt=0.1), 0.0)
     for k, line in enumerate(lines):
         write(s, line, cap_m, 0, cap_m * 1.55 * ((len(lines) - 1) / 2 - k), ink, lift=0.003)
     return s.built()

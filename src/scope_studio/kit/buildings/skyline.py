@@ -1,4 +1,4 @@
-"""Lit buildings on an evening horizon: sheds, blocks of flats, silos, a chimney with warning lights, and distant lights."""
+"""Buildings on an evening horizon: sheds, blocks of flats, silos, a chimney with warning lights, and distant lights."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Rgb = tuple[float, float, float]
 
 
 def lit_glass(tint: str, strength: float = 0.8) -> bpy.types.Material:
-    """Return the material of a distant lit window, "warm", "cool" or "dim": brighter above, with shadows of objects on the sill."""
+    """Return the material of a distant lit window ("warm", "cool" or "dim"). It is brighter at the top and shows shadows."""
     name = f"lit window {tint} {strength:g}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     rgb = {"warm": (1.0, 0.72, 0.40), "cool": (0.78, 0.88, 1.0), "dim": (0.45, 0.30, 0.17)}[tint]
     s = Shader(name)
     p = s.object_coords()
@@ -34,19 +34,27 @@ def lit_glass(tint: str, strength: float = 0.8) -> bpy.types.Material:
 
 
 def _panes(
-    s: Solid, width: float, y: float, rows: list[float], rng: random.Random, lit: float, wide: float, tall: float, pitch: float
+    s: Solid,
+    front_width: float,
+    y: float,
+    rows: list[float],
+    rng: random.Random,
+    lit: float,
+    pane_width: float,
+    pane_height: float,
+    pitch: float,
 ) -> None:
-    """Add rows of windows on the face ``y`` (towards +y), some of them lit."""
+    """Add rows of windows to the wall at ``y``, which faces +y. The fraction ``lit`` of them is lit, at random."""
     dark = plain("evening glass", (0.020, 0.026, 0.036), 0.06)
     frame = plain("far frame", (0.10, 0.105, 0.11), 0.6)
-    count = int((width - 1.0) / pitch)
+    count = int((front_width - 1.0) / pitch)
     for z in rows:
         for k in range(count):
-            x = -width / 2 + 0.5 + pitch * (k + 0.5) + (width - 1.0 - pitch * count) / 2
+            x = -front_width / 2 + 0.5 + pitch * (k + 0.5) + (front_width - 1.0 - pitch * count) / 2
             glass = lit_glass(rng.choice(["warm", "warm", "cool", "dim"])) if rng.random() < lit else dark
-            s.box((wide + 0.16, 0.10, tall + 0.16), (x, y, z), frame, 0.0)
-            s.box((wide, 0.12, tall), (x, y + 0.012, z), glass, 0.0)
-            s.box((0.06, 0.13, tall), (x, y + 0.014, z), frame, 0.0)
+            s.box((pane_width + 0.16, 0.10, pane_height + 0.16), (x, y, z), frame, 0.0)
+            s.box((pane_width, 0.12, pane_height), (x, y + 0.012, z), glass, 0.0)
+            s.box((0.06, 0.13, pane_height), (x, y + 0.014, z), frame, 0.0)
 
 
 def industrial(
@@ -61,7 +69,7 @@ def industrial(
     seed: int = 0,
     doors: int = 2,
 ) -> Built:
-    """Build an industrial shed with roller doors, a strip of windows on its front (+y) and its name in lit letters."""
+    """Build an industrial shed with roller doors, a strip of windows and its name in lit letters on its front (+y)."""
     s = Solid("industrial shed")
     rng = random.Random(f"shed {seed}")
     tag = f"{colour[0]:.2f} {colour[1]:.2f} {colour[2]:.2f}"
@@ -159,7 +167,7 @@ def silos(count: int = 3, *, height: float = 17.0, lettering: str = "") -> Built
     return s.built()
 
 
-def glimmer(points: list[tuple[float, float, float]], *, seed: int = 0) -> Built:
+def distant_lights(points: list[tuple[float, float, float]], *, seed: int = 0) -> Built:
     """Build the distant lights of a town: one small emissive block at each point."""
     rng = random.Random(f"glimmer {seed}")
     parts = []

@@ -1,4 +1,4 @@
-"""Shop fronts of a market square: dark plate glass, sign boards, awnings with lettered valances, and a pharmacy cross."""
+"""Parts of shop fronts on a market square: fronts, doors, sign boards, awnings with lettered valances, and a pharmacy cross."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> B
     """Build a timber shop front, 0.3 m deep, in front of y = 0.
 
     It has pilasters, stall risers, transoms, and plate glass with goods behind it. A dark gap in the middle, 1.1 m wide, is
-    left for a ``shop_door``.
+    for a ``shop_door``.
     """
     s = Solid("shop front")
     rng = random.Random(f"shop front {seed}")
@@ -47,14 +47,14 @@ def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None
     tints = ("cream", "light blue", "dark red", "beige", "pink", "green", "yellow", "light grey")
     u = -w / 2 + 0.3
     while u < w / 2 - 0.3:
-        tall, wide, tint = rng.uniform(0.18, 0.55), rng.uniform(0.16, 0.34), rng.choice(tints)
+        height, width, tint = rng.uniform(0.18, 0.55), rng.uniform(0.16, 0.34), rng.choice(tints)
         block(
             s,
-            (wide, 0.004, tall),
-            (x + u, y, 0.70 + tall / 2),
+            (width, 0.004, height),
+            (x + u, y, 0.70 + height / 2),
             plain(f"display {tint}", tuple(c * 0.4 for c in PALETTE[tint]), 0.7),
         )
-        u += wide + rng.uniform(0.05, 0.3)
+        u += width + rng.uniform(0.05, 0.3)
 
 
 def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> Built:  # noqa: A002
@@ -65,8 +65,8 @@ def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> 
     s = Solid("shop door")
     wood = paint(colour, dirt=0.12, roughness=0.3)
     with s.at(0.5, 0.0, 0.0, turn=-100.0 if open else 0.0):
-        for z, tall in ((0.42, 0.80), (2.14, 0.12)):
-            s.box((1.0, 0.05, tall), (-0.5, 0, z), wood, 0.01)
+        for z, height in ((0.42, 0.80), (2.14, 0.12)):
+            s.box((1.0, 0.05, height), (-0.5, 0, z), wood, 0.01)
         for x in (-0.94, -0.06):
             s.box((0.12, 0.05, 2.2), (x, 0, 1.1), wood, 0.01)
         block(s, (0.80, 0.014, 1.3), (-0.5, 0, 1.45), glass())
@@ -82,7 +82,7 @@ def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> 
 def sign_board(
     text: str, width: float, *, colour: str = "dark green", ink: str = "cream", cap: float = 0.30, height: float = 0.56
 ) -> Built:
-    """Build a shop's name board, centred on the origin, with its back at y = 0."""
+    """Build a shop's name board, centred on the origin. Its back is at y = 0."""
     s = Solid("shop sign")
     s.box((width, 0.05, height), (0, 0.025, 0), paint(colour, dirt=0.15, roughness=0.35), 0.012)
     for z in (-height / 2 + 0.04, height / 2 - 0.04):
@@ -92,7 +92,7 @@ def sign_board(
 
 
 def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: str | None = None, open: bool = True) -> Built:  # noqa: A002
-    """Build a canvas awning hung at the origin: sloping down by 0.7 m over ``reach`` with a lettered valance, or rolled up."""
+    """Build a canvas awning, fixed at the origin. If open, it slopes down by 0.7 m over ``reach`` and has a lettered valance."""
     s = Solid("awning")
     cloth = stripes(f"canvas {first} {second}", first, second, 0.42)
     iron = paint("dark grey", dirt=0.15)

@@ -17,14 +17,23 @@ from scope_studio.kit.core.stage import Built
 CENTRE_M = 14.4
 """Width in metres of the gabled centre, which projects from the wings by ``PROJECTION_M``."""
 PROJECTION_M = 1.6
+"""Distance in metres by which the centre projects from the wings."""
 WING_M = 16.0
+"""Width in metres of each wing."""
 WING_EAVES_M = 6.6
+"""Height in metres of the eaves of the wings."""
 CENTRE_EAVES_M = 9.2
+"""Height in metres of the eaves of the centre."""
 PEAK_M = 14.4
+"""Height in metres of the top of the gable."""
 CLOCK_Z_M = 11.3
+"""Height in metres of the clock's middle."""
 DOOR_X = (-4.3, 0.0, 4.3)
+"""x coordinates of the three arches in the centre."""
 ARCH_HALF_M = 1.35
+"""Half width in metres of an arch."""
 SPRING_M = 2.9
+"""Height in metres at which the arches begin to curve."""
 
 
 def arch_panel(
@@ -39,9 +48,9 @@ def arch_panel(
     depth: float = 0.45,
     rise: float | None = None,
 ) -> None:
-    """Add a wall panel centred on x = 0 with an arched opening, from ``z0`` to ``z1``, with its front face at y = 0.
+    """Add a wall panel with an arched opening, centred on x = 0, from ``z0`` to ``z1``. Its front face is at y = 0.
 
-    The opening starts at ``z0``. ``rise`` is the height of the arch above its springing; None means a semicircle.
+    The opening starts at ``z0``, and its arch springs at ``spring``. ``rise`` is the height of the arch; None means a semicircle.
     """
     lift = (half if rise is None else rise) / half
     curve = [(u, spring + (v - spring) * lift) for u, v in arc((0.0, spring), half, 0, 180, 16)]
@@ -52,7 +61,7 @@ def arch_panel(
 def arch_trim(
     s: Solid, half: float, spring: float, material: bpy.types.Material, *, projection: float = 0.07, band: float = 0.28
 ) -> None:
-    """Add the voussoirs of an arch, with a keystone."""
+    """Add the voussoirs (wedge-shaped stones) of an arch, with a keystone."""
     outer, inner = arc((0, spring), half + band, 0, 180, 14), arc((0, spring), half - 0.01, 0, 180, 14)
     for k in range(14):
         gap = 0.006
@@ -119,7 +128,7 @@ def _centre(s: Solid, stone: bpy.types.Material, pale: bpy.types.Material, slate
     block(s, (CENTRE_M, 0.1, 5.6), (0, -6.0, 2.8), hall)
     block(s, (CENTRE_M, 6.0, 0.1), (0, -3.0, 5.58), hall)
     block(s, (CENTRE_M, 6.0, 0.04), (0, -3.3, 0.02), plain("hall floor", (0.30, 0.27, 0.22), 0.3))
-    for x in (-4.3, 4.3):  # the side arches are glazed down to closed doors
+    for x in (-4.3, 4.3):  # the side arches have glass above closed doors
         block(s, (2 * ARCH_HALF_M, 0.04, SPRING_M + ARCH_HALF_M), (x, -0.42, (SPRING_M + ARCH_HALF_M) / 2), glass())
     block(s, (2 * ARCH_HALF_M, 0.04, ARCH_HALF_M + 0.2), (0, -0.42, SPRING_M + ARCH_HALF_M / 2 - 0.1), glass())
     wood = paint("dark green", dirt=0.15, roughness=0.4)
@@ -130,17 +139,17 @@ def _centre(s: Solid, stone: bpy.types.Material, pale: bpy.types.Material, slate
                 s.box((0.05, 0.06, ARCH_HALF_M + 0.2), (0, 0, (ARCH_HALF_M + 0.2) / 2), wood, 0.006)
 
 
-def _round_headed_window(s: Solid, half: float, tall: float, pale: bpy.types.Material) -> None:
-    """Add a narrow window with an arched head, in relief on a wall: stone surround, glass, bars."""
+def _round_headed_window(s: Solid, half: float, height: float, pale: bpy.types.Material) -> None:
+    """Add a narrow window with an arched head, in relief on a wall, with a stone surround and glazing bars."""
     s.box((2 * half + 0.5, 0.12, 0.12), (0, 0.04, -0.06), pale, 0.02)
-    outline = [(half, 0.0), *arc((0, tall), half, 0, 180, 12), (-half, 0.0)]
-    grown = [(half + 0.16, 0.0), *arc((0, tall), half + 0.16, 0, 180, 12), (-half - 0.16, 0.0)]
+    outline = [(half, 0.0), *arc((0, height), half, 0, 180, 12), (-half, 0.0)]
+    grown = [(half + 0.16, 0.0), *arc((0, height), half + 0.16, 0, 180, 12), (-half - 0.16, 0.0)]
     s.prism(grown, (-0.05, 0.05), pale, "XZ")
     s.prism(outline, (0.045, 0.06), glass(), "XZ")
     white = paint("cream", dirt=0.15)
-    block(s, (0.05, 0.03, tall + half), (0, 0.065, (tall + half) / 2), white)
-    block(s, (2 * half, 0.03, 0.05), (0, 0.065, tall * 0.5), white)
-    block(s, (2 * half, 0.03, 0.05), (0, 0.065, tall), white)
+    block(s, (0.05, 0.03, height + half), (0, 0.065, (height + half) / 2), white)
+    block(s, (2 * half, 0.03, 0.05), (0, 0.065, height * 0.5), white)
+    block(s, (2 * half, 0.03, 0.05), (0, 0.065, height), white)
 
 
 def _wing(s: Solid, side: int, stone: bpy.types.Material, pale: bpy.types.Material, slate: bpy.types.Material) -> None:
@@ -208,7 +217,7 @@ def _canopy(s: Solid) -> None:
 
 
 def _train_shed(s: Solid) -> None:
-    """Add the arched roof over the platforms behind, with its glazed lantern."""
+    """Add the arched roof over the platforms behind the building, with its glazed lantern."""
     skin = cladding_material("train shed", (0.20, 0.225, 0.235), 0.45)
     hoop = [(-28.0 + 14.0 * u, 5.0 + 8.6 * v) for u, v in arc((0, 0), 1.0, 0, 180, 18)]
     s.prism([(-14.0, 0.0), *hoop, (-42.0, 0.0)], (-34.0, 34.0), skin, "YZ")
@@ -239,7 +248,7 @@ def departures_board(
 ) -> Built:
     """Build a wall board with rows of (time, destination, platform) in amber on black.
 
-    Its back is at y = 0 and its middle at the origin.
+    Its middle is at the origin, and its back is at y = 0.
     """
     s = Solid("departures board")
     pitch = cap * 1.9
@@ -262,8 +271,8 @@ def departures_board(
 
 
 def _amber() -> bpy.types.Material:
-    found = bpy.data.materials.get("board amber")
-    return found or Shader("board amber").surface(
+    existing = bpy.data.materials.get("board amber")
+    return existing or Shader("board amber").surface(
         base_color=(1.0, 0.48, 0.03), emission_color=(1.0, 0.45, 0.02), emission_strength=1.1
     )
 

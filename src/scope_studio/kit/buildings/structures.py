@@ -102,7 +102,7 @@ def _abutments(half: float, edge: float, deck_m: float, under: float, concrete: 
 
 
 def paving_material() -> bpy.types.Material:
-    """Return the material of square concrete setts, 0.3 m wide, on a slope."""
+    """Return the material of square concrete blocks, 0.3 m wide, on a slope."""
     s = Shader("slope paving")
     _, y, z = s.xyz(s.object_coords())
     joint = s.math("MINIMUM", s.math("PINGPONG", y, 0.15), s.math("PINGPONG", s.math("MULTIPLY", z, 1.7), 0.15))
@@ -149,7 +149,7 @@ def _banner(
 def approach(*, length_m: float, width_m: float, height_m: float, side: int, grass: bpy.types.Material) -> Built:
     """Build the embankment that carries the road up to the bridge, from ``height_m`` at x = 0 down to the ground.
 
-    It runs towards +x for ``side`` 1 and towards -x for -1.
+    It extends towards +x if ``side`` is 1, and towards -x if ``side`` is -1.
     """
     steps, edge = 14, width_m / 2
     points: list[Point] = []
@@ -195,8 +195,8 @@ def pylon(height_m: float = 30.0) -> Built:
         for k in range(4):
             n = (k + 1) % 4
             bars += [(low[k], high[k], 0.10), (low[k], high[n], 0.05), (low[n], high[k], 0.05)]
-    for share, reach in ((0.66, 5.5), (0.80, 6.6), (0.93, 4.8)):
-        z = height_m * share
+    for fraction, reach in ((0.66, 5.5), (0.80, 6.6), (0.93, 4.8)):
+        z = height_m * fraction
         for side in (-1, 1):
             tip = (side * reach, 0.0, z + 0.3)
             bars += [((side * half(z), y, z), tip, 0.07) for y in (-0.5, 0.5)]
@@ -223,7 +223,7 @@ def lattice(name: str, bars: Sequence[Bar], material: bpy.types.Material) -> bpy
 
 
 def post_and_rail(length_m: float = 9.0) -> Built:
-    """Build a timber boundary fence along x: posts every 1.8 m, four rails."""
+    """Build a timber boundary fence along x, with posts every 1.8 m and four rails."""
     s = Shader("weathered timber")
     grain = s.noise(s.scaled(s.object_coords(), (0.6, 9, 9)), 2.0, detail=5.0)
     wood = s.surface(base_color=s.mix(grain, (0.085, 0.068, 0.050), (0.23, 0.20, 0.165)), roughness=0.9)

@@ -1,6 +1,6 @@
 """Terraced buildings of an old street: sash windows above a shop or a house front, pitched roofs, chimneys, gutters.
 
-A building faces +y with its front wall on y = 0 and reaches back to y = -depth. Neighbours stand wall to wall along x.
+A building faces +y. Its front wall is on y = 0, its back wall is on y = -``DEPTH_M``, and neighbouring buildings adjoin along x.
 """
 
 from __future__ import annotations
@@ -19,17 +19,20 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 GROUND_M = 3.55
+"""Height in metres of the ground floor."""
 STOREY_M = 2.95
+"""Height in metres of each upper floor."""
 DEPTH_M = 9.0
+"""Depth in metres of a building."""
 WHITE = (0.66, 0.655, 0.62)
 
 
 @dataclass(frozen=True)
 class Terrace:
-    """Parameters of one building of a row.
+    """Parameters of one building in a row.
 
-    ``wall`` is the kind and colour that ``wet_masonry.wall`` takes. ``lit`` lists (floor, column) of lit windows. ``shop`` leaves
-    the ground floor of the front open for a shop front; otherwise it has windows and a door opening.
+    ``wall`` contains the arguments of ``wet_masonry.wall``: kind and colour. ``lit`` lists the (floor, column) of lit windows. With
+    ``shop``, the front has a gap on the ground floor for a shop front; without it, windows and a door opening.
     """
 
     width_m: float
@@ -60,7 +63,7 @@ def terrace(spec: Terrace) -> Built:
     holes = _upper_holes(spec)
     if not spec.shop:
         holes += _ground_floor_holes(spec)
-    _pierced(s, spec.width_m, low, spec.eaves_m + (0.75 if spec.parapet else 0.0), holes, face)
+    _front_wall(s, spec.width_m, low, spec.eaves_m + (0.75 if spec.parapet else 0.0), holes, face)
     _shell(s, spec, face)
     for x, z, w, h, floor, column in holes:
         if floor >= 0:
@@ -78,7 +81,7 @@ def terrace(spec: Terrace) -> Built:
 
 
 Hole = tuple[float, float, float, float, int, int]
-"""Hole in a wall: middle x, bottom z, width, height, floor (0 = ground, -1 = a door), column."""
+"""Hole in a wall: x of its middle, z of its lower edge, width, height, floor (0 = ground floor, -1 = door opening), column."""
 
 
 def _upper_holes(spec: Terrace) -> list[Hole]:
@@ -104,8 +107,8 @@ def _ground_floor_holes(spec: Terrace) -> list[Hole]:
     return holes
 
 
-def _pierced(s: Solid, width: float, low: float, high: float, holes: list[Hole], face: bpy.types.Material) -> None:
-    """Add the front wall as a grid of quads with holes, and the reveals of the holes, which are 0.13 m deep."""
+def _front_wall(s: Solid, width: float, low: float, high: float, holes: list[Hole], face: bpy.types.Material) -> None:
+    """Add the front wall as a grid of quads with holes. The reveals of the holes are 0.13 m deep."""
     xs = sorted({-width / 2, width / 2, *(x - w / 2 for x, _, w, *_ in holes), *(x + w / 2 for x, _, w, *_ in holes)})
     zs = sorted({low, high, *(z for _, z, *_ in holes), *(z + h for _, z, _, h, *_ in holes)})
     zs = [z for z in zs if low <= z <= high]
@@ -146,7 +149,7 @@ def _roof_rise(spec: Terrace) -> float:
 
 
 def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: Terrace, rng: Random, *, lit: bool) -> None:
-    """Add a sash window in its hole: box frame, two sashes, glazing bars, curtains or a blind, sill and lintel."""
+    """Add a sash window in its hole, with frame, glazing bars, curtains or a blind, sill and lintel."""
     joinery = trim((0.66, 0.66, 0.63))
     back = -0.115
     pane = lit_pane() if lit else dark_pane()
@@ -163,8 +166,8 @@ def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: Terrace, rng: 
     _curtains(s, x, z, w, h, back, rng, lit=lit)
     for side in (-1, 1):
         s.box((0.07, 0.07, h), (x + side * (w / 2 - 0.035), back + 0.03, z + h / 2), joinery, 0.006)
-    for v, deep in ((0.035, 0.09), (h - 0.035, 0.07), (h * 0.52, 0.06)):
-        s.box((w, 0.07, deep), (x, back + 0.03, z + v), joinery, 0.006)
+    for v, depth in ((0.035, 0.09), (h - 0.035, 0.07), (h * 0.52, 0.06)):
+        s.box((w, 0.07, depth), (x, back + 0.03, z + v), joinery, 0.006)
     for k in range(1, spec.bars + 1):
         s.box((0.022, 0.03, h), (x - w / 2 + w * k / (spec.bars + 1), back + 0.02, z + h / 2), joinery, 0.003)
     if spec.bars > 1:
@@ -225,15 +228,15 @@ def _front_door(s: Solid, x: float, w: float, h: float) -> None:
 
 
 def dark_pane() -> bpy.types.Material:
-    """Return the material of an unlit window, a dark surface with reflections."""
+    """Return the material of an unlit window: a dark, reflective surface."""
     return plain("unlit pane", (0.016, 0.018, 0.020), 0.03)
 
 
 def lit_pane() -> bpy.types.Material:
     """Return the material of a lit window, with warm lamplight that is brightest below the middle."""
-    found = bpy.data.materials.get("lit pane")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("lit pane")
+    if existing is not None:
+        return existing
     s = Shader("lit pane")
     glow = s.ramp(s.noise(s.object_coords(), 1.3, 3.0), 0.3, 0.7, 0.55, 1.25)
     warm = s.mix(s.ramp(s.noise(s.object_coords(), 5.0, 2.0), 0.4, 0.6), (1.0, 0.62, 0.26), (1.0, 0.74, 0.42))
@@ -297,7 +300,7 @@ def _chimney(s: Solid, spec: Terrace, rng: Random) -> None:
 
 
 def _rainwater(s: Solid, spec: Terrace) -> None:
-    """Add a gutter along the eaves and a downpipe at the party wall."""
+    """Add a gutter along the eaves, and a downpipe at one end of the front."""
     black = paint("black", dirt=0.25)
     w, h = spec.width_m / 2, spec.eaves_m
     if not spec.parapet:

@@ -1,4 +1,4 @@
-"""Town houses for terraces, with modelled window openings, shutters, cornices, and roofs with dormers and chimneys.
+"""Town houses that form rows, with modelled window openings, shutters, cornices, and roofs with dormers and chimneys.
 
 A house faces north (+y), and its body extends towards -y. Its front wall is the plane y = 0, so that the fronts of a row align.
 """
@@ -20,13 +20,14 @@ from scope_studio.kit.core.stage import Built
 Rgb = tuple[float, float, float]
 
 REVEAL_M = 0.17
+"""Depth in metres of the reveals of windows."""
 SLATE: Rgb = (0.085, 0.092, 0.105)
 CLAY: Rgb = (0.27, 0.105, 0.062)
 
 
 @dataclass(frozen=True)
 class House:
-    """Parameters of a town house, sizes in metres. ``shutters`` is a paint colour or None."""
+    """Parameters of a town house. Sizes are in metres. ``shutters`` is a paint colour, or None for no shutters."""
 
     width: float
     wall: bpy.types.Material
@@ -59,9 +60,9 @@ def wall_with_openings(
     openings: list[tuple[float, float, float, float]],
     material: bpy.types.Material,
 ) -> None:
-    """Add a wall band in the plane y = 0 that faces +y, with openings and their reveals.
+    """Add a horizontal strip of wall in the plane y = 0 that faces +y, with openings and their reveals.
 
-    ``openings`` are (centre x, width, low z, high z), where all low z are equal and all high z are equal.
+    ``openings`` are (centre x, width, low z, high z). All must have the same low z and the same high z.
     """
     low, high = (openings[0][2], openings[0][3]) if openings else (z0, z0)
 
@@ -87,11 +88,11 @@ def sash(s: Solid, x: float, w: float, za: float, zb: float, rng: random.Random,
     y, mid = -REVEAL_M + 0.03, (za + zb) / 2
     block(s, (w, 0.02, zb - za), (x, -REVEAL_M + 0.005, mid), glass())
     inside = plain("window curtain", (0.52, 0.49, 0.43), 0.9)
-    habit = rng.random()
-    if habit < 0.22:
+    choice = rng.random()
+    if choice < 0.22:
         drop = rng.uniform(0.25, 0.7) * (zb - za)
         block(s, (w - 0.1, 0.004, drop), (x, -REVEAL_M + 0.018, zb - drop / 2), inside)
-    elif habit < 0.55:
+    elif choice < 0.55:
         for sign in (-1, 1):
             block(s, (w * 0.22, 0.004, zb - za - 0.06), (x + sign * w * 0.36, -REVEAL_M + 0.018, mid), inside)
     for sign in (-1, 1):
@@ -134,9 +135,9 @@ def town_house(h: House) -> Built:
     _ground_floor(s, h, centres, rng)
     for k in range(1, h.storeys):
         z0 = h.ground_m + (k - 1) * h.storey_m
-        tall = h.window[1] * (1.0 if k < h.storeys - 1 or h.storeys == 2 else 0.86)
+        height = h.window[1] * (1.0 if k < h.storeys - 1 or h.storeys == 2 else 0.86)
         za = z0 + 0.75
-        openings = [(x, h.window[0], za, za + tall) for x in centres]
+        openings = [(x, h.window[0], za, za + height) for x in centres]
         wall_with_openings(s, h.width, z0, z0 + h.storey_m, openings, h.wall)
         for x, w, low, high in openings:
             sash(s, x, w, low, high, rng)
@@ -151,13 +152,13 @@ def town_house(h: House) -> Built:
         if k > 1:
             s.box((h.width, 0.08, 0.12), (0, 0.03, z0 + 0.02), trim, 0.01)
     s.box((h.width, 0.22, 0.26), (0, 0.08, h.ground_m - 0.02), trim, 0.02)
-    for drop, out, tall in ((0.42, 0.08, 0.24), (0.20, 0.18, 0.16), (0.06, 0.30, 0.12)):
-        s.box((h.width, out + 0.1, tall), (0, out / 2 - 0.02, eaves - drop), trim, 0.015)
+    for drop, out, height in ((0.42, 0.08, 0.24), (0.20, 0.18, 0.16), (0.06, 0.30, 0.12)):
+        s.box((h.width, out + 0.1, height), (0, out / 2 - 0.02, eaves - drop), trim, 0.015)
     if h.quoins:
         for sign in (-1, 1):
             for k in range(int((eaves - 0.6) / 0.36)):
-                wide = 0.42 if k % 2 else 0.30
-                s.box((wide, 0.05, 0.33), (sign * (half - wide / 2), 0.02, 0.3 + 0.36 * k), trim, 0.012)
+                width = 0.42 if k % 2 else 0.30
+                s.box((width, 0.05, 0.33), (sign * (half - width / 2), 0.02, 0.3 + 0.36 * k), trim, 0.012)
     _roof(s, h, tile, ridge, rng)
     return s.built()
 
@@ -181,15 +182,15 @@ def _ground_floor(s: Solid, h: House, centres: list[float], rng: random.Random) 
     s.box((1.8, 0.30, 0.14), (at, 0.12, 3.0), trim, 0.03)
     s.box((1.06, 0.05, 2.1), (at, 0.085, 1.07), paint(h.door, dirt=0.12, roughness=0.25), 0.01)
     for dx in (-0.25, 0.25):
-        for z, tall in ((0.55, 0.7), (1.5, 0.85)):
-            s.box((0.36, 0.03, tall), (at + dx, 0.105, z), paint(h.door, dirt=0.12, roughness=0.25), 0.012)
+        for z, height in ((0.55, 0.7), (1.5, 0.85)):
+            s.box((0.36, 0.03, height), (at + dx, 0.105, z), paint(h.door, dirt=0.12, roughness=0.25), 0.012)
     block(s, (1.0, 0.03, 0.48), (at, 0.085, 2.42), glass())
     s.lathe([(0.03, 0.0), (0.035, 0.02), (0.02, 0.05)], paint("yellow", roughness=0.3), (at + 0.42, 0.11, 1.05), "Y", 14)
     s.box((1.5, 0.5, 0.12), (at, 0.28, 0.06), paint("light grey", dirt=0.5, roughness=0.9), 0.015)
 
 
 def _balcony(s: Solid, x: float, w: float, low: float) -> None:
-    """Add an iron balconette in front of a window."""
+    """Add a shallow iron balcony in front of a window."""
     iron = paint("black", dirt=0.15)
     s.box((w + 0.5, 0.40, 0.08), (x, 0.2, low - 0.12), paint("light grey", dirt=0.4, roughness=0.9), 0.015)
     for z in (low - 0.02, low + 0.80):

@@ -10,10 +10,10 @@ Rgb = tuple[float, float, float]
 
 
 def cladding_material(name: str, colour: Rgb, pitch_m: float = 0.2) -> bpy.types.Material:
-    """Return the material of metal sheet with vertical ribs, rain marks, and dirt near the ground."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    """Return the material of metal sheet with vertical ribs, rain streaks, and dirt near the ground."""
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.object_coords()
     x, y, z = s.xyz(p)
@@ -28,9 +28,9 @@ def cladding_material(name: str, colour: Rgb, pitch_m: float = 0.2) -> bpy.types
 
 def brick_material(name: str, colour: Rgb) -> bpy.types.Material:
     """Return the material of brickwork in running bond, with pale mortar and stains."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     x, y, z = s.xyz(s.object_coords())
     plane = s.node("ShaderNodeCombineXYZ")
@@ -50,9 +50,9 @@ def brick_material(name: str, colour: Rgb) -> bpy.types.Material:
 
 def tile_material(name: str, colour: Rgb) -> bpy.types.Material:
     """Return the material of a tiled roof."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.object_coords()
     _, _, z = s.xyz(p)
@@ -64,10 +64,10 @@ def tile_material(name: str, colour: Rgb) -> bpy.types.Material:
 
 
 def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.345, 0.315)) -> bpy.types.Material:
-    """Return the material of board-marked concrete cast in lifts of 1.2 m, with rain streaks and dirt near the ground."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    """Return the material of board-marked concrete, cast in layers 1.2 m high, with rain streaks and dirt near the ground."""
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.object_coords()
     _, _, z = s.xyz(p)
@@ -85,9 +85,9 @@ def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.34
 
 def stucco(name: str, colour: Rgb) -> bpy.types.Material:
     """Return the material of painted render, with trowel marks, rain streaks under edges, and damp near the ground."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.object_coords()
     _, _, z = s.xyz(p)
@@ -103,9 +103,9 @@ def stucco(name: str, colour: Rgb) -> bpy.types.Material:
 
 def ashlar(name: str, colour: Rgb, block: tuple[float, float] = (0.72, 0.36)) -> bpy.types.Material:
     """Return the material of dressed stone in courses. ``block`` is the width and height in metres of a block."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.object_coords()
     x, y, z = s.xyz(p)

@@ -1,6 +1,6 @@
 """A distribution warehouse: a metal-clad front with dock openings, a lit hall, and a canopy.
 
-Fronts face +y, with the outer face of the wall on y = 0; the building extends towards -y. Positions along
+The front faces +y. The outer face of its wall is on y = 0, and the building extends towards -y. Positions along
 the front are values of x, which increases to the left for a viewer in front of it.
 """
 
@@ -19,9 +19,10 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.light.glow import glowing_face, lit_lens
 
-DOCK_SILL_M, DOCK_WIDE_M, DOCK_TALL_M = 1.20, 2.9, 3.0
+DOCK_SILL_M, DOCK_WIDTH_M, DOCK_HEIGHT_M = 1.20, 2.9, 3.0
+"""Height of the sill of a dock opening, and width and height of the opening, in metres."""
 Opening = tuple[float, float, float, float]
-"""Opening in a wall: x from, x to, z from, z to (metres)."""
+"""Opening in a wall: lowest and highest x, lowest and highest z (metres)."""
 
 
 def wall(
@@ -34,7 +35,7 @@ def wall(
     material: bpy.types.Material,
     depth: float = 0.22,
 ) -> None:
-    """Add a wall on y = 0 from ``x0`` to ``x1`` with holes. It is divided into strips at the vertical edges of the holes."""
+    """Add a wall with openings on y = 0, from ``x0`` to ``x1``. It consists of strips between the edges of the openings."""
     cuts = sorted({x0, x1, *(x for a, b, _, _ in openings for x in (a, b) if x0 < x < x1)})
     for a, b in pairwise(cuts):
         holes = sorted((c, d) for p, q, c, d in openings if p < (a + b) / 2 < q)
@@ -55,9 +56,9 @@ def shell(
     band: tuple[float, float, float],
     ramp_to: float,
 ) -> Built:
-    """Build the warehouse: front with openings, other walls, parapet, low roof with roof lights and vents, and the hall inside.
+    """Build the warehouse: walls with openings in the front, a parapet, a low roof with roof lights and vents, and the hall.
 
-    The hall's floor is at dock height, except where x is below ``ramp_to``; there it is at yard level. The hall's back wall is 13 m
+    The hall's floor is at dock height, except where x is less than ``ramp_to``: there it is at yard level. Its back wall is 13 m
     behind the front.
     """
     s = Solid("warehouse")
@@ -79,11 +80,11 @@ def shell(
 
 
 def _roof(s: Solid, w: float, depth: float, h: float) -> None:
-    """Add two shallow roof slopes with emissive roof lights, smoke vents and plant."""
-    sheet_, glowing = cladding_material("warehouse roof", (0.20, 0.21, 0.22), 0.33), roof_light()
+    """Add two shallow roof slopes with emissive roof lights, smoke vents and ventilation units."""
+    roof_sheet, glowing = cladding_material("warehouse roof", (0.20, 0.21, 0.22), 0.33), roof_light()
     rise = 1.3
     for y0, y1, z0, z1 in ((-0.2, -depth / 2, h, h + rise), (-depth / 2, -depth, h + rise, h)):
-        s.add([(-w, y0, z0), (w, y0, z0), (w, y1, z1), (-w, y1, z1)], [(0, 3, 2, 1) if y1 > y0 else (0, 1, 2, 3)], sheet_)
+        s.add([(-w, y0, z0), (w, y0, z0), (w, y1, z1), (-w, y1, z1)], [(0, 3, 2, 1) if y1 > y0 else (0, 1, 2, 3)], roof_sheet)
         count = int(2 * w / 6.5)
         for k in range(count):
             x = -w + 4 + (2 * w - 8) * k / (count - 1)
@@ -109,9 +110,9 @@ def _roof(s: Solid, w: float, depth: float, h: float) -> None:
 
 def roof_light() -> bpy.types.Material:
     """Return the material of a translucent roof sheet over a lit hall."""
-    found = bpy.data.materials.get("roof light")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("roof light")
+    if existing is not None:
+        return existing
     s = Shader("roof light")
     ribs = s.ramp(s.math("PINGPONG", s.xyz(s.object_coords())[0], 0.16), 0.02, 0.08, 0.7, 1.0)
     return s.surface(
@@ -123,12 +124,12 @@ def roof_light() -> bpy.types.Material:
 
 
 def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
-    """Add what is visible through the open docks: floor, lamps, racking with cartons, and a back wall."""
+    """Add the interior that is visible through the open docks: floor, lamps, racks with cartons, and a back wall."""
     rng = random.Random("hall")
-    pale, deep = plain("hall wall", (0.42, 0.43, 0.42), 0.8), -13.0
-    s.box((w - 0.3 - ramp_to, 12.8, DOCK_SILL_M), ((ramp_to + w - 0.3) / 2, deep / 2 - 0.1, DOCK_SILL_M / 2), concrete(), 0.0)
-    s.box((2 * w - 0.6, 0.1, h), (0, deep, h / 2), pale, 0.0)
-    s.box((2 * w - 0.6, 12.8, 0.1), (0, deep / 2, h - 0.35), plain("hall ceiling", (0.25, 0.26, 0.27), 0.8), 0.0)
+    pale, depth = plain("hall wall", (0.42, 0.43, 0.42), 0.8), -13.0
+    s.box((w - 0.3 - ramp_to, 12.8, DOCK_SILL_M), ((ramp_to + w - 0.3) / 2, depth / 2 - 0.1, DOCK_SILL_M / 2), concrete(), 0.0)
+    s.box((2 * w - 0.6, 0.1, h), (0, depth, h / 2), pale, 0.0)
+    s.box((2 * w - 0.6, 12.8, 0.1), (0, depth / 2, h - 0.35), plain("hall ceiling", (0.25, 0.26, 0.27), 0.8), 0.0)
     blue, orange = paint("blue", dirt=0.2), paint("orange", dirt=0.2)
     boards = [
         plain(f"hall carton {k}", c, 0.85)
@@ -137,15 +138,15 @@ def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
     x = -w + 3.0
     while x < w - 4.0:
         for px in (x, x + 2.7):
-            s.box((0.09, 0.9, 5.0), (px, deep + 1.4, 3.7), blue, 0.0)
+            s.box((0.09, 0.9, 5.0), (px, depth + 1.4, 3.7), blue, 0.0)
         for level in range(3):
             z = 1.22 + 1.75 * level
             if level:
-                s.box((2.7, 0.9, 0.12), (x + 1.35, deep + 1.4, z - 0.06), orange, 0.0)
+                s.box((2.7, 0.9, 0.12), (x + 1.35, depth + 1.4, z - 0.06), orange, 0.0)
             for k in range(2):
                 if rng.random() < 0.85:
-                    tall = rng.uniform(0.8, 1.45)
-                    s.box((1.12, 0.95, tall), (x + 0.70 + 1.3 * k, deep + 1.45, z + tall / 2 + 0.02), rng.choice(boards), 0.01)
+                    height = rng.uniform(0.8, 1.45)
+                    s.box((1.12, 0.95, height), (x + 0.70 + 1.3 * k, depth + 1.45, z + height / 2 + 0.02), rng.choice(boards), 0.01)
         x += 2.85
     for k in range(int(2 * w / 6.0)):
         for y in (-3.0, -8.0):
@@ -168,7 +169,7 @@ def canopy(width: float, reach: float = 3.2, height: float = 5.0) -> Built:
 
 
 def letters(body: str, cap: float, *, lit: bool = True) -> Built:
-    """Build flat-cut letters on a rail, emissive white when lit. The wall is the plane y = 0, and their middle is at z = 0."""
+    """Build flat letters on a rail, emissive white if lit. The wall is the plane y = 0. The middle of the letters is at z = 0."""
     s = Solid("wall letters")
     face = glowing_face("white", 1.5) if lit else paint("white", dirt=0.25)
     width, _ = s.text(body, cap, (0, 0.12, 0), face, facing="+Y")

@@ -27,11 +27,14 @@ STONES: dict[str, Rgb] = {"honey": (0.40, 0.30, 0.175), "grey": (0.29, 0.28, 0.2
 
 
 def wall(kind: str, colour: str) -> bpy.types.Material:
-    """Return a wall's material. ``kind`` is "brick", "render" or "stone"; ``colour`` is a key of the table for that kind."""
+    """Return the material of a wall.
+
+    ``kind`` is "brick", "render" or "stone". ``colour`` is a key of ``BRICKS``, ``RENDERS`` or ``STONES``.
+    """
     name = f"wall {kind} {colour}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     where = s.object_coords()
     x, y, z = s.xyz(where)
@@ -47,7 +50,7 @@ def wall(kind: str, colour: str) -> bpy.types.Material:
 
 
 def _courses(s: Shader, kind: str, colour: str, x: Value, y: Value, z: Value) -> tuple[Value, Value]:
-    """Return the colour and the bump height of brickwork or ashlar, for walls along either axis."""
+    """Return the colour and the bump height of brickwork or ashlar, for walls along the x or y axis."""
     base = BRICKS[colour] if kind == "brick" else STONES[colour]
     size = (0.225, 0.075, 0.0055) if kind == "brick" else (0.62, 0.30, 0.006)
     plane = s.node("ShaderNodeCombineXYZ")
@@ -70,7 +73,7 @@ def _courses(s: Shader, kind: str, colour: str, x: Value, y: Value, z: Value) ->
 
 
 def _weather(s: Shader, where: Value, z: Value, tint: Value, amount: float) -> Value:
-    """Return ``tint`` with patches of soot, rain streaks, and rising damp near the pavement."""
+    """Return ``tint`` with patches of soot, rain streaks, and damp near the pavement."""
     moved = s.node("ShaderNodeVectorMath", operation="ADD")
     s.feed(moved.inputs[0], where)
     s.feed(moved.inputs[1], s.math("MULTIPLY", s.random(), 53.0))
@@ -83,11 +86,11 @@ def _weather(s: Shader, where: Value, z: Value, tint: Value, amount: float) -> V
 
 
 def roofing(kind: str) -> bpy.types.Material:
-    """Return the material of a wet roof covering in courses, "slate" or "clay"."""
+    """Return the material of a wet roof with courses of "slate" or "clay" tiles."""
     name = f"roof {kind}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     where = s.object_coords()
     x, _, z = s.xyz(where)
@@ -112,11 +115,11 @@ def roofing(kind: str) -> bpy.types.Material:
 
 
 def trim(colour: Rgb = (0.62, 0.61, 0.57)) -> bpy.types.Material:
-    """Return the material of painted joinery or stone trim, with dirt in the corners."""
+    """Return the material of painted joinery or stone trim, with dirt."""
     name = f"trim {colour[0]:.2f} {colour[1]:.2f} {colour[2]:.2f}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     where = s.object_coords()
     tint = s.mix(s.ramp(s.noise(where, 2.4, 6.0, 0.62), 0.42, 0.78, 0.0, 0.5), colour, tuple(c * 0.55 for c in colour))

@@ -1,7 +1,7 @@
 """Materials of manufactured objects: painted metal, plastic, steel, reflective sheet, concrete, rubber, wood, canvas, lamps.
 
-Each function returns one material per colour, which is created on first use. Dirt and wear depend on object coordinates: objects
-are modelled standing on z = 0, so splashes stay near the ground. The coordinates are shifted by a random number of the object,
+Each function returns one material per colour, which is created on first use. Dirt and wear depend on object coordinates. Objects
+are modelled standing on z = 0, so splashes are near the ground. The coordinates are shifted by a random offset for each object,
 so that linked copies look different.
 """
 
@@ -42,26 +42,26 @@ PALETTE: dict[str, Colour] = {
     "denim": (0.040, 0.075, 0.16),
     "silver": (0.52, 0.53, 0.54),
 }
-"""Linear RGB by plain colour name."""
+"""Linear RGB values by plain colour name."""
 
 DIRT: Colour = (0.085, 0.070, 0.052)
 
 
 def _shared(name: str, make: Callable[[Shader], bpy.types.Material]) -> bpy.types.Material:
-    """Return the material with this name, which ``make`` creates on first use."""
-    found = bpy.data.materials.get(name)
-    return found if found is not None else make(Shader(name))
+    """Return the material with this name. ``make`` creates it on first use."""
+    existing = bpy.data.materials.get(name)
+    return existing if existing is not None else make(Shader(name))
 
 
 def _coords(s: Shader) -> Value:
-    """Return object coordinates with an offset that differs between objects."""
+    """Return object coordinates with a random offset for each object."""
     node = s.node("ShaderNodeVectorMath", operation="ADD")
     s.feed(node.inputs[0], s.object_coords())
     s.feed(node.inputs[1], s.math("MULTIPLY", s.random(), 37.0))
     return node.outputs[0]
 
 
-def soiled(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> Value:
+def with_dirt(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> Value:
     """Return ``colour`` with dirt: patches, rain streaks, and splashes near the ground."""
     where = _coords(s)
     patches = s.ramp(s.noise(where, 3.2, 6.0, 0.62), 0.48, 0.80, 0.0, amount)
@@ -77,13 +77,13 @@ def paint(colour: str, *, dirt: float = 0.30, roughness: float = 0.38) -> bpy.ty
     def make(s: Shader) -> bpy.types.Material:
         fade = s.mix(s.ramp(s.noise(_coords(s), 5.0, 4.0), 0.35, 0.7, 0.0, 0.10), PALETTE[colour], (0.6, 0.6, 0.58))
         rough = s.ramp(s.noise(_coords(s), 14.0), 0.3, 0.7, roughness - 0.06, roughness + 0.14)
-        return s.surface(base_color=soiled(s, fade, dirt), roughness=rough)
+        return s.surface(base_color=with_dirt(s, fade, dirt), roughness=rough)
 
     return _shared(f"paint {colour} {dirt:.2f} {roughness:.2f}", make)
 
 
 def steel(*, dark: bool = False) -> bpy.types.Material:
-    """Return the material of weathered galvanised steel with a spangled surface."""
+    """Return the material of weathered galvanised steel with its crystal pattern."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
@@ -91,7 +91,7 @@ def steel(*, dark: bool = False) -> bpy.types.Material:
         value = s.ramp(spangle, 0.0, 1.0, 0.24 if not dark else 0.09, 0.36 if not dark else 0.15, smooth=False)
         weather = s.ramp(s.noise(where, 4.0, 5.0), 0.35, 0.7)
         base = s.mix(weather, s.mix(value, (0, 0, 0), (1, 1, 1.02)), (0.27, 0.28, 0.29) if not dark else (0.10, 0.10, 0.11))
-        return s.surface(base_color=soiled(s, base, 0.25), metallic=0.55, roughness=s.ramp(spangle, 0.0, 1.0, 0.42, 0.58))
+        return s.surface(base_color=with_dirt(s, base, 0.25), metallic=0.55, roughness=s.ramp(spangle, 0.0, 1.0, 0.42, 0.58))
 
     return _shared("steel dark" if dark else "steel", make)
 
@@ -102,7 +102,7 @@ def sheet(colour: str, *, dirt: float = 0.16) -> bpy.types.Material:
     def make(s: Shader) -> bpy.types.Material:
         cells = s.ramp(s.voronoi(s.object_coords(), 160.0, "DISTANCE_TO_EDGE"), 0.0, 0.12, 0.90, 1.0)
         base = s.mix(1.0, PALETTE[colour], s.mix(cells, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), "MULTIPLY")
-        dirty = soiled(s, base, dirt, 0.0)
+        dirty = with_dirt(s, base, dirt, 0.0)
         return s.surface(base_color=dirty, roughness=0.34, emission_color=dirty, emission_strength=0.10)
 
     return _shared(f"sheet {colour} {dirt:.2f}", make)
@@ -123,7 +123,7 @@ def lens(colour: str) -> bpy.types.Material:
 
 
 def glass() -> bpy.types.Material:
-    """Return the material of dark, opaque glazing, as windows look from outside by day."""
+    """Return the material of dark, opaque glazing. It imitates windows seen from outside by day."""
     return _shared("glazing", lambda s: s.surface(base_color=(0.018, 0.021, 0.023), roughness=0.04))
 
 
@@ -134,11 +134,11 @@ def clear_glass() -> bpy.types.Material:
 
 def rubber() -> bpy.types.Material:
     """Return the material of dirty black rubber."""
-    return _shared("rubber", lambda s: s.surface(base_color=soiled(s, (0.018, 0.018, 0.018), 0.5, 0.2), roughness=0.75))
+    return _shared("rubber", lambda s: s.surface(base_color=with_dirt(s, (0.018, 0.018, 0.018), 0.5, 0.2), roughness=0.75))
 
 
 def concrete(*, light: bool = True) -> bpy.types.Material:
-    """Return the material of cast concrete, with blotches, air holes and stains that run down from the top."""
+    """Return the material of cast concrete, with blotches, air holes and vertical stains."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
@@ -148,7 +148,7 @@ def concrete(*, light: bool = True) -> bpy.types.Material:
         holes = s.ramp(s.voronoi(where, 42.0), 0.06, 0.16)
         base = s.mix(s.ramp(holes, 0.0, 1.0, 0.55, 0.0), s.mix(blotch, low, high), (0.07, 0.068, 0.06))
         grain = s.math("ADD", s.math("MULTIPLY", s.noise(where, 90.0, 3.0), 0.4), holes)
-        return s.surface(base_color=soiled(s, base, 0.42, 0.25), roughness=0.86, normal=s.bump(grain, 0.25, 0.004))
+        return s.surface(base_color=with_dirt(s, base, 0.42, 0.25), roughness=0.86, normal=s.bump(grain, 0.25, 0.004))
 
     return _shared("concrete light" if light else "concrete dark", make)
 
@@ -161,7 +161,7 @@ def timber(*, fresh: bool = True) -> bpy.types.Material:
         grain = s.noise(where, 1.0, 6.0, 0.6, 0.8)
         low, high = ((0.20, 0.105, 0.042), (0.44, 0.28, 0.13)) if fresh else ((0.10, 0.085, 0.07), (0.24, 0.20, 0.16))
         return s.surface(
-            base_color=soiled(s, s.mix(s.ramp(grain, 0.3, 0.7), low, high), 0.3),
+            base_color=with_dirt(s, s.mix(s.ramp(grain, 0.3, 0.7), low, high), 0.3),
             roughness=0.8,
             normal=s.bump(grain, 0.3, 0.004),
         )
@@ -184,12 +184,12 @@ def granular(name: str, low: Colour, high: Colour, grain_scale: float) -> bpy.ty
 
 
 def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
-    """Return the material of woven or tarpaulin-like cloth with creases."""
+    """Return the material of creased cloth, such as canvas or tarpaulin."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
         creases = s.noise(where, 7.0, 5.0, 0.6, 0.6)
-        return s.surface(base_color=soiled(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02))
+        return s.surface(base_color=with_dirt(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02))
 
     return _shared(f"cloth {colour} {roughness:.2f}", make)
 
@@ -197,9 +197,9 @@ def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
 def pane(tint: float = 0.25) -> bpy.types.Material:
     """Return the material of clear glass that transmits most of the light and reflects the fraction ``tint``."""
     name = f"pane {tint:.2f}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     clear, mirror = s.node("ShaderNodeBsdfTransparent"), s.node("ShaderNodeBsdfGlossy")
     clear.inputs["Color"].default_value = (0.86, 0.92, 0.92, 1.0)
@@ -215,9 +215,9 @@ def pane(tint: float = 0.25) -> bpy.types.Material:
 
 def stripes(name: str, first: str, second: str, pitch_m: float) -> bpy.types.Material:
     """Return the material of canvas that is striped along the local x axis and lets a third of the light through."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.object_coords()
     x, _, _ = s.xyz(p)

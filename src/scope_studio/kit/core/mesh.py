@@ -37,7 +37,7 @@ def from_data(
 def box(
     name: str, size: Point, centre: Point, material: bpy.types.Material | None = None, *, bevel_m: float = 0.01, segments: int = 2
 ) -> bpy.types.Object:
-    """Create a box with bevelled edges; ``size`` and ``centre`` in metres."""
+    """Create a box with bevelled edges. ``size`` and ``centre`` are in metres."""
     mesh = bpy.data.meshes.new(name)
     bm = bmesh.new()
     bmesh.ops.create_cube(bm, size=1.0)
@@ -112,7 +112,7 @@ def to_mesh(obj: bpy.types.Object) -> bpy.types.Object:
 
 
 def join(name: str, parts: Sequence[bpy.types.Object]) -> bpy.types.Object:
-    """Join mesh objects into one, which renders and exports faster. The original objects no longer exist afterwards."""
+    """Join mesh objects into one object, which renders and exports faster. The original objects are removed."""
     with bpy.context.temp_override(active_object=parts[0], selected_editable_objects=list(parts), selected_objects=list(parts)):
         bpy.ops.object.join()
     parts[0].name = name
@@ -138,7 +138,7 @@ def text(
         centre: Middle of the text block if ``align`` is "CENTER", or its left edge if ``align`` is "LEFT".
 
     Returns:
-        The object, and its text mark with the measured size of the letters.
+        The object, and its text mark with the measured size of the text.
     """
     curve = bpy.data.curves.new(name, "FONT")
     curve.body = body

@@ -1,4 +1,4 @@
-"""A builder that collects simple solids into one mesh, used for vehicles and machines."""
+"""A builder that collects simple solids in one mesh, for vehicles and machines."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AXES = {
 
 
 class Parts:
-    """A collection of polygons with materials. ``matrix`` transforms the points of parts that are added from then on."""
+    """A collection of polygons with materials. The current ``matrix`` transforms the points of each part when it is added."""
 
     def __init__(self) -> None:
         self.matrix = Matrix.Identity(4)
@@ -31,7 +31,7 @@ class Parts:
         self._smooth: list[bool] = []
 
     def slot(self, material: bpy.types.Material) -> int:
-        """Return the slot number of a material, which is added on first use."""
+        """Return the slot number of a material. A new material gets a new slot."""
         if material not in self.materials:
             self.materials.append(material)
         return self.materials.index(material)
@@ -44,7 +44,7 @@ class Parts:
         *,
         smooth: bool = False,
     ) -> None:
-        """Add polygons in the current frame. ``faces`` index ``points``, anticlockwise as seen from outside."""
+        """Add polygons, transformed by ``matrix``. ``faces`` contains indices of ``points``, anticlockwise as seen from outside."""
         base, slot = len(self._points), self.slot(material)
         flipped = self.matrix.determinant() < 0
         self._points += [self.matrix @ Vector(p) for p in points]
@@ -192,7 +192,7 @@ class Parts:
         sides: int = 8,
         closed: bool = False,
     ) -> None:
-        """Add a round tube along a path. With 4 sides it is square."""
+        """Add a tube along a path. Its cross-section is a regular polygon with ``sides`` sides."""
         line = [Vector(p) for p in path]
         count = len(line)
         points: list[Point] = []
@@ -231,6 +231,6 @@ class Parts:
 
 
 def _outward(points: Sequence[Point], face: tuple[int, ...], middle: Vector) -> tuple[int, ...]:
-    """Return the face with the order of points that makes it face away from ``middle``."""
+    """Return the face with its points in the order that makes it face away from ``middle``."""
     a, b, c = (Vector(points[k]) for k in face[:3])
     return face if (b - a).cross(c - b).dot(a - middle) > 0 else face[::-1]

@@ -8,7 +8,7 @@ from scope_studio.kit.core.stage import Built
 
 
 class Prototypes:
-    """Builds each kind of object once and returns linked copies afterwards."""
+    """A cache that builds each kind of object once and returns linked copies afterwards."""
 
     def __init__(self) -> None:
         self._built: dict[str, Built] = {}

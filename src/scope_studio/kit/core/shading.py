@@ -1,4 +1,4 @@
-"""Cycles materials written as expressions, in which each method of ``Shader`` adds one node."""
+"""Build Cycles materials from expressions. Each method of ``Shader`` in an expression adds one or more nodes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Value = Any  # a socket, a number, or a tuple of 3 or 4 numbers
 
 
 class Shader:
-    """A material under construction. Methods add a node and return its output socket; arguments are sockets or constants."""
+    """A material under construction. Methods add nodes and return an output socket; their arguments are sockets or constants."""
 
     def __init__(self, name: str) -> None:
         self.material = bpy.data.materials.new(name)
@@ -25,7 +25,7 @@ class Shader:
         return node
 
     def feed(self, socket: bpy.types.NodeSocket, value: Value) -> None:
-        """Link a socket to an input, or set a constant. For colour inputs, an alpha of 1 is appended to tuples of 3."""
+        """Link a socket to an input, or set a constant. For colour inputs, an alpha of 1 is appended to tuples of three numbers."""
         if value is None:
             return
         if isinstance(value, bpy.types.NodeSocket):
@@ -36,7 +36,7 @@ class Shader:
             socket.default_value = value
 
     def surface(self, **inputs: Value) -> bpy.types.Material:
-        """Set inputs of the principled BSDF by name with underscores (``base_color``, ``normal``) and return the material."""
+        """Set inputs of the principled BSDF and return the material. Names are in snake case, such as ``base_color``."""
         by_name = {s.name.lower().replace(" ", "_"): s for s in self.bsdf.inputs}
         for key, value in inputs.items():
             self.feed(by_name[key], value)
@@ -77,14 +77,14 @@ class Shader:
         return node.outputs[0]
 
     def voronoi(self, vector: Value, scale: float, feature: str = "F1", output: str = "Distance") -> Value:
-        """Return a Voronoi feature such as the distance to the nearest cell centre."""
+        """Return an output of a Voronoi texture, such as the distance to the nearest cell centre."""
         node = self.node("ShaderNodeTexVoronoi", feature=feature)
         self.feed(node.inputs["Vector"], vector)
         node.inputs["Scale"].default_value = scale
         return node.outputs[output]
 
     def math(self, operation: str, a: Value, b: Value = None, *, clamp: bool = False) -> Value:
-        """Return the result of a scalar operation of Blender's Math node."""
+        """Return the result of an operation of Blender's Math node."""
         node = self.node("ShaderNodeMath", operation=operation, use_clamp=clamp)
         self.feed(node.inputs[0], a)
         self.feed(node.inputs[1], b)
@@ -93,7 +93,7 @@ class Shader:
     def ramp(
         self, value: Value, low: float, high: float, to_low: float = 0.0, to_high: float = 1.0, *, smooth: bool = True
     ) -> Value:
-        """Map ``low..high`` to ``to_low..to_high``, clamped. Most masks use it."""
+        """Map ``low..high`` to ``to_low..to_high``, clamped."""
         node = self.node("ShaderNodeMapRange", interpolation_type="SMOOTHSTEP" if smooth else "LINEAR")
         for index, number in enumerate([value, low, high, to_low, to_high]):
             self.feed(node.inputs[index], number)
@@ -122,7 +122,7 @@ class Shader:
 
 def plain(name: str, colour: tuple[float, float, float], roughness: float = 0.5, metallic: float = 0.0) -> bpy.types.Material:
     """Return a material of one colour, shared by name."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     return Shader(name).surface(base_color=colour, roughness=roughness, metallic=metallic)

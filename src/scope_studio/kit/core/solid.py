@@ -1,4 +1,4 @@
-"""A builder that collects primitives with their materials and texts and creates one mesh object from them."""
+"""A builder that collects primitives, materials and texts, and creates one mesh object from them."""
 
 from __future__ import annotations
 
@@ -13,20 +13,21 @@ from scope_studio.kit.core.lettering import letters
 from scope_studio.kit.core.mesh import Point
 from scope_studio.kit.core.stage import Built, TextMark
 
-READER = {
+LETTERING_AXES = {
     "+Y": ((-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     "-Y": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     "+X": ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
     "-X": ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
     "+Z": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
 }
-"""Directions (right, up) of lettering, for each direction that it can face."""
+"""Unit vectors (right, up) of lettering, for each direction that it can face."""
 
 SHARP_ANGLE = math.radians(38)
+"""Angle between faces, in radians, above which their common edge is shaded as sharp."""
 
 
 class Solid:
-    """A collection of geometry. Points are added in the current ``frame``. Materials become slots in order of first use."""
+    """A collection of geometry. ``frame`` transforms the points that are added. Materials get slots in order of first use."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -49,7 +50,7 @@ class Solid:
         pitch: float = 0.0,
         roll: float = 0.0,
     ) -> Iterator[None]:
-        """While the context is active, use a frame moved to ``(x, y, z)`` and rotated (degrees) about z, x (pitch) and y (roll)."""
+        """While the context is active, move and rotate the frame: ``turn`` degrees about z, ``pitch`` about x, ``roll`` about y."""
         saved = self.frame
         rotation = Matrix.Rotation(math.radians(turn), 4, "Z")
         rotation @= Matrix.Rotation(math.radians(pitch), 4, "X") @ Matrix.Rotation(math.radians(roll), 4, "Y")
@@ -66,9 +67,9 @@ class Solid:
         material: bpy.types.Material,
         rest: Sequence[Point] | None = None,
     ) -> None:
-        """Add polygons in the current frame.
+        """Add polygons, transformed by the current frame.
 
-        ``rest`` gives each point a value for the "rest" attribute, which shaders use for masks.
+        ``rest`` contains the value of the "rest" attribute for each point. Shaders use this attribute for masks.
         """
         if material not in self.slots:
             self.slots.append(material)
@@ -150,7 +151,7 @@ class Solid:
         radius_b: float | None = None,
         sides: int = 10,
     ) -> None:
-        """Add a straight round bar, tapered when ``radius_b`` is given."""
+        """Add a straight round bar from ``a`` to ``b``. With ``radius_b``, it is tapered."""
         self.tube([a, b], radius, material, sides=sides, radius_b=radius_b)
 
     def tube(
@@ -208,7 +209,7 @@ class Solid:
         material: bpy.types.Material,
         plane: str = "XZ",
     ) -> None:
-        """Add a polygon (convex or not), extruded between two depths along the axis normal to ``plane``."""
+        """Add a polygon, which need not be convex, extruded between two depths along the axis normal to ``plane``."""
         place = {"XZ": lambda u, v, d: (u, d, v), "XY": lambda u, v, d: (u, v, d), "YZ": lambda u, v, d: (d, u, v)}[plane]
         count = len(outline)
         area = sum(outline[i - 1][0] * outline[i][1] - outline[i][0] * outline[i - 1][1] for i in range(count))
@@ -234,11 +235,11 @@ class Solid:
         spacing: float | None = None,
         mark: bool = True,
     ) -> tuple[float, float]:
-        """Add one line of lettering that faces ``facing``, with its exact text mark.
+        """Add one line of lettering that faces in the direction ``facing``, with its exact text mark.
 
         Args:
-            centre: Point at half the height of the capitals and the middle, left end or right end of the line (see ``align``).
-            mark: Whether the line gets a text mark.
+            centre: Point at half the height of the capitals, at the middle, left end or right end of the line (see ``align``).
+            mark: Whether to add a text mark for the line.
 
         Returns:
             Width and height of the letters in metres.
@@ -247,22 +248,22 @@ class Solid:
         xs, ys = [p[0] for p in flat], [p[1] for p in flat]
         low, high = min(xs), max(xs)
         shift = {"CENTER": -(low + high) / 2, "LEFT": -low, "RIGHT": -high}[align]
-        right, up = (Vector(v) for v in READER[facing])
+        right, up = (Vector(v) for v in LETTERING_AXES[facing])
         origin, out = Vector(centre), right.cross(up)
 
-        def lay(x: float, y: float, z: float = 0.0) -> Vector:
+        def in_frame(x: float, y: float, z: float = 0.0) -> Vector:
             return origin + right * (x + shift) + up * (y - cap_height_m / 2) + out * z
 
-        self.add([tuple(lay(*p)) for p in flat], faces, material)
+        self.add([tuple(in_frame(*p)) for p in flat], faces, material)
         width, height = high - low, max(ys) - min(ys)
         if mark:
             turn = self.frame.to_3x3()
-            middle = self.frame @ lay((low + high) / 2, (max(ys) + min(ys)) / 2)
+            middle = self.frame @ in_frame((low + high) / 2, (max(ys) + min(ys)) / 2)
             self.texts.append(TextMark(body, tuple(middle), tuple(turn @ right), tuple(turn @ up), width, height, cap_height_m))
         return width, height
 
     def object(self) -> bpy.types.Object:
-        """Create the mesh object, linked to the scene and smooth-shaded with sharp edges by angle."""
+        """Create the mesh object and link it to the scene. Shading is smooth, except at edges above ``SHARP_ANGLE``."""
         mesh = bpy.data.meshes.new(self.name)
         mesh.from_pydata(self.points, [], self.faces)
         for material in self.slots:
@@ -279,5 +280,5 @@ class Solid:
         return obj
 
     def built(self) -> Built:
-        """Create the object and return it with its texts."""
+        """Create the mesh object and return it with its texts."""
         return Built.of(self.name, [self.object()], self.texts)

@@ -1,4 +1,4 @@
-"""The stage, on which kit objects are placed and become annotated instances.
+"""The stage of a scene. Objects that are placed on it become annotated instances.
 
 Lengths are in metres and z points up. World north is +y, east is +x. A *bearing* is in degrees clockwise from north, seen from
 above. Every builder models its object at the origin, standing on z = 0 and facing north (+y), with its right side towards +x.
@@ -15,16 +15,16 @@ import bpy
 from mathutils import Matrix, Vector
 
 INSTANCE_PROP = "scope_instance"
-"""Custom property of every annotated Blender object: the string id of its instance."""
+"""Custom property of every annotated Blender object. Its value is the id of the instance."""
 
 
 @dataclass
 class TextMark:
-    """One readable text on an object, in the object's own frame (before placement).
+    """A readable text on an object, in object coordinates (before placement).
 
-    ``centre`` is the middle of the text block. ``right`` points along the line of text as a viewer sees it, and ``up`` towards
-    the top of the letters (unit vectors). The outward normal is ``right x up``. ``cap_height_m`` is the height of a capital
-    letter.
+    ``centre`` is the middle of the text block. ``right`` and ``up`` are unit vectors that point along the line of text, as a
+    viewer sees it, and towards the top of the letters. The outward normal is ``right x up``. ``cap_height_m`` is the height of a
+    capital letter.
     """
 
     text: str
@@ -38,7 +38,7 @@ class TextMark:
 
 @dataclass
 class Built:
-    """The result of a builder: Blender objects that are all parented to ``root``, and the readable texts on them."""
+    """The result of a builder: Blender objects whose parent is ``root``, and the readable texts on them."""
 
     root: bpy.types.Object
     objects: list[bpy.types.Object]
@@ -46,7 +46,7 @@ class Built:
 
     @classmethod
     def of(cls, name: str, objects: Iterable[bpy.types.Object], texts: Sequence[TextMark] = ()) -> Built:
-        """Parent ``objects``, which are modelled around the origin, to a new empty and return them as one."""
+        """Return ``objects``, which are modelled around the origin, with a new empty as their parent."""
         root = bpy.data.objects.new(name, None)
         root.empty_display_size = 0.2
         bpy.context.scene.collection.objects.link(root)
@@ -57,7 +57,7 @@ class Built:
         return cls(root, parts, list(texts))
 
     def copy(self) -> Built:
-        """Return a linked duplicate. It shares its mesh data, so a hundred cones need as much memory as one."""
+        """Return a linked duplicate. It shares the mesh data, so a hundred cones need as much memory as one."""
         twins: dict[bpy.types.Object, bpy.types.Object] = {}
         for obj in [self.root, *self.objects]:
             twin = obj.copy()
@@ -85,7 +85,7 @@ class Instance:
 
 @dataclass
 class Viewpoint:
-    """The optical centre of a camera. ``pan0_bearing_deg`` is the world bearing at which its pan is 0."""
+    """A camera position (the optical centre). ``pan0_bearing_deg`` is the world bearing at which the pan is 0."""
 
     name: str
     position: tuple[float, float, float]
@@ -95,7 +95,7 @@ class Viewpoint:
 
 @dataclass
 class Preset:
-    """A named pose in the pan/tilt/zoom frame of its viewpoint. One preset of the scene is the home preset."""
+    """A named pan, tilt and zoom of a viewpoint. One preset of the scene is the home preset."""
 
     name: str
     viewpoint: str
@@ -107,7 +107,7 @@ class Preset:
 
 @dataclass
 class ActorPath:
-    """A moving object: its builder, and its position over time.
+    """A moving object, defined by its builder and its position over time.
 
     ``waypoints`` are ``(t_s, x, y, z)``. The actor moves between them at constant speed and faces in the direction of motion. The
     path repeats every ``period_s``. ``build`` builds the object for a gait phase in [0, 1), which is 0 for objects without legs.
@@ -125,16 +125,16 @@ class ActorPath:
     stride_m: float | None = None
 
 
-def _leave_materials(*, skip: tuple[str, ...] = ()) -> None:
-    """Leave the materials unchanged."""
+def _keep_materials(*, skip: tuple[str, ...] = ()) -> None:
+    """Keep all materials unchanged. This is the default of ``Stage.finish``."""
 
 
 class Stage:
-    """Collects the objects that a scene module builds.
+    """The objects, viewpoints and presets that a scene module defines.
 
-    Ids are ``category-NN`` in order of placement and never change afterwards. ``finish`` is the last step for materials, for
-    example adding haze. It is called once after the scene is built, and again for each moving object that is built later. Then
-    ``skip`` contains the names of the materials that are already finished.
+    Ids are ``category-NN`` in order of placement and never change afterwards. ``finish`` applies the last changes
+    to materials, such as haze. It is called once after the scene is built, and again for each moving object that is built later;
+    ``skip`` then contains the names of the materials that are already finished.
     """
 
     def __init__(self, name: str, title: str) -> None:
@@ -147,7 +147,7 @@ class Stage:
         self.actors: list[ActorPath] = []
         self.absent: list[str] = []
         self.start_s = 0.0
-        self.finish: Callable[..., None] = _leave_materials
+        self.finish: Callable[..., None] = _keep_materials
         self._numbers: dict[str, int] = {}
 
     def place(
@@ -166,9 +166,9 @@ class Stage:
         """Place a built object in the world and annotate it as an instance.
 
         Args:
-            name: The plain English noun phrase that a person would use ("white van").
-            attributes: Facts worth asking about, such as colour, material, state ("open", "lit", "parked") or facing. Values
-                are short lower-case strings, numbers or booleans.
+            name: A plain English noun phrase, such as "white van".
+            attributes: Facts that questions can be about, such as colour, material, state ("open", "lit", "parked") or facing.
+                Values are short lower-case strings, numbers or booleans.
 
         Returns:
             The instance id.
@@ -194,7 +194,7 @@ class Stage:
         lean_deg: tuple[float, float] = (0.0, 0.0),
         scale: float = 1.0,
     ) -> Built:
-        """Place an object in the world without annotation (ground, distant scenery). Its pass index stays 0."""
+        """Place an object in the world without annotation, such as ground or distant scenery. Its pass index stays 0."""
         rotation = Matrix.Rotation(-math.radians(bearing_deg), 4, "Z")
         rotation @= Matrix.Rotation(math.radians(lean_deg[0]), 4, "X") @ Matrix.Rotation(math.radians(lean_deg[1]), 4, "Y")
         built.root.matrix_world = Matrix.Translation(Vector(location)) @ rotation @ Matrix.Scale(scale, 4)
@@ -207,7 +207,7 @@ class Stage:
     def preset(
         self, name: str, viewpoint: str, pan_deg: float, tilt_deg: float, zoom: float, description: str, *, home: bool = False
     ) -> None:
-        """Add a preset. With ``home``, it is the scene's home preset."""
+        """Add a preset. If ``home`` is true, it becomes the scene's home preset."""
         self.presets.append(Preset(name, viewpoint, pan_deg, tilt_deg, zoom, description))
         if home:
             self.home_preset = name

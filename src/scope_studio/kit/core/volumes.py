@@ -1,4 +1,4 @@
-"""Rounded bodies of people, animals and objects: capsules, ellipsoids and lofts that a voxel remesh merges into one skin."""
+"""Rounded bodies of people, animals and objects. A voxel remesh merges capsules, ellipsoids and lofts into one skin."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mathutils import Matrix, Vector, noise
 
 Vec = Vector | tuple[float, float, float]
 Skin = tuple[np.ndarray, list[tuple[int, ...]]]
-"""Surface mesh: points (n, 3) and faces."""
+"""Surface mesh of a body: points (n, 3) and faces."""
 
 
 class Volume:
@@ -22,7 +22,7 @@ class Volume:
         self.faces: list[tuple[int, ...]] = []
 
     def rings(self, rows: Sequence[Sequence[Vec]]) -> None:
-        """Add a closed tube through rings of equal length."""
+        """Add a closed tube through rings, which must have equal numbers of points."""
         base, n = len(self.points), len(rows[0])
         for row in rows:
             self.points += [tuple(p) for p in row]
@@ -34,7 +34,7 @@ class Volume:
         self.faces.append(tuple(range(base + (len(rows) - 1) * n, base + len(rows) * n)))
 
     def capsule(self, a: Vec, b: Vec, ra: float, rb: float, *, sides: int = 16, flat: float = 1.0, across: Vec = (1, 0, 0)) -> None:
-        """Add a tapered capsule. A ``flat`` below 1 makes it thinner at right angles to ``across``."""
+        """Add a tapered capsule. If ``flat`` is less than 1, the capsule is thinner at right angles to ``across``."""
         a, b = Vector(a), Vector(b)
         axis = (b - a).normalized()
         u = Vector(across) - axis * axis.dot(Vector(across))
@@ -80,7 +80,7 @@ class Volume:
         if smooth:
             soft = obj.modifiers.new("smooth", "SMOOTH")
             soft.factor, soft.iterations = 0.5, smooth
-        scratch = bpy.data.scenes.new("merge")  # evaluating a separate scene does not re-evaluate the stage
+        scratch = bpy.data.scenes.new("merge")  # a separate scene, so that the evaluation does not include the whole stage
         scratch.collection.objects.link(obj)
         layer = scratch.view_layers[0]
         layer.update()

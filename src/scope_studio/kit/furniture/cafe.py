@@ -16,6 +16,7 @@ from scope_studio.kit.core.stage import Built
 TABLE_M = 0.74
 """Height of a table top in metres."""
 SEAT_M = 0.45
+"""Height of a seat in metres."""
 
 
 def table(colour: str = "light grey", *, radius: float = 0.36) -> Built:
@@ -46,7 +47,7 @@ def table(colour: str = "light grey", *, radius: float = 0.36) -> Built:
 
 
 def chair(colour: str = "dark green") -> Built:
-    """Build a slatted bistro chair. A person sits on it facing +y, with the hips over the origin."""
+    """Build a slatted bistro chair. A person on it faces +y, with the hips over the origin."""
     s = Solid("café chair")
     metal, wood = paint(colour, dirt=0.15, roughness=0.35), paint(colour, dirt=0.1, roughness=0.5)
     for sign in (-1, 1):
@@ -66,7 +67,7 @@ def chair(colour: str = "dark green") -> Built:
 
 
 def parasol(first: str, second: str | None = None, *, open: bool = True, text: str | None = None) -> Built:  # noqa: A002
-    """Build a nearly square market parasol on a concrete foot, 2.9 m across and 2.75 m high. Unless ``open``, it is folded."""
+    """Build a nearly square parasol on a concrete foot, 2.9 m wide and 2.75 m high. If ``open`` is false, it is folded."""
     s = Solid("parasol")
     cloth = stripes(f"parasol {first} {second or first}", first, second or first, 0.7)
     s.box((0.55, 0.55, 0.10), (0, 0, 0.05), concrete(light=False), 0.03)
@@ -124,15 +125,15 @@ def cup(colour: str = "white") -> Built:
 
 
 def menu_board(lines: Sequence[str], *, cap: float = 0.062) -> Built:
-    """Build a chalk A-board, 0.65 x 1.1 m, with the same text on both faces (+y and -y). The first line is the heading."""
+    """Build a folding chalkboard, 0.65 x 1.1 m, with the same text on both faces (+y and -y). The first line is the heading."""
     s = Solid("menu board")
     slate = _slate()
     chalk = [plain(f"chalk {k}", c, 0.95) for k, c in enumerate(((0.80, 0.79, 0.74), (0.80, 0.66, 0.30), (0.62, 0.74, 0.80)))]
-    wide = max(0.66, max(extent(line, cap) for line in lines) + 0.16)
+    width = max(0.66, max(extent(line, cap) for line in lines) + 0.16)
     for turn in (0.0, 180.0):
         with s.at(turn=turn), s.at(0, 0.30, 0.0, pitch=14.0):
-            s.box((wide, 0.035, 1.14), (0, 0, 0.57), timber(fresh=False), 0.008)
-            s.box((wide - 0.08, 0.012, 1.02), (0, 0.014, 0.58), slate, 0.0)
+            s.box((width, 0.035, 1.14), (0, 0, 0.57), timber(fresh=False), 0.008)
+            s.box((width - 0.08, 0.012, 1.02), (0, 0.014, 0.58), slate, 0.0)
             pitch = min(0.15, 0.98 / len(lines))
             for k, line in enumerate(lines):
                 ink = chalk[1 if k == 0 else 0 if k % 3 else 2]

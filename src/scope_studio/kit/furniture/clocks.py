@@ -21,34 +21,40 @@ def dial(s: Solid, radius: float, hour: int, minute: int, *, rim: str = "black",
     s.lathe([(radius * 1.01, lift - 0.02), (radius * 1.01, lift)], face, (0, 0, 0), "Y", 48)
     for k in range(60):
         a = 2 * math.pi * k / 60
-        long, wide = (0.12, 0.030) if k % 5 == 0 else (0.045, 0.012)
+        long, width = (0.12, 0.030) if k % 5 == 0 else (0.045, 0.012)
         if k % 15 == 0:
-            long, wide = 0.06, 0.05
+            long, width = 0.06, 0.05
         with s.at(roll=math.degrees(a)):
-            s.box((radius * wide, 0.004, radius * long), (0, lift + 0.003, radius * (0.95 - long / 2)), ink, 0.0)
+            s.box((radius * width, 0.004, radius * long), (0, lift + 0.003, radius * (0.95 - long / 2)), ink, 0.0)
     for text, a in (("12", 0), ("3", 90), ("6", 180), ("9", 270)):
         u, v = -math.sin(math.radians(a)) * radius * 0.72, math.cos(math.radians(a)) * radius * 0.72
         s.text(text, radius * 0.20, (u, lift + 0.003, v), ink, mark=False)
     minutes = 6.0 * minute
     hours = 30.0 * (hour % 12) + minute / 2
-    for angle, long, wide, y in ((hours, 0.54, 0.075, lift + 0.012), (minutes, 0.84, 0.048, lift + 0.020)):
+    for angle, long, width, y in ((hours, 0.54, 0.075, lift + 0.012), (minutes, 0.84, 0.048, lift + 0.020)):
         with s.at(roll=-angle):
-            shape = [(-wide * 0.5, -0.16), (wide * 0.5, -0.16), (wide * 0.62, long * 0.6), (0.0, long), (-wide * 0.62, long * 0.6)]
+            shape = [
+                (-width * 0.5, -0.16),
+                (width * 0.5, -0.16),
+                (width * 0.62, long * 0.6),
+                (0.0, long),
+                (-width * 0.62, long * 0.6),
+            ]
             s.prism([(u * radius, v * radius) for u, v in shape], (y, y + 0.005), ink, "XZ")
     s.lathe([(radius * 0.06, lift), (radius * 0.06, lift + 0.03)], lens("black"), (0, 0, 0), "Y", 16)
 
 
 def wall_clock(radius: float, hour: int, minute: int, *, rim: str = "black") -> Built:
-    """Build a wall clock centred on the origin. Its dial faces +y and lies 0.1 m in front of the plane y = 0."""
+    """Build a wall clock centred on the origin. Its dial faces +y and is 0.1 m in front of the plane y = 0."""
     s = Solid("wall clock")
     dial(s, radius, hour, minute, rim=rim, lift=0.10)
     return s.built()
 
 
 def post_clock(hour: int, minute: int, *, colour: str = "dark green", height: float = 3.6) -> Built:
-    """Build a street clock, 0.84 m across, with faces towards +y and -y on a fluted column.
+    """Build a street clock on a fluted column. It is 0.84 m wide and has faces towards +y and -y.
 
-    ``height`` is the height of its centre in metres.
+    ``height`` is the height of the clock's centre in metres.
     """
     s = Solid("post clock")
     body = paint(colour, dirt=0.2, roughness=0.35)

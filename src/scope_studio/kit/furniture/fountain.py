@@ -1,4 +1,4 @@
-"""A fountain with a statue: basin, inscribed plinth, and figures cast in bronze."""
+"""A fountain with a basin, an inscribed plinth, and a bronze material for its statue."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> B
 
 
 def bronze(built: Built) -> Built:
-    """Give all parts of ``built`` the material of weathered bronze, and return it."""
+    """Change the material of all parts of ``built`` to weathered bronze, and return ``built``."""
     metal = _bronze()
     for obj in built.objects:
         for slot in obj.material_slots:

@@ -16,7 +16,7 @@ from scope_studio.kit.furniture.stalls import flowers
 
 
 def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4.4, lit: bool = False) -> Built:
-    """Build a cast-iron lamp post with one lantern on top, or two on a cross arm."""
+    """Build a cast-iron lamp post with one lantern on top, or two lanterns on a cross arm."""
     s = Solid("lantern post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
     s.lathe(
@@ -114,7 +114,7 @@ def recycling_bin(colour: str, word: str) -> Built:
 
 
 def ticket_machine(*, lit: bool = True) -> Built:
-    """Build a ticket machine, 0.75 x 0.55 x 1.85 m, with a lettered panel at the top. Screen, slots and keypad face +y."""
+    """Build a ticket machine, 0.75 x 0.55 x 1.85 m, with a lettered panel at the top. The screen, slots and keypad face +y."""
     s = Solid("ticket machine")
     body = paint("blue", dirt=0.15, roughness=0.35)
     s.box((0.75, 0.50, 1.60), (0, 0, 0.80), body, 0.02)
@@ -131,7 +131,7 @@ def ticket_machine(*, lit: bool = True) -> Built:
 
 
 def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white", "red"), seed: int = 0) -> Built:
-    """Build a white pole with a flag of vertical stripes that flies towards +x."""
+    """Build a white pole with a flag that has vertical stripes and flies towards +x."""
     s = Solid("flagpole")
     rng = random.Random(f"flag {seed}")
     s.lathe(
@@ -149,15 +149,15 @@ def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white"
     )
     w, h, n = 1.5, 0.95, 24
     start = rng.uniform(0, 6)
-    share = n // len(colours)
+    columns = n // len(colours)
     for k, colour in enumerate(colours):
         points, faces = [], []
-        for i in range(share + 1):
-            u = (k * share + i) / n
+        for i in range(columns + 1):
+            u = (k * columns + i) / n
             for v in (0.0, 0.5, 1.0):
                 swing = 0.16 * u * math.sin(start + 7.0 * u + 1.2 * v) + 0.05 * math.sin(start + 13 * u)
                 points.append((0.05 + w * u * 0.96, swing, height - 0.1 - h * (1 - v) - 0.22 * u * u))
-        for i in range(share):
+        for i in range(columns):
             for j in range(2):
                 a = i * 3 + j
                 faces.append((a, a + 3, a + 4, a + 1))
@@ -188,9 +188,9 @@ def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
             tint = ("cream", "light blue", "pink", "yellow", "white", "orange")[(i * 2 + k) % 6]
             block(s, (0.19, 0.02, 0.26), (-0.98 + 0.245 * i, -0.06, 1.28 + 0.32 * k), plain(f"magazine {tint}", PALETTE[tint], 0.6))
     for i in range(5):
-        tall = 0.05 + 0.02 * (i * 7 % 4)
-        s.box((0.32, 0.24, tall), (-0.90 + 0.45 * i, 1.08, 1.08 + tall / 2), plain("newsprint", (0.58, 0.57, 0.53), 0.9), 0.004)
-        block(s, (0.26, 0.09, 0.002), (-0.90 + 0.45 * i, 1.06, 1.082 + tall), plain("newsprint picture", (0.20, 0.20, 0.21), 0.9))
+        height = 0.05 + 0.02 * (i * 7 % 4)
+        s.box((0.32, 0.24, height), (-0.90 + 0.45 * i, 1.08, 1.08 + height / 2), plain("newsprint", (0.58, 0.57, 0.53), 0.9), 0.004)
+        block(s, (0.26, 0.09, 0.002), (-0.90 + 0.45 * i, 1.06, 1.082 + height), plain("newsprint picture", (0.20, 0.20, 0.21), 0.9))
     s.box((2.6, 2.3, 0.46), (0, 0.05, 2.62), wood, 0.03)
     s.box((2.9, 2.6, 0.10), (0, 0.05, 2.88), wood, 0.03)
     for facing, (x, y) in {"+Y": (0.0, 1.2035), "-Y": (0.0, -1.1035), "+X": (1.3035, 0.05), "-X": (-1.3035, 0.05)}.items():

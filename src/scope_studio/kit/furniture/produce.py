@@ -42,7 +42,7 @@ Maker = Callable[[Solid, random.Random, float, float, float], None]
 
 
 def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.92, name: str) -> Maker:
-    """Return a function that adds a round piece in one of the colours."""
+    """Return a function that adds a round fruit or vegetable in a random one of the colours."""
     profile = [(0.15, -0.95), (0.7, -0.7), (1.0, 0.0), (0.75, 0.72), (0.3, 0.93), (0.08, 0.82)]
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
@@ -55,7 +55,7 @@ def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.9
 
 
 def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip: float = 0.3, name: str) -> Maker:
-    """Return a function that adds a long piece in one of the colours."""
+    """Return a function that adds a long vegetable or loaf in a random one of the colours."""
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
         k = rng.randrange(len(tints))
@@ -119,7 +119,7 @@ PRODUCE: dict[str, tuple[Maker, float]] = {
     "lettuces": (_leafy(0.080, (0.17, 0.33, 0.045), (0.28, 0.43, 0.085), "lettuce"), 0.140),
     "cheeses": (_ball(0.085, (0.66, 0.42, 0.08), (0.62, 0.50, 0.26), squash=0.5, name="cheese"), 0.165),
 }
-"""For each kind of produce, a function that adds one piece to a crate, and the spacing of pieces in metres."""
+"""For each kind of produce, a function that adds one piece to a crate, and the distance between pieces in metres."""
 
 
 def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
@@ -148,17 +148,17 @@ def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
 
 
 def price_card(text: str, *, cap: float = 0.055, colour: str = "white") -> Built:
-    """Build a card on a stick with a word and a price. A newline splits the text into two lines.
+    """Build a price card on a stick. A newline splits its text into two lines.
 
     The foot of the stick is at the origin.
     """
     s = Solid("price card")
     lines = text.split("\n")
     width = max(extent(line, cap) for line in lines) + 0.07
-    tall = (len(lines) * 1.55 + 0.5) * cap
-    s.rod((0, -0.006, 0.0), (0, -0.006, 0.20 + tall / 2), 0.006, timber(), sides=6)
-    s.box((width, 0.006, tall), (0, 0.0, 0.19 + tall / 2), sheet(colour, dirt=0.06), 0.0)
+    height = (len(lines) * 1.55 + 0.5) * cap
+    s.rod((0, -0.006, 0.0), (0, -0.006, 0.20 + height / 2), 0.006, timber(), sides=6)
+    s.box((width, 0.006, height), (0, 0.0, 0.19 + height / 2), sheet(colour, dirt=0.06), 0.0)
     ink = paint("black", dirt=0.0) if colour in ("white", "yellow") else paint("white", dirt=0.0)
     for k, line in enumerate(lines):
-        s.text(line, cap, (0, 0.0036, 0.19 + tall - cap * (1.02 + 1.55 * k)), ink)
+        s.text(line, cap, (0, 0.0036, 0.19 + height - cap * (1.02 + 1.55 * k)), ink)
     return s.built()

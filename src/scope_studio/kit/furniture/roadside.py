@@ -14,7 +14,7 @@ from scope_studio.kit.signs.faces import board
 
 
 def lamp_post(height: float = 10.0, arms: int = 1, *, lit: bool = False) -> Built:
-    """Build a galvanised column with a flat LED lantern on one arm (towards +y) or on each of two (also towards -y)."""
+    """Build a galvanised lamp post with a flat LED lantern on each arm. The first arm points towards +y, the second towards -y."""
     s = Solid("lamp post")
     s.lathe([(0.20, 0.0), (0.20, 0.02)], steel(dark=True), steps=8)
     s.lathe([(0.105, 0.02), (0.105, 1.35), (0.085, 1.42), (0.055, height - 0.9), (0.05, height - 0.85)], steel(), steps=20)
@@ -36,7 +36,7 @@ def lamp_post(height: float = 10.0, arms: int = 1, *, lit: bool = False) -> Buil
 def guardrail(length: float = 4.0, *, double: bool = False) -> Built:
     """Build a W-beam safety barrier along y, 0.75 m high, on posts every 2 m.
 
-    The beam faces +x. ``double`` adds a beam on the other side.
+    The beam faces +x. ``double`` adds a second beam that faces -x.
     """
     s = Solid("guardrail")
     wave = [
@@ -75,7 +75,7 @@ def guardrail(length: float = 4.0, *, double: bool = False) -> Built:
 
 
 def noise_barrier(length: float = 4.0, height: float = 3.0, *, material: str = "timber") -> Built:
-    """Build a noise barrier along y: concrete plinth, steel posts every 4 m, and "timber" or "concrete" planks between them."""
+    """Build a noise barrier along y, with steel posts every 4 m on a concrete plinth. ``material`` is "timber" or "concrete"."""
     s = Solid("noise barrier")
     bays = max(1, round(length / 4.0))
     step = length / bays
@@ -146,7 +146,7 @@ def emergency_phone(number: str = "174") -> Built:
 
 
 def cabinet(*, open: bool = False, colour: str = "light grey") -> Built:  # noqa: A002
-    """Build a roadside equipment cabinet, 1.2 x 0.4 x 1.3 m, with doors towards +y. When open, it shows shelves of equipment."""
+    """Build a roadside equipment cabinet, 1.2 x 0.4 x 1.3 m, with doors towards +y. If open, it shows shelves of equipment."""
     s = Solid("roadside cabinet")
     body = paint(colour, dirt=0.36)
     s.box((1.30, 0.48, 0.10), (0, 0, 0.05), concrete(light=False), 0.01)

@@ -20,9 +20,9 @@ from scope_studio.kit.signs.faces import write
 def _stripes(first: str, second: str) -> bpy.types.Material:
     """Return the material of striped canvas."""
     name = f"awning {first} {second}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     x, _, _ = s.xyz(s.object_coords())
     stripe = s.ramp(s.math("PINGPONG", x, 0.22), 0.108, 0.112)
@@ -32,7 +32,7 @@ def _stripes(first: str, second: str) -> bpy.types.Material:
 
 
 def awning(width_m: float, first: str, second: str = "white", *, out_m: float = 1.35, open: bool = True) -> Built:  # noqa: A002
-    """Build a striped shop awning with its roller at the origin. When closed, only the roll and valance are visible."""
+    """Build a striped shop awning with its roller at the origin. If it is closed, only the roll and the valance are visible."""
     s = Solid(f"{first} awning")
     cloth, metal = _stripes(first, second), paint("dark grey", dirt=0.2)
     w = width_m / 2
@@ -77,22 +77,22 @@ def hanging_sign(lines: Sequence[str], colour: str, ink: str, *, cap_m: float = 
     """
     s = Solid(f"{lines[0]} hanging sign")
     iron = paint("black", dirt=0.15)
-    wide = max(0.55, max(extent(line, cap_m) for line in lines) + 0.18)
-    tall = cap_m * (1.6 * len(lines) + 0.9)
-    reach = wide + 0.30
+    width = max(0.55, max(extent(line, cap_m) for line in lines) + 0.18)
+    height = cap_m * (1.6 * len(lines) + 0.9)
+    reach = width + 0.30
     s.box((0.12, 0.03, 0.40), (0, 0.015, 0.05), iron, 0.008)
     s.rod((0, 0.0, 0.12), (0, reach, 0.12), 0.014, iron)
     s.tube([(0, 0.02, -0.12), (0, reach * 0.25, -0.08), (0, reach * 0.42, 0.10)], 0.010, iron)
     s.lathe([(0.005, -0.02), (0.028, 0.0), (0.005, 0.03)], iron, (0, reach, 0.12), "Y", 12)
-    middle = 0.20 + wide / 2
+    middle = 0.20 + width / 2
     top = 0.04
-    for y in (middle - wide * 0.35, middle + wide * 0.35):
+    for y in (middle - width * 0.35, middle + width * 0.35):
         s.rod((0, y, 0.12), (0, y, top - 0.02), 0.005, iron)
-    s.box((0.035, wide, tall), (0, middle, top - tall / 2), paint(colour, dirt=0.12, roughness=0.3), 0.006)
-    s.box((0.039, wide - 0.05, tall - 0.05), (0, middle, top - tall / 2), paint(ink, dirt=0.1), 0.002)
-    s.box((0.042, wide - 0.07, tall - 0.07), (0, middle, top - tall / 2), paint(colour, dirt=0.12, roughness=0.3), 0.002)
+    s.box((0.035, width, height), (0, middle, top - height / 2), paint(colour, dirt=0.12, roughness=0.3), 0.006)
+    s.box((0.039, width - 0.05, height - 0.05), (0, middle, top - height / 2), paint(ink, dirt=0.1), 0.002)
+    s.box((0.042, width - 0.07, height - 0.07), (0, middle, top - height / 2), paint(colour, dirt=0.12, roughness=0.3), 0.002)
     for side in (-1, 1):
-        with s.at(side * 0.0215, middle, top - tall / 2, turn=-90 * side):
+        with s.at(side * 0.0215, middle, top - height / 2, turn=-90 * side):
             for k, line in enumerate(lines):
                 write(s, line, cap_m, 0, cap_m * 1.6 * ((len(lines) - 1) / 2 - k), ink, lift=0.001)
     return s.built()
@@ -175,16 +175,16 @@ PETALS = {
 def blooms(
     s: Solid, colours: Sequence[str], spread_m: float, low: float, high: float, count: int, seed: int, *, ball: bool = False
 ) -> None:
-    """Add flower heads among leaves between two heights. With ``ball``, they trail over an edge instead of standing upright."""
+    """Add flower heads and leaves between two heights. With ``ball``, they trail over an edge instead of standing upright."""
     rng = Random(f"blooms {seed} {colours}")
     green = [plain("flower leaf 0", (0.085, 0.190, 0.040), 0.6), plain("flower leaf 1", (0.15, 0.27, 0.07), 0.6)]
     for k in range(count * 6):
-        a, share = rng.uniform(0, 2 * math.pi), rng.random() ** 0.5
-        r, flower = spread_m * share, k % 3 == 0
+        a, fraction = rng.uniform(0, 2 * math.pi), rng.random() ** 0.5
+        r, flower = spread_m * fraction, k % 3 == 0
         if ball:
-            z = low + (high - low) * (0.75 - 1.7 * share**3 * rng.random()) + (0.03 if flower else 0.0)
+            z = low + (high - low) * (0.75 - 1.7 * fraction**3 * rng.random()) + (0.03 if flower else 0.0)
         else:
-            z = low + (high - low) * (rng.uniform(0.55, 1.0) if flower else rng.uniform(0.0, 0.75)) * (1.1 - 0.35 * share**2)
+            z = low + (high - low) * (rng.uniform(0.55, 1.0) if flower else rng.uniform(0.0, 0.75)) * (1.1 - 0.35 * fraction**2)
         tip = (r * math.cos(a), r * math.sin(a), z)
         turn = rng.uniform(0, 2 * math.pi)
         if flower:
@@ -234,8 +234,8 @@ def price_card(item: str, price: str) -> Built:
     """Build a small handwritten card on a stick, facing +y, with an item and its price."""
     s = Solid(f"{item} price card")
     s.rod((0, 0, 0), (0, 0, 0.16), 0.004, steel(), sides=6)
-    wide = max(extent(item, 0.032), extent(price, 0.05)) + 0.05
-    s.box((wide, 0.006, 0.15), (0, 0.003, 0.22), paint("white", dirt=0.05), 0.002)
+    width = max(extent(item, 0.032), extent(price, 0.05)) + 0.05
+    s.box((width, 0.006, 0.15), (0, 0.003, 0.22), paint("white", dirt=0.05), 0.002)
     with s.at(0, 0.006, 0.22):
         write(s, item, 0.032, 0, 0.042, "black", lift=0.001)
         write(s, price, 0.05, 0, -0.028, "red", lift=0.001)

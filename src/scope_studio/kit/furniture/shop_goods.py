@@ -19,9 +19,9 @@ Rgb = tuple[float, float, float]
 def _goods_material(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) -> bpy.types.Material:
     """Return a material for goods in a lit shop window. It is slightly emissive, so that they look brighter than the street."""
     full = f"ware {name}"
-    found = bpy.data.materials.get(full)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(full)
+    if existing is not None:
+        return existing
     s = Shader(full)
     tint = s.mix(s.ramp(s.noise(s.object_coords(), 18.0, 4.0), 0.35, 0.7, 0.0, 0.4), colour, tuple(c * 0.55 for c in colour))
     return s.surface(base_color=tint, roughness=roughness, emission_color=tint, emission_strength=glow)
@@ -57,7 +57,7 @@ def cake(colour: str = "pink") -> Built:
 
 
 def ham() -> Built:
-    """Build a ham that hangs from a hook. The top of the hook is at the origin."""
+    """Build a ham on a hook. The top of the hook is at the origin."""
     s = Solid("ham")
     s.tube([(0, 0, 0), (0, 0, -0.10), (0.02, 0, -0.13), (0, 0, -0.15)], 0.005, steel(), sides=6)
     v = Volume()
@@ -69,7 +69,7 @@ def ham() -> Built:
 
 
 def bottle(colour: str = "green") -> Built:
-    """Build a chemist's round bottle with label and stopper, 0.34 m high."""
+    """Build a chemist's round bottle with a label and a stopper, 0.34 m high."""
     s = Solid(f"{colour} bottle")
     glass = _goods_material(f"bottle {colour}", PALETTE[colour], 0.08, 0.25)
     s.lathe(
@@ -84,14 +84,17 @@ def book(colour: str = "red", *, seed: int = 0) -> Built:
     """Build an upright book that leans back, about 0.26 m high, with its front cover towards +y."""
     s, rng = Solid(f"{colour} book"), Random(f"book {seed}")
     cover, page = _goods_material(f"book {colour}", PALETTE[colour], 0.4), _goods_material("pages", (0.66, 0.63, 0.54), 0.8)
-    tall, wide = rng.uniform(0.23, 0.28), rng.uniform(0.155, 0.19)
+    height, width = rng.uniform(0.23, 0.28), rng.uniform(0.155, 0.19)
     with s.at(0, 0, 0, pitch=14):
-        s.box((wide, 0.006, tall), (0, 0.016, tall / 2), cover, 0.002)
-        s.box((wide, 0.006, tall), (0, -0.016, tall / 2), cover, 0.002)
-        s.box((wide - 0.01, 0.026, tall - 0.012), (0.003, 0, tall / 2), page, 0.001)
-        s.box((wide * 0.7, 0.002, tall * 0.14), (0, 0.0195, tall * 0.74), page, 0.0)
+        s.box((width, 0.006, height), (0, 0.016, height / 2), cover, 0.002)
+        s.box((width, 0.006, height), (0, -0.016, height / 2), cover, 0.002)
+        s.box((width - 0.01, 0.026, height - 0.012), (0.003, 0, height / 2), page, 0.001)
+        s.box((width * 0.7, 0.002, height * 0.14), (0, 0.0195, height * 0.74), page, 0.0)
         s.box(
-            (wide * 0.5, 0.002, tall * 0.30), (0, 0.0195, tall * 0.36), _goods_material("book plate", (0.55, 0.40, 0.10), 0.4), 0.0
+            (width * 0.5, 0.002, height * 0.30),
+            (0, 0.0195, height * 0.36),
+            _goods_material("book plate", (0.55, 0.40, 0.10), 0.4),
+            0.0,
         )
     return s.built()
 
@@ -108,7 +111,7 @@ def teapot(colour: str = "blue") -> Built:
 
 
 def table_lamp(colour: str = "cream", *, lit: bool = True) -> Built:
-    """Build a lamp with a turned foot and a cloth shade, 0.5 m high."""
+    """Build a table lamp with a turned foot and a cloth shade, 0.5 m high."""
     s = Solid(f"{colour} lamp")
     foot = _goods_material("lamp foot", (0.30, 0.16, 0.06), 0.3)
     s.lathe([(0.08, 0.0), (0.08, 0.02), (0.02, 0.04), (0.045, 0.12), (0.03, 0.20), (0.012, 0.24), (0.012, 0.32)], foot, steps=20)
@@ -118,7 +121,7 @@ def table_lamp(colour: str = "cream", *, lit: bool = True) -> Built:
 
 
 def mannequin(colour: str = "red", *, dress: bool = True) -> Built:
-    """Build a headless mannequin on a stand, 1.55 m high. It wears a dress, or a coat when ``dress`` is false."""
+    """Build a headless mannequin on a stand, 1.55 m high. It wears a dress, or a coat if ``dress`` is false."""
     s = Solid(f"mannequin in {colour}")
     s.lathe([(0.17, 0.0), (0.17, 0.02), (0.02, 0.03), (0.016, 0.75)], _goods_material("stand", (0.25, 0.15, 0.07), 0.3), steps=20)
     v = Volume()

@@ -1,4 +1,4 @@
-"""Market stalls: canopies, counters, flowers and hand carts. The customers' side is +y."""
+"""Market stalls: canopies, counters, flowers and hand carts. Customers stand on the +y side."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ COUNTER_M = 0.78
 
 
 def stall(first: str, second: str | None = None, *, sign: str | None = None, table: bool = True, rolled: bool = False) -> Built:
-    """Build a stall, 3.0 x 2.2 m: steel poles, ridged canopy, sloping counter with a skirt, and a name board.
+    """Build a stall, 3.0 x 2.2 m, with steel poles, a ridged canopy, a sloping counter with a skirt, and a name board.
 
-    The canopy is plain, or striped when ``second`` is given. The name board hangs under its front edge. With ``rolled``, the
-    canvas is rolled up at the back of the bare frame.
+    The canopy is plain, or striped if ``second`` is given. The name board hangs under its front edge. With ``rolled``, the
+    canvas is rolled up at the back of the frame.
     """
     s = Solid("market stall")
     pole, w, d = steel(), 1.5, 1.1
@@ -66,7 +66,7 @@ def stall(first: str, second: str | None = None, *, sign: str | None = None, tab
 
 
 def _canopy(s: Solid, cloth: bpy.types.Material, w: float, d: float) -> None:
-    """Add canvas over the ridge that sags between the poles, with a scalloped valance front and back."""
+    """Add a canvas that is laid over the ridge and sags between the poles, with scalloped valances at the front and back."""
     n, rows = 24, [(-d, 2.30), (-d * 0.5, 2.53), (0.0, 2.82), (d * 0.5, 2.53), (d, 2.30)]
     points = []
     for y, z in rows:
@@ -101,7 +101,7 @@ def flower_bucket(bloom: str, *, seed: int = 0) -> Built:
 
 
 def flowers(s: Solid, rng: random.Random, bloom: str, *, count: int, reach: float, low: float, high: float) -> None:
-    """Add a round bunch of flowers: stems, leaves and six-petalled heads."""
+    """Add a round bunch of flowers with stems, leaves and six-petalled heads."""
     stem = plain("flower stem", (0.055, 0.14, 0.030), 0.7)
     colour = PALETTE[bloom]
     petals = [plain(f"petal {bloom} {k}", tuple(min(1.0, c * f) for c in colour), 0.7) for k, f in enumerate((1.0, 0.8, 1.25))]

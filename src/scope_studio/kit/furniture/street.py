@@ -30,7 +30,7 @@ def bin(*, colour: str = "dark green") -> Built:  # noqa: A001
 
 
 def bench() -> Built:
-    """Build a timber slat bench, 1.8 m long, on cast ends. People sit on it facing +y."""
+    """Build a timber slat bench, 1.8 m long, on cast ends. People on it face +y."""
     s = Solid("bench")
     iron = paint("black", dirt=0.25)
     for x in (-0.78, 0.78):

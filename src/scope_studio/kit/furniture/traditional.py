@@ -96,7 +96,7 @@ def street_lamp(height_m: float = 5.2, *, lit: bool = False) -> Built:
 
 
 def hanging_basket(colours: Sequence[str], *, seed: int = 0) -> Built:
-    """Build a basket of trailing flowers that hangs 0.45 m below its hook, which is at the origin."""
+    """Build a basket of trailing flowers. It hangs 0.45 m below its hook, which is at the origin."""
     s = Solid("hanging basket")
     for k in range(3):
         a = 2 * math.pi * k / 3
@@ -108,7 +108,7 @@ def hanging_basket(colours: Sequence[str], *, seed: int = 0) -> Built:
 
 
 def planter(colours: Sequence[str], *, seed: int = 0, width_m: float = 1.1) -> Built:
-    """Build a timber trough of flowers along x."""
+    """Build a timber trough with flowers, along x."""
     s = Solid("planter")
     for z in (0.08, 0.20, 0.32, 0.44):
         for y in (-0.24, 0.24):
@@ -190,16 +190,16 @@ def bracket_clock(hour: int, minute: int, *, radius_m: float = 0.42) -> Built:
 
 
 def fingerpost(arms: Sequence[tuple[str, float]], *, colour: str = "dark green") -> Built:
-    """Build a signpost, 3.1 m high, with one arm for each (place, bearing in degrees), lettered on both sides."""
+    """Build a signpost, 3.1 m high, with one arm for each pair (place, bearing in degrees). The arms are lettered on both sides."""
     s = Solid("signpost")
     iron = paint(colour, dirt=0.15)
     s.lathe([(0.10, 0.0), (0.10, 0.05), (0.05, 0.12), (0.045, 2.95), (0.07, 3.0), (0.07, 3.05), (0.01, 3.14)], iron, steps=16)
     for k, (place, bearing) in enumerate(arms):
-        wide = extent(place, 0.085) + 0.30
+        width = extent(place, 0.085) + 0.30
         with s.at(0, 0, 2.84 - 0.20 * k, turn=90 - bearing):
-            outline = [(0.05, -0.085), (wide, -0.085), (wide + 0.09, 0.0), (wide, 0.085), (0.05, 0.085)]
+            outline = [(0.05, -0.085), (width, -0.085), (width + 0.09, 0.0), (width, 0.085), (0.05, 0.085)]
             s.prism(outline, (-0.014, 0.014), iron, "XZ")
             for turn in (0, 180):
                 with s.at(turn=turn), s.at(0, 0.015, 0):
-                    write(s, place, 0.085, (0.05 + wide / 2) * (-1 if turn == 0 else 1), 0, "white", lift=0.001)
+                    write(s, place, 0.085, (0.05 + width / 2) * (-1 if turn == 0 else 1), 0, "white", lift=0.001)
     return s.built()

@@ -17,7 +17,7 @@ from scope_studio.kit.ground import markings
 
 @dataclass(frozen=True)
 class Carriageway:
-    """A dual carriageway along +y that bends in the distance. Offsets are measured from the middle of the central reserve."""
+    """A dual carriageway along y that bends in the distance. Offsets are measured from the middle of the central reserve."""
 
     reserve_m: float = 1.55
     edge_m: float = 15.5
@@ -38,7 +38,7 @@ class Carriageway:
 def strip(
     name: str, road: Carriageway, u0: float, u1: float, z: float, material: bpy.types.Material, *, crown_m: float = 0.0
 ) -> bpy.types.Object:
-    """Create a ribbon along the road between two offsets, with road coordinates (u, v in metres) in its UV map."""
+    """Create a ribbon along the road between two offsets, with road coordinates (u and v in metres) in its UV map."""
     half = road.length_m
     near = np.arange(-road.straight_m, road.straight_m + 1, 10.0)
     far = np.arange(road.straight_m + 10, half + 1, 15.0)
@@ -53,7 +53,7 @@ def strip(
 
 
 def carriageways(road: Carriageway) -> Built:
-    """Build both carriageways with their paint, and the paved central reserve between them."""
+    """Build both carriageways with their painted lines, and the paved central reserve."""
     asphalt = asphalt_material(road)
     concrete = slab_material()
     parts = [
@@ -70,7 +70,7 @@ def carriageways(road: Carriageway) -> Built:
 
 
 def asphalt_material(road: Carriageway) -> bpy.types.Material:
-    """Return the material of worn asphalt, with wheel tracks, oil, seams, cracks, patches and paint, in road coordinates."""
+    """Return the material of worn asphalt in road coordinates, with wheel tracks, oil, seams, cracks, patches and paint."""
     s = Shader("asphalt carriageway")
     uv = s.node("ShaderNodeUVMap", uv_map="road").outputs[0]
     u, v, _ = s.xyz(uv)
@@ -110,7 +110,7 @@ def asphalt_material(road: Carriageway) -> bpy.types.Material:
 
 
 def _cracks(s: Shader, uv: Value) -> Value:
-    """Return a mask of thin irregular cracks, dense in a few weathered stretches and absent elsewhere."""
+    """Return a mask of thin irregular cracks, dense in a few places and absent elsewhere."""
     warp = s.noise(uv, 0.9, detail=5.0)
     node = s.node("ShaderNodeVectorMath", operation="ADD")
     s.feed(node.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))

@@ -1,4 +1,4 @@
-"""Road paint and pavement repairs as shader masks in road coordinates, whose edges stay sharp at any distance."""
+"""Road paint and pavement repairs as shader masks in road coordinates. Their edges are sharp at any distance."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_studio.kit.core.shading import Shader, Value
 
 @dataclass(frozen=True)
 class Line:
-    """A painted line along the road, ``offset_m`` from its middle on both sides.
+    """A painted line along the road, at ``offset_m`` from the middle of the road on both sides.
 
     ``mark_m`` is the length of a dash (0 for a solid line), and ``gap_m`` is the distance between dashes.
     """
@@ -25,7 +25,7 @@ class Line:
 class Patch:
     """A rectangle of different pavement: ``u`` across the road, ``v`` along it, both in metres.
 
-    ``kind`` is "repair" (old dark patch with sealed joints), "fresh" (new black asphalt), or "milled" (planed off).
+    ``kind`` is "repair" (old dark patch with sealed joints), "fresh" (new black asphalt), or "milled" (surface removed).
     """
 
     kind: str
@@ -37,7 +37,7 @@ class Patch:
 
 @dataclass(frozen=True)
 class Stencil:
-    """A painted rectangle, such as one bar of a hatched area or a stop line."""
+    """A painted rectangle, such as a stop line or one bar of a hatched area."""
 
     u0: float
     u1: float
@@ -46,7 +46,7 @@ class Stencil:
 
 
 def paint(s: Shader, u: Value, v: Value, lines: Sequence[Line], stencils: Sequence[Stencil] = ()) -> Value:
-    """Return a mask that is 1 where there is paint. Its edges are ragged by millimetres, and it has holes from wear."""
+    """Return a mask that is 1 where there is paint. Its edges are irregular by millimetres, and it has holes from wear."""
     place = _vector(s, u, v)
     ragged = s.ramp(s.noise(place, 9.0, detail=3.0), 0.3, 0.7, -0.014, 0.014)
     across = s.math("ADD", s.math("ABSOLUTE", u), ragged)
@@ -71,7 +71,7 @@ def inside(s: Shader, u: Value, v: Value, patch: Patch, soft_m: float = 0.01, gr
 
 
 def _vector(s: Shader, u: Value, v: Value) -> Value:
-    """Combine u and v into a vector."""
+    """Return u and v as a vector."""
     node = s.node("ShaderNodeCombineXYZ")
     s.feed(node.inputs[0], u)
     s.feed(node.inputs[1], v)

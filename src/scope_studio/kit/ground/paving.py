@@ -20,7 +20,7 @@ Area = tuple[float, float, float, float]
 def _courses(
     s: Shader, where: Value, size: tuple[float, float], joint_m: float, low: Rgb, high: Rgb, joint: Rgb
 ) -> tuple[Value, Value]:
-    """Return the colour of bonded rectangular stones, each with its own tone, and a mask that is 1 in the joints."""
+    """Return the colour of rectangular stones in bond, each with a different tone, and a mask that is 1 in the joints."""
     node = s.node("ShaderNodeTexBrick")
     s.feed(node.inputs["Vector"], where)
     settings = {"Scale": 1.0, "Mortar Size": joint_m, "Mortar Smooth": 0.35, "Brick Width": size[0], "Row Height": size[1]}
@@ -31,8 +31,8 @@ def _courses(
     return node.outputs["Color"], node.outputs["Fac"]
 
 
-def _wobbly(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
-    """Return positions shifted by a little noise, so that courses look laid by hand."""
+def _jittered(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
+    """Return positions shifted by slight noise, which makes courses irregular, as if laid by hand."""
     noise = s.node("ShaderNodeTexNoise")
     s.feed(noise.inputs["Vector"], p)
     noise.inputs["Scale"].default_value = scale
@@ -43,8 +43,8 @@ def _wobbly(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
     return centred.outputs[0]
 
 
-def _worn(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35) -> bpy.types.Material:
-    """Return the material of worn stone, with blotches, spills, chewing gum, grit in the joints, and bumps for joints and pits."""
+def _worn_stone(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35) -> bpy.types.Material:
+    """Return the material of worn stone, with stains, chewing gum, and relief of the joints and pits."""
     _x, _y, _ = s.xyz(p)
     broad = s.noise(p, 0.16, 7.0, 0.62)
     colour = s.mix(s.ramp(broad, 0.40, 0.72, 0.0, 0.42), colour, (0.085, 0.078, 0.068))
@@ -64,48 +64,48 @@ def _worn(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35
 
 def slab_material(name: str = "square paving", *, pitch_m: float = 7.2) -> bpy.types.Material:
     """Return the material of buff and grey slabs between dark bands of setts, ``pitch_m`` apart, in world coordinates."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.position()
     x, y, _ = s.xyz(p)
     slab, slab_joint = _courses(s, p, (0.9, 0.6), 0.009, (0.285, 0.240, 0.178), (0.205, 0.184, 0.150), (0.095, 0.085, 0.072))
     tint = s.ramp(s.noise(p, 1.9, 2.0), 0.35, 0.65, 0.0, 0.35)
     slab = s.mix(tint, slab, (0.30, 0.275, 0.235))
-    sett, sett_joint = _courses(s, _wobbly(s, p, 0.006, 9.0), (0.20, 0.10), 0.008, (0.15, 0.145, 0.14), (0.085, 0.083, 0.082),
+    sett, sett_joint = _courses(s, _jittered(s, p, 0.006, 9.0), (0.20, 0.10), 0.008, (0.15, 0.145, 0.14), (0.085, 0.083, 0.082),
                                 (0.045, 0.041, 0.036))  # fmt: skip
     lines = [s.ramp(s.math("PINGPONG", c, pitch_m / 2), 0.298, 0.302, 1.0, 0.0, smooth=False) for c in (x, y)]
     band = s.math("MAXIMUM", lines[0], lines[1])
     joints = _blend(s, band, slab_joint, sett_joint)
-    return _worn(s, p, s.mix(band, slab, sett), joints)
+    return _worn_stone(s, p, s.mix(band, slab, sett), joints)
 
 
 def flag_material(name: str = "pavement flags") -> bpy.types.Material:
     """Return the material of a pavement of grey concrete and stone flags."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.position()
     colour, joints = _courses(s, p, (0.75, 0.6), 0.008, (0.25, 0.24, 0.22), (0.18, 0.175, 0.165), (0.08, 0.075, 0.068))
-    return _worn(s, p, colour, joints)
+    return _worn_stone(s, p, colour, joints)
 
 
 def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.types.Material:
     """Return the material of granite setts, polished and darkened along the wheel tracks."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.position()
     turned = s.node("ShaderNodeMapping")
     s.feed(turned.inputs["Vector"], p)
     turned.inputs["Rotation"].default_value = (0.0, 0.0, math.radians(turn_deg))
-    wavy = _wobbly(s, turned.outputs[0], 0.012, 5.0)
+    wavy = _jittered(s, turned.outputs[0], 0.012, 5.0)
     colour, joints = _courses(s, wavy, (0.19, 0.12), 0.009, (0.20, 0.19, 0.175), (0.105, 0.102, 0.098), (0.05, 0.045, 0.038))
     warm = s.ramp(s.noise(s.scaled(p, (6.0, 9.0, 1.0)), 1.0, 1.0), 0.5, 0.62, 0.0, 0.5)
-    return _worn(s, p, s.mix(warm, colour, (0.20, 0.155, 0.125)), joints, 0.2)
+    return _worn_stone(s, p, s.mix(warm, colour, (0.20, 0.155, 0.125)), joints, 0.2)
 
 
 def _blend(s: Shader, factor: Value, a: Value, b: Value) -> Value:
@@ -128,9 +128,9 @@ def floor(name: str, areas: list[Area], z: float, material: bpy.types.Material) 
 
 def kerb_material() -> bpy.types.Material:
     """Return the material of granite kerb stones."""
-    found = bpy.data.materials.get("granite kerb")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("granite kerb")
+    if existing is not None:
+        return existing
     s = Shader("granite kerb")
     p = s.position()
     x, y, _ = s.xyz(p)

@@ -14,7 +14,7 @@ from scope_studio.kit.ground.highway import Carriageway
 
 
 def terrain(road: Carriageway, bare: Sequence[tuple[float, float, float, float]], *, extent_m: float = 3200.0) -> Built:
-    """Build the land: flat next to the road, rolling fields farther away, and hills at the horizon.
+    """Build the land. It is flat next to the road, with rolling fields farther away and hills at the horizon.
 
     Args:
         bare: Rectangles of worn ground without grass, as (x0, x1, y0, y1) in metres.
@@ -39,9 +39,9 @@ def terrain(road: Carriageway, bare: Sequence[tuple[float, float, float, float]]
 
 
 def hills(road: Carriageway) -> Callable[[float, float], float]:
-    """Return a function that gives the height of the land above the road at (x, y), all in metres.
+    """Return a function that maps (x, y) to the height of the land above the road, all in metres.
 
-    It is 0 near the road and rises to about 90 m at a distance of 2 to 3 km.
+    The height is 0 near the road and rises to about 90 m at a distance of 2 to 3 km.
     """
 
     def height(x: float, y: float) -> float:
@@ -105,12 +105,12 @@ def _fields(s: Shader, p: Value, large: Value, middle: Value) -> Value:
     s.feed(cell.inputs["Vector"], s.scaled(p, (0.0055, 0.0042, 0.0), (0.37, 0.21, 0)))
     cell.inputs["Scale"].default_value = 1.0
     cell.inputs["Randomness"].default_value = 0.75
-    pick, shade, _ = s.xyz(cell.outputs["Color"])
-    colour = s.mix(s.ramp(pick, 0.40, 0.41), (0.075, 0.125, 0.030), (0.135, 0.165, 0.045))
-    colour = s.mix(s.ramp(pick, 0.66, 0.67), colour, (0.30, 0.235, 0.095))
-    colour = s.mix(s.ramp(pick, 0.84, 0.85), colour, (0.135, 0.098, 0.066))
+    index, shade, _ = s.xyz(cell.outputs["Color"])
+    colour = s.mix(s.ramp(index, 0.40, 0.41), (0.075, 0.125, 0.030), (0.135, 0.165, 0.045))
+    colour = s.mix(s.ramp(index, 0.66, 0.67), colour, (0.30, 0.235, 0.095))
+    colour = s.mix(s.ramp(index, 0.84, 0.85), colour, (0.135, 0.098, 0.066))
     colour = s.mix(s.math("MULTIPLY", shade, 0.35), colour, (0.09, 0.12, 0.035))
     wheels = s.math("PINGPONG", s.xyz(p)[0], 9.0)
-    tramline = s.math("MULTIPLY", s.band(wheels, 0.4, 0.95, 0.1), s.ramp(pick, 0.40, 0.41))
+    tramline = s.math("MULTIPLY", s.band(wheels, 0.4, 0.95, 0.1), s.ramp(index, 0.40, 0.41))
     colour = s.mix(s.math("MULTIPLY", tramline, 0.45), colour, (0.10, 0.085, 0.05))
     return s.mix(s.math("MULTIPLY", s.ramp(middle, 0.35, 0.7), 0.3), colour, s.mix(large, (0.05, 0.08, 0.02), (0.2, 0.19, 0.08)))

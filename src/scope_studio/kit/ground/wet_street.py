@@ -22,7 +22,7 @@ Outline = Sequence[tuple[float, float]]
 
 
 def carriageway(half_m: float, gutters: Sequence[Stencil]) -> Built:
-    """Build a square of asphalt on z = 0, ``half_m`` from its middle to its edges, with standing water along the ``gutters``."""
+    """Build a square of asphalt on z = 0 with sides of 2 ``half_m``, and with standing water along the ``gutters``."""
     h = half_m
     sheet = from_data("asphalt", [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [(0, 1, 2, 3)], _asphalt(gutters))
     return Built.of("asphalt", [sheet])
@@ -55,7 +55,7 @@ def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
 
 
 def _patchwork(s: Shader, p: Value, fine: Value) -> Value:
-    """Return a mask of trenches filled with newer, darker asphalt: a few cells of a stretched Chebyshev Voronoi pattern."""
+    """Return a mask of trenches filled with newer, darker asphalt. They are cells of a stretched Chebyshev Voronoi pattern."""
     cell = s.node("ShaderNodeTexVoronoi", distance="CHEBYCHEV")
     s.feed(cell.inputs["Vector"], s.scaled(p, (0.30, 0.085, 0.0)))
     cell.inputs["Scale"].default_value = 1.0
@@ -63,7 +63,7 @@ def _patchwork(s: Shader, p: Value, fine: Value) -> Value:
 
 
 def markings(bars: Sequence[Stencil], colour: str) -> Built:
-    """Build worn road paint, "white" or "yellow", over rectangles in world coordinates (u = x, v = y)."""
+    """Build worn "white" or "yellow" road paint over rectangles in world coordinates (u = x, v = y)."""
     points, faces = [], []
     for bar in bars:
         n = len(points)
@@ -74,9 +74,9 @@ def markings(bars: Sequence[Stencil], colour: str) -> Built:
 
 def road_paint(colour: str) -> bpy.types.Material:
     """Return the material of thermoplastic paint under a film of water. Asphalt shows through where the paint is worn."""
-    found = bpy.data.materials.get(f"road paint {colour}")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(f"road paint {colour}")
+    if existing is not None:
+        return existing
     s = Shader(f"road paint {colour}")
     p = s.position()
     tint = {"white": (0.56, 0.56, 0.53), "yellow": (0.60, 0.37, 0.022)}[colour]
@@ -88,7 +88,7 @@ def road_paint(colour: str) -> bpy.types.Material:
 
 
 def _edges(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:
-    """Return a mask that is 1 along the gutters, with soft edges."""
+    """Return a mask with soft edges that is 1 along the gutters."""
     total: Value = 0.0
     for bar in gutters:
         mask = s.math("MULTIPLY", s.band(x, bar.u0, bar.u1, 0.35), s.band(y, bar.v0, bar.v1, 0.35))
@@ -163,9 +163,9 @@ def _paving(slab: tuple[float, float]) -> bpy.types.Material:
 
 def _kerbstone() -> bpy.types.Material:
     """Return the material of wet granite kerb stones."""
-    found = bpy.data.materials.get("wet kerb")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("wet kerb")
+    if existing is not None:
+        return existing
     s = Shader("wet kerb")
     p = s.position()
     x, y, _ = s.xyz(p)

@@ -1,1 +1,1 @@
-"""Sky, light, haze and matching colour management for daylight, overcast weather and dusk."""
+"""Sky, light, haze and colour management for daylight, overcast weather and dusk."""

@@ -1,6 +1,6 @@
-"""Dusk: a deep blue sky over a warm horizon, pools of lamplight, evening haze, and a long exposure.
+"""Dusk: a deep blue sky with a warm horizon, lamplight, evening haze, and a long exposure.
 
-There is no sun: soft light comes from the whole sky. Every lamp is an area light of at least 0.3 m, because smaller lights are
+There is no sun; soft light comes from the whole sky. Every lamp is an area light of at least 0.3 m, because smaller lights are
 noisy at few samples. These lights are invisible to the camera, which sees the emissive lens of the lamp instead.
 """
 
@@ -21,6 +21,7 @@ MIDDLE = (0.150, 0.225, 0.400)
 COOL_HORIZON = (0.300, 0.320, 0.400)
 WARM_HORIZON = (1.10, 0.520, 0.220)
 HAZE = (0.135, 0.155, 0.205)
+"""Linear RGB values of the haze."""
 
 SODIUM = (1.0, 0.56, 0.20)
 LED = (0.86, 0.93, 1.0)
@@ -28,7 +29,7 @@ WARM = (1.0, 0.80, 0.56)
 """Linear RGB of lamp light."""
 
 DIMMED = ("paint ", "vehicle lamp", "sheet ")
-"""Name prefixes of materials (lamp covers, reflective sheet) that are slightly emissive and would look like lit lamps at dusk."""
+"""Name prefixes of slightly emissive materials, such as reflective sheet. Without dimming, they would look like lit lamps."""
 
 
 class _WorldShader(Shader):
@@ -40,7 +41,7 @@ class _WorldShader(Shader):
 
 
 def setup(scene: bpy.types.Scene, *, sky_strength: float = 0.36, exposure: float = 1.5) -> None:
-    """Set the evening sky, the view transform, and light path limits that avoid noise at eight samples."""
+    """Set the evening sky, the view transform, and light path limits that reduce noise at eight samples."""
     _world(scene, sky_strength)
     scene.display_settings.display_device = "sRGB"
     scene.view_settings.view_transform = "AgX"
@@ -95,7 +96,7 @@ def _clouds(s: Shader, x: Value, y: Value, height: Value, towards: Value, clear:
     return s.mix(mask, clear, s.mix(s.ramp(lumps, 0.55, 0.68), edge, body))
 
 
-def pool(
+def lamplight(
     position: tuple[float, float, float],
     power_w: float,
     colour: tuple[float, float, float] = LED,
@@ -105,9 +106,9 @@ def pool(
     spread_deg: float = 150.0,
     stretch: float = 1.0,
 ) -> None:
-    """Add a pool of lamplight: a disc-shaped area light that shines along ``aim``. The lamp itself is modelled elsewhere.
+    """Add the light of a lamp: a disc-shaped area light that shines along ``aim``. The lamp itself is modelled elsewhere.
 
-    ``stretch`` makes the disc an ellipse with this ratio of height to width.
+    ``stretch`` is the ratio of height to width. If it is not 1, the disc is an ellipse.
     """
     light = bpy.data.lights.new("lamp light", "AREA")
     light.shape = "ELLIPSE" if stretch != 1.0 else "DISK"
@@ -166,11 +167,11 @@ def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
                 socket.default_value = value
         return node.outputs[0]
 
-    share = math_node("SUBTRACT", 1.0, math_node("EXPONENT", math_node("MULTIPLY", distance, -1.0 / visibility_m)))
+    fraction = math_node("SUBTRACT", 1.0, math_node("EXPONENT", math_node("MULTIPLY", distance, -1.0 / visibility_m)))
     glow = tree.nodes.new("ShaderNodeEmission")
     glow.inputs["Color"].default_value = (*HAZE, 1.0)
     mixed = tree.nodes.new("ShaderNodeMixShader")
-    tree.links.new(math_node("MULTIPLY", share, camera_ray), mixed.inputs[0])
+    tree.links.new(math_node("MULTIPLY", fraction, camera_ray), mixed.inputs[0])
     tree.links.new(source, mixed.inputs[1])
     tree.links.new(glow.outputs[0], mixed.inputs[2])
     tree.links.new(mixed.outputs[0], output.inputs["Surface"])

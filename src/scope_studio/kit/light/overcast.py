@@ -1,4 +1,4 @@
-"""An overcast sky just after rain: a low grey cloud layer, soft light from all sides, and haze from half a kilometre."""
+"""An overcast sky just after rain: a low grey cloud layer, soft light from all sides, and haze beyond half a kilometre."""
 
 from __future__ import annotations
 

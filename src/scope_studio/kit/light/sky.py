@@ -1,4 +1,4 @@
-"""Daylight: a sky with broken cloud, a soft sun, aerial haze, and the matching colour management."""
+"""Daylight: a partly cloudy sky, a soft sun, haze, and the view transform."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_studio.kit.core.shading import Shader, Value
 HORIZON = (0.62, 0.74, 0.88)
 ZENITH = (0.10, 0.26, 0.62)
 HAZE = (0.50, 0.60, 0.70)
-"""Colour of the haze over distant objects. It is slightly darker than the horizon, so that far hills stand out against the sky."""
+"""Colour of the haze over distant objects. It is slightly darker than the horizon, so that distant hills remain visible."""
 
 
 class _WorldShader(Shader):
@@ -33,7 +33,7 @@ def setup(
     cloud_cover: float = 0.5,
     exposure: float = 0.30,
 ) -> None:
-    """Set the world, sun and view transform of ``scene``. The sun's bearing is clockwise from north."""
+    """Set the world, sun and view transform of ``scene``. The sun's bearing is measured clockwise from north."""
     _world(scene, sky_strength, cloud_cover)
     _sun(sun_bearing_deg, sun_elevation_deg, sun_strength)
     scene.display_settings.display_device = "sRGB"
@@ -125,9 +125,9 @@ def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
     scaled.inputs[1].default_value = -1.0 / visibility_m
     decay = tree.nodes.new("ShaderNodeMath")
     decay.operation = "EXPONENT"
-    share = tree.nodes.new("ShaderNodeMath")
-    share.operation = "SUBTRACT"
-    share.inputs[0].default_value = 1.0
+    fraction = tree.nodes.new("ShaderNodeMath")
+    fraction.operation = "SUBTRACT"
+    fraction.inputs[0].default_value = 1.0
     factor = tree.nodes.new("ShaderNodeMath")
     factor.operation = "MULTIPLY"
     glow = tree.nodes.new("ShaderNodeEmission")
@@ -136,8 +136,8 @@ def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
     for a, b in [
         (distance, scaled.inputs[0]),
         (scaled.outputs[0], decay.inputs[0]),
-        (decay.outputs[0], share.inputs[1]),
-        (share.outputs[0], factor.inputs[0]),
+        (decay.outputs[0], fraction.inputs[1]),
+        (fraction.outputs[0], factor.inputs[0]),
         (camera_ray, factor.inputs[1]),
         (factor.outputs[0], mixed.inputs[0]),
         (source, mixed.inputs[1]),

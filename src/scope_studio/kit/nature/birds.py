@@ -49,11 +49,13 @@ def pigeon(colour: str = "grey", *, pose: str = "stand") -> Built:
 
 
 _HEADS = {"stand": Vector((0, 0.115, 0.105)), "peck": Vector((0, 0.158, -0.058)), "rest": Vector((0, 0.085, 0.065))}
+"""Position of the head in metres, for each pose."""
 _AIM = {"stand": Vector((0, 1, -0.30)), "peck": Vector((0, 0.65, -0.9)), "rest": Vector((0, 1, -0.1))}
+"""Direction of the beak, for each pose."""
 
 
 def _body(frame: Matrix, pose: str) -> Skin:
-    """Return the body with neck, head, folded wings and tail as one skin, transformed by ``frame``."""
+    """Return body, neck, head, folded wings and tail as one skin, transformed by ``frame``."""
     v = Volume()
     v.ellipsoid((0, 0.02, 0.0), (0.058, 0.088, 0.056))
     v.ellipsoid((0, -0.055, 0.004), (0.046, 0.082, 0.040))
@@ -80,9 +82,9 @@ def _leg(s: Solid, side: int, body: Matrix) -> None:
 def _feathers(colour: str) -> bpy.types.Material:
     """Return the material of plumage with a dark head, a sheen on the neck, two wing bars and a dark tail tip."""
     name = f"pigeon {colour}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     where = s.node("ShaderNodeAttribute", attribute_name="rest").outputs["Vector"]
     x, y, z = s.xyz(where)

@@ -1,4 +1,4 @@
-"""Dogs, standing or walking, with or without a lead."""
+"""Standing or walking dogs, with or without a lead."""
 
 from __future__ import annotations
 
@@ -86,9 +86,9 @@ def _collar() -> list[Point]:
 def _coat(colour: str) -> bpy.types.Material:
     """Return the material of a dog's coat."""
     name = f"dog {colour}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     hair = s.noise(s.scaled(s.object_coords(), (60.0, 22.0, 60.0)), 1.0, 4.0, 0.6, 0.4)
     low, high = COATS[colour]

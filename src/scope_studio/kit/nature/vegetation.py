@@ -1,4 +1,4 @@
-"""Plants: trees of several species, hedges, bushes and rough grass. They are large: build each once and place linked copies."""
+"""Plants: trees of several species, hedges, bushes and rough grass. Meshes are large; place linked copies."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ BUSH = Species("bush", 2.4, 1.7, 0.02, "round", 0.12, (0.052, 0.096, 0.020), (0.
 def tree(species: Species, seed: int, *, detail: float = 1.0) -> Built:
     """Build a tree.
 
-    ``detail`` 1.0 is for trees within about 60 m (about 30,000 leaves); 0.15 is enough for a distant line of trees.
+    A ``detail`` of 1.0 (about 30,000 leaves) is for trees within about 60 m; 0.15 is enough for distant trees.
     """
     rng = random.Random(f"{species.name}-{seed}")
     limbs, twigs = _grow(species, rng)
@@ -78,16 +78,16 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
     boughs = {"round": 22, "weeping": 24, "column": 28, "cone": 40}[sp.crown]
     azimuth = rng.uniform(0, 6.28)
     for k in range(boughs):
-        share = (k + 0.5) / boughs
-        z_share = sp.bare_share + (0.93 - sp.bare_share) * share
+        fraction = (k + 0.5) / boughs
+        z_share = sp.bare_share + (0.93 - sp.bare_share) * fraction
         index = z_share * sp.height_m / top * 8
         base = _along(trunk, min(index, 7.99))
         azimuth += 2.4 + rng.uniform(-0.5, 0.5)
-        rise, reach = _bough_shape(sp, share)
+        rise, reach = _bough_shape(sp, fraction)
         reach *= rng.uniform(0.82, 1.12)
         heading = Vector((math.cos(azimuth) * math.cos(rise), math.sin(azimuth) * math.cos(rise), math.sin(rise)))
         bough = _limb(base, heading, reach, rng, 6, 0.20, _lift(sp))
-        radius = max(0.022, girth * (0.42 - 0.26 * share))
+        radius = max(0.022, girth * (0.42 - 0.26 * fraction))
         limbs.append((bough, radius, radius * 0.3))
         for j in range(7):
             fork_at = 1.2 + 4.7 * (j + rng.random()) / 7
@@ -104,20 +104,22 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
     return limbs, twigs
 
 
-def _bough_shape(sp: Species, share: float) -> tuple[float, float]:
-    """Return the rise angle (radians) and length (m) of a bough at ``share`` of the crown's height."""
+def _bough_shape(sp: Species, fraction: float) -> tuple[float, float]:
+    """Return the rise angle (radians) and length (m) of a bough at ``fraction`` of the crown's height."""
     r = sp.crown_radius_m
     if sp.crown == "round":
-        return 0.05 + 1.15 * share**1.4, r * (0.80 + 0.34 * math.sin(math.pi * min(1.0, share * 0.95 + 0.12)) - 0.32 * share)
+        return 0.05 + 1.15 * fraction**1.4, r * (
+            0.80 + 0.34 * math.sin(math.pi * min(1.0, fraction * 0.95 + 0.12)) - 0.32 * fraction
+        )
     if sp.crown == "column":
-        return 1.05 + 0.2 * share, r * 1.9 * (0.55 + 0.6 * math.sin(math.pi * (0.15 + 0.8 * share)))
+        return 1.05 + 0.2 * fraction, r * 1.9 * (0.55 + 0.6 * math.sin(math.pi * (0.15 + 0.8 * fraction)))
     if sp.crown == "cone":
-        return -0.12 + 0.5 * share, r * (1.04 - share) ** 0.85
-    return 0.75 + 0.25 * share, r * (1.15 - 0.75 * share)
+        return -0.12 + 0.5 * fraction, r * (1.04 - fraction) ** 0.85
+    return 0.75 + 0.25 * fraction, r * (1.15 - 0.75 * fraction)
 
 
 def _lift(sp: Species) -> float:
-    """Return how strongly limbs bend upwards (positive) or downwards at each step."""
+    """Return the bend of limbs at each step: upwards if positive, downwards if negative."""
     return {"round": -0.03, "column": 0.12, "cone": -0.06, "weeping": -0.22}[sp.crown]
 
 
@@ -179,8 +181,8 @@ def _leaves(
     size = sp.leaf_m * detail**-0.42
     starts, ends = np.array([tuple(a) for a, _ in twigs]), np.array([tuple(b) for _, b in twigs])
     which = np.repeat(np.arange(len(twigs)), each)
-    share = gen.random(len(which))[:, None]
-    centres = starts[which] * (1 - share) + ends[which] * share
+    fraction = gen.random(len(which))[:, None]
+    centres = starts[which] * (1 - fraction) + ends[which] * fraction
     spread = np.linalg.norm(ends - starts, axis=1)[which][:, None] * 0.26 + sp.leaf_m * 0.8
     centres = centres + gen.normal(size=centres.shape) * spread * np.array([1, 1, 0.75])
     outward = (ends - starts)[which]
@@ -191,7 +193,7 @@ def _leaves(
 def cards(
     gen: np.random.Generator, centres: np.ndarray, outward: np.ndarray, size_m: float, slim: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return diamond-shaped leaves at ``centres`` (n, 3) that point roughly ``outward``.
+    """Return diamond-shaped leaves at ``centres`` (n, 3) that point roughly in the directions ``outward``.
 
     Returns:
         Points (4n, 3), quads (n, 4) and tints (4n,).
@@ -245,14 +247,14 @@ def _combine(name: str, parts: Sequence[Part], tints: np.ndarray) -> bpy.types.O
 
 def leaf_material(sp: Species) -> bpy.types.Material:
     """Return the material of leaves: two tones, paler in patches, with a third of the light passing through."""
-    found = bpy.data.materials.get(f"{sp.name} leaves")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(f"{sp.name} leaves")
+    if existing is not None:
+        return existing
     s = Shader(f"{sp.name} leaves")
     tint = s.node("ShaderNodeAttribute", attribute_name="tint").outputs["Fac"]
     clump = s.noise(s.object_coords(), 0.55, detail=2.0)
-    pick = s.math("ADD", s.math("MULTIPLY", tint, 0.6), s.ramp(clump, 0.35, 0.65, 0.0, 0.4))
-    colour = s.mix(pick, sp.dark, sp.bright)
+    index = s.math("ADD", s.math("MULTIPLY", tint, 0.6), s.ramp(clump, 0.35, 0.65, 0.0, 0.4))
+    colour = s.mix(index, sp.dark, sp.bright)
     yellow = tuple(c * k for c, k in zip(sp.bright, (1.35, 1.05, 0.8), strict=True))
     colour = s.mix(s.math("MULTIPLY", s.random(), 0.45), colour, yellow)
     s.surface(base_color=colour, roughness=0.55, specular_ior_level=0.25)
@@ -269,9 +271,9 @@ def leaf_material(sp: Species) -> bpy.types.Material:
 
 def bark_material(sp: Species) -> bpy.types.Material:
     """Return the material of a species' bark."""
-    found = bpy.data.materials.get(f"{sp.name} bark")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(f"{sp.name} bark")
+    if existing is not None:
+        return existing
     s = Shader(f"{sp.name} bark")
     p = s.object_coords()
     ridges = s.noise(s.scaled(p, (9, 9, 1.6)), 2.0, detail=5.0, roughness=0.65)
@@ -312,12 +314,12 @@ def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed:
 
 
 def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowers: int = 0) -> Built:
-    """Build a square of uneven grass tufts with some flower heads, to be scattered as linked copies."""
+    """Build a square of uneven grass tufts with some flower heads. Place linked copies of it to cover an area."""
     gen = np.random.default_rng(104729 + seed)
     tufts = gen.uniform(-size_m / 2, size_m / 2, size=(max(1, blades // 7), 2))
     roots = tufts[gen.integers(len(tufts), size=blades)] + gen.normal(size=(blades, 2)) * 0.075
-    tall = height_m * gen.uniform(0.45, 1.15, size=(blades, 1)) * gen.choice([0.7, 1.0, 1.25], size=(blades, 1))
-    lean = gen.normal(size=(blades, 2)) * 0.42 * tall
+    height = height_m * gen.uniform(0.45, 1.15, size=(blades, 1)) * gen.choice([0.7, 1.0, 1.25], size=(blades, 1))
+    lean = gen.normal(size=(blades, 2)) * 0.42 * height
     facing = gen.uniform(0, math.pi, size=blades)
     half = np.stack([np.cos(facing), np.sin(facing)], axis=1) * 0.0055
     zero = np.full((blades, 1), -0.02)
@@ -325,8 +327,8 @@ def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowe
         [
             np.concatenate([roots - half, zero], axis=1),
             np.concatenate([roots + half, zero], axis=1),
-            np.concatenate([roots + lean * 0.45 + half * 0.8, tall * 0.62], axis=1),
-            np.concatenate([roots + lean, tall], axis=1),
+            np.concatenate([roots + lean * 0.45 + half * 0.8, height * 0.62], axis=1),
+            np.concatenate([roots + lean, height], axis=1),
         ],
         axis=1,
     ).reshape(-1, 3)
@@ -346,9 +348,9 @@ def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowe
 
 def grass_material() -> bpy.types.Material:
     """Return the material of grass blades."""
-    found = bpy.data.materials.get("grass blades")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("grass blades")
+    if existing is not None:
+        return existing
     s = Shader("grass blades")
     tint = s.node("ShaderNodeAttribute", attribute_name="tint").outputs["Fac"]
     place = s.noise(s.position(), 0.5, detail=3.0)

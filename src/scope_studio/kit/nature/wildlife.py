@@ -1,4 +1,4 @@
-"""Wild animals: a fox, standing or trotting."""
+"""Wild animals: a standing or trotting fox."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TROT_M = 0.78
 
 
 def fox(*, phase: float | None = None) -> Built:
-    """Build a red fox facing +y, 0.38 m at the shoulder and 1.1 m long with its tail. ``phase`` in [0, 1) makes it trot."""
+    """Build a red fox facing +y, 0.38 m at the shoulder and 1.1 m long with its tail. With a ``phase`` in [0, 1), it trots."""
     s = Solid("fox")
     v = Volume()
     v.ellipsoid((0, 0.15, 0.315), (0.070, 0.125, 0.088))
@@ -66,9 +66,9 @@ def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
 
 def _coat() -> bpy.types.Material:
     """Return the material of a fox's coat: red above, with white throat, belly and tail tip, and black legs and ears."""
-    found = bpy.data.materials.get("fox coat")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("fox coat")
+    if existing is not None:
+        return existing
     s = Shader("fox coat")
     rest = s.node("ShaderNodeAttribute", attribute_name="rest").outputs["Vector"]
     _, y, z = s.xyz(rest)

@@ -1,8 +1,8 @@
 """Road workers and pedestrians of varied height, build, skin and hair, in relaxed poses or walking.
 
-A person stands at the origin facing +y, with about 45,000 points in one object. Appearance and small asymmetries are random and
-depend on ``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry". One cycle
-covers ``STRIDE_M`` times the person's height over 1.77 m.
+A person stands at the origin facing +y and consists of one object with about 45,000 points. Appearance and small asymmetries are
+random and depend on ``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and
+"carry". A gait cycle is ``STRIDE_M`` long for a person 1.77 m tall; it is proportional to the person's height.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class _Appearance:
 
 
 def _random_appearance(random: Random, hair: str | None, woman_share: float) -> _Appearance:
-    """Draw a random appearance. ``hair`` overrides the random hair colour."""
+    """Return a random appearance. ``hair`` overrides the random hair colour."""
     woman = random.random() < woman_share
     height = random.gauss(1.67, 0.04) if woman else random.gauss(1.78, 0.045)
     tone = random.choices(range(6), (30, 26, 16, 12, 10, 6))[0]
@@ -62,7 +62,7 @@ def _add_skin(s: Solid, skin: Skin, material: object, rest: np.ndarray | None = 
 
 
 def _head(s: Solid, joints: Joints, appearance: _Appearance, covered: bool) -> None:
-    """Add head and hair. ``covered`` shortens the hair under a helmet."""
+    """Add head and hair. If ``covered``, the hair is shorter, to fit under a helmet."""
     skin = heads.face(woman=appearance.woman, stout=0.9 + 0.12 * (appearance.girth - 0.95) / 0.25)
     _add_skin(
         s, heads.place(skin, joints.head), clothing.skin(appearance.tone, appearance.hair, stubble=appearance.stubble), skin[0]
@@ -75,7 +75,7 @@ def _head(s: Solid, joints: Joints, appearance: _Appearance, covered: bool) -> N
 
 
 def _helmet(s: Solid, joints: Joints, colour: str) -> None:
-    """Add a safety helmet: dome with a ridge, short brim, long peak in front, badge."""
+    """Add a safety helmet with a ridge, a short brim, a long peak in front, and a badge."""
     shell = paint(colour, dirt=0.16, roughness=0.30)
     saved = s.frame
     s.frame = (
@@ -169,12 +169,12 @@ def _add_body(
 
 
 def _limb(along: np.ndarray) -> np.ndarray:
-    """Return the rest coordinates of a limb. Only the position along it matters."""
+    """Return the rest coordinates of a limb. Only the position along the limb matters."""
     return np.column_stack([np.zeros((len(along), 2)), along])
 
 
 DEFAULT_PROP = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
-"""The prop that a person in a pose holds by default."""
+"""The prop that a person holds by default, for each pose in which there is one."""
 
 
 def _person(
@@ -185,12 +185,12 @@ def _person(
     appearance: _Appearance,
     outfit: _Outfit,
     holding: str | None,
-    own_pose: Pose | None = None,
+    custom_pose: Pose | None = None,
 ) -> Built:
     """Build a person in a pose, with clothes and a prop."""
     if holding is not None and holding not in HOLDABLE:
-        raise ValueError(f"no prop named {holding!r}; known props: {sorted(HOLDABLE)}")
-    stance = own_pose or named(pose, phase, random)
+        raise ValueError(f"'holding' must be one of {sorted(HOLDABLE)}, not {holding!r}")
+    stance = custom_pose or named(pose, phase, random)
     joints = solve(stance)
     s = Solid(name)
     scale = appearance.height_m / 1.77
@@ -221,8 +221,8 @@ def worker(
     Args:
         helmet: Colour of the helmet, or None for no helmet.
         pose: "stand", "walk", "point", "carry", "kneel", "shovel", "phone" or "clipboard".
-        holding: Name of a prop that replaces the default prop of the pose; see ``HOLDABLE``.
-        stance: A pose to use instead of the one that ``pose`` names.
+        holding: Name of a prop, a key of ``HOLDABLE``, that replaces the default prop of the pose.
+        stance: A pose that is used instead of ``pose``.
     """
     random = Random(f"worker {seed}")
     appearance = _random_appearance(random, None, 0.15)
@@ -248,8 +248,8 @@ def pedestrian(
 ) -> Built:
     """Build a pedestrian in everyday clothes.
 
-    Colours have plain names; those that are not given are random and depend on the seed. ``stance`` is a pose to use instead of
-    the one that ``pose`` names.
+    Colours have plain names. Colours that are not given are random and depend on the seed. ``stance`` is a pose that is used
+    instead of ``pose``.
     """
     random = Random(f"pedestrian {seed}")
     appearance = _random_appearance(random, hair, 0.5)

@@ -12,7 +12,7 @@ from scope_studio.kit.core.shading import Shader, Value
 from scope_studio.kit.people.heads import EYES
 
 REST = "rest"
-"""Point attribute (vector): position of the point on the upright figure, or in the head's frame for heads."""
+"""Name of a vector attribute of points: the position on the upright figure or, for heads, in head coordinates."""
 
 SKIN_TONES: list[Colour] = [
     (0.56, 0.33, 0.235),
@@ -50,7 +50,7 @@ def _near(
 
 
 def skin(tone: int, hair: str | None, *, stubble: bool) -> bpy.types.Material:
-    """Return the material of skin, for head and hands. Eyes, brows, lips and stubble are masks in head coordinates."""
+    """Return the material of the skin of head and hands. Eyes, brows, lips and stubble are masks in head coordinates."""
     name = f"skin {tone} {hair} {stubble}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -117,7 +117,7 @@ def _woven(s: Shader, colour: str) -> tuple[Value, Value, Value]:
 
 
 def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
-    """Return the material of woven cloth. ``bands`` are the positions of 5 cm reflective tape along the limb (m)."""
+    """Return the material of woven cloth. ``bands`` are the positions (m) of reflective tape, 5 cm wide, along the limb."""
     name = f"garment {colour} {bands}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -132,10 +132,10 @@ def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
 
 
 def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
-    """Return the material of the body of an upper garment with its hem at height ``low``.
+    """Return the material of the body of an upper garment. Its hem is at height ``low``.
 
-    ``style`` is "jumper" (ribbed hem), "jacket" (open on an ``inner`` shirt, with zip and pockets) or "shirt" (button line,
-    paler collar).
+    ``style`` is "jumper" (with a ribbed hem), "jacket" (open over an ``inner`` shirt, with a zip and pockets) or "shirt" (with
+    buttons and a paler collar).
     """
     name = f"top {colour} {style} {inner} {low:.2f}"
     if name in bpy.data.materials:

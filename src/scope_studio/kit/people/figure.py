@@ -1,4 +1,4 @@
-"""The clothed human figure: trunk, sleeves, trousers, boots and hands, modelled around solved joints."""
+"""The clothed human figure: trunk, sleeves, trousers, boots and hands, modelled around the joints of a pose."""
 
 from __future__ import annotations
 
@@ -58,10 +58,10 @@ def trunk(
     """Return the body of a garment, and the upright (rest) coordinates of its points.
 
     Args:
-        swell: Distance between the cloth and the body (m).
+        swell: Distance between cloth and body (m).
         low: Height of the hem (m).
         neck: "collar", "hood" or None.
-        flare: Extra looseness of the folds at the hem (m).
+        flare: Additional width of the folds at the hem (m).
     """
     upright = Joints(Matrix.Identity(4), Matrix.Identity(4), Matrix.Identity(4), [])
     v = Volume()
@@ -95,7 +95,7 @@ def trunk(
 def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndarray]:
     """Return both sleeves, and the distance of each point from the shoulder along the arm (m).
 
-    ``loose`` is the extra width of the sleeve (m).
+    ``loose`` is the additional width of the sleeve (m).
     """
     v = Volume()
     for i in range(2):
@@ -111,9 +111,9 @@ def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndar
         bones.append((joints.elbows[i], joints.wrists[i], 0.295, 0.55))
     along = _along(points, bones)
     bend = [(e - s).angle(w - e) for s, e, w in zip(joints.shoulders, joints.elbows, joints.wrists, strict=True)]
-    deep = 0.006 + 0.006 * min(1.0, max(bend))
+    depth = 0.006 + 0.006 * min(1.0, max(bend))
     near = np.exp(-(((along - 0.295) / 0.09) ** 2))
-    skin = crease((points, faces), 0.0035 + deep * near, (9.0, 9.0, 17.0), seed)
+    skin = crease((points, faces), 0.0035 + depth * near, (9.0, 9.0, 17.0), seed)
     return crease(skin, 0.002, (26.0, 26.0, 30.0), seed + 5), along
 
 
@@ -145,9 +145,9 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
 
 
 def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
-    """Return for each point a value that is interpolated between the ends of its nearest bone.
+    """Return a value for each point, interpolated between the ends of the nearest bone.
 
-    Bones are (from, to, value at from, value at to).
+    Bones are (start, end, value at the start, value at the end).
     """
     best = np.full(len(points), 1e9)
     value = np.zeros(len(points))
@@ -162,7 +162,7 @@ def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]])
 
 
 def boots(joints: Joints, *, shoe: bool) -> Skin:
-    """Return the upper parts of both boots or low shoes."""
+    """Return both boots or low shoes, without their soles."""
     v = Volume()
     for i in range(2):
         f = joints.feet[i]
@@ -176,7 +176,7 @@ def boots(joints: Joints, *, shoe: bool) -> Skin:
 
 
 def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[tuple[float, float, float]]]:
-    """Return two rings of a boot sole, lower and upper, in world coordinates."""
+    """Return the lower and upper outline of a boot sole in world coordinates."""
     half = [
         (-0.088, 0.0),
         (-0.080, 0.026),
@@ -200,8 +200,8 @@ def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
         wrist, elbow = joints.wrists[i], joints.elbows[i]
         along = (wrist - elbow).normalized()
         inward = joints.chest.to_3x3() @ Vector((-side * 1.0, 0.25, -0.1))
-        normal = (inward - along * along.dot(inward)).normalized()  # points out of the palm
-        across = along.cross(normal)  # points towards or away from the thumb, depending on the side
+        normal = (inward - along * along.dot(inward)).normalized()  # unit vector out of the palm
+        across = along.cross(normal)  # unit vector towards the thumb on one side, away from it on the other
         thumb_side = across * (-side if across.dot(Vector((0, 1, 0.3))) * -side > 0 else side)
         curl = curls[i]
         v.capsule(wrist - along * 0.045, wrist + along * 0.01, 0.029 + fat, 0.027 + fat, flat=0.78, across=across)

@@ -1,4 +1,4 @@
-"""Objects that people hold, such as tools, phones, boxes and bags. They are placed in the hands of a solved pose."""
+"""Objects that people hold, such as tools, phones, boxes and bags. They are placed in the hands of a pose."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_studio.kit.people.poses import Joints
 
 
 def _grip(joints: Joints, index: int, reach: float = 0.085) -> Vector:
-    """Return the middle of the closed left (``index`` 0) or right (1) hand."""
+    """Return the middle of the closed hand, left (``index`` 0) or right (1)."""
     wrist, elbow = joints.wrists[index], joints.elbows[index]
     return wrist + (wrist - elbow).normalized() * reach
 
@@ -131,7 +131,7 @@ HOLDABLE: dict[str, Callable[[Solid, Joints], None]] = {
     "torch": _torch,
     "trowel": _trowel,
 }
-"""The functions that add a prop, by the name that ``hold`` accepts."""
+"""Function that adds each prop, by its name."""
 
 
 def hold(s: Solid, joints: Joints, name: str) -> None:

@@ -1,4 +1,4 @@
-"""Heads: face, ears, neck, hair.
+"""Heads with face, ears, neck and hair.
 
 Head coordinates are upright rest coordinates with the head's centre at ``CENTRE``. The face looks towards +y.
 """
@@ -13,8 +13,9 @@ from mathutils import Matrix, Vector, noise
 from scope_studio.kit.core.volumes import Skin, Volume, normals
 
 CENTRE = (0.0, 0.012, 1.648)
+"""Centre of the head of the upright figure (m)."""
 EYES = ((-0.0315, 0.0775, 0.012), (0.0315, 0.0775, 0.012))
-"""Eye centres relative to ``CENTRE`` (m)."""
+"""Positions of the eyes relative to ``CENTRE`` (m)."""
 
 
 def face(*, woman: bool, stout: float) -> Skin:
@@ -49,7 +50,7 @@ def face(*, woman: bool, stout: float) -> Skin:
 
 
 def hair_cap(style: str, thickness: float, seed: float) -> Skin:
-    """Return hair as a shell over the skull. Styles are "short", "crop", "long", "bun" and "tail"."""
+    """Return hair as a shell over the skull. ``style`` is "short", "crop", "long", "bun" or "tail"."""
     v = Volume()
     t = thickness
     v.ellipsoid((0, -0.017, 0.040), (0.0755 + t, 0.096 + t, 0.085 + t))
@@ -100,7 +101,7 @@ def _hairline(points: np.ndarray, style: str) -> np.ndarray:
 
 
 def place(skin: Skin, frame: Matrix) -> Skin:
-    """Transform head coordinates to posed coordinates by the head's frame."""
+    """Return the skin transformed from head coordinates to posed coordinates."""
     points, faces = skin
     offset = Vector(CENTRE)
     return np.array([tuple(frame @ (Vector(p) + offset)) for p in points]), faces

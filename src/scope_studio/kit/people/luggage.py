@@ -37,7 +37,7 @@ def _case(s: Solid, colour: str, height: float, handle: bool) -> None:
 
 
 def trailing_case(colour: str, hand: Point, *, height: float = 0.66) -> Built:
-    """Build a suitcase tilted on two wheels behind a person who walks towards +y. Its handle ends at the position ``hand``."""
+    """Build a suitcase that is pulled on two wheels by a person who walks towards +y. Its handle ends at the position ``hand``."""
     s = Solid(f"{colour} suitcase")
     with s.at(hand[0], hand[1] - 0.62, 0.0, pitch=-38.0):
         _case(s, colour, height, True)
@@ -45,7 +45,7 @@ def trailing_case(colour: str, hand: Point, *, height: float = 0.66) -> Built:
 
 
 def backpack(colour: str = "red") -> Built:
-    """Build a packed rucksack that stands on the ground, with its pocket towards +y."""
+    """Build a full backpack that stands on the ground, with its pocket towards +y."""
     s = Solid(f"{colour} backpack")
     skin, strap = cloth(colour), paint("black", dirt=0.1, roughness=0.8)
     s.box((0.32, 0.20, 0.46), (0, 0, 0.23), skin, 0.07)

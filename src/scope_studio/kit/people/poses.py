@@ -1,4 +1,4 @@
-"""Poses of a person: joints solved by two-bone inverse kinematics from feet and hands, and a walking gait."""
+"""Poses of a person, and a walking gait. Two-bone inverse kinematics computes the joints from the positions of feet and hands."""
 
 from __future__ import annotations
 
@@ -15,14 +15,18 @@ STRIDE_M = 1.32
 """Length in metres of one gait cycle (two steps) of a person of average height."""
 
 HIP, WAIST, NECK = 0.925, 1.06, 1.525
+"""Heights of joints of the upright figure in metres."""
 THIGH, SHIN, ANKLE = 0.435, 0.410, 0.085
+"""Lengths of thigh and shin, and height of the ankle, in metres."""
 UPPER_ARM, FOREARM = 0.295, 0.255
+"""Lengths in metres."""
 SHOULDER = (0.178, -0.008, 1.412)
+"""Position of the right shoulder of the upright figure in metres."""
 
 
 @dataclass(frozen=True)
 class Foot:
-    """Position of a foot: point under the ankle (m), outward rotation and pitch (degrees, positive = toe up), and lift (m)."""
+    """Position of a foot: point below the ankle (m), outward rotation and pitch (degrees, positive = toe up), and lift (m)."""
 
     x: float
     y: float
@@ -35,8 +39,8 @@ class Foot:
 class Arm:
     """The position of an arm.
 
-    It is given by angles in degrees (``forward``, ``out``, ``bend``), or by a point that the ``hand`` reaches, in the frame of the
-    upright body. ``curl`` closes the fingers: -1 points the index finger, 0 is flat, and 1 is a fist.
+    It is defined by angles in degrees (``forward``, ``out``, ``bend``), or by the position of the ``hand`` in the coordinates of
+    the upright body. ``curl`` closes the fingers: -1 points the index finger, 0 is flat, and 1 is a fist.
     """
 
     forward: float = 4.0
@@ -95,7 +99,7 @@ def _turn(pivot: tuple[float, float, float], lean: float, tilt: float, yaw: floa
 
 
 def _bend(a: Vector, target: Vector, first: float, second: float, pole: Vector) -> tuple[Vector, Vector]:
-    """Return the middle joint and the end of a two-bone chain that reaches towards ``target``."""
+    """Return the positions of the middle joint and the end of a two-bone chain from ``a`` towards ``target``."""
     reach = target - a
     d = min(reach.length, (first + second) * 0.9995)
     axis = reach.normalized()
@@ -114,7 +118,7 @@ def _foot_frame(foot: Foot, side: int) -> Matrix:
 
 
 def solve(pose: Pose) -> Joints:
-    """Return the joint positions of a pose. The pelvis is lowered as far as necessary for the feet to reach the ground."""
+    """Return the joint positions of a pose. The pelvis is lowered until the feet reach the ground."""
     feet = [_foot_frame(f, s) for f, s in zip(pose.feet, SIDES, strict=True)]
     ankles = [f @ Vector((0, 0, ANKLE)) for f in feet]
     turn = Matrix.Translation(pose.hip) @ _turn((0, 0, HIP), pose.hip_lean, pose.hip_roll, pose.hip_yaw)
@@ -157,7 +161,7 @@ def _arm(arm: Arm, side: int, shoulder: Vector, chest: Matrix) -> tuple[Vector, 
 
 
 def _gait_foot(phase: float, x: float) -> Foot:
-    """Return the position of a foot during a walk. Phase 0 is its heel strike; it is on the ground for 0.6 of the cycle."""
+    """Return the position of a foot during a walk. At phase 0, its heel strikes the ground, where it stays for 0.6 of the cycle."""
     p = phase % 1.0
     start, stop = 0.33, 0.33 - 0.6 * STRIDE_M
     if p < 0.6:
@@ -199,10 +203,10 @@ def standing(random: Random) -> Pose:
     free = 0 if lead > 0 else 1
     feet[free] = replace(feet[free], y=random.uniform(0.05, 0.13), x=feet[free].x * 1.25, out=24.0)
     arms = [Arm(random.uniform(0, 7), random.uniform(8, 12), random.uniform(12, 24)) for _ in SIDES]
-    habit = random.random()
-    if habit < 0.4:
+    choice = random.random()
+    if choice < 0.4:
         arms[free] = Arm(hand=(-lead * 0.185, 0.055, 1.0), elbow=(1.0, -0.8, 0.0), curl=0.7)
-    elif habit < 0.6:
+    elif choice < 0.6:
         arms = [Arm(hand=(s * 0.06, 0.17 + 0.012 * s, 1.03), elbow=(1.0, -0.4, -0.4), curl=0.6) for s in SIDES]
     return Pose(
         (feet[0], feet[1]),
@@ -218,7 +222,7 @@ def standing(random: Random) -> Pose:
 
 
 def named(name: str, phase: float, random: Random) -> Pose:
-    """Return the pose with this name. Raises ValueError if the name is unknown."""
+    """Return the pose with this name, or raise ValueError if there is none."""
     base = standing(random)
     relaxed = Arm(3, 9, 18)
     if name == "stand":
@@ -270,4 +274,4 @@ def named(name: str, phase: float, random: Random) -> Pose:
             Arm(hand=(0.17, 0.24, 1.20), elbow=(1, -0.9, 0.2), curl=0.9),
         )
         return Pose(feet, arms, hip=(0, -0.06, -0.07), hip_lean=16, hip_yaw=-10, lean=22, twist=-6, head_pitch=-10, head_yaw=8)
-    raise ValueError(f"no pose named {name!r}")
+    raise ValueError(f"pose must be stand, walk, point, carry, kneel, shovel, phone or clipboard, not {name!r}")

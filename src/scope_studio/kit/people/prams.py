@@ -11,16 +11,16 @@ from scope_studio.kit.core.stage import Built
 
 
 def pram(colour: str = "navy") -> Built:
-    """Build a pram facing +y, with carrycot, folding hood, frame, four spoked wheels, blanket, and its handle towards -y."""
+    """Build a pram facing +y, with a carrycot, a folding hood, a blanket and spoked wheels. Its handle is towards -y."""
     s = Solid(f"{colour} pram")
     fabric, chrome = cloth(colour, 0.7), steel()
     sections = [(-0.36, 0.10, 0.10), (-0.30, 0.19, 0.20), (0.0, 0.215, 0.24), (0.34, 0.205, 0.22), (0.42, 0.12, 0.12)]
     points: list[Point] = []
     n = 12
-    for y, half, deep in sections:
+    for y, half, depth in sections:
         for k in range(n):
             a = math.pi * k / (n - 1)
-            points.append((half * math.cos(a) * (1.0 if k not in (0, n - 1) else 1.02), y, 0.88 - deep * math.sin(a) ** 0.7))
+            points.append((half * math.cos(a) * (1.0 if k not in (0, n - 1) else 1.02), y, 0.88 - depth * math.sin(a) ** 0.7))
     faces = [(i * n + k, i * n + k + 1, i * n + n + k + 1, i * n + n + k) for i in range(len(sections) - 1) for k in range(n - 1)]
     s.add(points, [*faces, tuple(range(n)), tuple(range(4 * n, 5 * n))[::-1]], fabric)
     rim = [(x, y, 0.885) for y, x, _ in sections] + [(-x, y, 0.885) for y, x, _ in sections[::-1]]

@@ -19,6 +19,6 @@ def with_cup(seed: int) -> Pose:
 
 
 def with_phone(seed: int) -> Pose:
-    """Return the pose of someone who looks down at a phone in front of the chest."""
+    """Return the pose of a person who looks at a phone in front of the chest."""
     base = replace(sitting(0.45, seed=seed, crossed=True), head_pitch=-26.0, head_yaw=0.0)
     return reaching(base, left=(-0.04, 0.33, 0.88), right=(0.05, 0.33, 0.90), drop=-0.8)

@@ -22,7 +22,7 @@ HAND_M = 0.085
 
 
 def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = None, drop: float = -0.5) -> Pose:
-    """Return ``pose`` with closed hands at these points of the figure's own frame (metres, before scaling by height)."""
+    """Return ``pose`` with closed hands at these positions on the figure, in metres before scaling by height."""
     chest = solve(pose).chest
     arms = list(pose.arms)
     for index, (side, target) in enumerate(zip((-1, 1), (left, right), strict=True)):
@@ -36,14 +36,14 @@ def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = Non
 
 
 def with_umbrella(phase: float | None = None, *, seed: int = 0) -> Pose:
-    """Return a standing pose, or a walking one at a gait phase, with the right hand at ``UMBRELLA_GRIP``."""
+    """Return a standing pose, or with a gait phase a walking pose, with the right hand at ``UMBRELLA_GRIP``."""
     random = Random(f"umbrella {seed}")
     base = standing(random) if phase is None else walking(phase)
     return reaching(replace(base, twist=0.0), right=UMBRELLA_GRIP, drop=-0.9)
 
 
 def leading(phase: float | None = None, *, seed: int = 0) -> Pose:
-    """Return a standing pose, or a walking one at a gait phase, with the right hand at ``LEAD_GRIP``."""
+    """Return a standing pose, or with a gait phase a walking pose, with the right hand at ``LEAD_GRIP``."""
     base = standing(Random(f"lead {seed}")) if phase is None else walking(phase)
     return reaching(replace(base, twist=0.0), right=LEAD_GRIP, drop=-0.9)
 
@@ -55,7 +55,7 @@ def pushing(phase: float) -> Pose:
 
 
 def sitting(seat_m: float = 0.46, *, seed: int = 0, crossed: bool = False) -> Pose:
-    """Return a sitting pose facing +y, with hips over the origin and hands in the lap. ``crossed`` crosses the ankles."""
+    """Return a sitting pose facing +y, with hips over the origin and hands in the lap. With ``crossed``, the ankles are crossed."""
     random = Random(f"sit {seed}")
     spread = random.uniform(0.10, 0.15)
     near = random.uniform(0.36, 0.44)
@@ -76,7 +76,7 @@ def sitting(seat_m: float = 0.46, *, seed: int = 0, crossed: bool = False) -> Po
 
 
 def riding(crank_deg: float) -> Pose:
-    """Return the pose of a rider on a ``cycles.bicycle`` at the origin, with hands on its grips and feet on its pedals."""
+    """Return the pose of a rider of a ``cycles.bicycle`` at the origin, with hands on the grips and feet on the pedals."""
     feet = []
     for side in (-1, 1):
         y, z = cycles.pedal(crank_deg, side)

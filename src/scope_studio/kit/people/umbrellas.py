@@ -13,10 +13,11 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 RIBS = 8
+"""Number of ribs."""
 
 
 def umbrella(colour: str, *, second: str | None = None, radius_m: float = 0.54) -> Built:
-    """Build an open umbrella with its handle at the origin. ``second`` is the colour of every other panel."""
+    """Build an open umbrella, held at the origin. ``second`` is the colour of every other panel."""
     s = Solid(f"{colour} umbrella")
     top = 0.72
     s.rod((0, 0, 0.05), (0, 0, top + 0.05), 0.0055, steel())
@@ -38,19 +39,19 @@ def umbrella(colour: str, *, second: str | None = None, radius_m: float = 0.54) 
     return s.built()
 
 
-def _canopy(turn: float, share: float, radius_m: float, top: float, sag: float) -> Point:
-    """Return a point of the canopy. Between ribs (``sag`` up to 1) the cloth sags and its edge curves inwards."""
-    r = radius_m * share * (1 - 0.07 * sag * share)
-    drop = 0.24 * share**2.2 + 0.012 * sag * share * (1 - share) * 4
+def _canopy(turn: float, fraction: float, radius_m: float, top: float, sag: float) -> Point:
+    """Return a point of the canopy. ``sag`` is 0 at a rib and 1 midway between ribs, where the cloth sags."""
+    r = radius_m * fraction * (1 - 0.07 * sag * fraction)
+    drop = 0.24 * fraction**2.2 + 0.012 * sag * fraction * (1 - fraction) * 4
     a = 2 * math.pi * turn / RIBS
     return (r * math.cos(a), r * math.sin(a), top - drop)
 
 
 def _nylon(colour: str) -> bpy.types.Material:
     name = f"umbrella {colour}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     drops = s.ramp(s.voronoi(s.object_coords(), 60.0), 0.05, 0.12, 0.6, 0.0)
     return s.surface(

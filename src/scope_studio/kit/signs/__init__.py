@@ -1,1 +1,1 @@
-"""Road signs, gantries, variable message signs, and the faces and stands that they consist of."""
+"""Road signs, gantries, variable message signs, and their faces and stands."""

@@ -1,7 +1,7 @@
 """Sign faces: rounded reflective boards with borders, lettering, arrows, route patches and pictograms.
 
-A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions are given as a viewer sees them:
-``u`` to the right, ``v`` up (so x = -u).
+A face is drawn in the plane y = 0 of the current frame of a ``Solid`` and faces +y. Positions are (u, v), as seen by a viewer:
+``u`` increases to the right and ``v`` upwards (so x = -u).
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from scope_studio.kit.core.shapes import rounded
 from scope_studio.kit.core.solid import Solid
 
 LIFT_M = 0.0035
-"""Distance in metres between lettering and its board, large enough to avoid z-fighting in distant views."""
+"""Distance in metres between lettering and its board, large enough to be rendered correctly in distant views."""
 
 INK = {"blue": "white", "green": "white", "red": "white", "dark green": "white", "brown": "white", "black": "white"}
-"""Lettering colour for each background colour. On other backgrounds, lettering is black."""
+"""Colour of lettering for each background colour. On other backgrounds, lettering is black."""
 
 ARROW_TURN = {
     "up": 0.0,
@@ -34,13 +34,14 @@ ARROW_TURN = {
     "down-right": -135.0,
     "down-left": 135.0,
 }
+"""Anticlockwise rotation in degrees of an upward arrow, for each direction."""
 
 
 @dataclass(frozen=True)
 class Panel:
-    r"""A direction or information sign, sizes in metres.
+    r"""Parameters of a direction or information sign. Sizes are in metres.
 
-    In a line, the text after a tab is aligned to the right edge ("Halden\t12"). ``arrows`` gives a direction (a key of
+    The text after a tab in a line, as in "Halden\t12", is aligned to the right edge. ``arrows`` gives a direction (a key of
     ``ARROW_TURN``) or None for each line, or a single direction for the whole panel. ``route`` is a road number that is shown
     on a patch in the first row.
     """
@@ -152,19 +153,19 @@ def panel_face(s: Solid, spec: Panel) -> None:
     pitch = (spec.height - 1.4 * margin) / max(1, rows)
     cap = min(spec.cap_height or 0.55 * pitch, 0.66 * pitch)
     arrows = list(spec.arrows)
-    whole = arrows[0] if len(arrows) == 1 and rows > 1 else None
-    room = spec.width - 2 * margin
-    if whole:
-        room -= spec.height * 0.34
-    beside = 2.05 if arrows and not whole else 0.0
+    panel_arrow = arrows[0] if len(arrows) == 1 and rows > 1 else None
+    available_width = spec.width - 2 * margin
+    if panel_arrow:
+        available_width -= spec.height * 0.34
+    arrow_width = 2.05 if arrows and not panel_arrow else 0.0
     patch = extent(spec.route, 1.0) + 1.8 if spec.route else 0.0
-    needs = [_relative_width(line) + beside + (patch if i == 0 else 0.0) for i, line in enumerate(spec.lines)]
-    cap = min([cap, *(room / need for need in needs if need > 0)])
+    relative_widths = [_relative_width(line) + arrow_width + (patch if i == 0 else 0.0) for i, line in enumerate(spec.lines)]
+    cap = min([cap, *(available_width / width for width in relative_widths if width > 0)])
     arrow_size = cap * 1.5
     for i, line in enumerate(spec.lines):
         v = (spec.height - 1.4 * margin) / 2 - (i + 0.5) * pitch
-        pointing = arrows[i] if len(arrows) == rows and not whole else None
-        left, right = -spec.width / 2 + margin, -spec.width / 2 + margin + room
+        pointing = arrows[i] if len(arrows) == rows and not panel_arrow else None
+        left, right = -spec.width / 2 + margin, -spec.width / 2 + margin + available_width
         if pointing in ("left", "up-left", "down-left"):
             arrow(s, left + arrow_size / 2, v, arrow_size, pointing, sheet(ink))
             left += arrow_size * 1.35
@@ -174,9 +175,9 @@ def panel_face(s: Solid, spec: Panel) -> None:
         if i == 0 and spec.route:
             left += _route_patch(s, spec, left, v, cap) + cap * 0.7
         _line(s, line, cap, left, right, v, ink, spec.align)
-    if whole:
+    if panel_arrow:
         size = spec.height * 0.36
-        arrow(s, spec.width / 2 - margin - size * 0.45, 0.0, size, whole, sheet(ink))
+        arrow(s, spec.width / 2 - margin - size * 0.45, 0.0, size, panel_arrow, sheet(ink))
 
 
 def _relative_width(line: str) -> float:

@@ -30,17 +30,17 @@ def gantry(
     signals: Sequence[tuple[float, Signal]] = (),
     facing: str = "-Y",
 ) -> Built:
-    """Build a gantry along x with legs at x = +-span/2.
+    """Build a gantry along x. Its legs are at x = -``span_m`` / 2 and x = ``span_m`` / 2.
 
-    ``panels`` and ``signals`` hang at the given x, with their lower edges ``clearance_m`` above the road. ``facing`` is
+    ``panels`` and ``signals`` hang at the given x; their lower edges are ``clearance_m`` above the road. ``facing`` is
     the direction that they face: "-Y" for drivers who travel towards +y, "+Y" for drivers in the other direction.
     """
     s = Solid("gantry")
-    depth, tall = TRUSS_M
+    depth, height = TRUSS_M
     base = clearance_m + 0.35
     _truss(s, span_m, base)
     for sign in (-1, 1):
-        _leg(s, sign * span_m / 2, base + tall)
+        _leg(s, sign * span_m / 2, base + height)
     flip = 180.0 if facing == "-Y" else 0.0
     front = -1.0 if facing == "-Y" else 1.0
     _walkway(s, span_m, base, -front)
@@ -49,7 +49,7 @@ def gantry(
             panel_face(s, spec)
             for u in (-spec.width * 0.38, 0.0, spec.width * 0.38):
                 s.box((0.10, 0.06, spec.height * 0.98), (u, -0.072, 0), steel(), 0.006)
-                for z in (0.0, tall):
+                for z in (0.0, height):
                     low = clearance_m + spec.height / 2
                     if abs(base + z - low) < spec.height / 2:
                         s.rod((u, -0.09, base + z - low), (u, -0.36, base + z - low), 0.035, steel())
@@ -63,20 +63,20 @@ def gantry(
 
 
 def _truss(s: Solid, span: float, base: float) -> None:
-    depth, tall = TRUSS_M
+    depth, height = TRUSS_M
     bays = max(4, round(span / 1.7))
     step = span / bays
     paintwork = steel()
     for y in (-depth / 2, depth / 2):
-        for z in (base, base + tall):
+        for z in (base, base + height):
             s.box((span + 0.5, 0.13, 0.13), (0, y, z), paintwork, 0.012)
         for i in range(bays + 1):
             x = -span / 2 + i * step
-            s.rod((x, y, base), (x, y, base + tall), 0.04, paintwork)
+            s.rod((x, y, base), (x, y, base + height), 0.04, paintwork)
             if i < bays:
-                ends = (base, base + tall) if i % 2 == 0 else (base + tall, base)
+                ends = (base, base + height) if i % 2 == 0 else (base + height, base)
                 s.rod((x, y, ends[0]), (x + step, y, ends[1]), 0.036, paintwork)
-    for z in (base, base + tall):
+    for z in (base, base + height):
         for i in range(bays + 1):
             x = -span / 2 + i * step
             s.rod((x, -depth / 2, z), (x, depth / 2, z), 0.035, paintwork)
@@ -109,10 +109,10 @@ def _leg(s: Solid, x: float, top: float) -> None:
 
 
 def _walkway(s: Solid, span: float, base: float, side: float) -> None:
-    depth, tall = TRUSS_M
+    depth, height = TRUSS_M
     s.box((span, depth - 0.2, 0.04), (0, 0, base + 0.09), steel(dark=True), 0.005)
     y = side * (depth / 2)
-    top = base + tall
+    top = base + height
     count = round(span / 1.8)
     for i in range(count + 1):
         x = -span / 2 + span * i / count

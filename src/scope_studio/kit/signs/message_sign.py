@@ -1,4 +1,4 @@
-"""Variable message signs: letters of lit dots on a black matrix."""
+"""Variable message signs, whose letters consist of lit dots on a black matrix."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _dots(body: str, cap: float, rows: int) -> list[tuple[float, float]]:
 def variable_message(
     lines: Sequence[str], *, width: float = 3.4, height: float = 1.7, post_height: float = 2.6, colour: str = "amber"
 ) -> Built:
-    """Build a black matrix sign on posts, with letters made of lit dots, and a pair of lanterns at its corners."""
+    """Build a black matrix sign on posts, with letters made of lit dots and with lanterns at its corners."""
     s = Solid("variable message sign")
     cap = min(
         0.34,
@@ -66,8 +66,8 @@ def variable_message(
                     lit,
                 )
             spread = max(u for u, _ in dots) - min(u for u, _ in dots) + pitch
-            here = s.frame @ Vector((0, 0.006, v + cap / 2))
-            s.texts.append(TextMark(line, tuple(here), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0), spread, cap, cap))
+            centre = s.frame @ Vector((0, 0.006, v + cap / 2))
+            s.texts.append(TextMark(line, tuple(centre), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0), spread, cap, cap))
         for x in (-width / 2 + 0.14, width / 2 - 0.14):
             for z in (-height / 2 + 0.14, height / 2 - 0.14):
                 s.lathe([(0.07, 0.0), (0.06, 0.012), (0.02, 0.018)], lens("amber"), (x, 0.002, z), "Y", 16)

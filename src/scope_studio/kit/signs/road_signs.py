@@ -1,4 +1,4 @@
-"""Road signs on posts and stands. Fronts face +y, and every readable line is a ``TextMark``."""
+"""Road signs on posts and stands. Fronts face +y. Every readable line has a ``TextMark``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def panel(
     route: str | None = None,
     route_background: str | None = None,
 ) -> Built:
-    """Build a roadside sign whose lower edge is ``post_height`` above the ground; see ``Panel`` for the layout."""
+    """Build a roadside sign whose lower edge is ``post_height`` above the ground. ``Panel`` describes the other parameters."""
     s = Solid(f"{background} sign")
     with s.at(0, 0, post_height + height / 2):
         panel_face(s, Panel(lines, width, height, background, cap_height, align, arrows, route, route_background))
@@ -37,7 +37,7 @@ def panel(
 
 
 def round_limit(text: str = "50", *, diameter: float = 0.75, post_height: float = 2.1) -> Built:
-    """Build a speed limit sign: black figures in a red ring."""
+    """Build a speed limit sign: black digits in a red ring."""
     s = Solid(f"{text} speed limit sign")
     r = diameter / 2
     with s.at(0, 0, post_height + r):
@@ -56,7 +56,7 @@ def _circle(r: float, sides: int = 48) -> list[tuple[float, float]]:
 
 
 def _rounded_triangle(side: float, corner: float) -> list[tuple[float, float]]:
-    """Return an equilateral triangle with round corners that points up, centred on its centroid."""
+    """Return an equilateral triangle with rounded corners. It points up, and its centroid is at the origin."""
     points = []
     inner = side - 2 * math.sqrt(3) * corner
     for k in range(3):
@@ -69,7 +69,7 @@ def _rounded_triangle(side: float, corner: float) -> list[tuple[float, float]]:
 
 
 def _man_digging(s: Solid, k: float) -> None:
-    """Add the "road works" pictogram, a man digging, about 2k wide and high and centred on the origin."""
+    """Add the "road works" pictogram, a man digging. It is about 2 ``k`` wide and high and centred on the origin."""
     ink = sheet("black", dirt=0.05)
     disc(s, -0.10 * k, 0.62 * k, 0.15 * k, ink)
     stroke(s, [(-0.20 * k, 0.36 * k), (-0.40 * k, -0.10 * k)], 0.26 * k, ink)
@@ -99,7 +99,7 @@ def triangle(
     stand: str = "frame",
     post_height: float = 1.9,
 ) -> Built:
-    """Build a warning triangle with a "works" or "exclamation" symbol and, if ``plate`` is given, a text plate below.
+    """Build a warning triangle with a "works" or "exclamation" symbol. ``plate`` is the text of a plate below it.
 
     ``stand`` is "frame" (temporary, on the ground) or "post".
     """
@@ -141,7 +141,7 @@ def triangle(
 
 
 def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | None = "400 m", *, stand: str = "frame") -> Built:
-    """Build a lane diagram on white: an arrow for each open lane, a red T for each closed one.
+    """Build a lane diagram on a white board, with an arrow for each open lane and a red T for each closed lane.
 
     ``closed`` lists the indices of the closed lanes, counted from the left as seen by a driver.
     """
@@ -170,7 +170,7 @@ def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | No
 
 
 def works_access(lines: Sequence[str] = ("WORKS", "ACCESS"), *, direction: str | None = "left", stand: str = "frame") -> Built:
-    """Build the white-on-red sign at the exit for site traffic."""
+    """Build the sign at the exit for site traffic, with white lettering on red."""
     s = Solid("works access sign")
     low, height = (0.35 if stand == "frame" else 1.7), 0.22 + 0.24 * len(lines)
     width = max(extent(line, 0.15) for line in lines) + (0.62 if direction else 0.25)
@@ -278,7 +278,7 @@ def warning_plate(
 ) -> Built:
     """Build a small plate with one or more lines of text, separated by newlines. Its lower edge is at ``post_height``.
 
-    It stands on a short post, or has none when ``posts`` is false, so that it can be fixed to another object.
+    It stands on a short post. If ``posts`` is false, it has no post and can be fixed to another object.
     """
     s = Solid("warning plate")
     lines = text.split("\n")

@@ -14,9 +14,9 @@ from scope_studio.kit.signs.faces import arrow, board, disc, flat, write
 
 
 def finger_post(fingers: Sequence[tuple[str, float]], *, colour: str = "dark green", height: float = 3.1) -> Built:
-    """Build a sign post with lettered fingers, topmost first.
+    """Build a signpost with lettered fingers.
 
-    ``fingers`` gives the text of each finger and the bearing in degrees in which it points.
+    ``fingers`` contains the text of each finger, from top to bottom, and the bearing in degrees in which it points.
     """
     s = Solid("finger post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
@@ -36,12 +36,12 @@ def finger_post(fingers: Sequence[tuple[str, float]], *, colour: str = "dark gre
     )
     for k, (text, bearing) in enumerate(fingers):
         cap = 0.085
-        wide = extent(text, cap) + 0.30
+        width = extent(text, cap) + 0.30
         with s.at(0, 0, height - 0.14 - 0.235 * k, turn=90.0 - bearing):
-            shape = [(0.05, -0.095), (wide - 0.10, -0.095), (wide, 0.0), (wide - 0.10, 0.095), (0.05, 0.095)]
+            shape = [(0.05, -0.095), (width - 0.10, -0.095), (width, 0.0), (width - 0.10, 0.095), (0.05, 0.095)]
             s.prism(shape, (-0.014, 0.014), iron, "XZ")
             for side, facing in ((1, "+Y"), (-1, "-Y")):
-                s.text(text, cap, (0.05 + (wide - 0.08) / 2, side * 0.0165, 0.0), sheet("white", dirt=0.05), facing=facing)
+                s.text(text, cap, (0.05 + (width - 0.08) / 2, side * 0.0165, 0.0), sheet("white", dirt=0.05), facing=facing)
     return s.built()
 
 
@@ -101,14 +101,14 @@ def no_entry() -> Built:
 def post_sign(
     lines: Sequence[str], *, background: str = "blue", cap: float = 0.10, height: float = 2.2, pointer: str | None = None
 ) -> Built:
-    """Build a small sign on a post, as wide as its lines need, facing +y. The first line is larger."""
+    """Build a small sign on a post, facing +y. Its width depends on its lines. The first line is larger."""
     s = Solid(f"{background} sign")
     caps = [cap * (1.5 if k == 0 else 0.8) for k in range(len(lines))]
-    wide = max(extent(line, c) for line, c in zip(lines, caps, strict=True)) + 0.22
+    width = max(extent(line, c) for line, c in zip(lines, caps, strict=True)) + 0.22
     tall = sum(c * 1.7 for c in caps) + 0.14 + (0.30 if pointer else 0.0)
     s.rod((0, -0.05, 0), (0, -0.05, height + tall), 0.032, steel())
     with s.at(0, 0, height + tall / 2):
-        board(s, wide, tall, background, edge=0.018, back=False)
+        board(s, width, tall, background, edge=0.018, back=False)
         v = tall / 2 - 0.07
         for line, c in zip(lines, caps, strict=True):
             v -= c * 0.85

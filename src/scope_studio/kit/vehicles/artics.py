@@ -1,7 +1,7 @@
 """Articulated lorries: tractor units and trailers (curtain-sided, box, skeletal with a container).
 
-The tractor's fifth wheel is at ``COUPLING_Y`` in its own frame. A trailer's origin is the middle of its length, and its front
-faces +y.
+The tractor's fifth wheel is at y = ``COUPLING_Y`` in the tractor's coordinates. A trailer's origin is the middle of its length,
+and its front faces +y.
 """
 
 from __future__ import annotations
@@ -22,11 +22,13 @@ from scope_studio.kit.vehicles import paintwork as pw
 from scope_studio.kit.yard.containers import LENGTH_M, container
 
 TRAILER_M = 13.6
+"""Length of a trailer in metres."""
 _FRONT, _REAR = 3.10, -2.75
+"""y coordinates of the front and the rear of the tractor in metres."""
 COUPLING_Y = -1.25
-"""Position along y of a trailer's kingpin in the frame of the tractor, in metres."""
+"""y coordinate in metres of the trailer's kingpin, in the tractor's coordinates."""
 KINGPIN_M = 1.25
-"""Distance in metres from the front of a trailer back to its kingpin."""
+"""Distance in metres between a trailer's front and its kingpin."""
 
 
 def _tractor_parts() -> Parts:
@@ -63,20 +65,24 @@ def tractor(colour: str, *, plate: str, name: str | None = None, lit: bool = Fal
 
     ``name`` is the lettering above the windscreen. ``lit`` turns on the headlamps and marker lamps.
     """
-    own, letters = bw.plates(plate, (_FRONT + 0.14, 0.60), (_REAR - 0.03, 0.98))
+    extra_parts, letters = bw.plates(plate, (_FRONT + 0.14, 0.60), (_REAR - 0.03, 0.98))
     if name:
         letters.append(bw.words(name, 0.19, (0, _FRONT - 0.445, 3.20), "+Y", fittings.contrast(colour), width_m=1.9))
     if lit:
         for sign in (-1, 1):
-            own.box((0.26, 0.03, 0.12), (sign * 0.88, _FRONT + 0.145, 0.72), glow("cream", 9.0), bevel_m=0.02)
-            own.box((0.10, 0.03, 0.05), (sign * 0.75, _FRONT - 0.62, 3.60), glow("amber", 5.0), bevel_m=0.01)
+            extra_parts.box((0.26, 0.03, 0.12), (sign * 0.88, _FRONT + 0.145, 0.72), glow("cream", 9.0), bevel_m=0.02)
+            extra_parts.box((0.10, 0.03, 0.05), (sign * 0.75, _FRONT - 0.62, 3.60), glow("amber", 5.0), bevel_m=0.01)
     return bw.finish(
-        "tractor unit", bw.body_mesh("tractor unit", _tractor_parts), [pw.paint("lorry cab", colour, dirt_top_m=1.2)], letters, own
+        "tractor unit",
+        bw.body_mesh("tractor unit", _tractor_parts),
+        [pw.paint("lorry cab", colour, dirt_top_m=1.2)],
+        letters,
+        extra_parts,
     )
 
 
 def _bogie(parts: Parts, *, bed_m: float) -> None:
-    """Add the parts below the bed of a trailer: frame, three axles, landing legs, guards, underrun bar and lamps.
+    """Add the parts below the bed of a trailer: frame, three axles, landing legs, guards, bumper bar and lamps.
 
     ``bed_m`` is the height of the bed's underside.
     """
@@ -161,7 +167,7 @@ def _body_parts(kind: str) -> Parts:
 
 
 def _folds(parts: Parts, z0: float, z1: float, half: float, skin: bpy.types.Material) -> None:
-    """Add a taut curtain along the right-hand side, with shallow waves between its straps."""
+    """Add a taut curtain along the right-hand side, with shallow folds between its straps."""
     steps = 120
     points, faces = [], []
     for k in range(steps + 1):
@@ -181,16 +187,16 @@ def _curtain() -> bpy.types.Material:
 
 
 def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, front: str = "white") -> Built:
-    """Build a 13.6 m semi-trailer with coloured curtains ("curtain"), or a refrigerated one ("box").
+    """Build a 13.6 m semi-trailer: with coloured curtains if ``kind`` is "curtain", or refrigerated if ``kind`` is "box".
 
-    ``front`` is the colour of a curtain trailer's headboard and doors.
+    ``front`` is the colour of the front wall and the doors of a trailer with curtains.
     """
     model = f"{kind} trailer"
     body = bw.body_mesh(model, lambda: _body_parts(kind))
-    own, letters = Parts(), []
+    extra_parts, letters = Parts(), []
     _, plate_letters = bw.plates(plate, (90.0, 0.60), (-TRAILER_M / 2 - 0.045, 1.02))
     face = shading.plain("number plate yellow", (0.86, 0.52, 0.01), 0.35)
-    own.box((0.52, 0.012, 0.111), (0, -TRAILER_M / 2 - 0.045, 1.02), face, bevel_m=0.003)
+    extra_parts.box((0.52, 0.012, 0.111), (0, -TRAILER_M / 2 - 0.045, 1.02), face, bevel_m=0.003)
     letters.append(plate_letters[1])
     tint = fittings.contrast(colour)
     letters += bw.both_sides(lettering, 0.72, 0.0, 2.72, tint, x=1.268, width_m=11.0)
@@ -207,22 +213,22 @@ def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, f
     paints = [pw.paint("trailer ends", front if kind == "curtain" else colour, dirt_top_m=1.9, dirt=0.4)]
     if kind == "curtain":
         paints.append(pw.paint("trailer curtain", colour, dirt_top_m=2.3, dirt=0.45, gloss=0.1))
-    return bw.finish(model, body, paints, letters, own)
+    return bw.finish(model, body, paints, letters, extra_parts)
 
 
 def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, feet: int = 40) -> Built:
     """Build a skeletal trailer that carries a container with its doors to the rear."""
     mesh = bw.body_mesh("skeletal trailer", _skeletal_parts)
-    own, letters = Parts(), []
+    extra_parts, letters = Parts(), []
     _, plate_letters = bw.plates(plate, (90.0, 0.60), (-TRAILER_M / 2 - 0.045, 1.02))
-    own.box(
+    extra_parts.box(
         (0.52, 0.012, 0.111),
         (0, -TRAILER_M / 2 - 0.045, 1.02),
         shading.plain("number plate yellow", (0.86, 0.52, 0.01), 0.35),
         bevel_m=0.003,
     )
     letters.append(plate_letters[1])
-    built = bw.finish("skeletal trailer", mesh, [], letters, own)
+    built = bw.finish("skeletal trailer", mesh, [], letters, extra_parts)
     load = container(colour, code, feet=feet, livery=livery)
     lift = Matrix.Translation((0, -TRAILER_M / 2 + LENGTH_M[feet] / 2 + 0.25, 1.24)) @ Matrix.Rotation(math.pi, 4, "Z")
     for obj in load.objects:

@@ -22,8 +22,8 @@ from scope_studio.kit.vehicles import wheels
 class Station:
     """A cross-section of a body at ``y``.
 
-    Its right-hand ``(x, z)`` points run from the middle of the floor to the middle of the roof. ``dy`` moves single points
-    along y, which slants and curves the section.
+    ``section`` contains the right-hand ``(x, z)`` points, from the middle of the floor to the middle of the roof. ``dy`` moves
+    individual points along y, which slants and curves the section.
     """
 
     y: float
@@ -33,7 +33,7 @@ class Station:
 
 @dataclass(frozen=True)
 class Pane:
-    """A window between two stations and two rows of section points, on both sides, or in one piece ``across`` the middle."""
+    """A window between two stations and two rows of section points, on both sides or, with ``across``, over the middle."""
 
     stations: tuple[int, int]
     rows: tuple[int, int]
@@ -55,7 +55,7 @@ def shell(
 
     Args:
         creases: Edges to sharpen: (row, strength, first station, last station).
-        bulge: Distances in metres by which the front and rear ends bulge outwards.
+        bulge: Distances in metres by which the front and the rear bulge outwards.
         cutters: Solids to subtract (wheel arches). The cut faces keep the material of the cutter.
     """
     bm = bmesh.new()
@@ -93,14 +93,14 @@ def shell(
 
 
 def _ring_point(station: Station, j: int, rows: int) -> Point:
-    """Return point ``j`` of a station's closed ring: the right side upwards, then the left side downwards."""
+    """Return point ``j`` of a station's closed ring: first the right side upwards, then the left side downwards."""
     row = j if j < rows else 2 * rows - 2 - j
     x, z = station.section[row]
     return (x if j < rows else -x, station.y + station.dy.get(row, 0.0), z)
 
 
 def _cap(bm: bmesh.types.BMesh, end: list[bmesh.types.BMVert], rows: int, push: float) -> None:
-    """Close an end of the body with quads that bulge by ``push`` metres."""
+    """Close an end of the body with quads that bulge outwards by ``push`` metres."""
     ring = 2 * rows - 2
     spine = [end[0]]
     for row in range(2, rows - 2):
@@ -121,7 +121,7 @@ def _glaze(
     crease: bmesh.types.BMLayerItem,
     corner: bmesh.types.BMLayerItem,
 ) -> None:
-    """Turn a region of faces into a window with a sharp frame of black trim."""
+    """Change a region of faces to a window with a sharp frame of black trim."""
     bmesh.ops.inset_region(bm, faces=region, thickness=pane.frame_m, use_even_offset=True, use_boundary=True)
     _crease_border(region, 0.9, crease, corner)
     rim = bmesh.ops.inset_region(bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True)
@@ -170,7 +170,7 @@ def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.
 
 
 class Surface:
-    """A finished mesh to cast rays against, which finds where fittings and lettering touch the body."""
+    """A mesh for ray casts, which determine where fittings and lettering touch the body."""
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.tree = BVHTree.FromPolygons([v.co for v in mesh.vertices], [p.vertices for p in mesh.polygons])
@@ -194,7 +194,7 @@ class Surface:
 
 @dataclass
 class Lettering:
-    """A line of letters in its position on a vehicle, and its text mark."""
+    """The mesh of a line of lettering on a vehicle, and its text mark."""
 
     points: list[Point]
     faces: list[tuple[int, ...]]
@@ -202,12 +202,13 @@ class Lettering:
     mark: TextMark
 
 
-_READERS: dict[str, tuple[Point, Point]] = {
+_LETTERING_AXES: dict[str, tuple[Point, Point]] = {
     "-Y": ((1, 0, 0), (0, 0, 1)),
     "+Y": ((-1, 0, 0), (0, 0, 1)),
     "+X": ((0, 1, 0), (0, 0, 1)),
     "-X": ((0, -1, 0), (0, 0, 1)),
 }
+"""Unit vectors (right, up) of lettering, for each direction that it can face."""
 
 
 def words(
@@ -220,9 +221,9 @@ def words(
     width_m: float = math.inf,
     onto: Surface | None = None,
 ) -> Lettering:
-    """Return a line of lettering around ``centre``, narrowed to fit ``width_m``.
+    """Return a line of lettering centred on ``centre``, narrowed to fit ``width_m``.
 
-    ``onto`` projects it on a curved side instead of a plane.
+    With ``onto``, it is projected onto that curved surface instead of a plane.
     """
     flat, faces = lettering.letters(body, cap_m)
     if onto is not None:
@@ -230,7 +231,7 @@ def words(
     xs, ys = [p[0] for p in flat], [p[1] for p in flat]
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     squeeze = min(1.0, width_m / width)
-    right, up = _READERS[facing]
+    right, up = _LETTERING_AXES[facing]
     normal = Vector(right).cross(up)
     points: list[Point] = []
     for x, y, lift in flat:
@@ -274,9 +275,9 @@ def both_sides(
     width_m: float = math.inf,
     onto: Surface | None = None,
 ) -> list[Lettering]:
-    """Return the same lettering for the right and the left side.
+    """Return the same line of lettering for the right and the left side.
 
-    It is on the planes at ``x`` and -``x``, or is projected ``onto`` a surface.
+    The lettering is on the planes at ``x`` and -``x`` or, with ``onto``, projected onto that surface.
     """
     return [
         words(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
@@ -285,7 +286,7 @@ def both_sides(
 
 
 def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
-    """Return UK number plates, white in front and yellow at the rear.
+    """Return UK number plates (white in front, yellow at the rear) and their lettering.
 
     ``front`` and ``rear`` are the positions (y, z) of the faces of the plates.
     """
@@ -302,7 +303,7 @@ def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) ->
 
 
 def body_mesh(model: str, make: Callable[[], Parts]) -> bpy.types.Mesh:
-    """Return the mesh of a model, which ``make`` creates on first use and which all vehicles of the model share."""
+    """Return the mesh that all vehicles of a model share. ``make`` creates it on first use."""
     return bpy.data.meshes.get(f"kit {model}") or make().build(f"kit {model}")
 
 
@@ -313,28 +314,28 @@ def finish(
     letters: Sequence[Lettering] = (),
     fittings: Parts | None = None,
 ) -> Built:
-    """Assemble a vehicle from the shared mesh in its own paint, and a second object with its lettering and fittings."""
+    """Assemble a vehicle: the shared mesh with individual paint, and a second object with the lettering and fittings."""
     obj = bpy.data.objects.new(name, body)
     bpy.context.scene.collection.objects.link(obj)
     for number, material in enumerate(paints):
         slot = next(s for s in obj.material_slots if s.material == pw.paint_slot(number))
         slot.link = "OBJECT"
         slot.material = material
-    own = fittings or Parts()
+    parts = fittings or Parts()
     marks = []
     for line in letters:
-        own.add(line.points, line.faces, pw.ink(line.colour))
+        parts.add(line.points, line.faces, pw.ink(line.colour))
         marks.append(line.mark)
     objects = [obj]
-    if own.materials:
-        extra = bpy.data.objects.new(f"{name} fittings", own.build(f"{name} fittings"))
+    if parts.materials:
+        extra = bpy.data.objects.new(f"{name} fittings", parts.build(f"{name} fittings"))
         bpy.context.scene.collection.objects.link(extra)
         objects.append(extra)
     return Built.of(name, objects, marks)
 
 
 def arches(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
-    """Return cutters for the wheel arches of axles at the given y. They extend outwards from ``inner_x`` on both sides."""
+    """Return the solids to subtract for wheel arches at the y coordinates ``axles``. They extend outwards from ``inner_x``."""
     cutters = Parts()
     for y in axles:
         for sign in (-1, 1):

@@ -1,6 +1,6 @@
 """Shapes of the car models: cross-sections, windows, and details drawn on the paint.
 
-Lengths are in metres. y points forward, and the wheelbase is centred on 0.
+Lengths are in metres. y increases towards the front, and the wheelbase is centred on y = 0.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Cabin:
 
 @dataclass(frozen=True)
 class CarModel:
-    """The shape of one car model. Lengths are in metres; y points forward, and the wheelbase is centred on 0."""
+    """The shape and the parts of one car model."""
 
     name: str
     stations: list[Station]

@@ -15,7 +15,7 @@ from scope_studio.kit.vehicles.car_models import HATCHBACK, PICKUP, SALOON, SUV,
 
 
 def _body(model: CarModel) -> Parts:
-    """Return the parts of a model that all its cars share: shell, wheels, interior and fittings."""
+    """Return the parts that all cars of a model share: shell, wheels, interior and fittings."""
     radius = model.wheel_radius
     cutters = bw.arches(model.axles, radius + 0.055, model.track_x - model.tyre_width / 2 - 0.10)
     for size, centre in model.extra_cutters:
@@ -81,12 +81,12 @@ def _interior(parts: Parts, cabin: Cabin) -> None:
     top = cabin.belt_z - 0.04
     for number, y in enumerate(cabin.seat_rows):
         for x in (-0.36, 0.36) if number == 0 else (-0.40, 0.0, 0.40):
-            wide = 0.50 if number == 0 else 0.40
-            parts.box((wide, 0.50, 0.16), (x, y + 0.12, top - 0.42), cloth, bevel_m=0.06)
+            width = 0.50 if number == 0 else 0.40
+            parts.box((width, 0.50, 0.16), (x, y + 0.12, top - 0.42), cloth, bevel_m=0.06)
             parts.prism(
                 [(y - 0.06, top - 0.45), (y + 0.06, top - 0.40), (y - 0.08, top + 0.10), (y - 0.20, top + 0.10)],
-                x - wide / 2,
-                x + wide / 2,
+                x - width / 2,
+                x + width / 2,
                 cloth,
                 bevel_m=0.04,
             )
@@ -146,10 +146,12 @@ def _car(
     surface = bw.Surface(mesh)
     front = max(surface.end(x, model.plate_z[0], True) for x in (0.0, 0.24)) + 0.008
     rear = min(surface.end(x, model.plate_z[1], False) for x in (0.0, 0.24)) - 0.008
-    own, plate_letters = bw.plates(plate, (front, model.plate_z[0]), (rear, model.plate_z[1]))
+    plate_parts, plate_letters = bw.plates(plate, (front, model.plate_z[0]), (rear, model.plate_z[1]))
     if fittings is not None:
-        own.mesh(fittings.build("fittings"))
-    return bw.finish(model.name, mesh, [pw.paint(model.name, colour, model.patches)], [*plate_letters, *(letters or [])], own)
+        plate_parts.mesh(fittings.build("fittings"))
+    return bw.finish(
+        model.name, mesh, [pw.paint(model.name, colour, model.patches)], [*plate_letters, *(letters or [])], plate_parts
+    )
 
 
 def saloon(colour: str, *, plate: str) -> Built:
@@ -163,7 +165,7 @@ def hatchback(colour: str, *, plate: str) -> Built:
 
 
 def suv(colour: str, *, plate: str) -> Built:
-    """Build a tall five-door SUV with black arches and roof rails, 4.5 m long."""
+    """Build a tall five-door SUV with black wheel arches and roof rails, 4.5 m long."""
     rails = Parts()
     for sign in (-1, 1):
         path = [

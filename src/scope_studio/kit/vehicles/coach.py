@@ -15,6 +15,7 @@ from scope_studio.kit.vehicles import paintwork as pw
 from scope_studio.kit.vehicles.paintwork import GAP, TRIM, Patch
 
 _COACH_FRONT, _COACH_REAR, _COACH_HALF, _COACH_TOP = 5.95, -5.75, 1.25, 3.25
+"""y coordinates of front and rear, half width, and height of the coach in metres."""
 
 
 def _coach_parts() -> Parts:
@@ -92,7 +93,7 @@ def coach(colour: str, *, plate: str, lettering: str, destination: str) -> Built
 
     The destination is lit above the windscreen.
     """
-    own, letters = bw.plates(plate, (_COACH_FRONT + 0.01, 0.52), (_COACH_REAR - 0.012, 0.66))
+    extra_parts, letters = bw.plates(plate, (_COACH_FRONT + 0.01, 0.52), (_COACH_REAR - 0.012, 0.66))
     letters += bw.both_sides(lettering, 0.30, 0.2, 1.38, fittings.contrast(colour), x=_COACH_HALF, width_m=4.4)
     letters.append(bw.words(destination, 0.20, (0, _COACH_FRONT - 0.116, 2.84), "+Y", "display", width_m=2.05))
     patches = [
@@ -103,5 +104,5 @@ def coach(colour: str, *, plate: str, lettering: str, destination: str) -> Built
         Patch(GAP, x=(0, 9), y=(-9, -5.5), z=(1.60, 1.61), roughness=0.9),
     ]
     return bw.finish(
-        "coach", bw.body_mesh("coach", _coach_parts), [pw.paint("coach", colour, patches, dirt_top_m=1.0)], letters, own
+        "coach", bw.body_mesh("coach", _coach_parts), [pw.paint("coach", colour, patches, dirt_top_m=1.0)], letters, extra_parts
     )

@@ -1,4 +1,4 @@
-"""Bicycles, and stands to lock them to."""
+"""Bicycles and bicycle stands."""
 
 from __future__ import annotations
 
@@ -14,18 +14,24 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 WHEEL_M = 0.345
+"""Radius of the wheels in metres."""
 REAR: Point = (0.0, -0.52, WHEEL_M)
+"""Hub of the rear wheel in metres."""
 FRONT: Point = (0.0, 0.54, WHEEL_M)
+"""Hub of the front wheel in metres."""
 CRANK: Point = (0.0, -0.08, 0.29)
+"""Axle of the cranks in metres."""
 CRANK_M = 0.165
+"""Length of a crank in metres."""
 SADDLE: Point = (0.0, -0.27, 0.96)
+"""Top of the saddle in metres."""
 GRIP: Point = (0.27, 0.24, 1.05)
 """Position of the right hand in metres. The left hand is its mirror image."""
 
 
 @dataclass(frozen=True)
 class _Kind:
-    """Parameters of a kind of bicycle. ``bar`` is the path of the right half of the handlebar, from the stem outwards."""
+    """Parameters of a kind of bicycle. ``bar`` is the path of the right half of the handlebar, starting at the stem."""
 
     tyre_m: float
     bar: tuple[Point, ...]
@@ -43,7 +49,7 @@ KINDS = {
     ),
     "mountain": _Kind(0.028, ((0.10, 0.41, 1.01), (0.31, 0.37, 1.02)), False),
 }
-"""Kinds of bicycle that ``bicycle`` makes."""
+"""Parameters of each kind of bicycle."""
 
 
 def bicycle(
@@ -54,11 +60,11 @@ def bicycle(
     front_wheel: bool = True,
     crank_deg: float = 35.0,
 ) -> Built:
-    """Build an upright bicycle heading +y.
+    """Build an upright bicycle that faces +y.
 
     Args:
         basket: Add a wicker basket in front.
-        front_wheel: Add the front wheel. Without it, the bicycle stands on its fork.
+        front_wheel: Add the front wheel. If false, the bicycle stands on its fork.
         crank_deg: Angle of the right crank, measured forwards from the top.
     """
     s = Solid(f"{colour} bicycle")
@@ -174,7 +180,7 @@ def _basket(s: Solid) -> None:
 
 
 def bike_stand() -> Built:
-    """Build a bicycle stand: a steel hoop along y, 0.75 m high and long. A bicycle can lean on each side."""
+    """Build a bicycle stand for two bicycles: a steel hoop along y, 0.75 m high and long."""
     s = Solid("bike stand")
     bend = [(0.0, 0.375 - 0.09 + 0.09 * math.sin(a), 0.66 + 0.09 * math.cos(a)) for a in (k * math.pi / 12 for k in range(7))]
     path = [(0.0, 0.375, 0.0), *bend[::-1], *[(0.0, -y, z) for _, y, z in bend], (0.0, -0.375, 0.0)]

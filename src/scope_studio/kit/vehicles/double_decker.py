@@ -15,9 +15,11 @@ from scope_studio.kit.vehicles import paintwork as pw
 from scope_studio.kit.vehicles.paintwork import TRIM, Patch
 
 FRONT_M, REAR_M, HALF_M, TOP_M = 5.2, -5.2, 1.25, 4.30
+"""y coordinates of front and rear, half width, and height of the bus in metres."""
 _LOWER = (1.92, 0.98)
+"""Windows of the lower deck: height of their centre, and their height, in metres."""
 _UPPER = (3.46, 0.92)
-"""Height of the window centre and height of the window, in metres, for each deck."""
+"""Windows of the upper deck: height of their centre, and their height, in metres."""
 
 
 def _parts() -> Parts:
@@ -36,9 +38,9 @@ def _parts() -> Parts:
     for y, twin in ((2.75, False), (-2.65, True)):
         for sign in (-1, 1):
             wheels.lorry_wheel(parts, (sign * 1.13, y, 0.48), 0.48, sign, width=0.27, twin=twin)
-    for z, tall in ((3.46, 0.86), (1.95, 0.70)):
-        parts.box((1.9, 0.03, tall), (0, REAR_M - 0.002, z), pw.black_trim())
-        parts.box((1.8, 0.03, tall - 0.1), (0, REAR_M - 0.008, z), pw.glass())
+    for z, height in ((3.46, 0.86), (1.95, 0.70)):
+        parts.box((1.9, 0.03, height), (0, REAR_M - 0.002, z), pw.black_trim())
+        parts.box((1.8, 0.03, height - 0.1), (0, REAR_M - 0.008, z), pw.glass())
     for k in range(6):
         parts.box((1.5, 0.03, 0.04), (0, REAR_M - 0.004, 0.80 + 0.10 * k), pw.black_trim())
     return parts
@@ -65,15 +67,15 @@ def _front(parts: Parts) -> None:
 
 def _side(parts: Parts, *, kerb: bool) -> None:
     trim = pw.black_trim()
-    for z, tall in (_LOWER, _UPPER):
-        parts.box((0.02, 9.4, tall), (HALF_M - 0.003, -0.15, z), trim, bevel_m=0.008)
+    for z, height in (_LOWER, _UPPER):
+        parts.box((0.02, 9.4, height), (HALF_M - 0.003, -0.15, z), trim, bevel_m=0.008)
         for k in range(7):
             y = 3.85 - 1.33 * k
             if kerb and k == 0 and z < 3:
                 continue
-            fittings.seats_behind_glass(parts, [(y - 0.36, z - tall / 2), (y + 0.30, z - tall / 2)], -0.10, HALF_M + 0.009, "X")
-            parts.box((0.02, 1.25, tall - 0.08), (HALF_M + 0.008, y, z), pw.clear_glass(), bevel_m=0.008)
-            parts.box((0.008, 1.25, 0.018), (HALF_M + 0.013, y, z + tall * 0.26), trim, bevel_m=0.0)
+            fittings.seats_behind_glass(parts, [(y - 0.36, z - height / 2), (y + 0.30, z - height / 2)], -0.10, HALF_M + 0.009, "X")
+            parts.box((0.02, 1.25, height - 0.08), (HALF_M + 0.008, y, z), pw.clear_glass(), bevel_m=0.008)
+            parts.box((0.008, 1.25, 0.018), (HALF_M + 0.013, y, z + height * 0.26), trim, bevel_m=0.0)
     if kerb:
         for y in (4.35, 3.80):
             parts.box((0.02, 0.54, 2.10), (HALF_M + 0.004, y, 1.42), trim, bevel_m=0.008)
@@ -98,13 +100,13 @@ def double_decker(colour: str, *, plate: str, route: str, destination: str, oper
     A lit display at the front shows the route and destination. ``operator`` is the lettering above the lower windows, and
     ``poster`` is the text of an advertisement between the decks.
     """
-    own, letters = bw.plates(plate, (FRONT_M + 0.01, 0.50), (REAR_M - 0.012, 0.60))
+    extra_parts, letters = bw.plates(plate, (FRONT_M + 0.01, 0.50), (REAR_M - 0.012, 0.60))
     letters.append(bw.words(f"{route} {destination}", 0.17, (0, FRONT_M - 0.106, 2.72), "+Y", "display", width_m=1.75))
     letters.append(bw.words(route, 0.26, (0, REAR_M - 0.03, 2.66), "-Y", "white"))
     letters += bw.both_sides(operator, 0.15, 0.0, 1.22, fittings.contrast(colour), x=HALF_M, width_m=3.2)
     board = shading.plain("bus poster", (0.66, 0.60, 0.40), 0.4)
     for sign in (-1, 1):
-        own.box((0.02, 5.2, 0.42), (sign * (HALF_M + 0.004), -0.4, 2.72), board, bevel_m=0.004)
+        extra_parts.box((0.02, 5.2, 0.42), (sign * (HALF_M + 0.004), -0.4, 2.72), board, bevel_m=0.004)
     letters += bw.both_sides(poster, 0.22, -0.4, 2.72, "dark blue", x=HALF_M + 0.014, width_m=4.8)
     patches = [
         Patch(TRIM, z=(0.0, 0.42), roughness=0.6),
@@ -112,4 +114,4 @@ def double_decker(colour: str, *, plate: str, route: str, destination: str, oper
         Patch((0.62, 0.57, 0.42), x=(1.1, 9), z=(1.38, 1.42), roughness=0.3),
     ]
     body = bw.body_mesh("double decker", _parts)
-    return bw.finish("double decker", body, [pw.paint("double decker", colour, patches, dirt_top_m=1.1)], letters, own)
+    return bw.finish("double decker", body, [pw.paint("double decker", colour, patches, dirt_top_m=1.1)], letters, extra_parts)

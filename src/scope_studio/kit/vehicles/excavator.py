@@ -14,14 +14,14 @@ from scope_studio.kit.vehicles import paintwork as pw
 
 
 def _turn(origin: Point, degrees: float) -> Matrix:
-    """Return a frame at ``origin`` that is tilted upwards (its +y rises for positive angles)."""
+    """Return a frame at ``origin`` that is rotated about x. For positive angles, its +y axis points upwards."""
     return Matrix.Translation(origin) @ Matrix.Rotation(math.radians(degrees), 4, "X")
 
 
 def _cylinder(parts: Parts, start: Vector, end: Vector, radius: float, stroke: float) -> None:
     """Add a hydraulic cylinder: a dark barrel from ``start`` and a chromed rod to ``end``.
 
-    ``stroke`` is the length of the barrel as a fraction of the whole.
+    ``stroke`` is the length of the barrel as a fraction of the total length.
     """
     joint = start + (end - start) * stroke
     parts.tube([tuple(start), tuple(joint)], radius, pw.paint_slot(), sides=12)
@@ -37,7 +37,7 @@ def _cylinder(parts: Parts, start: Vector, end: Vector, radius: float, stroke: f
 
 
 def _track(parts: Parts, x: float, length: float, height: float, width: float) -> None:
-    """Add a crawler track around sprocket, idler and rollers."""
+    """Add a crawler track around its sprocket, idler wheel and rollers."""
     radius, reach = height / 2, length / 2 - height / 2
     straight, bend = 2 * reach, math.pi * radius
     total = 2 * (straight + bend)
@@ -221,6 +221,7 @@ def _upper_works(parts: Parts) -> None:
 
 
 _BOOM, _STICK = 5.5, 2.8
+"""Lengths of boom and stick in metres."""
 
 
 def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_deg: float) -> None:
@@ -238,7 +239,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
     chord = _turn((0, 0, 0), boom_deg - 21.0)
     boom = upper @ Matrix.Translation(foot) @ chord
     parts.matrix = boom
-    # The boom is bent: its lower part rises more steeply than the chord, and its upper part less steeply.
+    # The boom is bent: its lower part is steeper than the line between its ends, and its upper part is less steep.
     bend: Flat = (_BOOM * 0.42, 1.10)
     low: list[Flat] = [
         (-0.16, -0.18),
@@ -328,7 +329,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
 def _bucket(parts: Parts) -> None:
     """Add a digging bucket that hangs from the origin.
 
-    It opens towards -z, which is towards the cab when the bucket points down.
+    It opens towards -z. When the bucket points down, this is the direction of the cab.
     """
     wear, half = fittings.worn_steel(), 0.62
     spine: list[Flat] = [(0.05, 0.34), (0.35, 0.46), (0.75, 0.42), (1.08, 0.20), (1.22, -0.10), (1.22, -0.48)]

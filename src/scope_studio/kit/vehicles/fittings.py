@@ -10,16 +10,16 @@ from scope_studio.kit.core.parts import Flat, Parts
 from scope_studio.kit.vehicles import paintwork as pw
 
 DARK_PAINTS = {"black", "blue", "dark blue", "red", "dark red", "green", "dark green", "grey", "purple", "brown"}
-"""Paints on which lettering is white."""
+"""Paint colours on which lettering is white."""
 
 
 def contrast(colour: str) -> str:
-    """Return the lettering colour that is easiest to read on a paint."""
+    """Return the colour of lettering that is easiest to read on a paint."""
     return "white" if colour in DARK_PAINTS else "dark blue"
 
 
 def mirrored(parts: Parts, sign: int) -> None:
-    """Set the frame of ``parts``, so that parts are added as modelled (``sign`` +1) or mirrored to the left side (-1)."""
+    """Set the matrix of ``parts``, so that parts are added as modelled (``sign`` +1) or mirrored to the left side (-1)."""
     parts.matrix = Matrix.Scale(sign, 4, (1, 0, 0))
 
 
@@ -31,7 +31,7 @@ def aluminium() -> bpy.types.Material:
 def seats_behind_glass(parts: Parts, places: list[Flat], sill: float, face: float, axis: str) -> None:
     """Add flat seat backs with head rests directly behind glass.
 
-    ``places`` are positions (across, height) in the plane that is normal to ``axis`` at ``face``.
+    ``places`` are positions (horizontal, height) in the plane that is normal to ``axis`` at ``face``.
     """
     cloth = shading.plain("lorry seat cloth", (0.10, 0.105, 0.12), 0.9)
     for across, height in places:
@@ -60,9 +60,9 @@ def chrome() -> bpy.types.Material:
 
 def worn_steel() -> bpy.types.Material:
     """Return the material of worn steel with rust."""
-    found = bpy.data.materials.get("machine worn steel")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("machine worn steel")
+    if existing is not None:
+        return existing
     sh = shading.Shader("machine worn steel")
     rust = sh.ramp(sh.noise(sh.object_coords(), 7.0, detail=6.0), 0.45, 0.65)
     return sh.surface(base_color=sh.mix(rust, (0.16, 0.155, 0.15), (0.085, 0.055, 0.038)), roughness=0.55, metallic=0.5)

@@ -10,13 +10,13 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 SEAT: tuple[float, float, float] = (0.0, -0.22, 1.02)
-"""Position of the driver's hips in metres; the driver faces +y."""
+"""Position of the driver's hips in metres. The driver faces +y."""
 
 
 def forklift(colour: str = "yellow", *, number: str = "3", fork_m: float = 0.10, lit: bool = True, beacon: bool = True) -> Built:
-    """Build a 2.5-tonne forklift facing +y with its forks at ``fork_m``.
+    """Build a 2.5-tonne forklift facing +y, with its forks at the height ``fork_m``.
 
-    ``lit`` turns on its lamps and the blue floor spot.
+    ``lit`` turns on its lamps, including the blue spotlight on the floor.
     """
     s = Solid("forklift")
     body, dark, black = paint(colour, dirt=0.42), paint("dark grey", dirt=0.35), rubber()

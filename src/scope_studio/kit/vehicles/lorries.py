@@ -60,7 +60,7 @@ def box_lorry(cab_colour: str, box_colour: str, *, plate: str, lettering: str) -
     ``lettering`` is on both sides and on the doors.
     """
     body = bw.body_mesh("box lorry", _box_parts)
-    own, letters = bw.plates(plate, (3.86, 0.60), (-4.30, 0.98))
+    extra_parts, letters = bw.plates(plate, (3.86, 0.60), (-4.30, 0.98))
     tint = fittings.contrast(box_colour)
     letters += bw.both_sides(lettering, 0.42, -1.2, 2.55, tint, x=1.242, width_m=5.0)
     letters.append(bw.words(lettering, 0.16, (0, -4.281, 3.30), "-Y", tint, width_m=0.30 * 7))
@@ -68,7 +68,7 @@ def box_lorry(cab_colour: str, box_colour: str, *, plate: str, lettering: str) -
         pw.paint("lorry cab", cab_colour, dirt_top_m=1.2),
         pw.paint("lorry box", box_colour, _SEAMS, dirt_top_m=1.9, dirt=0.35),
     ]
-    return bw.finish("box lorry", body, paints, letters, own)
+    return bw.finish("box lorry", body, paints, letters, extra_parts)
 
 
 def _tipper_parts() -> Parts:
@@ -148,12 +148,12 @@ def _load(parts: Parts, y0: float, y1: float, z: float) -> None:
 
 def tipper(cab_colour: str, body_colour: str, *, plate: str) -> Built:
     """Build a three-axle tipper loaded with crushed stone, 8 m long."""
-    own, letters = bw.plates(plate, (3.99, 0.60), (-3.97, 0.98))
+    extra_parts, letters = bw.plates(plate, (3.99, 0.60), (-3.97, 0.98))
     paints = [
         pw.paint("lorry cab", cab_colour, dirt_top_m=1.2),
         pw.paint("tipper body", body_colour, dirt_top_m=2.2, dirt=0.5),
     ]
-    return bw.finish("tipper", bw.body_mesh("tipper", _tipper_parts), paints, letters, own)
+    return bw.finish("tipper", bw.body_mesh("tipper", _tipper_parts), paints, letters, extra_parts)
 
 
 def _tank_outline(grow: float = 0.0) -> list[Flat]:
@@ -221,7 +221,7 @@ def _tanker_parts() -> Parts:
 def tanker(cab_colour: str, *, plate: str, lettering: str) -> Built:
     """Build a three-axle fuel tanker, 8.4 m long, with a silver tank and lettering on both sides."""
     body = bw.body_mesh("tanker", _tanker_parts)
-    own, letters = bw.plates(plate, (4.19, 0.60), (-4.22, 0.98))
+    extra_parts, letters = bw.plates(plate, (4.19, 0.60), (-4.22, 0.98))
     letters += bw.both_sides(
         lettering,
         0.40,
@@ -233,4 +233,4 @@ def tanker(cab_colour: str, *, plate: str, lettering: str) -> Built:
     )
     letters += [bw.words("HIGHLY FLAMMABLE", 0.11, (0, -4.262, 2.3), "-Y", "red", width_m=1.4)]
     paints = [pw.paint("lorry cab", cab_colour, dirt_top_m=1.2), pw.paint("tank", "silver", dirt_top_m=2.0, dirt=0.4)]
-    return bw.finish("tanker", body, paints, letters, own)
+    return bw.finish("tanker", body, paints, letters, extra_parts)

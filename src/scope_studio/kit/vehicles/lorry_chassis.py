@@ -1,4 +1,4 @@
-"""Parts of all rigid lorries: the day cab, and the chassis with its running gear."""
+"""Parts that all rigid lorries share: the day cab, and the chassis with its running gear."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def mudguard(parts: Parts, y: float, radius: float, x0: float, x1: float, materi
 
 
 def running_gear(parts: Parts, front: float, rears: list[float], rear_end: float, front_end: float) -> None:
-    """Add frame rails, axles, wheels, mudguards, tank, battery box, and the rear underrun bar with its lamps."""
+    """Add frame rails, axles, wheels, mudguards, tank, battery box, and the rear bumper bar with its lamps."""
     dark = chassis_paint()
     for x in (-0.42, 0.42):
         parts.box((0.09, front_end - rear_end, 0.26), (x, (front_end + rear_end) / 2, 0.92), dark)

@@ -17,7 +17,7 @@ from scope_studio.kit.vehicles import paintwork as pw
 def roller(colour: str, *, number: str) -> Built:
     """Build a 10-tonne tandem road roller, 4.7 m long.
 
-    It has two steel drums, a roll-over frame with canopy, and an operator's seat.
+    It has two steel drums, a roll-over frame with a canopy, and an operator's seat.
     """
     mesh = bw.body_mesh("roller", _roller_parts)
     letters = bw.both_sides(number, 0.26, -0.14, 1.12, "black", x=0.765, width_m=0.7)

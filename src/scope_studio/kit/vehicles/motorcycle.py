@@ -1,4 +1,4 @@
-"""A motorcycle without fairing: frame, tank, seat, engine, exhaust, wheels with disc brakes, lamps, side stand."""
+"""A motorcycle without a fairing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def motorcycle(colour: str = "red", *, plate: str = "KM21 BYK") -> Built:
-    """Build a mid-size motorcycle, 2.1 m long, heading +y. It is upright; ``Stage.place`` can lean it."""
+    """Build a motorcycle, 2.1 m long, that faces +y. It is upright; to lean it, use ``lean_deg`` of ``Stage.place``."""
     s = Solid(f"{colour} motorcycle")
     skin, black = paint(colour, dirt=0.12, roughness=0.22), paint("black", dirt=0.2)
     chrome, iron = (
@@ -19,8 +19,8 @@ def motorcycle(colour: str = "red", *, plate: str = "KM21 BYK") -> Built:
         plain("motorcycle alloy", (0.28, 0.285, 0.29), 0.4, 0.7),
     )
     front, rear, r = 0.70, -0.70, 0.315
-    for y, wide in ((front, 0.115), (rear, 0.17)):
-        h = wide / 2
+    for y, width in ((front, 0.115), (rear, 0.17)):
+        h = width / 2
         s.lathe(
             [(r * 0.72, -h * 0.8), (r * 0.9, -h), (r, -h * 0.35), (r, h * 0.35), (r * 0.9, h), (r * 0.72, h * 0.8)],
             rubber(),

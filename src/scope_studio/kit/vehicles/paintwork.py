@@ -33,11 +33,12 @@ PAINTS: dict[str, tuple[float, float, float]] = {
 _METALLIC = {"silver", "grey", "light grey", "blue", "dark blue", "dark red", "dark green", "brown"}
 Range = tuple[float, float]
 ANY: Range = (-99.0, 99.0)
+"""A range without limits."""
 
 
 @dataclass(frozen=True)
 class Patch:
-    """A detail drawn on the paint where ``|x|``, y and z are inside the ranges (metres, object frame).
+    """A detail drawn on the paint where ``|x|``, y and z are inside the ranges (metres, object coordinates).
 
     ``y_per_z`` slants vertical lines; ``z_per_x`` and ``z_per_y`` slant horizontal ones. A ``round`` patch is the ellipse that
     fits its x and z ranges.
@@ -74,13 +75,13 @@ def paint(
 ) -> bpy.types.Material:
     """Return the material of lacquered paint, with the model's patches and road dirt that fades out at ``dirt_top_m``.
 
-    ``gloss`` is the weight of the lacquer. It stays below 1, so that a white sky does not wash out the colour.
+    ``gloss`` is the weight of the lacquer. It is less than 1, so that reflections of a white sky do not hide the colour.
     """
     name = f"paint {model} {colour}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    # Building hundreds of nodes takes a second and copying them a millisecond, so all colours copy the same pattern.
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
+    # Creating hundreds of nodes takes a second, and copying them a millisecond, so all colours copy the same pattern.
     pattern = bpy.data.materials.get(f"paint {model}") or _pattern(f"paint {model}", patches, dirt_top_m, dirt, gloss)
     material = pattern.copy()
     material.name = name
@@ -133,7 +134,7 @@ def _blend(sh: shading.Shader, factor: shading.Value, a: shading.Value, b: shadi
 
 
 def _within(sh: shading.Shader, value: shading.Value, limits: Range) -> shading.Value:
-    """Return 1 between the limits and 0 elsewhere. The hard edges need one node; ``Shader.band`` needs three."""
+    """Return a mask that is 1 between the limits and 0 elsewhere. It has hard edges and fewer nodes than ``Shader.band``."""
     node = sh.node("ShaderNodeMath", operation="COMPARE")
     for socket, number in enumerate((value, sum(limits) / 2, (limits[1] - limits[0]) / 2)):
         sh.feed(node.inputs[socket], number)
@@ -163,12 +164,12 @@ def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.V
 
 
 def upright_gap(y: float, z: Range, *, x: Range = (0.5, 9.0), y_per_z: float = 0.0, width: float = 0.009) -> Patch:
-    """Return the edge of a door: a vertical dark line on the sides at ``y`` (at z = 0 if slanted)."""
+    """Return the edge of a door: a vertical dark line on the sides at ``y``. If slanted, it is at ``y`` where z = 0."""
     return Patch(GAP, x=x, y=(y - width / 2, y + width / 2), z=z, y_per_z=y_per_z, roughness=0.9)
 
 
 def level_gap(z: float, y: Range, *, x: Range = (0.5, 9.0), z_per_y: float = 0.0, width: float = 0.009) -> Patch:
-    """Return the bottom edge of a door, or a swage line: a horizontal dark line on the sides at ``z`` (at y = 0 if slanted)."""
+    """Return the lower edge of a door, or a crease: a horizontal dark line on the sides. If slanted, it is at ``z`` where y = 0."""
     return Patch(GAP, x=x, y=y, z=(z - width / 2, z + width / 2), z_per_y=z_per_y, roughness=0.9)
 
 
@@ -178,9 +179,9 @@ def glass() -> bpy.types.Material:
 
 
 def clear_glass(tint: float = 0.55) -> bpy.types.Material:
-    """Return the material of glass through which the cabin is visible.
+    """Return the material of glass through which the interior is visible.
 
-    ``tint`` is its opacity. Above one half, renders of instance numbers hit the glass.
+    ``tint`` is its opacity. If it is greater than 0.5, renders of instance numbers treat the glass as opaque.
     """
     name = f"vehicle clear glass {tint:.2f}"
     return bpy.data.materials.get(name) or shading.Shader(name).surface(

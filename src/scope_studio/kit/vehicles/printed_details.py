@@ -1,4 +1,4 @@
-"""Lamps, grilles and door gaps as patches on a car's paint. They need no geometry and are sharp at any zoom."""
+"""Lamps, grilles and door gaps as patches on a car's paint. They have no geometry and are sharp at any zoom."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from scope_studio.kit.vehicles.paintwork import AMBER, TRIM, Patch
 
 
 def headlamp(x: tuple[float, float], y: float, z: tuple[float, float], rise: float = 0.0) -> list[Patch]:
-    """Return a wrap-around headlamp, from ``x`` outwards and from ``y`` forwards.
+    """Return a headlamp that extends around the corner, from ``x`` outwards and from ``y`` forwards.
 
-    It has a dark housing, two lenses, a daytime running light and an indicator.
+    The headlamp has a dark housing, two lenses, a daytime running light and an indicator.
     """
     (x0, x1), (z0, z1) = x, z
     size = (z1 - z0) * 0.78
@@ -38,7 +38,7 @@ def headlamp(x: tuple[float, float], y: float, z: tuple[float, float], rise: flo
 
 
 def rear_lamp(x: tuple[float, float], y: float, z: tuple[float, float]) -> list[Patch]:
-    """Return a wrap-around rear lamp: a dark red cover with lit strips, a reversing lamp and an indicator."""
+    """Return a rear lamp that extends around the corner: a dark red cover, lit strips, a reversing lamp and an indicator."""
     (x0, x1), (z0, z1) = x, z
     third = (z1 - z0) / 3
     return [

@@ -1,4 +1,4 @@
-"""A tramway: an articulated tram that faces +y, the shelter and signs of its stop, and overhead poles."""
+"""An articulated tram that faces +y, the shelter and signs of a tram stop, and poles for the overhead wire."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SECTION = [
 
 
 def _ring(y: float, narrow: float = 1.0, *, front: bool = False) -> list[tuple[float, float, float]]:
-    """Return a cross-section of the body at ``y``, narrowed by a factor. ``front`` slants it like the front."""
+    """Return a cross-section of the body at ``y``, narrowed by a factor. With ``front``, it is slanted like the front."""
     half = [(x * narrow, z) for x, z in SECTION]
     outline = [*half, *[(-x, z) for x, z in half[-2:0:-1]]]
     lean = math.copysign(RAKE, y) if front else 0.0
@@ -58,7 +58,7 @@ def _hull(s: Solid, stations: list[tuple[float, float, bool]], material: bpy.typ
 
 
 def _end(s: Solid, sign: int, colour: str, line: str, destination: str, number: str, lit: bool) -> None:
-    """Add windscreen, display, lamps and coupler cover of one end, on the raked front plane."""
+    """Add the windscreen, display, lamps and coupler cover of one end, on its slanted front plane."""
     y = LENGTH_M / 2
     black, dark = plain("tram black", (0.010, 0.010, 0.011), 0.3), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
     with s.at(turn=0.0 if sign > 0 else 180.0), s.at(0, y, 0.32, pitch=math.degrees(math.atan(RAKE))):
@@ -98,14 +98,14 @@ def _end(s: Solid, sign: int, colour: str, line: str, destination: str, number: 
 
 def _led() -> bpy.types.Material:
     """Return the emissive material of a destination display."""
-    found = bpy.data.materials.get("tram led")
-    return found or Shader("tram led").surface(
+    existing = bpy.data.materials.get("tram led")
+    return existing or Shader("tram led").surface(
         base_color=(1.0, 0.55, 0.06), emission_color=(1.0, 0.50, 0.04), emission_strength=1.5
     )
 
 
 def tram(colour: str, *, line: str, destination: str, number: str, company: str, second: str = "cream", lit: bool = True) -> Built:
-    """Build a three-part low-floor tram, 19.6 m long, with two-tone livery, pantograph, and lettering on its ends and sides."""
+    """Build a three-part low-floor tram, 19.6 m long, with two colours, a pantograph, and lettering on its ends and sides."""
     s = Solid(f"{colour} tram")
     skin = paintwork.paint("tram body", colour, dirt_top_m=1.3, dirt=0.4)
     band, dark = paint(second, dirt=0.05, roughness=0.25), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
@@ -207,7 +207,7 @@ def stop_flag(line: str, *, direction: str = "") -> Built:
 
 
 def timetable(line: str, rows: list[tuple[str, str]], *, cap: float = 0.045) -> Built:
-    """Build a framed timetable on two legs, 0.9 x 1.2 m, facing +y: a heading and rows of (hour, minutes)."""
+    """Build a framed timetable on two legs, 0.9 x 1.2 m, facing +y, with a heading and rows of (hour, minutes)."""
     s = Solid("timetable")
     metal = paint("dark grey", dirt=0.2)
     for x in (-0.42, 0.42):
@@ -226,7 +226,7 @@ def timetable(line: str, rows: list[tuple[str, str]], *, cap: float = 0.045) -> 
 
 
 def overhead_pole(height: float = 6.6, *, reaches: tuple[float, ...] = (2.4, 5.8), wire_m: float = 5.42) -> Built:
-    """Build a tapered steel pole with a bracket towards +y that carries a contact wire at each of ``reaches``."""
+    """Build a tapered steel pole with a bracket towards +y that carries a contact wire at each distance in ``reaches``."""
     s = Solid("tram pole")
     body = paint("dark green", dirt=0.2)
     s.lathe(

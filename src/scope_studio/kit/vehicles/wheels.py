@@ -1,4 +1,4 @@
-"""Wheels of road vehicles: tyres with alloy, steel and lorry rims. Their axles are along x."""
+"""Wheels of road vehicles: tyres with alloy, steel and lorry rims. The axles are along x."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _tyre(parts: Parts, radius: float, width: float, rim: float) -> None:
 
 
 def car_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.21, spokes: int = 5) -> None:
-    """Add a car wheel with ``spokes`` twin spokes; ``radius`` and ``width`` in metres.
+    """Add a car wheel with ``spokes`` pairs of spokes. ``radius`` and ``width`` are in metres.
 
     ``side`` is +1 on the right of the vehicle, -1 on the left.
     """
@@ -91,7 +91,7 @@ def car_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: f
 
 
 def steel_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.21) -> None:
-    """Add a pressed steel wheel with a black trim, as on vans and work vehicles."""
+    """Add a pressed steel wheel with a black trim, for vans and work vehicles."""
     outer, rim = parts.matrix.copy(), radius * 0.66
     parts.matrix = outer @ _frame(centre, side)
     _tyre(parts, radius, width, rim)
@@ -108,7 +108,7 @@ def steel_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width:
 
 
 def lorry_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.29, twin: bool = False) -> None:
-    """Add a lorry wheel: curved outwards with a projecting hub, or curved inwards if ``twin`` (driven axles)."""
+    """Add a lorry wheel. It curves outwards with a projecting hub or, if ``twin``, inwards (for driven axles)."""
     outer, rim = parts.matrix.copy(), radius * 0.60
     parts.matrix = outer @ _frame(centre, side)
     _tyre(parts, radius, width, rim)

@@ -1,7 +1,7 @@
 """Traffic cones, drums and barriers.
 
-Pieces that are placed side by side (boards, water barriers) extend along x, and their fronts face +y. The concrete barrier
-follows a lane and extends along y.
+Pieces that are placed in a row (boards, water barriers) extend along x, and their fronts face +y. The concrete barrier
+extends along y.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def cone(height: float = 0.75) -> Built:
 
 
 def drum() -> Built:
-    """Build a channelizer drum: an orange barrel with white bands, 1.0 m high, on a rubber ring."""
+    """Build a traffic drum: an orange barrel with white bands, 1.0 m high, on a rubber ring."""
     s = Solid("drum")
     orange, white = paint("orange", dirt=0.34, roughness=0.46), sheet("white", dirt=0.26)
     s.lathe([(0.36, 0.0), (0.37, 0.02), (0.36, 0.07), (0.30, 0.085)], rubber(), steps=36)
@@ -114,7 +114,7 @@ def barrier_board(*, lit: bool = True) -> Built:
 
 
 def lamp(s: Solid, x: float, y: float, z: float, lit: bool, colour: str = "amber") -> None:
-    """Add a road-works lamp: yellow battery box with a round lens that faces both ways. ``z`` is the height of its foot."""
+    """Add a road-works lamp: a yellow battery box with a round lens on both sides. ``z`` is the height of its lower edge."""
     s.box((0.15, 0.09, 0.13), (x, y, z + 0.065), paint("yellow", dirt=0.35), 0.012)
     s.lathe(
         [(0.05, -0.045), (0.088, -0.038), (0.092, 0.0), (0.088, 0.038), (0.05, 0.045)],
@@ -152,10 +152,10 @@ def water_barrier(colour: str = "red") -> Built:
     stations = [(-0.75, 0.86), (-0.735, 1.0), (-0.42, 1.0), (-0.39, 0.80), (-0.31, 0.80), (-0.28, 1.0)]
     stations += [(-0.05, 1.0), (-0.03, 0.86), (0.03, 0.86), (0.05, 1.0)] + [(-x, w) for x, w in stations[::-1]]
     points = []
-    for x, wide in stations:
+    for x, width in stations:
         ring = [(y, z) for y, z in half] + [(-y, z) for y, z in half[::-1]]
         points += [
-            (x, y * wide if 0.15 < z < 0.86 else y * (0.5 + 0.5 * wide), z - (1.0 - wide) * 0.06 * (z > 0.85)) for y, z in ring
+            (x, y * width if 0.15 < z < 0.86 else y * (0.5 + 0.5 * width), z - (1.0 - width) * 0.06 * (z > 0.85)) for y, z in ring
         ]
     n = 2 * len(half)
     faces = [

@@ -11,7 +11,7 @@ from scope_studio.kit.works.materials import heap
 
 
 def wheel(s: Solid, x: float, y: float, radius: float, width: float) -> None:
-    """Add a small wheel with a tyre that stands on the ground, with its axle along x."""
+    """Add a small wheel that stands on the ground, with its axle along x."""
     half = width / 2
     tyre = [
         (radius * 0.62, -half),
@@ -60,9 +60,9 @@ def _trailer(s: Solid, width: float, length: float, colour: str) -> None:
 
 
 def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
-    """Build a trailer with a black board that faces +y. Its lamps show an arrow to the left or right, as a driver sees it.
+    """Build a trailer with a black board that faces +y. Its lamps show an arrow to the left or right, as seen by a driver.
 
-    Below the board are red and white stripes.
+    Red and white stripes are below the board.
     """
     s = Solid("arrow board")
     _trailer(s, 1.6, 1.9, "orange")
@@ -94,7 +94,7 @@ def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
 
 
 def light_tower(*, lit: bool = False) -> Built:
-    """Build a mobile lighting mast, 7.5 m high: trailer with engine housing, telescopic mast, four floodlights."""
+    """Build a mobile lighting mast, 7.5 m high: a trailer with an engine housing, a telescopic mast and four floodlights."""
     s = Solid("light tower")
     _trailer(s, 1.5, 2.0, "yellow")
     s.box((1.05, 1.65, 0.95), (0, 0.0, 1.02), paint("yellow", dirt=0.34), 0.06)
@@ -115,7 +115,7 @@ def light_tower(*, lit: bool = False) -> Built:
 
 
 def generator(colour: str = "green") -> Built:
-    """Build a silenced generator on skids, 2.2 x 1.0 x 1.3 m, with louvres, control panel and exhaust."""
+    """Build a silenced generator on skids, 2.2 x 1.0 x 1.3 m, with louvres, a control panel and an exhaust."""
     s = Solid("generator")
     body = paint(colour, dirt=0.34)
     for y in (-0.35, 0.35):

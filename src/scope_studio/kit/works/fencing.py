@@ -15,7 +15,7 @@ FENCE_PANEL_M = (3.45, 2.0)
 
 
 def wire_mesh(s: Solid, width: float, low: float, high: float, cx: float = 0.0, *, pitch: float = 0.11) -> None:
-    """Add welded wires in the plane y = 0. Vertical wires are closer together than horizontal ones."""
+    """Add a wire mesh in the plane y = 0. Vertical wires are closer together than horizontal wires."""
     count = round(width / pitch)
     for i in range(1, count):
         x = cx - width / 2 + width * i / count
@@ -34,7 +34,7 @@ def frame(s: Solid, width: float, low: float, high: float, cx: float = 0.0, radi
 
 
 def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
-    """Build a temporary site fence panel on block feet. ``plate`` gives the lines of a small sign on it."""
+    """Build a temporary site fence panel on block feet. ``plate`` contains the lines of a small sign on it."""
     s = Solid("mesh fence panel")
     width, height = FENCE_PANEL_M
     frame(s, width - 0.04, 0.16, height)
@@ -53,7 +53,7 @@ def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
 def gate(open: bool = False) -> Built:  # noqa: A002
     """Build a double site gate, 6.2 m between posts and 2.2 m high.
 
-    The leaves are closed along x or, with ``open``, swung back towards -y.
+    If closed, the leaves are along x; with ``open``, they are turned back towards -y.
     """
     s = Solid("site gate")
     leaf = 3.0

@@ -21,7 +21,7 @@ def heap(
     seed: float,
     square: bool = False,
 ) -> None:
-    """Add an irregular mound on z = 0. It is elliptical or, with ``square``, rectangular; ``radii`` are its half sizes."""
+    """Add an irregular mound on z = 0. It is elliptical or, with ``square``, rectangular. ``radii`` are its half sizes."""
     rings, steps = 22, 56
     points = [(0.0, 0.0, height * (0.97 if not square else 1.0))]
     for i in range(1, rings + 1):
@@ -43,7 +43,7 @@ def heap(
 
 
 def sand_pile(radius: float = 1.6) -> Built:
-    """Build a heap of building sand with a few lumps."""
+    """Build a heap of building sand with lumps."""
     s = Solid("sand pile")
     heap(
         s,
@@ -154,7 +154,7 @@ def cement_bags() -> Built:
 
 
 def _bag(s: Solid, material: bpy.types.Material) -> None:
-    """Add a full bag, 0.38 x 0.47 x 0.115 m."""
+    """Add a full bag of cement, 0.38 x 0.47 x 0.115 m."""
     n, m = 12, 14
     points = []
     for side in (1, -1):
@@ -169,7 +169,7 @@ def _bag(s: Solid, material: bpy.types.Material) -> None:
 
 
 def cable_drum(diameter: float = 1.4) -> Built:
-    """Build a timber cable drum with black cable wound on it and its axis along x."""
+    """Build a timber cable drum with black cable. Its axis is along x."""
     s = Solid("cable drum")
     r, half = diameter / 2, diameter * 0.34
     for side in (-1, 1):
@@ -221,7 +221,7 @@ def shovel_standing() -> Built:
 
 
 def broom() -> Built:
-    """Build a yard broom that stands on its bristles and leans against an object behind it (-y)."""
+    """Build a broom that stands on its bristles and leans against an object behind it (-y)."""
     s = Solid("broom")
     with s.at(0, 0, 0, pitch=12):
         s.box((0.46, 0.07, 0.07), (0, 0, 0.04), paint("dark red", roughness=0.9), 0.015)
@@ -231,7 +231,7 @@ def broom() -> Built:
 
 
 def fuel_can(colour: str = "red") -> Built:
-    """Build a 20-litre fuel can with pressed sides and triple handle."""
+    """Build a 20-litre fuel can with pressed sides and a triple handle."""
     s = Solid(f"{colour} fuel can")
     skin = paint(colour, dirt=0.35)
     s.box((0.345, 0.165, 0.44), (0, 0, 0.22), skin, 0.035)

@@ -12,7 +12,7 @@ from scope_studio.kit.works.materials import heap
 
 
 def portable_toilet(colour: str = "blue") -> Built:
-    """Build a portable toilet, 1.1 x 1.1 x 2.3 m: white domed roof, ribbed walls, door with sign towards +y."""
+    """Build a portable toilet, 1.1 x 1.1 x 2.3 m, with a white domed roof, ribbed walls, and a door with a sign towards +y."""
     s = Solid("portable toilet")
     body, trim = paint(colour, dirt=0.30, roughness=0.45), paint("white", dirt=0.32)
     for x in (-0.38, 0.38):
@@ -97,7 +97,7 @@ def site_cabin(colour: str = "light grey", text: str = "SITE OFFICE") -> Built:
 
 
 def skip(colour: str = "yellow", *, full: bool = True) -> Built:
-    """Build a builder's skip, 3.4 x 1.8 x 1.4 m, with lifting lugs and, when full, rubble and timber."""
+    """Build a builder's skip, 3.4 x 1.8 x 1.4 m, with lifting lugs. If full, it contains rubble and timber."""
     s = Solid(f"{colour} skip")
     body = paint(colour, dirt=0.55, roughness=0.5)
     side = [(-1.0, 0.10), (1.0, 0.10), (1.72, 0.85), (1.72, 1.35), (-1.72, 1.35), (-1.72, 0.85)]

@@ -1,4 +1,4 @@
-"""Works at a building and in the street: scaffolding, a ladder, an open manhole."""
+"""Works at buildings and in the street: scaffolding, a ladder, an open manhole."""
 
 from __future__ import annotations
 

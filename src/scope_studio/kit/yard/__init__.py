@@ -1,1 +1,1 @@
-"""Freight yards: floor, lamps, containers, goods, safety equipment, shelters."""
+"""Objects of freight yards: floor, lamps, containers, goods, safety equipment, shelters."""

@@ -1,19 +1,21 @@
 """Twenty- and forty-foot shipping containers: corrugated walls, corner castings, doors with lock rods, codes and liveries.
 
-The length runs along y, the door end faces +y, and a container stands on z = 0.
+A container extends along y, its doors face +y, and it stands on z = 0.
 """
 
 from __future__ import annotations
 
 import bpy
 
-from scope_studio.kit.core.finishes import PALETTE, soiled, steel, timber
+from scope_studio.kit.core.finishes import PALETTE, steel, timber, with_dirt
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 WIDTH_M, HEIGHT_M = 2.438, 2.591
+"""Width and height in metres."""
 LENGTH_M = {20: 6.058, 40: 12.192}
+"""Length in metres, by nominal length in feet."""
 
 RUST = (0.105, 0.040, 0.018)
 
@@ -21,16 +23,16 @@ RUST = (0.105, 0.040, 0.018)
 def container_paint(colour: str) -> bpy.types.Material:
     """Return the material of weathered container paint: faded, scraped, with rust around chips."""
     name = f"container paint {colour}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     shifted = s.node("ShaderNodeVectorMath", operation="ADD")
     s.feed(shifted.inputs[0], s.object_coords())
     s.feed(shifted.inputs[1], s.math("MULTIPLY", s.random(), 53.0))
     p = shifted.outputs[0]
     base = s.mix(s.ramp(s.noise(p, 1.1, 6.0), 0.3, 0.7, 0.0, 0.28), PALETTE[colour], (0.35, 0.34, 0.32))
-    dirty = soiled(s, base, 0.34, 0.30)
+    dirty = with_dirt(s, base, 0.34, 0.30)
     chips = s.ramp(s.noise(p, 2.6, 8.0, 0.72), 0.615, 0.655)
     runs = s.ramp(s.noise(s.scaled(p, (5.0, 5.0, 0.35)), 1.0, 5.0, 0.6), 0.60, 0.74, 0.0, 0.7)
     rusty = s.mix(s.math("MAXIMUM", chips, runs), dirty, RUST)
@@ -70,9 +72,9 @@ def container(
     """Build a container.
 
     Args:
-        code: Owner letters, serial number and check digit, lettered on the doors, both sides and the blind end.
-        livery: The owner's name in tall letters along the sides.
-        doors: "closed" or "open" (swung back along the sides).
+        code: Owner letters, serial number and check digit. They are on the doors, on both sides and on the end without doors.
+        livery: The owner's name, in large letters along the sides.
+        doors: "closed" or "open" (turned back along the sides).
         load: "cartons" or None.
     """
     s = Solid(f"{colour} container")
@@ -113,7 +115,7 @@ def container(
     if load == "cartons":
         _cartons(s, w, d)
     for facing, side in (("+X", 1), ("-X", -1)):
-        edge = -side * (d - 0.35)  # the right-hand end as seen by a viewer
+        edge = -side * (d - 0.35)  # the right-hand end of the side, as seen by a viewer
         s.text(code, 0.17, (side * (w + 0.006), -edge * 0.98, h - 0.30), ink, facing=facing, align="RIGHT")
         if livery:
             cap = min(0.82, (length - 1.2) / (0.95 * len(livery)))
@@ -135,27 +137,27 @@ def _doors(
     opened: bool,
 ) -> None:
     """Add the two leaves of the doors, with four lock rods. The code is on the right-hand leaf."""
-    wide, tall = w - 0.13, h - 0.36
+    width, height = w - 0.13, h - 0.36
     for side in (-1, 1):
         turn = side * (-252.0 if opened else 0.0)
-        with s.at(side * (w + 0.02 if opened else w - 0.09), d - 0.035, 0.19 + tall / 2, turn=turn):
-            cx = -side * wide / 2
-            s.box((wide, 0.05, tall), (cx, 0, 0), skin, 0.008)
+        with s.at(side * (w + 0.02 if opened else w - 0.09), d - 0.035, 0.19 + height / 2, turn=turn):
+            cx = -side * width / 2
+            s.box((width, 0.05, height), (cx, 0, 0), skin, 0.008)
             for k in range(3):
-                s.box((wide - 0.10, 0.012, 0.42), (cx, 0.029, -tall / 2 + 0.38 + 0.76 * k), skin, 0.012)
+                s.box((width - 0.10, 0.012, 0.42), (cx, 0.029, -height / 2 + 0.38 + 0.76 * k), skin, 0.012)
             for x in (cx - 0.30, cx + 0.30):
-                s.rod((x, 0.065, -tall / 2 - 0.10), (x, 0.065, tall / 2 + 0.10), 0.017, iron)
-                for z in (-tall * 0.42, -tall * 0.15, tall * 0.18, tall * 0.42):
+                s.rod((x, 0.065, -height / 2 - 0.10), (x, 0.065, height / 2 + 0.10), 0.017, iron)
+                for z in (-height * 0.42, -height * 0.15, height * 0.18, height * 0.42):
                     s.box((0.09, 0.04, 0.07), (x, 0.055, z), iron, 0.006)
                 s.box((0.36, 0.022, 0.05), (x - 0.12 * side, 0.085, -0.22 + 0.1 * (x > cx)), iron, 0.006)
             for k in range(4):
-                s.box((0.06, 0.07, 0.13), (-0.01 * side, 0.0, -tall * 0.4 + tall * 0.27 * k), iron, 0.01)
-            if side < 0:  # the right-hand leaf for someone who faces the doors
+                s.box((0.06, 0.07, 0.13), (-0.01 * side, 0.0, -height * 0.4 + height * 0.27 * k), iron, 0.01)
+            if side < 0:  # the right-hand leaf, as seen by a viewer
                 owner, serial, digit = code.split()
-                s.text(f"{owner} {serial}", 0.115, (cx, 0.037, tall / 2 - 0.20), ink, facing="+Y")
-                s.text(digit, 0.115, (cx, 0.037, tall / 2 - 0.40), ink, facing="+Y")
+                s.text(f"{owner} {serial}", 0.115, (cx, 0.037, height / 2 - 0.20), ink, facing="+Y")
+                s.text(digit, 0.115, (cx, 0.037, height / 2 - 0.40), ink, facing="+Y")
             else:
-                s.box((0.30, 0.004, 0.20), (cx, 0.038, tall * 0.30), plain("container placard", (0.55, 0.50, 0.10), 0.5), 0.0)
+                s.box((0.30, 0.004, 0.20), (cx, 0.038, height * 0.30), plain("container placard", (0.55, 0.50, 0.10), 0.5), 0.0)
 
 
 def _cartons(s: Solid, w: float, d: float) -> None:

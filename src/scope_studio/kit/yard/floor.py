@@ -1,4 +1,4 @@
-"""The floor of a freight yard: asphalt and jointed concrete, damp in places, with painted markings modelled as thin shapes."""
+"""The floor of a freight yard: asphalt and jointed concrete, damp in places, and painted markings, which are thin meshes on it."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ PAINT_M = 0.004
 
 
 def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Material:
-    """Return the material of worn asphalt: oil drips, tyre marks, repair seams, cracks, and damp hollows that reflect the sky."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    """Return the material of worn asphalt: oil stains, tyre marks, repair seams, cracks, and damp hollows that reflect the sky."""
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.position()
     grain = s.xyz(s.voronoi(p, 55.0, output="Color"))[0]
@@ -43,9 +43,9 @@ def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Mater
 
 def slabs(name: str = "yard concrete", *, joint_m: float = 6.0) -> bpy.types.Material:
     """Return the material of concrete slabs with sealed joints, rust and oil stains, and dark arcs from turning tyres."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
     s = Shader(name)
     p = s.position()
     x, y, _ = s.xyz(p)
@@ -95,10 +95,10 @@ def _damp(s: Shader, p: Value, colour: Value, blotch: Value, height: Value) -> b
 
 
 def paint(colour: str) -> bpy.types.Material:
-    """Return the material of white, yellow, green or blue road paint, slightly dirty and worn through to the floor in places."""
-    found = bpy.data.materials.get(f"yard paint {colour}")
-    if found is not None:
-        return found
+    """Return the material of white, yellow, green or blue road paint, slightly dirty and partly worn off."""
+    existing = bpy.data.materials.get(f"yard paint {colour}")
+    if existing is not None:
+        return existing
     rgb = {"white": (0.56, 0.56, 0.53), "yellow": (0.62, 0.40, 0.03), "green": (0.05, 0.24, 0.10), "blue": (0.03, 0.13, 0.36)}
     s = Shader(f"yard paint {colour}")
     p = s.position()
@@ -151,7 +151,7 @@ def arrow(colour: str = "white", *, length: float = 4.0, turn: str = "ahead") ->
 
 
 def hatch(width: float, depth: float, *, colour: str = "yellow", pitch: float = 1.0) -> Built:
-    """Build a keep-clear box, centred on the origin: a border with diagonal bars."""
+    """Build a hatched keep-clear area, centred on the origin: a border with diagonal bars."""
     s = Solid("hatched zone")
     ink, w, d = paint(colour), width / 2, depth / 2
     for a, b in (((-w, -d), (w, -d)), ((w, -d), (w, d)), ((w, d), (-w, d)), ((-w, d), (-w, -d))):
@@ -168,7 +168,7 @@ def hatch(width: float, depth: float, *, colour: str = "yellow", pitch: float = 
 
 
 def words(lines: Sequence[str], cap: float, *, colour: str = "white") -> Built:
-    """Build lettering on the floor that is upright for a viewer who looks along +y."""
+    """Build lettering on the floor. It is upright for a viewer who looks towards +y."""
     s = Solid("painted words")
     for k, body in enumerate(lines):
         s.text(body, cap, (0, (len(lines) / 2 - k - 0.5) * cap * 1.5, PAINT_M), paint(colour), facing="+Z", bold=True)

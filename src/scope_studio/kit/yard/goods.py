@@ -1,4 +1,4 @@
-"""Goods and containers in a freight yard: pallets, steel drums, gas cages, tyres, tanks, bins, cartons."""
+"""Goods and small containers in a freight yard: pallets, steel drums, gas cages, tyres, tanks, bins, cartons."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PALLET_M = 0.144
 
 
 def lay_pallet(s: Solid, *, fresh: bool = False) -> None:
-    """Add a 1.2 x 1.0 m pallet on z = 0 of the current frame."""
+    """Add a pallet, 1.2 x 1.0 m, on z = 0 of the current frame."""
     wood = timber(fresh=fresh)
     for k in range(3):
         s.box((1.2, 0.10, 0.022), (0, -0.44 + 0.44 * k, 0.011), wood, 0.003)
@@ -31,7 +31,7 @@ def lay_pallet(s: Solid, *, fresh: bool = False) -> None:
 
 
 def pallet_stack(count: int = 8, *, seed: int = 0) -> Built:
-    """Build a stack of empty pallets, slightly askew."""
+    """Build a slightly irregular stack of empty pallets."""
     s = Solid("pallet stack")
     rng = random.Random(f"stack {seed}")
     for k in range(count):
@@ -41,7 +41,7 @@ def pallet_stack(count: int = 8, *, seed: int = 0) -> Built:
 
 
 def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 0, wrapped: bool = True) -> Built:
-    """Build a loaded pallet: "cartons", "sacks" or "crates".
+    """Build a pallet loaded with "cartons", "sacks" or "crates".
 
     ``label`` is the text on a sheet that faces +y. ``wrapped`` adds stretch film.
     """
@@ -92,9 +92,9 @@ def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 
 
 def _film() -> bpy.types.Material:
     """Return the material of clear stretch film with bright creases."""
-    found = bpy.data.materials.get("stretch film")
-    if found is not None:
-        return found
+    existing = bpy.data.materials.get("stretch film")
+    if existing is not None:
+        return existing
     s = Shader("stretch film")
     crease = s.noise(s.scaled(s.object_coords(), (3.0, 3.0, 14.0)), 1.5, 4.0, 0.6, 0.8)
     return s.surface(base_color=(0.75, 0.78, 0.80), roughness=0.22, alpha=s.ramp(crease, 0.42, 0.68, 0.10, 0.42))
@@ -198,7 +198,7 @@ def tank(label: str = "LOAD 7") -> Built:
 
 
 def wheelie_bin(colour: str = "green", *, open: bool = False, label: str | None = None) -> Built:  # noqa: A002
-    """Build an 1100-litre wheeled bin with its lid shut or thrown back."""
+    """Build an 1100-litre wheeled bin with its lid shut or folded back."""
     s = Solid(f"{colour} wheelie bin")
     skin = paint(colour, dirt=0.38, roughness=0.45)
     low, high = (
@@ -258,15 +258,15 @@ def carton(*, seed: int = 0, open: bool = False) -> Built:  # noqa: A002
 
 
 def ladder(length: float = 3.6) -> Built:
-    """Build an aluminium ladder that leans against an object behind it (-y), from y = 0.75 at its foot to y = -0.05 at its top."""
+    """Build an aluminium ladder that leans against an object behind it (-y). Its foot is at y = 0.75 and its top at y = -0.05."""
     s = Solid("ladder")
     pale = plain("ladder alloy", (0.50, 0.51, 0.52), 0.35, 0.7)
     foot, head = 0.75, -0.05
-    tall = math.sqrt(length**2 - (foot - head) ** 2)
+    height = math.sqrt(length**2 - (foot - head) ** 2)
     for x in (-0.20, 0.20):
-        s.rod((x, foot, 0.02), (x, head, tall), 0.028, pale, sides=6)
+        s.rod((x, foot, 0.02), (x, head, height), 0.028, pale, sides=6)
         s.box((0.05, 0.08, 0.04), (x, foot, 0.02), rubber(), 0.005)
     for k in range(1, int(length / 0.28)):
         t = k * 0.28 / length
-        s.rod((-0.20, foot + (head - foot) * t, tall * t), (0.20, foot + (head - foot) * t, tall * t), 0.014, pale, sides=6)
+        s.rod((-0.20, foot + (head - foot) * t, height * t), (0.20, foot + (head - foot) * t, height * t), 0.014, pale, sides=6)
     return s.built()

@@ -1,4 +1,4 @@
-"""Lamps of yards and buildings: masts, wall packs and strips. The lamps themselves emit little light; ``dusk.pool`` adds it."""
+"""Lamps of yards and buildings: masts, wall packs and strips. Their lenses emit little light; ``dusk.lamplight`` adds it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_studio.kit.light.glow import lit_lens
 def mast(height: float = 10.0, *, kind: str = "led", heads: int = 2, lit: bool = True, number: str = "") -> Built:
     """Build a tapered steel column with its number on a plate, and one or two floodlights on a cross arm.
 
-    The first floodlight points to +y, the second to -y.
+    The first floodlight points towards +y, the second towards -y.
     """
     s = Solid("lamp mast")
     s.lathe([(0.34, 0.0), (0.34, 0.10), (0.30, 0.14)], concrete(light=False), steps=20)
@@ -37,12 +37,12 @@ def mast(height: float = 10.0, *, kind: str = "led", heads: int = 2, lit: bool =
 def mast_light(
     x: float, y: float, bearing_deg: float, height: float = 10.0, *, kind: str = "led", heads: int = 2, power_w: float = 650.0
 ) -> None:
-    """Add the light of the lamps of a mast that is placed at (x, y)."""
+    """Add the light of the lamps on a mast that is placed at (x, y)."""
     rgb = dusk.SODIUM if kind == "sodium" else dusk.LED
     b = math.radians(bearing_deg)
     for sign in (1, -1)[:heads]:
         dx, dy = sign * math.sin(b), sign * math.cos(b)
-        dusk.pool((x + 1.05 * dx, y + 1.05 * dy, height - 0.10), power_w, rgb, size_m=0.5, aim=(dx * 0.14, dy * 0.14, -1.0))
+        dusk.lamplight((x + 1.05 * dx, y + 1.05 * dy, height - 0.10), power_w, rgb, size_m=0.5, aim=(dx * 0.14, dy * 0.14, -1.0))
 
 
 def wall_pack(*, kind: str = "sodium", lit: bool = True) -> Built:

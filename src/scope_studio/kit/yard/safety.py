@@ -1,4 +1,4 @@
-"""Safety equipment of a yard: bollards, wheel stops, chain-link fence, hydrant, spill kit, hose reel, notices, gate.
+"""Safety equipment in a yard: bollards, wheel stops, chain-link fence, hydrant, spill kit, hose reel, notices, gate.
 
 Fronts face +y.
 """
@@ -20,7 +20,7 @@ FENCE_M = 3.0
 
 
 def yard_bollard(colour: str = "yellow") -> Built:
-    """Build a steel tube set in concrete, 1.0 m high, with a black band and scratches near the ground."""
+    """Build a bollard, 1.0 m high: a steel tube set in concrete, with a black band and scratches near the ground."""
     s = Solid("bollard")
     skin = paint(colour, dirt=0.45)
     s.lathe([(0.084, -0.02), (0.084, 0.62)], skin, steps=24)
@@ -43,7 +43,7 @@ def wheel_stop(colour: str = "yellow") -> Built:
 
 
 def bay_plate(number: str, *, background: str = "blue") -> Built:
-    """Build a plate with the number of a parking bay, on a low post. Both sides have the same text."""
+    """Build a plate with the number of a parking bay, on a low post. Both sides show the number."""
     s = Solid("bay plate")
     s.box((0.05, 0.05, 0.55), (0, 0, 0.275), steel(), 0.005)
     for turn in (0, 180):
@@ -56,7 +56,7 @@ def bay_plate(number: str, *, background: str = "blue") -> Built:
 def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = False) -> Built:
     """Build a chain-link panel along x with a post at each end and three barbed strands on top.
 
-    ``hole`` adds a cut in the mesh that is bent open.
+    With ``hole``, the mesh is cut and bent open.
     """
     s = Solid("chain-link panel")
     wire, pitch = steel(), 0.085
@@ -179,7 +179,7 @@ def notice(
 ) -> Built:  # fmt: skip
     """Build a rectangular notice on a wall or on posts.
 
-    On a wall, its back is at y = 0 and its middle at z = 0. On posts, its lower edge is at ``post_height``.
+    A notice on a wall has its back at y = 0 and its middle at z = 0. A notice on posts has its lower edge at ``post_height``.
 
     Args:
         header: Colour of a band at the top: "red", "yellow", "blue" or "green".
@@ -217,21 +217,21 @@ def _symbol(s: Solid, kind: str, v: float, k: float) -> None:
     """Add a pictogram of half height ``k`` centred at height ``v``."""
     black, white, red = sheet("black", dirt=0.05), sheet("white"), sheet("red")
 
-    def lay(points: Sequence[tuple[float, float]], ink, lift: float = 0.006) -> None:
+    def add_shape(points: Sequence[tuple[float, float]], ink, lift: float = 0.006) -> None:
         flat(s, [(x * k, v + y * k) for x, y in points], ink, lift)
 
     if kind in ("warning", "flt", "bolt"):
-        lay([(-1.05, -0.9), (1.05, -0.9), (0.0, 0.95)], black, 0.005)
-        lay([(-0.84, -0.78), (0.84, -0.78), (0.0, 0.70)], sheet("yellow"), 0.007)
+        add_shape([(-1.05, -0.9), (1.05, -0.9), (0.0, 0.95)], black, 0.005)
+        add_shape([(-0.84, -0.78), (0.84, -0.78), (0.0, 0.70)], sheet("yellow"), 0.007)
         if kind == "warning":
-            lay([(-0.09, 0.30), (-0.05, -0.30), (0.05, -0.30), (0.09, 0.30)], black, 0.009)
+            add_shape([(-0.09, 0.30), (-0.05, -0.30), (0.05, -0.30), (0.09, 0.30)], black, 0.009)
             disc(s, 0, v - 0.52 * k, 0.10 * k, black, 0.009)
         elif kind == "bolt":
-            lay([(0.10, 0.40), (-0.22, -0.20), (-0.02, -0.18), (-0.10, -0.62), (0.24, -0.02), (0.04, -0.04)], black, 0.009)
+            add_shape([(0.10, 0.40), (-0.22, -0.20), (-0.02, -0.18), (-0.10, -0.62), (0.24, -0.02), (0.04, -0.04)], black, 0.009)
         else:
-            lay([(-0.42, -0.55), (0.20, -0.55), (0.20, -0.25), (-0.10, -0.20), (-0.16, 0.02), (-0.42, 0.02)], black, 0.009)
-            lay([(0.22, -0.66), (0.28, -0.66), (0.28, 0.12), (0.22, 0.12)], black, 0.009)
-            lay([(0.28, -0.66), (0.60, -0.66), (0.60, -0.60), (0.28, -0.60)], black, 0.009)
+            add_shape([(-0.42, -0.55), (0.20, -0.55), (0.20, -0.25), (-0.10, -0.20), (-0.16, 0.02), (-0.42, 0.02)], black, 0.009)
+            add_shape([(0.22, -0.66), (0.28, -0.66), (0.28, 0.12), (0.22, 0.12)], black, 0.009)
+            add_shape([(0.28, -0.66), (0.60, -0.66), (0.60, -0.60), (0.28, -0.60)], black, 0.009)
             for x in (-0.28, 0.08):
                 disc(s, x * k, v - 0.60 * k, 0.11 * k, black, 0.009)
     elif kind in ("forbidden", "people"):
@@ -243,13 +243,13 @@ def _symbol(s: Solid, kind: str, v: float, k: float) -> None:
         stroke(s, [(0.02 * k, v - 0.1 * k), (0.2 * k, v - 0.52 * k)], 0.13 * k, black, 0.009)
         stroke(s, [(-0.56 * k, v + 0.56 * k), (0.56 * k, v - 0.56 * k)], 0.17 * k, red, 0.011)
     elif kind == "camera":
-        lay([(-0.75, 0.10), (0.35, 0.45), (0.50, -0.02), (-0.60, -0.38)], black)
-        lay([(0.50, 0.38), (0.72, 0.45), (0.82, 0.14), (0.62, 0.06)], black)
-        lay([(-0.80, -0.75), (-0.62, -0.75), (-0.30, -0.22), (-0.46, -0.18)], black)
+        add_shape([(-0.75, 0.10), (0.35, 0.45), (0.50, -0.02), (-0.60, -0.38)], black)
+        add_shape([(0.50, 0.38), (0.72, 0.45), (0.82, 0.14), (0.62, 0.06)], black)
+        add_shape([(-0.80, -0.75), (-0.62, -0.75), (-0.30, -0.22), (-0.46, -0.18)], black)
 
 
 def assembly_point(letter: str = "A") -> Built:
-    """Build a green fire assembly point sign on a post, with four arrows, people, and its letter."""
+    """Build a green fire assembly point sign on a post, with four arrows, a pictogram of people, and its letter."""
     s = Solid("assembly point sign")
     with s.at(0, 0, 2.05):
         board(s, 0.80, 1.10, "green")

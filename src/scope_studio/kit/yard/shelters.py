@@ -1,4 +1,4 @@
-"""Small buildings and machines of a yard: gatehouse, barrier, shelters for bicycles and smokers, vending machine, charge point."""
+"""Small buildings and machines in a yard: gatehouse, barrier, shelters for bicycles and smokers, vending machine, charge point."""
 
 from __future__ import annotations
 
@@ -13,48 +13,49 @@ from scope_studio.kit.light.glow import glowing_face, lit_lens
 from scope_studio.kit.signs.faces import board, write
 
 GATEHOUSE_M = (3.0, 2.4, 2.7)
+"""Width, depth and height of the gatehouse in metres."""
 
 
 def gatehouse(name: str = "SECURITY") -> Built:
-    """Build a guard's cabin with windows on all sides and a lit room inside: desk, screens, chair, key cabinet, wall clock."""
+    """Build a guard's cabin with windows on all sides. Its lit room has a desk, screens, a chair, a key cabinet and a clock."""
     s = Solid("gatehouse")
-    wide, deep, tall = GATEHOUSE_M
-    w, d = wide / 2, deep / 2
+    width, depth, height = GATEHOUSE_M
+    w, d = width / 2, depth / 2
     skin, trim, clear = paint("light grey", dirt=0.28), paint("blue", dirt=0.25), pane(0.14)
-    s.box((wide + 0.5, deep + 0.5, 0.18), (0, 0, 0.09), concrete(light=False), 0.03)
-    s.box((wide, deep, 0.06), (0, 0, 0.21), plain("cabin floor", (0.10, 0.095, 0.09), 0.8), 0.0)
+    s.box((width + 0.5, depth + 0.5, 0.18), (0, 0, 0.09), concrete(light=False), 0.03)
+    s.box((width, depth, 0.06), (0, 0, 0.21), plain("cabin floor", (0.10, 0.095, 0.09), 0.8), 0.0)
     for x in (-w, w):
         for y in (-d, d):
-            s.box((0.12, 0.12, tall), (x * 0.97, y * 0.97, 0.18 + tall / 2), trim, 0.01)
-    for turn, along, reach in ((0, wide, d), (180, wide, d), (90, deep, w), (-90, deep, w)):
+            s.box((0.12, 0.12, height), (x * 0.97, y * 0.97, 0.18 + height / 2), trim, 0.01)
+    for turn, along, reach in ((0, width, d), (180, width, d), (90, depth, w), (-90, depth, w)):
         with s.at(turn=turn):
             s.box((along, 0.08, 0.95), (0, reach - 0.04, 0.18 + 0.475), skin, 0.0)
-            s.box((along, 0.10, 0.28), (0, reach - 0.04, tall + 0.02), skin, 0.0)
+            s.box((along, 0.10, 0.28), (0, reach - 0.04, height + 0.02), skin, 0.0)
             s.box((along - 0.2, 0.012, 1.46), (0, reach - 0.05, 1.88), clear, 0.0)
             s.box((along, 0.12, 0.05), (0, reach - 0.03, 1.14), trim, 0.004)
             for x in (-along / 6, along / 6) if along > 2.6 else (0.0,):
                 s.box((0.05, 0.06, 1.46), (x, reach - 0.05, 1.88), trim, 0.004)
-    s.box((wide + 0.9, deep + 0.9, 0.16), (0, 0, 0.18 + tall + 0.06), trim, 0.03)
-    s.box((wide + 0.7, deep + 0.7, 0.05), (0, 0, 0.18 + tall + 0.15), paint("light grey", dirt=0.5), 0.01)
-    s.box((wide - 0.2, deep - 0.2, 0.02), (0, 0, tall + 0.10), plain("cabin ceiling", (0.6, 0.6, 0.57), 0.8), 0.0)
-    s.box((1.2, 0.25, 0.04), (0, 0, tall + 0.07), lit_lens("led", 4.0), 0.0)
+    s.box((width + 0.9, depth + 0.9, 0.16), (0, 0, 0.18 + height + 0.06), trim, 0.03)
+    s.box((width + 0.7, depth + 0.7, 0.05), (0, 0, 0.18 + height + 0.15), paint("light grey", dirt=0.5), 0.01)
+    s.box((width - 0.2, depth - 0.2, 0.02), (0, 0, height + 0.10), plain("cabin ceiling", (0.6, 0.6, 0.57), 0.8), 0.0)
+    s.box((1.2, 0.25, 0.04), (0, 0, height + 0.07), lit_lens("led", 4.0), 0.0)
     dark = plain("cabin desk", (0.14, 0.09, 0.05), 0.6)
-    s.box((0.60, deep - 0.4, 0.05), (w - 0.42, 0, 0.98), dark, 0.008)
+    s.box((0.60, depth - 0.4, 0.05), (w - 0.42, 0, 0.98), dark, 0.008)
     for y in (-0.55, 0.05):
         s.box((0.04, 0.46, 0.30), (w - 0.30, y, 1.24), plain("cabin screen", (0.02, 0.02, 0.02), 0.4), 0.01)
         s.box((0.006, 0.42, 0.26), (w - 0.323, y, 1.24), glowing_face("blue", 0.9), 0.0)
     s.box((0.05, 0.5, 0.6), (-w + 0.12, -0.6, 0.85), paint("red", dirt=0.1), 0.01)
     for turn in (0, 180):
-        with s.at(turn=turn), s.at(0, d + 0.46, tall + 0.24):
+        with s.at(turn=turn), s.at(0, d + 0.46, height + 0.24):
             board(s, 1.5, 0.30, "blue", back=False)
             write(s, name, 0.17, 0, 0, "white")
     return s.built()
 
 
 def barrier_arm(length: float = 4.2, *, raised: bool = False) -> Built:
-    """Build a rising barrier: a cabinet at the origin, and a red and white arm along +x.
+    """Build a barrier with a cabinet at the origin and a red and white arm along +x.
 
-    The arm is level at 1.0 m, or raised to 78 degrees.
+    The arm is horizontal at a height of 1.0 m, or raised by 78 degrees.
     """
     s = Solid("barrier arm")
     s.box((0.60, 0.60, 0.10), (0, 0, 0.05), concrete(light=False), 0.02)
@@ -140,7 +141,7 @@ def smoking_shelter() -> Built:
 
 
 def vending_machine(name: str = "FIZZ", colour: str = "red") -> Built:
-    """Build a lit drinks machine, 0.95 x 0.8 x 1.85 m: lit window with bottles, keypad, and a lit panel with its name."""
+    """Build a drinks machine, 0.95 x 0.8 x 1.85 m, with a lit window with bottles, a keypad, and a lit panel with its name."""
     s = Solid("vending machine")
     rng = random.Random("vending")
     skin = paint(colour, dirt=0.15)

@@ -1,4 +1,4 @@
-"""Freight yard: a distribution yard at dusk with its lamps on, seen from a mast at the gate and from above the docks."""
+"""Freight yard: a distribution yard at dusk with its lamps on. The viewpoints are on a mast at the gate and above the docks."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ ABSENT = (
     "aircraft", "ambulance", "boat", "bulldozer", "bus", "child", "cow", "crane", "dog", "excavator", "fire engine", "fountain",
     "horse", "police car", "post box", "sheep", "statue", "swimming pool", "taxi", "tent", "train", "tram", "umbrella",
 )  # fmt: skip
-"""Objects that a question might ask for but that are not in the scene."""
+"""Names of objects that are deliberately absent, for questions about objects that do not exist."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill the stage."""
+    """Build the whole scene in an empty Blender file and fill ``stage``."""
     stage.start_s = 12.5  # the van, the guard, the forklift and the fox are all in the home view at that time
     dusk.setup(bpy.context.scene)
-    people.build(stage)  # people first, then lettering: both get slower with the number of objects in the file
+    people.build(stage)  # people first, then lettering, because both get slower with the number of objects in the file
     fixtures.build(stage)
     notices.build(stage)
     stock.build(stage)

@@ -1,4 +1,4 @@
-"""Freight yard: gate and gatehouse, fences, shelters, charge points, and number plates of the bays."""
+"""Freight yard: the gate and gatehouse, fences, shelters, charge points, and number plates of the bays."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from scope_studio.kit.yard import shelters as yard_shelters
 from scope_studio.scenes.freight_yard import ground
 
 GATEHOUSE = (3.0, -39.0)
+"""Position (x, y) of the gatehouse in metres."""
 
 
 def build(stage: Stage) -> None:
@@ -27,9 +28,9 @@ def _gate(stage: Stage) -> None:
     house = stage.place(
         yard_shelters.gatehouse(), "gatehouse", "gatehouse", (x, y, 0), 0, colour="grey", state="lit", occupied="yes"
     )
-    dusk.pool((x, y, 2.72), 110, dusk.WARM, size_m=0.9)
-    dusk.pool((x - 2.2, y, 2.75), 60, dusk.LED, size_m=0.4)
-    dusk.pool((x + 2.2, y, 2.75), 60, dusk.LED, size_m=0.4)
+    dusk.lamplight((x, y, 2.72), 110, dusk.WARM, size_m=0.9)
+    dusk.lamplight((x - 2.2, y, 2.75), 60, dusk.LED, size_m=0.4)
+    dusk.lamplight((x + 2.2, y, 2.75), 60, dusk.LED, size_m=0.4)
     stage.place(
         yard_shelters.barrier_arm(raised=True),
         "barrier arm",
@@ -85,7 +86,7 @@ def _gate(stage: Stage) -> None:
 
 
 def _fences(stage: Stage) -> None:
-    """Place the fences, one annotated run for each side. The damaged panel in the west is a separate instance."""
+    """Place the fences. Each side of the yard is one instance; the damaged panel in the west is a separate one."""
     prototype = yard_safety.chain_link()
     step = yard_safety.FENCE_M
     fresh = [True]
@@ -123,7 +124,7 @@ def _shelters(stage: Stage) -> None:
     shelter = stage.place(
         yard_shelters.cycle_shelter(), "cycle shelter", "green cycle shelter", (-52.0, -34.0, 0), 90, colour="green", state="lit"
     )
-    dusk.pool((-51.9, -34.0, 2.25), 40, dusk.LED, size_m=1.0)
+    dusk.lamplight((-51.9, -34.0, 2.25), 40, dusk.LED, size_m=1.0)
     rows = [("red", "town", 1.9), ("blue", "town", 1.2), ("black", "town", -0.4), ("green", "town", -1.2), ("orange", "town", -1.9)]
     prototypes = Prototypes()
     for colour, kind, along in rows:
@@ -144,7 +145,7 @@ def _shelters(stage: Stage) -> None:
     stage.place(
         yard_shelters.smoking_shelter(), "smoking shelter", "smoking shelter", (*smoking, 0), 180, colour="grey", state="lit"
     )
-    dusk.pool((smoking[0], smoking[1] - 0.1, 2.12), 40, dusk.WARM, size_m=0.9)
+    dusk.lamplight((smoking[0], smoking[1] - 0.1, 2.12), 40, dusk.WARM, size_m=0.9)
     for name, colour, x in (("FIZZ", "red", -26.6), ("SNAX", "blue", -25.4)):
         stage.place(
             yard_shelters.vending_machine(name, colour),
@@ -156,7 +157,7 @@ def _shelters(stage: Stage) -> None:
             state="lit",
             reads=name.lower(),
         )
-    dusk.pool((-26.0, -7.9, 1.5), 25, dusk.LED, size_m=1.2, aim=(0, -1, -0.4))
+    dusk.lamplight((-26.0, -7.9, 1.5), 25, dusk.LED, size_m=1.2, aim=(0, -1, -0.4))
     cabinet = stage.place(
         roadside.cabinet(colour="green"),
         "cabinet",
@@ -215,7 +216,7 @@ def _bay_furniture(stage: Stage) -> None:
         )
     for number, state in (("21", "green"), ("22", "red"), ("23", "unlit")):
         x = next(x for x, n in ground.ROW_A if n == number)
-        facts = {"state": "unlit"} if state == "unlit" else {"state": "lit", "colour": state}
+        attributes = {"state": "unlit"} if state == "unlit" else {"state": "lit", "colour": state}
         stage.place(
             yard_shelters.charge_point(state, number=number),
             "charging point",
@@ -224,5 +225,5 @@ def _bay_furniture(stage: Stage) -> None:
             180,
             bay=number,
             light=state,
-            **facts,
+            **attributes,
         )

@@ -8,23 +8,26 @@ from scope_studio.kit.yard import floor as yard_floor
 from scope_studio.kit.yard import lamps as yard_lamps
 
 WEST, EAST, SOUTH, NORTH = -58.0, 50.0, -46.0, 30.0
-"""Edges of the yard in metres: fences in the west, east and south, and the front of the warehouse in the north."""
+"""Edges of the yard in metres. There are fences in the west, east and south; the warehouse front is in the north."""
 IN_X, OUT_X = -1.2, 7.2
-"""x coordinates of the lanes through the gate. Traffic drives on the left."""
+"""x coordinates of the lanes into and out of the yard. Traffic drives on the left."""
 
 BAY_M = 2.6
+"""Width of a bay in metres."""
 ROW_A = [(-45.4 + BAY_M * k, str(12 + k)) for k in range(12)]
-"""Middle (x) and number of each bay. Cars park facing north."""
+"""x coordinate of the middle, and number, of each bay in the row. Cars face north."""
 ROW_B = [(-45.4 + BAY_M * k, str(24 + k)) for k in range(12)]
+"""The same for the second row."""
 ROW_A_Y, ROW_B_Y = -14.5, -26.5
+"""y coordinates of the two rows."""
 VISITORS = [(-44.0 + 2.8 * k, str(36 + k)) for k in range(5)]
+"""x coordinate of the middle, and number, of each bay for visitors."""
 VISITORS_Y = -41.5
 TRAILER_BAYS = [(3.5 + 4.2 * k, str(61 + k)) for k in range(5)]
-"""Middle (y) and number of each trailer bay along the west fence."""
+"""y coordinate of the middle, and number, of each trailer bay along the west fence."""
 TRAILER_X = -48.5
 
 MASTS = (
-    # x, y, bearing, kind, heads, lit, number
     (-17.0, -10.6, 0.0, "sodium", 2, True, "L1"),
     (-41.0, -10.6, 0.0, "sodium", 2, True, "L2"),
     (12.2, -4.0, 90.0, "led", 2, True, "L3"),
@@ -35,10 +38,11 @@ MASTS = (
     (-56.0, -30.0, 90.0, "sodium", 1, True, "L8"),
     (3.0, -45.0, 0.0, "sodium", 2, True, "L9"),
 )
+"""x, y, bearing, kind of lamp, number of lamps, whether they are lit, and number of each mast."""
 
 
 def build(stage: Stage) -> None:
-    """Place floor, markings, bays and lamps."""
+    """Place the floor, markings, bays and lamps."""
     _paving(stage)
     _markings(stage)
     _bays(stage)
@@ -103,7 +107,7 @@ def _stop_line() -> yard_floor.Built:
 
 
 def _walkway() -> yard_floor.Built:
-    """Return a green pedestrian strip between white lines."""
+    """Return a green pedestrian walkway between white lines."""
     s = yard_floor.Solid("walkway")
     yard_floor.flat(s, [(-0.7, -17.0), (0.7, -17.0), (0.7, 17.0), (-0.7, 17.0)], yard_floor.paint("green"), 0.003)
     for x in (-0.75, 0.75):
@@ -162,6 +166,6 @@ def _masts(stage: Stage) -> None:
         if lit:
             yard_lamps.mast_light(x, y, bearing, kind=kind, heads=heads, power_w=820 if kind == "sodium" else 650)
     for x in (-18.0, -4.5, 9.0):
-        dusk.pool((x, 28.4, 4.72), 220, dusk.LED, size_m=6.0, stretch=0.06)
+        dusk.lamplight((x, 28.4, 4.72), 220, dusk.LED, size_m=6.0, stretch=0.06)
     for x in (-20.0, -6.0, 8.0, 22.0):
-        dusk.pool((x, 36.0, 6.8), 420, dusk.LED, size_m=4.0)
+        dusk.lamplight((x, 36.0, 6.8), 420, dusk.LED, size_m=4.0)

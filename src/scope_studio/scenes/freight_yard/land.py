@@ -15,8 +15,9 @@ from scope_studio.kit.vehicles import cars
 from scope_studio.kit.yard import floor as yard_floor
 
 ROAD = highway.Carriageway(edge_m=-1.0, straight_m=900.0)
-"""Carriageway that defines the terrain: a level strip with hills on both sides. The road itself is not built."""
+"""A carriageway that is not built but defines the terrain: a level strip with hills on both sides."""
 STREET_Y = -58.0
+"""y coordinate of the middle of the road outside."""
 
 
 def build(stage: Stage) -> None:
@@ -52,7 +53,7 @@ def _street(stage: Stage) -> None:
             height_m=8.0,
         )
         if lit:
-            dusk.pool((x, STREET_Y - 3.0, 7.8), 300, dusk.SODIUM, size_m=0.45)
+            dusk.lamplight((x, STREET_Y - 3.0, 7.8), 300, dusk.SODIUM, size_m=0.45)
     for make, colour, noun, plate, x, y, bearing in (
         (cars.saloon, "dark blue", "saloon", "NB17 COL", 22.0, -60.9, 270),
         (cars.hatchback, "silver", "hatchback", "VE65 GRO", 29.0, -60.9, 270),
@@ -209,7 +210,7 @@ def _trees(stage: Stage) -> None:
 
 
 def _background(stage: Stage, height) -> None:
-    """Place tree lines, blocks of flats and lights that become sparser towards the hills. They are not annotated."""
+    """Place lines of trees, blocks of flats, and lights that become sparser towards the hills. They are not annotated."""
     rng = random.Random("far town")
     kinds = [
         vegetation.tree(sp, 7 + k, detail=0.12)
@@ -251,4 +252,4 @@ def _background(stage: Stage, height) -> None:
         bearing, r = rng.uniform(0, 2 * math.pi), 170 + 1900 * rng.random() ** 1.4
         x, y = r * math.sin(bearing), r * math.cos(bearing)
         lights.append((x, y, height(x, y) + rng.uniform(3.0, 9.0)))
-    stage.put(skyline.glimmer(lights), (0, 0, 0))
+    stage.put(skyline.distant_lights(lights), (0, 0, 0))

@@ -10,7 +10,7 @@ from scope_studio.kit.yard import safety as yard_safety
 from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y, OFFICE_X, OFFICE_Y, RECEIVING_X
 
 Row = tuple[Built, str, float, float, float, dict[str, str]]
-"""Built object, its name, its position (x, y and a bearing; or x, y, z on a wall), and its attributes."""
+"""A notice: built object, name, position (x, y and bearing; on a wall: x, y and z), and attributes."""
 
 
 def build(stage: Stage) -> None:
@@ -215,9 +215,9 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "green"},
         ),
     ]
-    for built, name, x, y, bearing, facts in standing:
+    for built, name, x, y, bearing, attributes in standing:
         words = " ".join(t.text for t in built.texts).lower()
-        stage.place(built, "sign", name, (x, y, 0), bearing, reads=words, **facts)
+        stage.place(built, "sign", name, (x, y, 0), bearing, reads=words, **attributes)
     for limit, x, y, bearing in (("10", -4.2, -30.4, 180), ("5", -3.6, 5.2, 180), ("5", 8.2, 12.8, 0)):
         stage.place(
             road_signs.round_limit(limit, diameter=0.60, post_height=1.7),
@@ -304,9 +304,9 @@ def _on_walls(stage: Stage) -> None:
         ),
         (n(["HOSE REEL"], background="red", cap=0.08), "hose reel sign", 27.3, FRONT_Y, 2.1, {"kind": "safety", "colour": "red"}),
     ]
-    for built, name, x, y, z, facts in rows:
+    for built, name, x, y, z, attributes in rows:
         words = " ".join(t.text for t in built.texts).lower()
-        stage.place(built, "sign", name, (x, y, z), 180, reads=words, **facts)
+        stage.place(built, "sign", name, (x, y, z), 180, reads=words, **attributes)
     for x, y, z, hour, minute, place in (
         (19.0, FRONT_Y, 6.35, 6, 50, "goods in"),
         (OFFICE_X + 5.1, OFFICE_Y, 3.40, 7, 10, "office"),

@@ -15,14 +15,14 @@ from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y
 DOCKED_REAR_Y = FRONT_Y - 0.55
 """y coordinate of the rear of a docked lorry."""
 
-MAKES = {
+PARKED_CARS = {
     "12": ("hatchback", "LD19 KRA"), "13": ("saloon", "MV70 TSE"), "15": ("hatchback", "YK18 BOW"), "16": ("suv", "PN22 FGH"),
     "18": ("saloon", "RX67 DUN"), "20": ("suv", "EJ21 LKA"), "22": ("hatchback", "OV71 ELC"), "23": ("saloon", "HG23 VLT"),
     "25": ("hatchback", "CN16 RYE"), "26": ("hatchback", "SB15 ZIP"), "28": ("suv", "BT20 MHO"), "29": ("saloon", "KP14 WAX"),
     "31": ("van", "GU19 NGF"), "33": ("hatchback", "FY68 JAM"), "34": ("pickup", "AK72 TOW"), "37": ("saloon", "WR66 VIS"),
     "39": ("suv", "DS21 HAT"),
 }  # fmt: skip
-"""Body style and number plate of the car in each occupied bay."""
+"""Body style and number plate of the car in each occupied bay, by the number of the bay."""
 
 
 def build(stage: Stage) -> None:
@@ -39,23 +39,23 @@ def _combination(
     trailer: Built,
     x: float,
     rear_y: float,
-    facts: dict[str, object],
-    trailer_facts: dict[str, object],
+    attributes: dict[str, object],
+    trailer_attributes: dict[str, object],
 ) -> None:
     """Place a tractor unit and its trailer facing south, with the trailer's rear at ``rear_y``."""
     nose_y = rear_y - artics.TRAILER_M
     king_y = nose_y + artics.KINGPIN_M
-    name = str(trailer_facts.pop("name"))
-    stage.place(trailer, "trailer", name, (x, rear_y - artics.TRAILER_M / 2, 0), 180, facing="south", **trailer_facts)
+    name = str(trailer_attributes.pop("name"))
+    stage.place(trailer, "trailer", name, (x, rear_y - artics.TRAILER_M / 2, 0), 180, facing="south", **trailer_attributes)
     stage.place(
         tractor,
         "lorry",
-        f"{facts['colour']} tractor unit",
+        f"{attributes['colour']} tractor unit",
         (x, king_y + artics.COUPLING_Y, 0),
         180,
         facing="south",
         kind="tractor unit",
-        **facts,
+        **attributes,
     )
 
 
@@ -125,7 +125,7 @@ def _docked(stage: Stage) -> None:
 
 
 def _waiting(stage: Stage) -> None:
-    """Place lorries that wait by the southern fence for a dock."""
+    """Place lorries that wait at the southern fence for a dock."""
     rows = [
         (
             lorries.tanker("dark red", plate="NU70 HKD", lettering="PETRONELL"),
@@ -243,20 +243,22 @@ def _cars(stage: Stage) -> None:
         (ground.VISITORS, ground.VISITORS_Y, 180.0),
     ):
         for k, (x, number) in enumerate(row):
-            if number not in MAKES:
+            if number not in PARKED_CARS:
                 continue
-            body, plate = MAKES[number]
+            body, plate = PARKED_CARS[number]
             colour = ground.OCCUPIED[number]
             turned = bearing + (180 if number in ("16", "28", "33") else 0) + (1.8 if k % 2 else -1.2)
             facing = "north" if abs(turned % 360) < 20 or turned % 360 > 340 else "south"
-            facts = {"colour": colour, "plate": plate, "state": "parked", "bay": number, "facing": facing}
+            attributes = {"colour": colour, "plate": plate, "state": "parked", "bay": number, "facing": facing}
             if body == "van":
                 van = cars.van(colour, plate=plate, lettering="NORTHGATE\nFREIGHT")
-                stage.place(van, "van", f"{colour} van", (x, y + 0.1, 0), turned, lettering="northgate freight", **facts)
+                stage.place(van, "van", f"{colour} van", (x, y + 0.1, 0), turned, lettering="northgate freight", **attributes)
                 continue
             category = "pickup truck" if body == "pickup" else "car"
             noun = {"suv": "SUV", "pickup": "pickup truck"}.get(body, body)
-            stage.place(builders[body](colour, plate=plate), category, f"{colour} {noun}", (x, y, 0), turned, kind=body, **facts)
+            stage.place(
+                builders[body](colour, plate=plate), category, f"{colour} {noun}", (x, y, 0), turned, kind=body, **attributes
+            )
     patrol = cars.van("white", plate="OB69 JNS", lettering="ARGUS\nSECURITY", roof_beacon=True)
     stage.place(
         patrol,
@@ -297,7 +299,7 @@ def _cars(stage: Stage) -> None:
 
 
 def driver(vest: str, helmet: str, seed: int) -> Built:
-    """Build a forklift driver, with the hips at the origin and at seat height."""
+    """Build a forklift driver. The hips are above the origin at seat height."""
     pose = reaching(sitting(0.46, seed=seed), left=(-0.13, 0.44, 0.86), right=(0.13, 0.46, 0.84))
     return characters.worker(vest=vest, helmet=helmet, stance=pose, seed=seed)
 
@@ -349,6 +351,6 @@ def _forklifts(stage: Stage) -> None:
 
 
 def _turned(x: float, y: float, bearing_deg: float) -> tuple[float, float]:
-    """Rotate a point from the frame of an object with this bearing to world axes."""
+    """Return a point rotated from object coordinates to world axes, for an object with this bearing."""
     b = math.radians(bearing_deg)
     return x * math.cos(b) + y * math.sin(b), -x * math.sin(b) + y * math.cos(b)

@@ -8,7 +8,7 @@ from scope_studio.scenes.freight_yard.fixtures import GATEHOUSE
 
 
 def build(stage: Stage) -> None:
-    """Place the workers and the other people."""
+    """Place the workers, drivers and visitors."""
     _crew(stage)
     _others(stage)
 
@@ -28,8 +28,10 @@ def _crew(stage: Stage) -> None:
     ]  # fmt: skip
     for k, (vest, helmet, pose, x, y, z, bearing, name, holding, area) in enumerate(rows):
         built = characters.worker(vest=vest, helmet=helmet, pose=pose, phase=0.3, seed=40 + k)
-        facts = {"carrying": holding} if holding else {}
-        stage.place(built, "worker", name, (x, y, z), bearing, vest=vest, helmet=helmet or "none", pose=pose, area=area, **facts)
+        attributes = {"carrying": holding} if holding else {}
+        stage.place(
+            built, "worker", name, (x, y, z), bearing, vest=vest, helmet=helmet or "none", pose=pose, area=area, **attributes
+        )
     sweeper = characters.worker(vest="yellow", helmet="white", pose="shovel", holding="broom", seed=60)
     stage.place(
         sweeper,
@@ -68,5 +70,5 @@ def _others(stage: Stage) -> None:
     ]  # fmt: skip
     for top, trousers, pose, px, py, bearing, name, category, seed, holding in rows:
         built = characters.pedestrian(top=top, trousers=trousers, pose=pose, phase=0.2, holding=holding, seed=seed)
-        facts = {"carrying": holding} if holding else {}
-        stage.place(built, category, name, (px, py, 0), bearing, top=top, trousers=trousers, pose=pose, **facts)
+        attributes = {"carrying": holding} if holding else {}
+        stage.place(built, category, name, (px, py, 0), bearing, top=top, trousers=trousers, pose=pose, **attributes)

@@ -8,13 +8,21 @@ from scope_studio.kit.light import dusk
 from scope_studio.kit.yard import lamps as yard_lamps
 
 FRONT_Y = 30.0
+"""y coordinate of the front of the warehouse."""
 MIDDLE_X = -1.0
+"""x coordinate of the middle of the front."""
 WIDTH_M, HEIGHT_M = 58.0, 7.4
+"""Width and height of the warehouse in metres."""
 DOCK_X = [-24.0 + 5.4 * k for k in range(8)]
+"""x coordinates of the docks."""
 DOCK_STATES = ("closed", "open", "open", "open", "half open", "closed", "open", "closed")
+"""State of the roller door at each dock."""
 DOCK_LIGHTS = ("green", "red", "green", "red", "green", "unlit", "red", "green")
+"""Colour of the traffic light at each dock."""
 RECEIVING_X = 22.0
+"""x coordinate of the large roller door at yard level."""
 OFFICE_X, OFFICE_Y, OFFICE_M = -38.0, 27.0, (16.0, 24.0, 7.2)
+"""Position (x, y) and size (width, depth, height) of the office in metres."""
 
 
 def build(stage: Stage) -> None:
@@ -25,13 +33,15 @@ def build(stage: Stage) -> None:
 
 
 def _front_x(x: float) -> float:
-    """Convert a world x to the x coordinate along the warehouse's front that its builder uses."""
+    """Convert a world x coordinate to the x coordinate that the builder of the warehouse uses."""
     return MIDDLE_X - x
 
 
 def _warehouse(stage: Stage) -> None:
-    half = docks.DOCK_WIDE_M / 2
-    openings = [(_front_x(x) - half, _front_x(x) + half, docks.DOCK_SILL_M, docks.DOCK_SILL_M + docks.DOCK_TALL_M) for x in DOCK_X]
+    half = docks.DOCK_WIDTH_M / 2
+    openings = [
+        (_front_x(x) - half, _front_x(x) + half, docks.DOCK_SILL_M, docks.DOCK_SILL_M + docks.DOCK_HEIGHT_M) for x in DOCK_X
+    ]
     openings.append((_front_x(RECEIVING_X) - 2.3, _front_x(RECEIVING_X) + 2.3, 0.0, 4.6))
     shell = warehouse.shell(
         width=WIDTH_M,
@@ -65,7 +75,7 @@ def _warehouse(stage: Stage) -> None:
         kind="company name",
     )
     stage.place(
-        docks.roller_door("open", wide=4.6, tall=4.6, sill=0.0, colour="blue"),
+        docks.roller_door("open", width=4.6, height=4.6, sill=0.0, colour="blue"),
         "roller door",
         "wide blue roller door",
         (RECEIVING_X, FRONT_Y, 0),
@@ -79,7 +89,7 @@ def _warehouse(stage: Stage) -> None:
     for x in (-21.0, -9.0, 12.0, 25.0):
         flood = yard_lamps.floodlight()
         stage.place(flood, "floodlight", "lit floodlight", (x, FRONT_Y, 7.25), 180, parent=main, state="lit", light="white")
-        dusk.pool((x, FRONT_Y - 0.75, 7.15), 480, dusk.LED, size_m=0.45, aim=(0, -1.0, -0.62), spread_deg=95)
+        dusk.lamplight((x, FRONT_Y - 0.75, 7.15), 480, dusk.LED, size_m=0.45, aim=(0, -1.0, -0.62), spread_deg=95)
     for x, z, kind, lit in ((18.2, 4.9, "sodium", True), (26.4, 4.9, "sodium", True), (-27.6, 5.6, "sodium", False)):
         stage.place(
             yard_lamps.wall_pack(kind=kind, lit=lit),
@@ -91,7 +101,7 @@ def _warehouse(stage: Stage) -> None:
             state="lit" if lit else "unlit",
         )
         if lit:
-            dusk.pool((x, FRONT_Y - 0.45, z - 0.15), 130, dusk.SODIUM, size_m=0.35, aim=(0, -0.35, -1))
+            dusk.lamplight((x, FRONT_Y - 0.45, z - 0.15), 130, dusk.SODIUM, size_m=0.35, aim=(0, -0.35, -1))
 
 
 def _docks(stage: Stage) -> None:
@@ -132,7 +142,7 @@ def _docks(stage: Stage) -> None:
             number=str(k),
         )
         word = {"red": "red dock light", "green": "green dock light", "unlit": "unlit dock light"}[light]
-        facts = {"state": "unlit"} if light == "unlit" else {"state": "lit", "colour": light}
+        attributes = {"state": "unlit"} if light == "unlit" else {"state": "lit", "colour": light}
         stage.place(
             get(f"light {light}", lambda light=light: docks.signal(light)),
             "dock light",
@@ -141,7 +151,7 @@ def _docks(stage: Stage) -> None:
             180,
             parent=door,
             dock=str(k),
-            **facts,
+            **attributes,
         )
         if k in (1, 3, 8):
             stage.place(
@@ -150,17 +160,17 @@ def _docks(stage: Stage) -> None:
 
 
 def _office(stage: Stage) -> None:
-    wide, depth, tall = OFFICE_M
+    width, depth, height = OFFICE_M
     columns = [-6.2, -3.7, -1.2, 1.3, 3.8, 6.3]
     openings = [(x - 0.8, x + 0.8, z - 0.7, z + 0.7) for x in columns for z in (1.8, 5.0) if not (x == 1.3 and z < 2)]
-    shell = offices.wing(width=wide, depth=depth, height=tall, openings=openings, colour=(0.46, 0.47, 0.48))
+    shell = offices.wing(width=width, depth=depth, height=height, openings=openings, colour=(0.46, 0.47, 0.48))
     office = stage.place(
         shell, "building", "two-storey office", (OFFICE_X, OFFICE_Y, 0), 180, colour="grey", kind="office", floors=2
     )
     lit = {(-6.2, 5.0), (-3.7, 1.8), (-1.2, 5.0), (3.8, 1.8), (3.8, 5.0), (6.3, 1.8), (-6.2, 1.8)}
     for n, (x, z) in enumerate((x, z) for x in columns for z in (1.8, 5.0) if not (x == 1.3 and z < 2)):
         on = (x, z) in lit
-        pane = offices.window(wide=1.6, tall=1.4, lit=on, blind=0.45 if n in (2, 7) else 0.0, seed=n)
+        pane = offices.window(width=1.6, height=1.4, lit=on, blind=0.45 if n in (2, 7) else 0.0, seed=n)
         stage.place(
             pane,
             "window",
@@ -201,4 +211,4 @@ def _office(stage: Stage) -> None:
         parent=office,
         state="lit",
     )
-    dusk.pool((OFFICE_X - 1.3, OFFICE_Y - 0.5, 2.75), 60, dusk.WARM, size_m=0.35, aim=(0, -0.4, -1))
+    dusk.lamplight((OFFICE_X - 1.3, OFFICE_Y - 0.5, 2.75), 60, dusk.WARM, size_m=0.35, aim=(0, -0.4, -1))

@@ -12,7 +12,6 @@ from scope_studio.kit.yard import goods as yard_goods
 from scope_studio.kit.yard import safety as yard_safety
 
 STACKS = (
-    # length in feet, x, y, then (colour, code, livery) of each container from the ground up
     (20, 20.5, -14.5, (("blue", "KVRU 482915 3", "KESTREL"), ("dark red", "TSLU 610382 7", None))),
     (
         20,
@@ -36,6 +35,7 @@ STACKS = (
     (20, 41.0, -26.7, (("light grey", "ORTU 226190 4", None),)),
     (40, 40.0, 0.5, (("dark green", "TSLU 187734 1", "TESSALINE"),)),
 )
+"""Length in feet, x, y, and the (colour, code, livery) of each container, from the ground up, of each stack."""
 
 
 def build(stage: Stage) -> None:
@@ -52,7 +52,7 @@ def _containers(stage: Stage) -> None:
         for level, (colour, code, livery) in enumerate(tiers):
             built = containers.container(colour, code, feet=feet, livery=livery)
             where = (x + rng.uniform(-0.05, 0.05), y + rng.uniform(-0.04, 0.04), 0.004 + containers.HEIGHT_M * level)
-            facts = {"livery": livery.lower()} if livery else {}
+            attributes = {"livery": livery.lower()} if livery else {}
             stage.place(
                 built,
                 "container",
@@ -64,7 +64,7 @@ def _containers(stage: Stage) -> None:
                 length_ft=feet,
                 state="closed",
                 level=level + 1,
-                **facts,
+                **attributes,
             )
     for colour, code, x, y, bearing, load in (
         ("dark red", "MBOU 455071 9", 21.5, -28.6, 262.0, None),
@@ -109,10 +109,10 @@ def _goods(stage: Stage) -> None:
         ("cartons", "RETURNS", True, -16.4, 9.0, 178),
     ]
     for n, (kind, label, wrapped, x, y, bearing) in enumerate(loads):
-        facts = {"label": label.lower()} if label else {}
+        attributes = {"label": label.lower()} if label else {}
         built = yard_goods.pallet_load(kind, label=label, wrapped=wrapped, seed=n)
         stage.place(
-            built, "pallet", f"pallet of {kind}", (x, y, 0), bearing, load=kind, wrapped="yes" if wrapped else "no", **facts
+            built, "pallet", f"pallet of {kind}", (x, y, 0), bearing, load=kind, wrapped="yes" if wrapped else "no", **attributes
         )
     for k in range(11):
         colour = "red" if k in (3, 7, 8) else "blue"
@@ -189,8 +189,8 @@ def _equipment(stage: Stage) -> None:
             {"colour": "green", "state": "empty"},
         ),
     ]
-    for built, category, name, x, y, bearing, facts in rows:
-        stage.place(built, category, name, (x, y, 0), bearing, **facts)
+    for built, category, name, x, y, bearing, attributes in rows:
+        stage.place(built, category, name, (x, y, 0), bearing, **attributes)
     stage.place(yard_safety.hose_reel(), "hose reel", "red hose reel", (27.3, 30.0, 1.5), 180, colour="red")
     for colour, x, y, opened, label in (
         ("green", 32.4, 29.4, False, "FOOD WASTE"),
@@ -199,7 +199,7 @@ def _equipment(stage: Stage) -> None:
         ("blue", 37.3, 29.4, False, "GLASS"),
         ("dark grey", 38.9, 29.2, False, None),
     ):
-        facts = {"label": label.lower()} if label else {}
+        attributes = {"label": label.lower()} if label else {}
         stage.place(
             yard_goods.wheelie_bin(colour, open=opened, label=label),
             "wheelie bin",
@@ -208,12 +208,12 @@ def _equipment(stage: Stage) -> None:
             180,
             colour=colour,
             state="open" if opened else "closed",
-            **facts,
+            **attributes,
         )
 
 
 def _barriers(stage: Stage) -> None:
-    """Place bollards, concrete and water-filled barriers, and cones."""
+    """Place bollards, concrete barriers, water-filled barriers and cones."""
     prototypes = Prototypes()
     bollards = [
         (19.2, 28.9),

@@ -17,12 +17,12 @@ ABSENT = (
     "horse", "lorry", "motorcycle", "parking barrier", "petrol pump", "police car", "skip", "statue", "suitcase", "swimming pool",
     "tractor", "train", "tram", "wheelchair", "wind turbine",
 )  # fmt: skip
-"""Objects that a question might ask for but that are not in the scene."""
+"""Names of objects that are deliberately absent, for questions about objects that do not exist."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill the stage."""
-    stage.start_s = 17.0  # car, cyclist, walkers and dog are all in the street at that time
+    """Build the whole scene in an empty Blender file and fill ``stage``."""
+    stage.start_s = 17.0  # the car, the cyclist, the walkers and the dog are all in the street at that time
     overcast.setup(bpy.context.scene)
     people.build(stage)  # first, because building people gets slower with the number of objects in the file
     traffic.build(stage)

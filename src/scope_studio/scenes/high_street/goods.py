@@ -13,7 +13,7 @@ from scope_studio.scenes.high_street.shops import plots
 SHELF_M = SILL_M - 0.012
 
 Item = tuple[Callable[[], Built], str, str, dict[str, str]]
-"""Goods in a shop window: builder, category, name, attributes."""
+"""An item in a shop window: function that builds it, category, name and attributes."""
 
 
 def build(stage: Stage, shops: dict[int, str]) -> None:
@@ -34,7 +34,7 @@ def _row(
     plot = plots()[number]
     prototypes: dict[str, Built] = {}
     for k, x in enumerate(xs):
-        make, category, name, facts = items[k % len(items)]
+        make, category, name, attributes = items[k % len(items)]
         built = prototypes[name].copy() if name in prototypes else prototypes.setdefault(name, make())
         shift = 0.06 * ((k * 7) % 3 - 1)
         stage.place(
@@ -45,7 +45,7 @@ def _row(
             plot.bearing_deg + 9 * ((k * 5) % 4 - 1.5),
             parent=parent,
             behind="glass",
-            **facts,
+            **attributes,
         )
 
 
@@ -102,7 +102,7 @@ BOARDS: tuple[tuple[int, float, float, tuple[str, ...], str], ...] = (
     (16, -2.4, 2.5, ("LAMPS", "HALF PRICE"), "navy"),
     (6, 2.3, 2.4, ("CUT AND DRY", "28.00", "NO BOOKING"), "black"),
 )
-"""Pavement boards: house number of the shop, position in front of it (x and y in metres), lines, colour."""
+"""Pavement boards: house number of the shop, position in front of the shop (x and y in metres), lines, colour."""
 
 
 def _boards(stage: Stage, shops: dict[int, str]) -> None:

@@ -1,4 +1,4 @@
-"""High street: roads, footways, road markings, houses that hide the horizon in every direction, and trees behind the roofs."""
+"""High street: roads, footways, markings, houses that hide the horizon in every direction, and trees behind the houses."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from scope_studio.scenes.high_street.plan import (
 )
 
 END_X = 84.0
-"""Distance in metres from x = 0 of the houses at both ends of each cross street."""
+"""Distance in metres between x = 0 and the houses at both ends of each cross street."""
 
 
 def build(stage: Stage) -> None:
-    """Place ground, houses and trees."""
+    """Place the ground, houses and trees."""
     stage.put(wet_street.carriageway(260.0, _gutters()), (0, 0, 0))
     for colour, bars in _paint().items():
         stage.put(wet_street.markings(bars, colour), (0, 0, 0))
@@ -103,7 +103,7 @@ def _blocks() -> list[list[tuple[float, float]]]:
 
 
 def _corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[float, float]]:
-    """Return a quarter circle that rounds the corner (x, y) of a convex outline, anticlockwise from ``start_deg``."""
+    """Return a quarter circle that rounds the corner (x, y) of a convex outline. It is anticlockwise, starting at ``start_deg``."""
     cx = x - radius if start_deg in (270, 0) else x + radius
     cy = y + radius if start_deg in (270, 180) else y - radius
     angles = [math.radians(start_deg + 90 * k / 8) for k in range(9)]
@@ -163,7 +163,7 @@ def _cross_streets(stage: Stage) -> None:
 
 
 class _Row:
-    """Places houses. After the first use of a prototype, they are linked copies of it."""
+    """Places houses. It builds each prototype once and places linked copies of it afterwards."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -172,21 +172,21 @@ class _Row:
         self._count = 0
 
     def run(self, start: float, side: int, stop: float, y: float, bearing: float, *, seed: int) -> None:
-        """Place houses from x = ``start`` outwards in direction ``side`` until ``stop``."""
+        """Place a row of houses that starts at x = ``start`` and continues in the direction ``side`` until ``stop``."""
         order = random.Random(f"row {seed}")
         x, last = start, -1
         while abs(x) < stop:
-            pick = order.choice([k for k in range(len(HOUSES)) if k != last])
-            last = pick
-            width = HOUSES[pick].width_m
-            self.house(Plot(x + side * width / 2, y, bearing), pick)
+            index = order.choice([k for k in range(len(HOUSES)) if k != last])
+            last = index
+            width = HOUSES[index].width_m
+            self.house(Plot(x + side * width / 2, y, bearing), index)
             x += side * width
 
-    def house(self, plot: Plot, pick: int | None = None) -> None:
-        """Place a house on a plot. ``pick`` is its index in ``HOUSES``; by default, houses take turns."""
-        pick = self._count % len(HOUSES) if pick is None else pick
-        spec = HOUSES[pick]
-        built = self._prototypes[pick].copy() if pick in self._prototypes else self._prototypes.setdefault(pick, terrace(spec))
+    def house(self, plot: Plot, index: int | None = None) -> None:
+        """Place a house on a plot. ``index`` is its index in ``HOUSES``. By default, the houses are used in order."""
+        index = self._count % len(HOUSES) if index is None else index
+        spec = HOUSES[index]
+        built = self._prototypes[index].copy() if index in self._prototypes else self._prototypes.setdefault(index, terrace(spec))
         material = {"render": "painted render"}.get(spec.wall[0], spec.wall[0])
         ident = self._stage.place(
             built, "building", f"{spec.wall[1]} {spec.wall[0]} house", plot.at(0, 0), plot.bearing_deg,
@@ -257,12 +257,12 @@ def _gables(stage: Stage) -> None:
     tree = vegetation.tree(vegetation.BIRCH, 71, detail=0.55)
     for k, (x, y) in enumerate(((-9.5, -60.6), (13.5, -60.6), (-31.0, 60.6), (29.0, 60.6), (58.0, -60.6))):
         built = tree if k == 0 else tree.copy()
-        here = (x, y, wet_street.KERB_M)
-        stage.place(built, "tree", "birch tree", here, 70.0 * k, scale=0.62 + 0.05 * (k % 2), colour="green", species="birch")
+        position = (x, y, wet_street.KERB_M)
+        stage.place(built, "tree", "birch tree", position, 70.0 * k, scale=0.62 + 0.05 * (k % 2), colour="green", species="birch")
 
 
 def _background(stage: Stage) -> None:
-    """Place trees over the back gardens, hedges at the ends of the streets, and the land beyond."""
+    """Place trees behind the houses, hedges at the ends of the streets, and the land beyond them."""
     rng = random.Random("behind")
     species = (vegetation.OAK, vegetation.LIME, vegetation.COPPER, vegetation.BIRCH, vegetation.POPLAR)
     prototypes = [vegetation.tree(sp, 60 + k, detail=0.16) for k, sp in enumerate(species)]

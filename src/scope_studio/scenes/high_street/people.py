@@ -17,8 +17,8 @@ UMBRELLAS: tuple[tuple[str, str | None, float, float, float, int, bool], ...] = 
     ("purple", None, 7.6, 30.8, 176, 27, True), ("pink", None, -5.4, 40.6, 130, 28, False), ("navy", "white", 12.0, 61.2, 268,
     29, True),
 )  # fmt: skip
-"""Colour, second colour, x, y, bearing, seed, whether the person walks."""
-STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
+"""People with umbrellas: colour and second colour of the umbrella, x, y, bearing, seed, whether the person walks."""
+PEDESTRIANS: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
     (-5.0, -6.1, 95, "stand", 41, None, "waiting"), (-4.6, -7.2, 60, "phone", 42, None, "on the phone"), (-5.4, -39.0, 178,
     "walk", 43, "bag", "walking"),
     (8.3, -24.0, 0, "walk", 44, None, "walking"), (8.75, 14.6, 300, "stand", 45, "bag", "standing"), (-6.4, 46.0, 60, "phone",
@@ -28,19 +28,19 @@ STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
     (2.0, 61.0, 180, "stand", 51, None, "standing"), (2.4, -60.9, 80, "walk", 52, "bag", "walking"), (-11.0, -61.4, 268, "walk",
     53, None, "walking"),
 )  # fmt: skip
-"""x, y, bearing, pose, seed, what the person holds, what the person does."""
+"""People without umbrellas: x, y, bearing, pose, seed, object that the person holds, activity."""
 
 
 def build(stage: Stage) -> None:
     """Place people, dogs and pigeons."""
-    _walkers(stage)
+    _pedestrians(stage)
     _pairs(stage)
     _sitters(stage)
     _indoors(stage)
     _pigeons(stage)
 
 
-def _umbrella(stage: Stage, person: str, colour: str, second: str | None, here: Plot) -> None:
+def _umbrella(stage: Stage, person: str, colour: str, second: str | None, plot: Plot) -> None:
     x, y, z = stances.UMBRELLA_GRIP
     built = umbrellas.umbrella(colour, second=second)
     name = f"{colour} and {second} umbrella" if second else f"{colour} umbrella"
@@ -48,8 +48,8 @@ def _umbrella(stage: Stage, person: str, colour: str, second: str | None, here: 
         built,
         "umbrella",
         name,
-        here.at(x, y, z),
-        here.bearing_deg,
+        plot.at(x, y, z),
+        plot.bearing_deg,
         parent=person,
         lean_deg=(-5.0, 4.0),
         colour=colour,
@@ -57,20 +57,20 @@ def _umbrella(stage: Stage, person: str, colour: str, second: str | None, here: 
     )
 
 
-def _walkers(stage: Stage) -> None:
+def _pedestrians(stage: Stage) -> None:
     for colour, second, x, y, bearing, seed, walking in UMBRELLAS:
-        here = Plot(x, y, bearing)
+        plot = Plot(x, y, bearing)
         stance = stances.with_umbrella((seed * 0.37) % 1.0 if walking else None, seed=seed)
         person = stage.place(
-            characters.pedestrian(stance=stance, seed=seed), "pedestrian", f"pedestrian with a {colour} umbrella", here.at(0, 0),
+            characters.pedestrian(stance=stance, seed=seed), "pedestrian", f"pedestrian with a {colour} umbrella", plot.at(0, 0),
             bearing,
             state="walking" if walking else "standing", holding="umbrella", umbrella=colour,
         )  # fmt: skip
-        _umbrella(stage, person, colour, second, here)
-    for x, y, bearing, pose, seed, holding, doing in STANDING:
+        _umbrella(stage, person, colour, second, plot)
+    for x, y, bearing, pose, seed, holding, doing in PEDESTRIANS:
         built = characters.pedestrian(pose=pose, phase=(seed * 0.29) % 1.0, holding=holding, seed=seed)
-        facts = {"holding": holding} if holding else {}
-        stage.place(built, "pedestrian", f"pedestrian {doing}", (x, y, KERB_M), bearing, state=doing, **facts)
+        attributes = {"holding": holding} if holding else {}
+        stage.place(built, "pedestrian", f"pedestrian {doing}", (x, y, KERB_M), bearing, state=doing, **attributes)
     worker = characters.worker(vest="orange", helmet="white", pose="clipboard", seed=61)
     stage.place(
         worker, "worker", "worker in an orange vest", (-2.75, 31.9, 0.004), 130, vest="orange", helmet="white", state="standing"
@@ -89,16 +89,16 @@ def _walkers(stage: Stage) -> None:
 
 
 def _pairs(stage: Stage) -> None:
-    here = Plot(-5.2, -16.6, 6.0)
+    plot = Plot(-5.2, -16.6, 6.0)
     person = characters.pedestrian(stance=stances.pushing(0.15), seed=8, top="green")
     stage.place(
-        person, "pedestrian", "woman with a pram", here.at(0, 0), here.bearing_deg, state="walking", top="green", pushing="pram"
+        person, "pedestrian", "woman with a pram", plot.at(0, 0), plot.bearing_deg, state="walking", top="green", pushing="pram"
     )
-    stage.place(prams.pram("navy"), "pram", "navy pram", here.at(0, 0.98), here.bearing_deg, colour="navy")
-    here = Plot(7.9, 4.2, 186.0)
+    stage.place(prams.pram("navy"), "pram", "navy pram", plot.at(0, 0.98), plot.bearing_deg, colour="navy")
+    plot = Plot(7.9, 4.2, 186.0)
     person = characters.pedestrian(stance=stances.leading(None, seed=3), seed=15, top="navy")
     owner = stage.place(
-        person, "pedestrian", "man with a dog", here.at(0, 0), here.bearing_deg, state="standing", top="navy", holding="lead"
+        person, "pedestrian", "man with a dog", plot.at(0, 0), plot.bearing_deg, state="standing", top="navy", holding="lead"
     )
     gx, gy, gz = stances.LEAD_GRIP
     dog = dogs.dog("golden", lead_to=(gx - 0.62, gy - 0.15, gz), collar="blue")
@@ -106,8 +106,8 @@ def _pairs(stage: Stage) -> None:
         dog,
         "dog",
         "golden dog",
-        here.at(0.62, 0.15),
-        here.bearing_deg,
+        plot.at(0.62, 0.15),
+        plot.bearing_deg,
         parent=owner,
         colour="golden",
         state="standing",
@@ -121,9 +121,9 @@ def _sitters(stage: Stage) -> None:
         "sitting on a bench"),
         (Plot(-6.72, 20.5, 90.0), 0.47, 75, False, "sitting on a bench"),
     )  # fmt: skip
-    for here, seat, seed, crossed, doing in rows:
+    for place, seat, seed, crossed, doing in rows:
         built = characters.pedestrian(stance=stances.sitting(seat, seed=seed, crossed=crossed), seed=seed)
-        stage.place(built, "pedestrian", f"person {doing}", here.at(0, 0), here.bearing_deg, state="sitting")
+        stage.place(built, "pedestrian", f"person {doing}", place.at(0, 0), place.bearing_deg, state="sitting")
     plot = plots()[5]
     for x, side, seed in ((-2.4, 1, 73), (0.2, -1, 74)):
         spot = plot.at(x + side * 0.72, 1.05 + 0.1 * side)

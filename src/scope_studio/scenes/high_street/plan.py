@@ -8,16 +8,21 @@ from dataclasses import dataclass
 from scope_studio.kit.ground.wet_street import KERB_M
 
 WEST_KERB, EAST_KERB = -3.2, 5.4
-"""x coordinates of the edges of the carriageway. Its eastern 2.2 m are parking bays."""
+"""x coordinates of the edges of the carriageway. The easternmost 2.2 m are parking bays."""
 WEST_FRONT, EAST_FRONT = -7.4, 9.6
+"""x coordinates of the fronts of the two rows."""
 ROW_END = 48.0
 """The rows of shops extend from y = -ROW_END to ROW_END."""
 JUNCTION = (52.0, 59.0)
-"""Distance from y = 0 of the near and far kerb of the cross streets (Church Road in the north, Mill Lane in the south)."""
+"""Distances from y = 0 to the near and the far kerb of the cross streets (Church Road in the north, Mill Lane in the south)."""
 FAR_FRONT = 63.0
+"""Distance from y = 0 to the fronts of the houses on the far side of the cross streets."""
 BAY_X = 4.28
+"""x coordinate of the middle of the parking bays."""
 NORTHBOUND_X, SOUTHBOUND_X = -1.6, 1.55
+"""x coordinates of the middle of the two lanes."""
 ZEBRA = (11.6, 15.2)
+"""Southern and northern edge (y) of the zebra crossing."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,6 @@ class Plot:
     z: float = KERB_M
 
     def at(self, x: float, y: float, z: float = 0.0) -> tuple[float, float, float]:
-        """Return the world position of a point in the building's frame."""
+        """Return the world position of a point that is given in the coordinates of the building."""
         a = math.radians(self.bearing_deg)
         return (self.x + x * math.cos(a) + y * math.sin(a), self.y - x * math.sin(a) + y * math.cos(a), self.z + z)

@@ -13,9 +13,9 @@ from scope_studio.scenes.high_street.plan import EAST_FRONT, ROW_END, WEST_FRONT
 
 @dataclass(frozen=True)
 class Shop:
-    """One building of the rows.
+    """One building in a row.
 
-    ``noun`` is the common name for the kind of shop. If it is empty, the building is a house with a front door.
+    ``noun`` is the kind of shop, such as "bank". If it is empty, the building is a house with a front door.
     """
 
     number: int
@@ -117,7 +117,7 @@ def plots() -> dict[int, Plot]:
 
 
 def door_x(shop: Shop) -> float:
-    """Return the x of the door's middle in the frame of the shop front."""
+    """Return the x coordinate of the middle of the door, in the coordinates of the shop front."""
     return shop.door_side * (shop.width_m - 2.0)
 
 
@@ -144,11 +144,11 @@ def _house(stage: Stage, shop: Shop, plot: Plot) -> str:
         shop=bool(shop.noun),
         seed=shop.number,
     )
-    here, bearing = plot.at(0, 0), plot.bearing_deg
+    position, bearing = plot.at(0, 0), plot.bearing_deg
     colour, material = shop.wall[1].replace("pale ", ""), {"render": "painted render"}.get(shop.wall[0], shop.wall[0])
     storeys = {2: "two-storey", 3: "three-storey"}[shop.storeys]
     building = stage.place(
-        terrace(spec), "building", f"{shop.wall[1]} {shop.wall[0]} building", here, bearing,
+        terrace(spec), "building", f"{shop.wall[1]} {shop.wall[0]} building", position, bearing,
         colour=colour, material=material, storeys=shop.storeys, roof=shop.roof, number=str(shop.number),
     )  # fmt: skip
     if not shop.noun:
@@ -163,16 +163,16 @@ def _house(stage: Stage, shop: Shop, plot: Plot) -> str:
 
 
 def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
-    here, bearing = plot.at(0, 0), plot.bearing_deg
+    position, bearing = plot.at(0, 0), plot.bearing_deg
     front = shopfronts.Front(shop.width_m, shop.colour, door_x(shop), shop.room, shop.lamps, shop.tiles)
     traits = {"state": "open" if shop.open else "closed", **shop.traits}
     name = shop.sign.title().replace("'S", "'s")
     ident = stage.place(
-        shopfronts.shop_front(front), "shop", shop.noun, here, bearing, parent=building,
+        shopfronts.shop_front(front), "shop", shop.noun, position, bearing, parent=building,
         colour=shop.colour, lights="on" if shop.lamps else "off", shop_name=name.lower(), **traits,
     )  # fmt: skip
     sign = shopfronts.fascia(shop.width_m, shop.sign, shop.colour, shop.ink, small=shop.small)
-    stage.place(sign, "shop sign", f"{name} sign", here, bearing, parent=ident, colour=shop.colour, lettering=shop.ink)
+    stage.place(sign, "shop sign", f"{name} sign", position, bearing, parent=ident, colour=shop.colour, lettering=shop.ink)
     door = shopfronts.shop_door(shop.door, number=str(shop.number))
     spot = plot.at(door_x(shop), -0.03, 0.13)
     stage.place(
@@ -195,7 +195,7 @@ def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
 
 
 def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
-    """Place the open or closed sign on the door, and the card with opening hours next to it."""
+    """Place the open or closed sign on the door, and a card with the opening hours next to it."""
     bearing = plot.bearing_deg
     if shop.open is not None:
         word, tint = ("OPEN", "green") if shop.open else ("CLOSED", "red")

@@ -12,13 +12,15 @@ from scope_studio.scenes.high_street.plan import EAST_KERB, WEST_KERB, ZEBRA, Pl
 from scope_studio.scenes.high_street.shops import plots
 
 WEST_X, EAST_X = WEST_KERB - 0.55, EAST_KERB + 0.55
-"""x coordinates of the posts along the kerbs."""
+"""x coordinates of the posts along the western and the eastern kerb."""
 
 LAMPS = (
     (WEST_X - 5.0, -51.3, True), (WEST_X, -16.5, True), (WEST_X, 6.0, True), (WEST_X, 31.0, False),
     (EAST_X, -27.0, True), (EAST_X, -5.0, True), (EAST_X, 21.4, True), (EAST_X, 41.0, True),
 )  # fmt: skip
+"""x, y, and whether the lamp is lit."""
 BASKETS = (("red", "white"), ("purple", "pink"), ("yellow", "orange"), ("pink", "white"))
+"""Flower colours of the hanging baskets."""
 
 
 def build(stage: Stage) -> None:
@@ -113,11 +115,11 @@ def _bicycles(stage: Stage) -> None:
     )  # fmt: skip
     for colour, kind, basket, y, dx, bearing, whole in rows:
         built = cycles.bicycle(colour, kind=kind, basket=basket, front_wheel=whole)
-        facts = {} if whole else {"missing": "front wheel"}
+        attributes = {} if whole else {"missing": "front wheel"}
         stage.place(
             built, "bicycle", f"{colour} bicycle", (x + dx, y, KERB_M), bearing, lean_deg=(0.0,
             6.0 if (dx < 0) == (bearing == 0) else -6.0),
-            colour=colour, kind=f"{kind} bicycle", state="parked", basket=basket, **facts,
+            colour=colour, kind=f"{kind} bicycle", state="parked", basket=basket, **attributes,
         )  # fmt: skip
     stage.place(
         cycles.bicycle("purple", kind="step-through", basket=True), "bicycle", "purple bicycle", (-7.0, 33.2, KERB_M), 0,
@@ -208,8 +210,10 @@ def _manhole(stage: Stage) -> None:
 def _scaffold(stage: Stage) -> None:
     plot: Plot = plots()[10]
     frame = street_works.scaffolding(7.2, 3, first_m=3.75)
-    here = stage.place(frame, "scaffolding", "scaffolding", plot.at(0, 0.12), plot.bearing_deg, material="steel")
+    scaffolding_id = stage.place(frame, "scaffolding", "scaffolding", plot.at(0, 0.12), plot.bearing_deg, material="steel")
     board = shopfronts.plate(("TURRET SCAFFOLDING", "01632 960171"), 0.15, "yellow", "black")
-    stage.place(board, "sign", "scaffolder's sign", plot.at(0.4, 1.60, 6.25), plot.bearing_deg, parent=here, colour="yellow")
+    stage.place(
+        board, "sign", "scaffolder's sign", plot.at(0.4, 1.60, 6.25), plot.bearing_deg, parent=scaffolding_id, colour="yellow"
+    )
     ladder = street_works.ladder(5.0, 12.0)
     stage.place(ladder, "ladder", "aluminium ladder", plot.at(-2.4, 2.35), plot.bearing_deg, state="leaning", material="aluminium")

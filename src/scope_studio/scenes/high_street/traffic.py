@@ -16,9 +16,9 @@ from scope_studio.kit.vehicles import cars, cycles, double_decker
 from scope_studio.scenes.high_street.plan import BAY_X, NORTHBOUND_X, SOUTHBOUND_X, ZEBRA, Plot
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer, well above the numbers of the instances."""
+"""Number of the first actor in the instance-number layer. It is greater than the numbers of all instances."""
 PERIOD_S = 40.0
-"""Period of all paths. It is the same, so that pedestrians and traffic always meet at the same places."""
+"""Period of all paths. It is the same for all actors, so that their relative positions repeat."""
 PARKED = (
     (cars.hatchback, "red", "LK19 FWD", "hatchback", -38.4), (cars.saloon, "silver", "GY68 TNB", "saloon", -26.0),
     (cars.suv, "blue", "RO21 HXC", "SUV", -13.8), (cars.hatchback, "yellow", "EA17 JVP", "hatchback", -1.6),
@@ -147,7 +147,7 @@ def _actors(stage: Stage) -> None:
         ),
         ActorPath(
             "moving-dog-01", FIRST_ACTOR + 4, "dog", "black dog",
-            lambda phase: dogs.dog("black", phase=phase, lead_to=(gx - 0.45, gy - 0.1, gz)), _in_step(walker_path, dog_path),
+            lambda phase: dogs.dog("black", phase=phase, lead_to=(gx - 0.45, gy - 0.1, gz)), _companion_path(walker_path, dog_path),
             PERIOD_S,
             {"colour": "black", "state": "walking", "collar": "red"}, stride_m=0.75,
         ),
@@ -157,33 +157,33 @@ def _actors(stage: Stage) -> None:
 def _cyclist(phase: float) -> Built:
     bicycle = cycles.bicycle("blue", kind="town", crank_deg=360 * phase)
     rider = characters.pedestrian(stance=stances.riding(360 * phase), top="dark red", trousers="black", seed=14)
-    return Built.of("cyclist", [_detached(bicycle), _detached(rider)])
+    return Built.of("cyclist", [_detach(bicycle), _detach(rider)])
 
 
 def _walker(phase: float) -> Built:
     person = characters.pedestrian(stance=stances.with_umbrella(phase, seed=91), top="navy", seed=91)
     canopy = umbrellas.umbrella("white")
-    obj = _detached(canopy)
+    obj = _detach(canopy)
     for vertex in obj.data.vertices:
         vertex.co = vertex.co + type(vertex.co)(stances.UMBRELLA_GRIP)
-    return Built.of("walker", [_detached(person), obj])
+    return Built.of("walker", [_detach(person), obj])
 
 
-def _detached(built: Built) -> bpy.types.Object:
-    """Return the only Blender object of ``built``, detached from its root."""
+def _detach(built: Built) -> bpy.types.Object:
+    """Detach the first Blender object of ``built`` from its root, and return it."""
     obj = built.objects[0]
     obj.parent = None
     return obj
 
 
 def _height(x: float, y: float) -> float:
-    """Return the height of the ground at a point of the footways or of the zebra crossing."""
+    """Return the height of the ground at a point on a footway or on the zebra crossing."""
     on_road = -3.2 < x < 5.4
     return 0.0 if on_road and ZEBRA[0] - 1 < y < ZEBRA[1] + 1 else KERB_M
 
 
 def _closed_path(corners: list[tuple[float, float]], period_s: float) -> list[tuple[float, float, float, float]]:
-    """Return the waypoints of a closed path at constant speed that takes ``period_s`` and steps down to cross the road."""
+    """Return the waypoints of a closed path at constant speed that takes ``period_s``. The road is lower than the footways."""
     ring = []
     for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
         ring.append((x0, y0))
@@ -206,7 +206,9 @@ def _open_path(points: list[tuple[float, float]], speed_mps: float, start_s: flo
     return waypoints
 
 
-def _in_step(lead: list[tuple[float, float]], own: list[tuple[float, float]]) -> list[tuple[float, float, float, float]]:
-    """Return the waypoints of a path along the ``own`` corners, in step with a person who walks along the ``lead`` corners."""
-    times = [w[0] for w in _closed_path(lead, PERIOD_S)]
-    return [(t, *p, KERB_M) for t, p in zip(times, [*own, own[0]], strict=True)]
+def _companion_path(
+    leader_corners: list[tuple[float, float]], corners: list[tuple[float, float]]
+) -> list[tuple[float, float, float, float]]:
+    """Return the waypoints of a path through ``corners`` whose times are those of a leader's path through ``leader_corners``."""
+    times = [w[0] for w in _closed_path(leader_corners, PERIOD_S)]
+    return [(t, *p, KERB_M) for t, p in zip(times, [*corners, corners[0]], strict=True)]

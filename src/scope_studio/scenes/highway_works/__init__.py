@@ -1,4 +1,4 @@
-"""Highway works: a lane of a dual carriageway closed for resurfacing, seen from a mast, a bridge and the verge."""
+"""Highway works: a dual carriageway with a lane closed for resurfacing. The viewpoints are on a mast, a bridge and the verge."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ ABSENT = (
     "ambulance", "bench", "bicycle", "bulldozer", "cow", "crane", "dog", "fire engine", "horse", "motorcycle", "police car",
     "swimming pool", "tractor", "traffic light", "train", "wind turbine",
 )  # fmt: skip
-"""Objects that a question might ask for but that are not in the scene."""
+"""Names of objects that are deliberately absent, for questions about objects that do not exist."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill the stage."""
+    """Build the whole scene in an empty Blender file and fill ``stage``."""
     stage.start_s = 10.0  # the saloon, the van and the walking worker are all in the home view at that time
     sky.setup(bpy.context.scene)
     traffic.build(stage)

@@ -34,13 +34,15 @@ ROAD = highway.Carriageway(
     ),
 )
 COMPOUND = (-44.4, -22.6, -24.4, 4.0)
-"""Coordinates in metres of the west, east, south and north fences of the site compound."""
+"""Positions in metres of the west, east, south and north fences of the site compound."""
 BRIDGE_Y = 85.0
+"""y coordinate of the middle of the bridge."""
 DECK_M = 6.9
+"""Height in metres of the road on the bridge."""
 
 
 def build(stage: Stage) -> None:
-    """Place road, land, bridge and buildings."""
+    """Place the road, land, bridge and buildings."""
     height = terrain.hills(ROAD)
     bare = [
         (COMPOUND[0] - 2, COMPOUND[1] + 1.5, COMPOUND[2] - 2, COMPOUND[3] + 1),
@@ -156,13 +158,13 @@ def _power_line(stage: Stage, height: Height) -> None:
         stage.place(built, "pylon", "electricity pylon", (x, y, height(x, y) - 0.3), bearing + 90, colour="grey", material="steel")
     across = (math.sin(math.radians(bearing + 180)), math.cos(math.radians(bearing + 180)))
     for (x0, y0), (x1, y1) in pairwise(feet):
-        for share, reach in ((0.66, 5.5), (0.80, 6.6), (0.93, 4.8)):
+        for fraction, reach in ((0.66, 5.5), (0.80, 6.6), (0.93, 4.8)):
             for side in (-1, 1):
                 base = len(points)
                 for i in range(25):
                     t = i / 24
                     x, y = x0 + (x1 - x0) * t + across[0] * reach * side, y0 + (y1 - y0) * t + across[1] * reach * side
-                    z = (height(x0, y0) * (1 - t) + height(x1, y1) * t) + 30 * share - 1.6 - 28.0 * t * (1 - t)
+                    z = (height(x0, y0) * (1 - t) + height(x1, y1) * t) + 30 * fraction - 1.6 - 28.0 * t * (1 - t)
                     points += [(x, y, z - 0.02), (x, y, z + 0.02)]
                 faces += [(base + 2 * i, base + 2 * i + 2, base + 2 * i + 3, base + 2 * i + 1) for i in range(24)]
     from_data("wires", points, faces, Shader("wire").surface(base_color=(0.05, 0.05, 0.05), roughness=0.6))

@@ -87,7 +87,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
 
 
 def _boundaries(stage: Stage, height: Height) -> None:
-    """Place timber fences along the highway boundary and hedges behind them. They are not annotated: no camera sees their ends."""
+    """Place timber fences along the highway boundary and hedges behind them. They are not annotated; their ends are out of view."""
     fence = structures.post_and_rail(9.0)
     first = True
     for x, spans in ((27.5, ((-190, 64), (106, 190))), (-21.2, ((106, 190), (-190, -50)))):
@@ -117,15 +117,15 @@ def _boundaries(stage: Stage, height: Height) -> None:
         for k in range(max(1, int(length / 8.0))):
             t = (k + 0.5) * 8.0 / length
             x, y = x0 + (x1 - x0) * t, y0 + (y1 - y0) * t
-            pick = rng.randrange(2)
-            built = hedge[pick].copy() if used[pick] else hedge[pick]
-            used[pick] = True
+            index = rng.randrange(2)
+            built = hedge[index].copy() if used[index] else hedge[index]
+            used[index] = True
             turned = bearing + (180 if rng.random() < 0.5 else 0)
             stage.put(built, (x, y, height(x, y) - 0.05), turned, scale=rng.uniform(0.9, 1.15))
 
 
 def _countryside(stage: Stage, height: Height) -> None:
-    """Place woods where the road disappears and on the hills, and hedgerow trees in the fields."""
+    """Place woods at both ends of the visible road and on the hills, and hedgerow trees in the fields."""
     rng = random.Random("countryside")
     species = (vegetation.OAK, vegetation.LIME, vegetation.POPLAR, vegetation.PINE, vegetation.COPPER)
     far = [vegetation.tree(sp, 7 + k, detail=0.14) for k, sp in enumerate(species)] + [
@@ -181,7 +181,7 @@ def _countryside(stage: Stage, height: Height) -> None:
 
 
 def _grass(stage: Stage) -> None:
-    """Place grass on the verges near the viewpoints, where a camera can see it in close-up."""
+    """Place grass on the verges near the viewpoints, where it is visible in close-up."""
     rng = random.Random("grass")
     long = [vegetation.grass_patch(2.0, blades=1500, height_m=0.17, seed=k, flowers=4 * (k == 0)) for k in range(3)]
     mown = [vegetation.grass_patch(2.0, blades=1700, height_m=0.075, seed=10 + k) for k in range(2)]
@@ -193,10 +193,10 @@ def _grass(stage: Stage) -> None:
         used.add(id(prototype))
         stage.put(built, (x, y, -0.03), 90 * rng.randrange(4) + rng.uniform(-8, 8), scale=rng.uniform(0.95, 1.2))
 
-    def row(prototypes: list[Built], x: float, y: float, share: float = 1.0) -> None:
-        if rng.random() < share:
-            wide = 0.25 if share == 1.0 else 0.9
-            scatter(prototypes, x + rng.uniform(-wide, wide), y + rng.uniform(-0.4, 0.4))
+    def row(prototypes: list[Built], x: float, y: float, fraction: float = 1.0) -> None:
+        if rng.random() < fraction:
+            width = 0.25 if fraction == 1.0 else 0.9
+            scatter(prototypes, x + rng.uniform(-width, width), y + rng.uniform(-0.4, 0.4))
 
     for y in range(-60, 76, 2):
         if not 8 < y < 58:

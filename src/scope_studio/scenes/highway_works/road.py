@@ -11,7 +11,7 @@ from scope_studio.kit.signs.faces import Panel
 from scope_studio.kit.signs.gantry import Signal
 
 SOUTH, NORTH = 180.0, 0.0
-"""Bearings that the front of a sign can face. Northbound drivers read signs that face south."""
+"""Bearings that the fronts of signs face. Signs for northbound drivers face south."""
 
 
 def build(stage: Stage) -> None:
@@ -54,9 +54,11 @@ def _gantries(stage: Stage) -> None:
     )
 
 
-def _sign(stage: Stage, built: Built, name: str, x: float, y: float, bearing: float, reads: str, colour: str, **facts: str) -> None:
+def _sign(
+    stage: Stage, built: Built, name: str, x: float, y: float, bearing: float, reads: str, colour: str, **attributes: str
+) -> None:
     facing = {SOUTH: "south", NORTH: "north"}.get(bearing, "road")
-    stage.place(built, "sign", name, (x, y, 0), bearing, reads=reads, colour=colour, facing=facing, **facts)
+    stage.place(built, "sign", name, (x, y, 0), bearing, reads=reads, colour=colour, facing=facing, **attributes)
 
 
 def _direction_signs(stage: Stage) -> None:

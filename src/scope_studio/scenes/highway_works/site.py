@@ -23,7 +23,7 @@ RESERVE_CONES = [(-1.72, y) for y in (9.2, 11.3, 13.5)]
 """Cones on the central reserve, next to the works and a damaged guardrail.
 
 From the preset "highway", pan steps of 15 degrees to the right show two, four and seven of them. In these views, no cone is near
-the edge of the frame or half hidden.
+the edge of the frame or partly hidden.
 """
 
 
@@ -137,9 +137,9 @@ def _crew(stage: Stage) -> None:
     ]
     for k, (vest, helmet, trousers, pose, x, y, bearing, name, holding) in enumerate(rows):
         built = characters.worker(vest=vest, helmet=helmet, trousers=trousers, pose=pose, phase=0.3, seed=k + 3)
-        facts = {"carrying": holding} if holding else {}
+        attributes = {"carrying": holding} if holding else {}
         area = "compound" if x < -20 else "works"
-        stage.place(built, "worker", name, (x, y, 0.0), bearing, vest=vest, helmet=helmet, pose=pose, area=area, **facts)
+        stage.place(built, "worker", name, (x, y, 0.0), bearing, vest=vest, helmet=helmet, pose=pose, area=area, **attributes)
 
 
 def _fence(stage: Stage) -> None:
@@ -150,8 +150,8 @@ def _fence(stage: Stage) -> None:
 
     def panel(x: float, y: float, bearing: float, plate: tuple[str, ...] = ()) -> None:
         built = prototypes.get("-".join(plate), lambda: fencing.mesh_fence_panel(plate))
-        facts = {"plate": " ".join(plate).lower()} if plate else {}
-        stage.place(built, "fence panel", "mesh fence panel", (x, y, 0), bearing, material="steel", **facts)
+        attributes = {"plate": " ".join(plate).lower()} if plate else {}
+        stage.place(built, "fence panel", "mesh fence panel", (x, y, 0), bearing, material="steel", **attributes)
 
     def line(x0: float, y0: float, x1: float, y1: float, bearing: float, signs: dict[int, tuple[str, ...]]) -> None:
         count = round(math.hypot(x1 - x0, y1 - y0) / width)
@@ -243,8 +243,8 @@ def _compound(stage: Stage) -> None:
         (materials.fuel_can("green"), "fuel can", "green fuel can", -14.9, 12.0, 70, {"colour": "green"}),
         (materials.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", -27.2, -1.9, 120, {"colour": "red"}),
     ]
-    for built, category, name, x, y, bearing, facts in rows:
-        stage.place(built, category, name, (x, y, 0), bearing, **facts)
+    for built, category, name, x, y, bearing, attributes in rows:
+        stage.place(built, category, name, (x, y, 0), bearing, **attributes)
 
 
 def _materials(stage: Stage) -> None:

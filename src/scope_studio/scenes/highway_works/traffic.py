@@ -10,10 +10,10 @@ from scope_studio.kit.people import characters
 from scope_studio.kit.vehicles import cars, coach, lorries
 
 LANE_1, LANE_2, LANE_3 = 10.75, 7.25, 3.75
-"""Distances in metres of the lane centres from the middle of the road. In each direction, one lane is for moving vehicles only."""
+"""Distances in metres between the lane centres and the middle of the road. In each direction, one lane has only moving vehicles."""
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer, well above the numbers of the instances."""
+"""Number of the first actor in the instance-number layer. It is greater than the numbers of all instances."""
 
 Car = Callable[..., Built]
 
@@ -42,7 +42,7 @@ NOUNS: dict[Car, str] = {cars.saloon: "saloon", cars.hatchback: "hatchback", car
 def build(stage: Stage) -> None:
     """Place the standing vehicles and add the actors with their paths."""
     _cars(stage)
-    _heavy(stage)
+    _lorries_and_coaches(stage)
     _yard(stage)
     _at_the_works(stage)
     _actors(stage)
@@ -57,7 +57,7 @@ def _course(x: float) -> tuple[float, dict[str, str | int]]:
 
 def _cars(stage: Stage) -> None:
     for make, colour, plate, x, y in CARS:
-        bearing, facts = _course(x)
+        bearing, attributes = _course(x)
         noun = NOUNS[make]
         stage.place(
             make(colour, plate=plate),
@@ -68,18 +68,18 @@ def _cars(stage: Stage) -> None:
             colour=colour,
             kind=noun.lower(),
             plate=plate,
-            **facts,
+            **attributes,
         )
     for colour, plate, lettering, x, y in (
         ("blue", "EK66 PRB", "Corvane\nPLUMBING", -LANE_3, -13.0),
         ("grey", "RF20 LWS", "NORTHLINE\nCOURIERS", LANE_2, -22.0),
     ):
-        bearing, facts = _course(x)
+        bearing, attributes = _course(x)
         van = cars.van(colour, plate=plate, lettering=lettering)
-        stage.place(van, "van", f"{colour} van", (x, y, 0), bearing, colour=colour, plate=plate, **facts)
+        stage.place(van, "van", f"{colour} van", (x, y, 0), bearing, colour=colour, plate=plate, **attributes)
 
 
-def _heavy(stage: Stage) -> None:
+def _lorries_and_coaches(stage: Stage) -> None:
     rows = [
         (
             lorries.box_lorry("red", "white", plate="AY18 GTF", lettering="DRAYCOTT FOODS"),
@@ -138,8 +138,8 @@ def _heavy(stage: Stage) -> None:
         ),
     ]
     for built, category, name, colour, kind, x, y in rows:
-        bearing, facts = _course(x)
-        stage.place(built, category, name, (x, y, 0), bearing, colour=colour, kind=kind, **facts)
+        bearing, attributes = _course(x)
+        stage.place(built, category, name, (x, y, 0), bearing, colour=colour, kind=kind, **attributes)
 
 
 def _yard(stage: Stage) -> None:

@@ -34,12 +34,12 @@ ABSENT = (
     "train",
     "tent",
 )
-"""Objects that a question might ask for but that are not in the scene."""
+"""Names of objects that are deliberately absent, for questions about objects that do not exist."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill the stage."""
-    stage.start_s = 27.0  # the cyclist, the traveller and the dog are in the home view at that time
+    """Build the whole scene in an empty Blender file and fill ``stage``."""
+    stage.start_s = 27.0  # the cyclist, the traveller and the dog are all in the home view at that time
     sky.setup(
         bpy.context.scene, sun_bearing_deg=128.0, sun_elevation_deg=31.0, sun_strength=5.6, sky_strength=0.72, cloud_cover=0.25
     )

@@ -252,9 +252,15 @@ def _signs(stage: Stage) -> None:
     stage.place(town_signs.no_entry(), "no entry sign", "no entry sign", (23.0, -11.5, 0), 205, colour="red")
     stage.place(town_signs.no_entry(), "no entry sign", "no entry sign", (-37.0, -25.9, 0), 20, colour="red")
     for k, (x, lit) in enumerate(((-6.2, True), (-7.4, False))):
-        facts = {"state": "working" if lit else "out of order", "screen": "lit" if lit else "unlit"}
+        attributes = {"state": "working" if lit else "out of order", "screen": "lit" if lit else "unlit"}
         machine = stage.place(
-            plaza.ticket_machine(lit=lit), "ticket machine", "blue ticket machine", (x - 1.6, 25.0, 0), 176, colour="blue", **facts
+            plaza.ticket_machine(lit=lit),
+            "ticket machine",
+            "blue ticket machine",
+            (x - 1.6, 25.0, 0),
+            176,
+            colour="blue",
+            **attributes,
         )
         if k:
             note = Solid("notice")

@@ -13,7 +13,7 @@ from scope_studio.kit.furniture import roadside
 from scope_studio.kit.ground import paving
 
 ROAD_M = -0.10
-"""Height in metres of the carriageways. The square and the pavements are at 0."""
+"""Height in metres of the carriageways. The square and the pavements are at z = 0."""
 SQUARE = (-36.0, 23.5, -11.8, 40.0)
 APPROACH = (23.5, 32.5)
 STREET = (-25.5, -11.8)

@@ -13,7 +13,7 @@ FACING = 150.0
 """Bearing in degrees that the fronts of the stalls face."""
 
 Goods = tuple[str, str | None]
-"""Contents of a crate, and the text of its price card (lines split at the newline)."""
+"""Contents of a crate, and the text of its price card. Newlines separate its lines."""
 
 Stall = tuple[str, tuple[str, ...], tuple[float, float], list[Goods]]
 
@@ -108,7 +108,7 @@ TERRACE_COLUMNS = (-32.2, -28.9)
 
 
 def at_front(place: tuple[float, float], right: float, out: float, bearing: float = FACING) -> tuple[float, float]:
-    """Convert a point in the frame of a front to a world position.
+    """Return the world position of a point that is given relative to a front.
 
     ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
     """
@@ -158,7 +158,7 @@ def _stall(
     first, second = canvas
     striped = first != second
     colour = f"{first} and {second}" if striped else first
-    own = stage.place(
+    stall_id = stage.place(
         stalls.stall(first, second, sign=sign),
         "market stall",
         f"{colour} market stall",
@@ -179,7 +179,7 @@ def _stall(
             f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: produce.produce_crate(kind, seed=k % 2, colour=colour)
         )
         crate = stage.place(
-            built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=own, contents=kind, state="full"
+            built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=stall_id, contents=kind, state="full"
         )
         if card:
             cx, cy = at_front(place, right, out - 0.19)
@@ -187,7 +187,7 @@ def _stall(
                 produce.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
                 f"price card for {card.split(chr(10))[0].lower()}", (cx, cy, z + 0.06), FACING, parent=crate,
             )  # fmt: skip
-    for k, right in enumerate((-1.0, 0.2, 1.1)):  # stock under and behind the counter
+    for k, right in enumerate((-1.0, 0.2, 1.1)):  # goods under and behind the counter
         if (k + len(sign)) % 2:
             x, y = at_front(place, right, -1.35)
             stage.place(
@@ -196,7 +196,7 @@ def _stall(
                 "empty crate",
                 (x, y, 0.0),
                 FACING + 20 * right,
-                parent=own,
+                parent=stall_id,
                 state="empty",
                 material="timber",
             )
@@ -251,7 +251,7 @@ def _carts(stage: Stage, prototypes: Prototypes) -> None:
 
 
 def _terrace(stage: Stage, prototypes: Prototypes) -> None:
-    """Place eight tables in two columns, with three chairs each, and parasols between them."""
+    """Place eight tables in two columns, with three chairs at each table and parasols between the tables."""
     rng = random.Random("terrace")
     taken = {(0, 0, 0), (0, 0, 1), (1, 0, 2), (0, 1, 1), (1, 2, 0), (1, 2, 1), (0, 3, 0), (1, 3, 2), (1, 3, 0)}
     for row, y in enumerate(TERRACE_ROWS):

@@ -14,7 +14,7 @@ from scope_studio.scenes.station_square.fixtures import BENCHES, PLATFORM_TOP_M
 from scope_studio.scenes.station_square.market import FACING, STALLS, at_front, seat_place
 
 CASE_GRIP: tuple[float, float, float] = (0.24, -0.16, 0.86)
-"""Position of the right hand of a walking person who pulls a suitcase."""
+"""Position in metres of the right hand of a walking person who pulls a suitcase."""
 
 VENDORS = ["white", "green", "dark green", "purple", "navy", "cream", "brown", "red"]
 CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
@@ -23,7 +23,7 @@ CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
     (5, -0.3, 1.7, "green", "stand", "bag"), (6, 0.8, 1.7, "light blue", "point", None), (7, 0.0, 1.9, "black", "stand", None),
     (7, 0.9, 2.3, "orange", "stand", None),
 ]  # fmt: skip
-"""Index of the stall, position in front of it (right, out), coat, pose, what the person holds."""
+"""Customers: index of the stall, position in front of the stall (right, out), coat, pose, object that the person holds."""
 
 STROLLERS: list[tuple[float, float, float, str, str, str | None, str]] = [
     (3.3, 22.6, 160, "navy", "stand", None, "waiting by the station"),
@@ -56,7 +56,7 @@ SITTERS: list[tuple[int, int, int, str, str]] = [
     (1, 3, 2, "light blue", "table"),
     (1, 3, 0, "black", "cup"),
 ]
-"""Column, row and seat of the terrace, coat, and what the person does with the hands."""
+"""People at café tables: column, row and seat, coat, and activity of the hands."""
 
 
 def build(stage: Stage) -> None:
@@ -69,18 +69,18 @@ def build(stage: Stage) -> None:
     stage.actors[-1].period_s = stage.actors[-1].waypoints[-1][0]
 
 
-def _person(stage: Stage, at: tuple[float, float, float], bearing: float, name: str, top: str, seed: int, **facts: Any) -> str:
-    pose: str = facts.pop("pose", "stand")
-    stance: Pose | None = facts.pop("stance", None)
-    held: str | None = facts.pop("holding", None)
+def _person(stage: Stage, at: tuple[float, float, float], bearing: float, name: str, top: str, seed: int, **attributes: Any) -> str:
+    pose: str = attributes.pop("pose", "stand")
+    stance: Pose | None = attributes.pop("stance", None)
+    held: str | None = attributes.pop("holding", None)
     built = characters.pedestrian(top=top, pose=pose, phase=0.08 + 0.13 * (seed % 7), holding=held, stance=stance, seed=seed)
-    state = {"walk": "walking", "sit": "sitting"}.get("sit" if facts.pop("seated", False) else pose, "standing")
+    state = {"walk": "walking", "sit": "sitting"}.get("sit" if attributes.pop("seated", False) else pose, "standing")
     if held:
-        facts["holding"] = held
+        attributes["holding"] = held
     if pose == "phone":
-        facts["holding"] = "phone"
-    category = "stallholder" if facts.get("role") == "stallholder" else "person"
-    return stage.place(built, category, name, at, bearing, top=top, state=state, **facts)
+        attributes["holding"] = "phone"
+    category = "stallholder" if attributes.get("role") == "stallholder" else "person"
+    return stage.place(built, category, name, at, bearing, top=top, state=state, **attributes)
 
 
 def _market(stage: Stage) -> None:
@@ -105,7 +105,7 @@ def _strollers(stage: Stage) -> None:
 
 def _sitters(stage: Stage) -> None:
     stance = {"cup": seated.with_cup, "table": seated.at_table, "phone": seated.with_phone}
-    for k, (column, row, seat, top, habit) in enumerate(SITTERS):
+    for k, (column, row, seat, top, activity) in enumerate(SITTERS):
         (x, y), bearing = seat_place(column, row, seat)
         _person(
             stage,
@@ -114,7 +114,7 @@ def _sitters(stage: Stage) -> None:
             f"café guest in {top}",
             top,
             420 + k,
-            stance=stance[habit](k),
+            stance=stance[activity](k),
             seated=True,
             role="customer",
             area="terrace",
@@ -159,7 +159,7 @@ def _companions(stage: Stage) -> None:
 
 
 def _free_walk(phase: float) -> Pose:
-    """Return a walking pose in which the right hand can hold something."""
+    """Return a walking pose without rotation of the trunk, so that the right hand can hold an object."""
     return replace(walking(phase), twist=0.0)
 
 
@@ -173,7 +173,7 @@ def _with_case(phase: float) -> Built:
 
 
 def _walkers() -> list[ActorPath]:
-    """Return the walking actors: a traveller from the station, a person on the way to the trains, and a dog on its own."""
+    """Return the walking actors: a traveller from the station, a person who walks to the trains, and a dog without an owner."""
     traveller = [(0.4, 31.5), (0.3, 24.0), (-3.6, 19.6), (-14.0, 16.4), (-24.0, 17.4), (-31.0, 18.8), (-37.0, 18.9), (-42.0, 19.0)]
     commuter = [
         (47.5, 6.0),

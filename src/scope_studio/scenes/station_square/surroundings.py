@@ -1,4 +1,4 @@
-"""Station square: the surroundings of the square (side streets, roofs and trees behind the rows, the church)."""
+"""Station square: the surroundings of the square, with side streets, roofs and trees behind the shops, and the church."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_studio.scenes.station_square.town import walls
 
 
 def build(stage: Stage) -> None:
-    """Place the houses along the streets that lead away, the roofs behind the rows, and trees. They are not annotated."""
+    """Place the houses along the side streets, the roofs behind the shops, and trees. They are not annotated."""
     w = walls()
     kinds = [
         House(9.0, w["red brick"], 3, 3, seed=50),
@@ -29,7 +29,7 @@ def build(stage: Stage) -> None:
     rng = random.Random("beyond")
 
     def row(x: float, y: float, bearing: float, length: float, first: int) -> None:
-        """Place a row of houses that starts at (x, y) and is ``length`` metres long. ``bearing`` is that of their fronts."""
+        """Place a row of houses, ``length`` metres long, that starts at (x, y). Their fronts face ``bearing``."""
         b = math.radians(bearing)
         step, k = 0.0, first
         while step < length:
@@ -49,14 +49,14 @@ def build(stage: Stage) -> None:
     row(110.0, -8.0, 180, 62, 2)  # north side, east of the square
     row(-110.0, -34.0, 0, 62, 1)  # south side
     row(48.5, -34.0, 0, 62, 3)
-    row(-112.0, 4.0, 90, 60, 2)  # houses that close off the ends of the street
+    row(-112.0, 4.0, 90, 60, 2)  # houses at the ends of the street
     row(112.0, -58.0, 270, 60, 4)
     row(-47.5, -36.0, 90, 50, 1)  # side streets to the south
     row(-34.0, -85.0, 270, 38, 0)
     row(49.5, -86.0, 270, 50, 2)
     row(35.6, -44.0, 90, 38, 3)
     row(-50.0, -92.0, 0, 110, 4)
-    row(-66.0, 16.0, 90, 26, 2)  # behind the western row
+    row(-66.0, 16.0, 90, 26, 2)  # behind the western shops
     row(-24.0, 46.0, 180, 12, 1)  # next to the station
     row(36.0, 46.0, 180, 12, 3)
     for _ in range(150):
@@ -89,7 +89,7 @@ def _trees(stage: Stage, rng: random.Random) -> None:
 
 
 def church(stage: Stage) -> None:
-    """Place the church, north-west of the square: a stone tower with louvred belfry, battlements and a spire."""
+    """Place the church, north-west of the square: a stone tower with a louvred belfry, battlements and a spire."""
     s = Solid("church tower")
     stone = wall_materials.ashlar("church stone", (0.40, 0.36, 0.29))
     slate = wall_materials.tile_material("church slate", SLATE)

@@ -81,7 +81,7 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
     x, y, bearing = place
     material = "brick" if "brick" in colour else "stone" if "stone" in colour else "render"
     plain = {"stone": "beige", "grey stone": "grey", "red brick": "red", "buff brick": "buff"}.get(colour, colour)
-    facts = {"shutters": h.shutters} if h.shutters else {}
+    attributes = {"shutters": h.shutters} if h.shutters else {}
     return stage.place(
         townhouses.town_house(h),
         "building",
@@ -92,12 +92,12 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
         material=material,
         kind=kind,
         storeys=storeys,
-        **facts,
+        **attributes,
     )
 
 
 def _at_front(place: tuple[float, float, float], right: float, out: float) -> tuple[float, float]:
-    """Convert a point in the frame of a front to a world position.
+    """Return the world position of a point that is given relative to a front.
 
     ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
     """

@@ -17,7 +17,7 @@ FIRST_ACTOR = 9001
 TAXI_ROOF_M = 1.445
 
 TAXIS = [("black", "RM19 TXA", -4.6, "lit"), ("silver", "LK70 CBD", 1.2, "unlit"), ("black", "VE22 HGS", 6.9, "lit")]
-"""Colour, number plate, y coordinate on the rank, and state of the roof sign of each taxi."""
+"""Colour, number plate, y coordinate and state of the roof sign of each taxi on the rank."""
 
 PARKED: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = [
     (cars.hatchback, "hatchback", "red", "GX68 LOM", 31.4, -6.4, 180.0),
@@ -39,7 +39,7 @@ DOWN_THE_STREET: list[tuple[Callable[..., Built], str, str, str, float]] = [
 
 
 def build(stage: Stage) -> None:
-    """Place the vehicles that do not move. ``actors`` returns the moving ones."""
+    """Place the vehicles that do not move. ``actors`` returns the moving vehicles."""
     _tram(stage)
     _taxis(stage)
     _parked(stage)
@@ -176,7 +176,7 @@ def _rider() -> Built:
 
 
 def actors() -> list[ActorPath]:
-    """Return the taxi that passes along the street, and the cyclist who crosses the square."""
+    """Return the actors: a taxi that drives along the street, and a cyclist who crosses the square."""
     taxi = [
         (-40.2, -58.0),
         (-40.2, -28.0),

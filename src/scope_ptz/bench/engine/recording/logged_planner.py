@@ -1,4 +1,4 @@
-"""A planner whose decisions come from an Inspect model, so that the log contains each of them as a model event."""
+"""A planner whose decisions come from an Inspect model, so that the log contains each decision as a model event."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _DECISION: TypeAdapter[Decision] = TypeAdapter(Decision)
 class LoggedPlanner(Planner):
     """A planner that gets its decisions from an Inspect model.
 
-    The model is either a ``ScopeModel``, which runs one of SCOPE's planners, or any chat model that Inspect supports.
+    The model is either a ``ScopeModel``, which runs one of SCOPE's planners, or a chat model of another Inspect provider.
     """
 
     def __init__(self, model: Model, planner: Planner | None) -> None:
-        """Use ``of`` to create a planner for a model. ``planner`` is None unless ``model`` is a ``ScopeModel``."""
+        """Initialize the planner; ``of`` creates one for a model. ``planner`` is None unless ``model`` is a ``ScopeModel``."""
         self._model, self._planner = model, planner
         self.name = planner.name if planner is not None else str(model)
         self.sees = planner.sees if planner is not None else False

@@ -1,4 +1,4 @@
-"""Tool calls through Inspect: the log contains each call as a tool event in a span of its own."""
+"""Run tools through Inspect, so that the log contains each call as a tool event in a separate span."""
 
 from __future__ import annotations
 
@@ -16,30 +16,32 @@ from scope_ptz.tools.registry import run_tool
 from scope_ptz.tools.results import Result
 
 _ANY_ARGUMENTS = ToolParams(additionalProperties=True)
-"""Inspect accepts any arguments. The tool registry validates them, so that error messages do not depend on the engine."""
+"""Schema that accepts any arguments. The tool registry validates them, so that error messages do not depend on Inspect."""
 
 
 class ToolLog:
-    """Runs tools and logs each call as a tool event. The event shows the result with the pictures that the call took."""
+    """Runs tools and logs each call as a tool event with its result and the pictures that it took."""
 
     def __init__(self, pictures: PictureStore | None) -> None:
         self._pictures = pictures
         self._calls = 0
 
     async def run(self, context: ToolContext, name: str, arguments: Any) -> Result:
-        """Run a tool. Arguments, result and errors are those of ``tools.registry.run_tool``."""
+        """Run a tool. The arguments, the result and the errors are the same as for ``tools.registry.run_tool``."""
         self._calls += 1
         call = ToolCall(id=f"call-{self._calls:03d}", function=name, arguments=arguments)
         outcome: list[Result | ScopeError] = []
-        tool = ToolDef(self._body(context, name, outcome), name=name, description=name, parameters=_ANY_ARGUMENTS)
+        tool = ToolDef(self._tool_function(context, name, outcome), name=name, description=name, parameters=_ANY_ARGUMENTS)
         await execute_tools([ChatMessageAssistant(content="", tool_calls=[call])], [tool])
         result = outcome[0] if outcome else await run_tool(context, name, arguments)
         if isinstance(result, ScopeError):
             raise result
         return result
 
-    def _body(self, context: ToolContext, name: str, outcome: list[Result | ScopeError]) -> Callable[..., Awaitable[list[Content]]]:
-        known = set(self._pictures.kept) if self._pictures else set()
+    def _tool_function(
+        self, context: ToolContext, name: str, outcome: list[Result | ScopeError]
+    ) -> Callable[..., Awaitable[list[Content]]]:
+        logged = set(self._pictures.urls) if self._pictures else set()
 
         async def call(**kwargs: Any) -> list[Content]:
             try:
@@ -53,11 +55,10 @@ class ToolLog:
             outcome.append(result)
             content: list[Content] = [ContentText(text=json.dumps(result.model_dump(mode="json"), ensure_ascii=False))]
             if self._pictures is not None:
-                await self._pictures.settle()
+                await self._pictures.encode_pending()
                 files = [*getattr(result, "frames", ()), getattr(result, "file", None)]
-                content += [
-                    ContentImage(image=self._pictures.kept[f]) for f in files if f in self._pictures.kept and f not in known
-                ]
+                urls = self._pictures.urls
+                content += [ContentImage(image=urls[f]) for f in files if f in urls and f not in logged]
             return content
 
         return call

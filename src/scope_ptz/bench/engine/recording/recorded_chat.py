@@ -1,4 +1,4 @@
-"""Record the exchanges with a planner's server for the log."""
+"""Record the requests to a planner's server and its replies for the log."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ class Exchanges:
 
 
 def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
-    """Return a copy of a planner that records its exchanges with its server. Both share connections and state."""
+    """Return a copy of a planner that records its exchanges with its server. The copy shares connections and state with it.
+
+    A planner without a server is returned unchanged.
+    """
     if not isinstance(planner, ChatPlanner):
         return planner
     recording = copy(planner)
@@ -34,10 +37,10 @@ def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
 
 
 class RecordedChat(ChatClient):
-    """A wrapper of a chat client that records each exchange. Headers, which contain keys, are not recorded."""
+    """A wrapper of a chat client that records each exchange. Headers are not recorded, because they contain keys."""
 
     def __init__(self, client: ChatClient, exchanges: Exchanges) -> None:
-        # ``super().__init__`` is not called: this object shares the connections of ``client`` and opens none.
+        # ``super().__init__`` is not called, because it would open connections. This object uses those of ``client``.
         self.endpoint, self.caller = client.endpoint, client.caller
         self._wrapped, self._exchanges = client, exchanges
 

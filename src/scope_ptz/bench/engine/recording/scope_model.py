@@ -1,4 +1,4 @@
-"""The planners, perception backends and judges of SCOPE as Inspect models, such as ``scope_ptz/grammar``."""
+"""Make SCOPE's planners, perception backends and judges available as Inspect models, such as ``scope_ptz/grammar``."""
 
 from __future__ import annotations
 
@@ -43,7 +43,10 @@ _Reply = TypeVar("_Reply", bound=BaseModel)
 
 
 class ScopeModel(ModelAPI):
-    """An Inspect model that runs a planner, perception or judge of SCOPE, given by its name in the registry or as a built-in."""
+    """An Inspect model that runs one of SCOPE's planners, perception backends or judges.
+
+    Its name is that of a model in the registry or of a built-in planner or perception backend.
+    """
 
     def __init__(
         self,
@@ -62,7 +65,7 @@ class ScopeModel(ModelAPI):
         self._pending: dict[str, _PendingCall] = {}
 
     async def planner(self, context: EvalContext) -> Planner:
-        """Return the planner of this name, created on the first call."""
+        """Return the planner with this name, created on the first call."""
         async with self._lock:
             if self._planner is None:
                 self._planner = await context.make_planner(self.request)
@@ -76,7 +79,7 @@ class ScopeModel(ModelAPI):
             return self._perception
 
     async def judge(self, context: EvalContext, repeat: int) -> Complete:
-        """Return the connection to the judge of this name for judgement number ``repeat``, opened on the first call."""
+        """Return the connection to the judge with this name, opened on the first call. ``repeat`` is the index of the judgement."""
         async with self._lock:
             if repeat not in self._judges:
                 self._judges[repeat] = await context.make_judge(self.request, repeat)
@@ -86,12 +89,12 @@ class ScopeModel(ModelAPI):
         """Make a call inside an Inspect model event, so that Inspect counts, limits and logs it.
 
         Args:
-            model: The Inspect model that contains this object.
+            model: The Inspect model of which this object is the API.
             messages: The input that the log shows.
-            call: Makes the call.
+            call: Function that makes the call.
 
         Returns:
-            What ``call`` returned.
+            The result of ``call``.
         """
         pending = _PendingCall(call)
         key = messages[-1].id or ""
@@ -115,7 +118,9 @@ class ScopeModel(ModelAPI):
             pending.reply = await pending.call()
             return self._output_of_reply(pending.reply), ModelCall.create({"model": self.model_name}, None)
         if self._planner is None:
-            raise ConfigError("Models of SCOPE run only in its benchmark: use `scope bench run` or `inspect eval scope_ptz/bench`.")
+            raise ConfigError(
+                "scope_ptz models run only in SCOPE's benchmark. Use `scope bench run` or `inspect eval scope_ptz/bench`."
+            )
         exchanges = Exchanges()
         decision = await recorded(self._planner, exchanges).step(state_of(input))
         step = 1 + sum(isinstance(m, ChatMessageAssistant) and bool(m.tool_calls) for m in input)
@@ -127,7 +132,7 @@ class ScopeModel(ModelAPI):
         return ModelOutput.from_content(self.model_name, text)
 
     def tool_result_images(self) -> bool:
-        """Return True, so that Inspect leaves frames in the tool results that contain them."""
+        """Return True, so that Inspect does not move frames out of tool results."""
         return True
 
     def connection_key(self) -> str:
@@ -135,7 +140,7 @@ class ScopeModel(ModelAPI):
 
 
 class _PendingCall:
-    """A call that ``generate`` makes, and its reply."""
+    """A call for ``generate`` to make, and its reply."""
 
     def __init__(self, call: Callable[[], Awaitable[Any]]) -> None:
         self.call = call
@@ -144,15 +149,15 @@ class _PendingCall:
 
 @modelapi(name=PROVIDER)
 def scope_ptz() -> type[ModelAPI]:
-    """Return the Inspect provider of the models that ``scope models`` lists and of the built-in ones."""
+    """Return the Inspect provider of registered models and of the built-in planners and perception backends."""
     return ScopeModel
 
 
 def engine_model(name: str, max_connections: int, *, url: str | None = None, **model_args: Any) -> Model:
-    """Return the Inspect model for a planner, perception or judge of SCOPE.
+    """Return the Inspect model for one of SCOPE's planners, perception backends or judges.
 
     Args:
-        name: Name in the registry or of a built-in, or the name under which a server serves the model.
+        name: Name in the registry, name of a built-in, or the model's name on its server.
         max_connections: Maximum number of concurrent calls.
         url: Address of the server.
         model_args: Options of the model, which the log records.
@@ -176,15 +181,15 @@ def output_of(decision: Decision, model: str, step: int) -> ModelOutput:
     message = ChatMessageAssistant(
         id=f"step-{step}", content=[*content, ContentText(text=text)] if content else text, tool_calls=calls, source="generate"
     )
-    used, served = decision.usage, decision.served
+    usage, served = decision.usage, decision.served
     return ModelOutput(
         model=(served.model if served else "") or model,
         choices=[ChatCompletionChoice(message=message, stop_reason=stop)],
         usage=ModelUsage(
-            input_tokens=used.input_tokens - used.cached_tokens,
-            output_tokens=used.output_tokens,
-            total_tokens=used.input_tokens + used.output_tokens,
-            input_tokens_cache_read=used.cached_tokens or None,
+            input_tokens=usage.input_tokens - usage.cached_tokens,
+            output_tokens=usage.output_tokens,
+            total_tokens=usage.input_tokens + usage.output_tokens,
+            input_tokens_cache_read=usage.cached_tokens or None,
         ),
         metadata={"decision": decision.model_dump(mode="json")},
     )

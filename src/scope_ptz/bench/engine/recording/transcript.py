@@ -1,6 +1,7 @@
-"""Convert a planner's state to chat messages and back. The log shows the messages, and any chat model can plan from them.
+"""Convert a planner's state to chat messages and back. The log shows these messages, and any chat model can plan from them.
 
-The texts are those of the chat planner. Exact values (poses, results) are in the metadata, for planners that do not read text.
+The texts are those of the chat planner. Exact values, such as poses and results, are in the metadata for planners that do not use
+the text.
 """
 
 from __future__ import annotations
@@ -41,9 +42,9 @@ _BRIEFING: TypeAdapter[Briefing] = TypeAdapter(Briefing)
 
 
 def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[ChatMessage]:
-    """Return the messages of a state.
+    """Convert a state to messages.
 
-    Each step appends to the messages of the previous step; the newest view replaces the previous one.
+    Each step appends messages to those of the previous step. The newest view replaces the previous view.
     """
     briefing = state.briefing
     system = ChatMessageSystem(
@@ -55,7 +56,7 @@ def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[Cha
     for step, exchange in enumerate(state.history, 1):
         messages += _exchange(exchange, step)
     if state.view is not None:
-        messages.append(ChatMessageUser(id=f"view-{len(state.history)}", content=_pictured(state.view)))
+        messages.append(ChatMessageUser(id=f"view-{len(state.history)}", content=_picture_content(state.view)))
     return messages
 
 
@@ -69,15 +70,15 @@ def _exchange(exchange: Exchange, step: int) -> list[ChatMessage]:
 
 
 def call_id(step: int, index: int) -> str:
-    """Return the id of a call in messages. It has nine characters, because some chat templates accept no other length."""
+    """Return the id of a call in messages. It has nine characters, because some chat templates require this length."""
     return f"s{step:04d}c{index:03d}"
 
 
 def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool:
-    """Return the result of a call as a message to the planner, with the whole outcome in the metadata."""
+    """Convert the result of a call to a message to the planner, with the whole outcome in the metadata."""
     content: list[Content] = [ContentText(text=observation(outcome))]
     if outcome.picture is not None:
-        content += _pictured(outcome.picture)
+        content += _picture_content(outcome.picture)
     return ChatMessageTool(
         id=f"result-{step}-{index}",
         tool_call_id=call_id(step, index),
@@ -88,17 +89,24 @@ def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool
     )
 
 
-def _pictured(picture: Picture) -> list[Content]:
+def _picture_content(picture: Picture) -> list[Content]:
     return [ContentText(text=picture.caption), ContentImage(image=picture.data_url)]
 
 
 def conversation_of(records: Sequence[Record], pictures: Mapping[str, str]) -> list[ChatMessage]:
-    """Return a run as a conversation for the log viewer. ``pictures`` are data URLs by name, shown where they were taken."""
+    """Convert a run to a conversation for the log viewer.
+
+    Args:
+        records: The records of the trace.
+        pictures: Data URLs of the pictures by name. Each picture is shown in the message of the call that took it.
+    """
     messages: list[ChatMessage] = []
     for record in records:
         match record:
             case Started():
-                messages.append(ChatMessageUser(content=[ContentText(text=record.instruction), *_shown([record.frame], pictures)]))
+                messages.append(
+                    ChatMessageUser(content=[ContentText(text=record.instruction), *_images_named([record.frame], pictures)])
+                )
             case Decided(decision=CallTools() as decision):
                 calls = [
                     EngineCall(id=call_id(record.step, index), function=callable_name(c.name), arguments=c.arguments)
@@ -114,7 +122,7 @@ def conversation_of(records: Sequence[Record], pictures: Mapping[str, str]) -> l
                 message = tool_message(record.outcome, record.step, record.index)
                 result = record.outcome.result or {}
                 names = [*result.get("frames", ()), result.get("file"), record.frame]
-                images = _shown(names, pictures)
+                images = _images_named(names, pictures)
                 if images:
                     message = message.model_copy(update={"content": [ContentText(text=message.text), *images]})
                 messages.append(message)
@@ -123,7 +131,7 @@ def conversation_of(records: Sequence[Record], pictures: Mapping[str, str]) -> l
     return messages
 
 
-def _shown(names: Iterable[str | None], pictures: Mapping[str, str]) -> list[Content]:
+def _images_named(names: Iterable[str | None], pictures: Mapping[str, str]) -> list[Content]:
     return [ContentImage(image=pictures[name]) for name in names if name is not None and name in pictures]
 
 
@@ -148,9 +156,10 @@ def tool_infos() -> list[ToolInfo]:
 
 
 def state_of(messages: Sequence[ChatMessage]) -> State:
-    """Return the state that messages describe. Without a briefing, the camera looks straight ahead and has no presets.
+    """Convert messages to a state. Without a briefing, the camera points straight ahead and has no presets.
 
-    Raises ``PlannerError`` if the messages contain no instruction.
+    Raises:
+        PlannerError: The messages contain no instruction.
     """
     system = next((m for m in messages if isinstance(m, ChatMessageSystem) and m.metadata and "briefing" in m.metadata), None)
     stored = system.metadata["briefing"] if system is not None and system.metadata else None
@@ -176,15 +185,15 @@ def _history(messages: Sequence[ChatMessage]) -> list[Exchange]:
 def _outcome(call: EngineCall, message: ChatMessageTool | None) -> ToolOutcome:
     if message is not None and message.metadata and "outcome" in message.metadata:
         return ToolOutcome.model_validate(message.metadata["outcome"])
-    made = ToolCall(id=call.id, name=call.function, arguments=call.arguments)
+    tool_call = ToolCall(id=call.id, name=call.function, arguments=call.arguments)
     if message is None:
-        return ToolOutcome(call=made, error="Nothing came back.")
+        return ToolOutcome(call=tool_call, error="Nothing came back.")
     if message.error is not None:
-        return ToolOutcome(call=made, error=message.error.message)
-    return ToolOutcome(call=made, result=_object(message.text))
+        return ToolOutcome(call=tool_call, error=message.error.message)
+    return ToolOutcome(call=tool_call, result=_result_object(message.text))
 
 
-def _object(text: str) -> dict[str, Any]:
+def _result_object(text: str) -> dict[str, Any]:
     try:
         content = json.loads(text)
     except ValueError:

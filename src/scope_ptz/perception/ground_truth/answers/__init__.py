@@ -17,50 +17,50 @@ from scope_ptz.perception.ground_truth.answers.scene import describe, happening
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, unknown
 from scope_ptz.perception.ground_truth.answers.values import ask
 from scope_ptz.perception.ground_truth.answers.verdicts import is_a, yes_no
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.view import View
 
 __all__ = ["AnswerText", "answer"]
 
 
-def answer(view: View, question: s.Question | None) -> AnswerText:
-    """Return the answer to a parsed question. None, a question that fits no rule, cannot be answered."""
+def answer(view: View, question: tree.Question | None) -> AnswerText:
+    """Return the answer to a parsed question. The question is None if the parser did not understand it."""
     match question:
-        case s.Exists():
+        case tree.Exists():
             return exists(view, question)
-        case s.Count():
+        case tree.Count():
             return count(view, question)
-        case s.CountKinds():
+        case tree.CountKinds():
             return count_kinds(view, question)
-        case s.YesNo():
+        case tree.YesNo():
             return yes_no(view, question)
-        case s.IsA():
+        case tree.IsA():
             return is_a(view, question)
-        case s.Ask():
+        case tree.Ask():
             return ask(view, question)
-        case s.Read():
+        case tree.Read():
             return read(view, question)
-        case s.TextExists():
+        case tree.TextExists():
             return text_exists(view, question)
-        case s.Where():
+        case tree.Where():
             return where(view, question)
-        case s.What():
+        case tree.What():
             return what(view, question)
-        case s.Identify():
+        case tree.Identify():
             return identify(view, question)
-        case s.Which():
+        case tree.Which():
             return which(view, question)
-        case s.HowFar():
+        case tree.HowFar():
             return how_far(view, question)
-        case s.Compare():
+        case tree.Compare():
             return compare(view, question)
-        case s.CompareCount():
+        case tree.CompareCount():
             return compare_count(view, question)
-        case s.MostCommon():
+        case tree.MostCommon():
             return most_common(view, question)
-        case s.Describe():
+        case tree.Describe():
             return describe(view, question)
-        case s.Happening():
+        case tree.Happening():
             return happening(view)
         case None:
             return unknown("I cannot tell: I can only answer about what is visible in the picture")

@@ -1,14 +1,14 @@
-"""Answers that compare: which of several, how far, more or fewer, the most common."""
+"""Answers to comparison questions: which of several, how far, more or fewer, and the most common."""
 
 from __future__ import annotations
 
 from collections import Counter
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.restating import COMPARATIVES, none_of, noun, the
+from scope_ptz.perception.ground_truth.answers.restating import COMPARATIVES, definite, none_of, noun
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, metres, name, place, reply, unknown
 from scope_ptz.perception.ground_truth.answers.values import value_of
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import rank_key
 from scope_ptz.perception.ground_truth.thing_facts import colour_of
 from scope_ptz.perception.ground_truth.thing_search import find, find_phrase
@@ -18,19 +18,19 @@ _EQUALITY_TOLERANCE = 0.02
 """Values whose relative difference is at most this are reported as equal."""
 
 
-def which(view: View, question: s.Which) -> AnswerText:
+def which(view: View, question: tree.Which) -> AnswerText:
     """Answer which of several things ranks first in a comparison."""
     options = question.options.phrases
     if len(options) == 1:
-        found = sorted(find(view, question.options), key=rank_key(question.key))
-        if not found:
+        matches = sorted(find(view, question.options), key=rank_key(question.key))
+        if not matches:
             return unknown(f"I cannot tell: {none_of(view, question.options)}")
-        return reply(f"it is the {name(found[0])} {place(found[0])}, about {metres(found[0].distance_m)} away")
+        return reply(f"it is the {name(matches[0])} {place(matches[0])}, about {metres(matches[0].distance_m)} away")
     things: list[Thing] = []
     for phrase in options:
         best = [t for t in find_phrase(view, phrase) if t not in things]
         if not best:
-            return unknown(f"I cannot tell: {none_of(view, s.Description((phrase,)))}")
+            return unknown(f"I cannot tell: {none_of(view, tree.Description((phrase,)))}")
         things.append(best[0])
     ranked = sorted(zip(things, options, strict=True), key=lambda pair: rank_key(question.key)(pair[0]))
     (first, phrase), (second, other) = ranked[:2]
@@ -42,16 +42,16 @@ def which(view: View, question: s.Which) -> AnswerText:
     return reply(f"{_the(view, phrase)} is {COMPARATIVES[question.key]}{detail}")
 
 
-def _the(view: View, phrase: s.Phrase) -> str:
-    return the(view, s.Description((phrase,)))
+def _the(view: View, phrase: tree.Phrase) -> str:
+    return definite(view, tree.Description((phrase,)))
 
 
-def _equal(key: s.OrderKey, a: Thing, b: Thing) -> bool:
+def _equal(key: tree.OrderKey, a: Thing, b: Thing) -> bool:
     x, y = (abs(rank_key(key)(t)) for t in (a, b))
     return abs(x - y) <= _EQUALITY_TOLERANCE * max(x, y, 1e-9)
 
 
-def compare(view: View, question: s.Compare) -> AnswerText:
+def compare(view: View, question: tree.Compare) -> AnswerText:
     """Answer whether the first thing ranks before the second in a comparison."""
     for description in (question.first, question.second):
         if not find(view, description):
@@ -59,14 +59,14 @@ def compare(view: View, question: s.Compare) -> AnswerText:
     first = find(view, question.first)[0]
     second = next((t for t in find(view, question.second) if t is not first), first)
     key = rank_key(question.key)
-    statement = f"{the(view, question.first)} is {{}}{COMPARATIVES[question.key]} than {the(view, question.second)}"
+    statement = f"{definite(view, question.first)} is {{}}{COMPARATIVES[question.key]} than {definite(view, question.second)}"
     if question.key in {"nearest", "furthest"}:
         statement += f" (about {metres(first.distance_m)} against {metres(second.distance_m)})"
     ahead = key(first) < key(second) and not _equal(question.key, first, second)
     return reply(f"yes, {statement.format('')}" if ahead else f"no, {statement.format('not ')}")
 
 
-def how_far(view: View, question: s.HowFar) -> AnswerText:
+def how_far(view: View, question: tree.HowFar) -> AnswerText:
     """Answer how far a thing is from the camera, or from another thing, in metres."""
     for description in (question.what, question.other):
         if description is not None and not find(view, description):
@@ -74,7 +74,7 @@ def how_far(view: View, question: s.HowFar) -> AnswerText:
     first = find(view, question.what)
     if question.other is None:
         if len(first) > 1 and not any(p.order for p in question.what.phrases):
-            low, high = (pick(t.distance_m for t in first) for pick in (min, max))
+            low, high = (limit(t.distance_m for t in first) for limit in (min, max))
             many = noun(view, question.what, many=True)
             return reply(f"there are {len(first)} {many}, from about {metres(low)} to about {metres(high)} away")
         return reply(f"the {name(first[0])} is about {metres(first[0].distance_m)} away")
@@ -82,10 +82,10 @@ def how_far(view: View, question: s.HowFar) -> AnswerText:
     if not second:
         return unknown(f"I cannot tell: I can see only one {noun(view, question.other)}")
     gap = min(first[0].gap_m(t) for t in second)
-    return reply(f"the {name(first[0])} is about {metres(gap)} from {the(view, question.other)}")
+    return reply(f"the {name(first[0])} is about {metres(gap)} from {definite(view, question.other)}")
 
 
-def compare_count(view: View, question: s.CompareCount) -> AnswerText:
+def compare_count(view: View, question: tree.CompareCount) -> AnswerText:
     """Answer which of two kinds is more or less frequent, or whether a stated comparison of their numbers is true."""
     if not question.second.phrases:
         return unknown("I cannot tell: I see one picture, and nothing else to compare it with")
@@ -99,14 +99,14 @@ def compare_count(view: View, question: s.CompareCount) -> AnswerText:
         verdict = "there are equally many" if a == b else f"there are {question.sense} {first if ahead else second}"
         return reply(f"{verdict}: {counts}")
     yes = {"more": a > b, "fewer": a < b, "same": a == b}[question.sense]
-    than = {"more": "more", "fewer": "fewer"}.get(question.sense)
-    statement = f"{than} {first} than {second}" if than else f"as many {first} as {second}"
+    comparative = {"more": "more", "fewer": "fewer"}.get(question.sense)
+    statement = f"{comparative} {first} than {second}" if comparative else f"as many {first} as {second}"
     return reply(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{statement}: {counts}")
 
 
-def _most_of(view: View, question: s.CompareCount) -> AnswerText:
+def _most_of(view: View, question: tree.CompareCount) -> AnswerText:
     """Answer "which are there most of: cars, vans or lorries?"."""
-    kinds = [s.Description((phrase,)) for phrase in (*question.first.phrases, *question.second.phrases)]
+    kinds = [tree.Description((phrase,)) for phrase in (*question.first.phrases, *question.second.phrases)]
     counts = [len(find(view, kind)) for kind in kinds]
     best = (min if question.sense == "fewer" else max)(counts)
     first = [noun(view, kind, many=True) for kind, count in zip(kinds, counts, strict=True) if count == best]
@@ -116,8 +116,8 @@ def _most_of(view: View, question: s.CompareCount) -> AnswerText:
     return reply(f"{verdict}: {listed}")
 
 
-def count_kinds(view: View, question: s.CountKinds) -> AnswerText:
-    """Answer how many different colours or kinds the things have."""
+def count_kinds(view: View, question: tree.CountKinds) -> AnswerText:
+    """Answer how many different colours or kinds there are among things."""
     colour = question.attribute == ("colour",)
     values = Counter(v for t in find(view, question.what) if (v := _kind(t, colour)) is not None)
     many = "" if len(values) == 1 else "s"
@@ -131,13 +131,13 @@ def _kind(thing: Thing, colour: bool) -> str | None:
     return colour_of(thing) if colour else str(thing.attributes.get("kind", thing.category))
 
 
-def most_common(view: View, question: s.MostCommon) -> AnswerText:
+def most_common(view: View, question: tree.MostCommon) -> AnswerText:
     """Answer with the most or least frequent colour or kind."""
-    found = find(view, question.what)
-    if not found:
+    matches = find(view, question.what)
+    if not matches:
         return unknown(f"I cannot tell: {none_of(view, question.what)}")
     colour = question.attribute == ("colour",)
-    values = [value_of(t, ("colour",)) if colour else t.category for t in found]
+    values = [value_of(t, ("colour",)) if colour else t.category for t in matches]
     counts = Counter(v for v in values if v is not None)
     if not counts:
         return unknown("I cannot tell: the scene does not say")
@@ -146,4 +146,4 @@ def most_common(view: View, question: s.MostCommon) -> AnswerText:
     kind = f"{'least' if question.least else 'most'} common {'colour' if colour else 'kind'}"
     if len(best) > 1:
         return reply(f"{english.listing(best)} are equally common ({target} each)")
-    return reply(f"the {kind} is {best[0]}: {target} of {len(found)} {noun(view, question.what, many=True)}")
+    return reply(f"the {kind} is {best[0]}: {target} of {len(matches)} {noun(view, question.what, many=True)}")

@@ -6,21 +6,22 @@ import re
 from collections.abc import Sequence
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.restating import none_of, plural, the
+from scope_ptz.perception.ground_truth.answers.restating import definite, none_of, plural
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, reply, unknown
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
 from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
 
 
-def read(view: View, question: s.Read) -> AnswerText:
+def read(view: View, question: tree.Read) -> AnswerText:
     """Answer with the text on a thing, its number plate, or all text in view."""
     if question.what is None:
         return _read(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
     things = find(view.for_reading(), question.what)
     if not things and _PLATE_WORDS.issuperset(phrase.words for phrase in question.what.phrases):
-        return read(view, s.Read(None, plate=True))  # "the number plate" without a vehicle; plates are texts on vehicles
+        # "the number plate" names no vehicle, so the plates of all vehicles are read
+        return read(view, tree.Read(None, plate=True))
     if not things:
         return unknown(f"I cannot tell: {none_of(view, question.what)}")
     texts = _texts(view, things, question.plate)
@@ -28,8 +29,8 @@ def read(view: View, question: s.Read) -> AnswerText:
 
 
 def _texts(view: View, things: Sequence[Thing], plate: bool) -> list[TextSighting]:
-    found = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
-    return [t for t in found if is_plate(view, t) == plate] or ([] if plate else found)
+    candidates = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
+    return [t for t in candidates if is_plate(view, t) == plate] or ([] if plate else candidates)
 
 
 def is_plate(view: View, text: TextSighting) -> bool:
@@ -55,8 +56,8 @@ def _is_limit(view: View, text: TextSighting) -> bool:
     return content.isdigit() and int(content) % 10 == 0 and "sign" in concepts_of(owner)
 
 
-def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting], plate: bool) -> AnswerText:
-    subject = the(view, what, plural(what)) if what else "the picture"
+def _read(view: View, what: tree.Description | None, texts: Sequence[TextSighting], plate: bool) -> AnswerText:
+    subject = definite(view, what, plural(what)) if what else "the picture"
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
     if legible:
         quoted = english.listing([f'"{t}"' for t in legible])
@@ -83,7 +84,7 @@ def illegibility(texts: Sequence[TextSighting]) -> str:
     return "too oblique" if best.angle_deg > MAX_READING_ANGLE_DEG else "too much hidden or cut off"
 
 
-def text_exists(view: View, question: s.TextExists) -> AnswerText:
+def text_exists(view: View, question: tree.TextExists) -> AnswerText:
     """Answer whether there is text on a thing or in view, and quote it."""
     if question.what is None:
         texts: Sequence[TextSighting] = view.texts
@@ -93,7 +94,7 @@ def text_exists(view: View, question: s.TextExists) -> AnswerText:
         if not things:
             return unknown(f"I cannot tell: {none_of(view, question.what)}")
         texts = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
-        where = f"on {the(view, question.what, plural(question.what))}"
+        where = f"on {definite(view, question.what, plural(question.what))}"
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
     if legible:
         return reply(f"yes, I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])} {where}")

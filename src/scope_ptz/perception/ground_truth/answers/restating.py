@@ -1,11 +1,11 @@
-"""Descriptions and tests in words, so that an answer shows how the question was understood."""
+"""Turn parsed descriptions and conditions back into words, so that an answer shows how the question was understood."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.relations import BACKDROP
 from scope_ptz.perception.ground_truth.thing_search import noun_of
@@ -33,30 +33,30 @@ _RELATIONS = {
 _FROM_SIDE = {"left": "from the left", "right": "from the right", "top": "from the top", "bottom": "from the bottom"}
 
 
-def plural(description: s.Description) -> bool:
+def plural(description: tree.Description) -> bool:
     """Return whether a description is in the plural."""
     return len(description.phrases) > 1 or any(english.is_plural(x) for p in description.phrases for x in p.words[-1:])
 
 
-def noun(view: View, description: s.Description, many: bool = False) -> str:
+def noun(view: View, description: tree.Description, many: bool = False) -> str:
     """Return a description in words, without articles: "red cars behind the barrier"."""
     several = len(description.phrases) > 1
-    return english.listing([_phrase(view, p, many or (several and plural(s.Description((p,))))) for p in description.phrases])
+    return english.listing([_phrase(view, p, many or (several and plural(tree.Description((p,))))) for p in description.phrases])
 
 
-def the(view: View, description: s.Description, many: bool = False) -> str:
+def definite(view: View, description: tree.Description, many: bool = False) -> str:
     """Return a description with definite articles: "the red car", "the van and the lorry"."""
     if len(description.phrases) == 1:
         return f"the {noun(view, description, many)}"
-    return english.listing([f"the {_phrase(view, p, plural(s.Description((p,))))}" for p in description.phrases])
+    return english.listing([f"the {_phrase(view, p, plural(tree.Description((p,))))}" for p in description.phrases])
 
 
-def as_asked(view: View, description: s.Description) -> str:
-    """Return a description with an article, singular or plural as in the question."""
-    return the(view, description, plural(description))
+def as_asked(view: View, description: tree.Description) -> str:
+    """Return a description with definite articles, in the singular or plural as in the question."""
+    return definite(view, description, plural(description))
 
 
-def _phrase(view: View, phrase: s.Phrase, many: bool) -> str:
+def _phrase(view: View, phrase: tree.Phrase, many: bool) -> str:
     head, after = noun_of(view, phrase.words)
     core = [*head[:-1], _PRONOUNS.get(head[-1], english.singular(head[-1]))] if head else ["thing"]
     if phrase.order is not None or phrase.ordinal is not None:
@@ -65,11 +65,11 @@ def _phrase(view: View, phrase: s.Phrase, many: bool) -> str:
     return " ".join([shown, *after, *_tests(view, phrase)])
 
 
-def _tests(view: View, phrase: s.Phrase) -> list[str]:
+def _tests(view: View, phrase: tree.Phrase) -> list[str]:
     return [words for words in (after_noun(view, t) for t in phrase.tests) if words]
 
 
-def _ranked(view: View, phrase: s.Phrase, core: str) -> list[str]:
+def _ranked(view: View, phrase: tree.Phrase, core: str) -> list[str]:
     nth = {None: "", -1: "last"}.get(phrase.ordinal, f"{phrase.ordinal}{english.ordinal_suffix(phrase.ordinal or 0)}")
     if phrase.order is None:
         return [nth, core]
@@ -80,83 +80,83 @@ def _ranked(view: View, phrase: s.Phrase, core: str) -> list[str]:
     return [x for x in (nth, SUPERLATIVES[phrase.order.key], core) if x]
 
 
-def after_noun(view: View, test: s.Test) -> str:
+def after_noun(view: View, test: tree.Test) -> str:
     """Return a test as words after a noun: "behind the barrier", "with a helmet", "that are parked"."""
     match test:
-        case s.Has(what=what, worn=worn):
+        case tree.Has(what=what, worn=worn):
             return f"{'wearing' if worn else 'with'} {_items(what)}"
-        case s.Says(words=words):
+        case tree.Says(words=words):
             return f'saying "{" ".join(words).upper()}"' if words else "with text"
-        case s.Not(test=s.Has(what=what)):
+        case tree.Not(test=tree.Has(what=what)):
             return f"without {_items(what)}"
-        case s.Not(test=s.Any(tests=tests)):
+        case tree.Not(test=tree.Any(tests=tests)):
             return f"other than {english.listing([after_noun(view, t) for t in tests])}"
-        case s.Not(test=inner):
+        case tree.Not(test=inner):
             return f"not {after_noun(view, inner)}"
-        case s.Any(tests=tests):
+        case tree.Any(tests=tests):
             return english.listing([after_noun(view, t) for t in tests], "or")
-        case s.Order(key=key, reference=reference):
+        case tree.Order(key=key, reference=reference):
             return f"{SUPERLATIVES[key]} to {as_asked(view, reference)}" if reference else SUPERLATIVES[key]
         case _:
             return _plain(view, test)
 
 
-def _plain(view: View, test: s.Test) -> str:
+def _plain(view: View, test: tree.Test) -> str:
     match test:
-        case s.Relation(kind=kind, other=other, preposition=preposition):
+        case tree.Relation(kind=kind, other=other, preposition=preposition):
             return f"{preposition if kind == 'on' and preposition else _RELATIONS[kind]} {as_asked(view, other)}"
-        case s.Within(metres=metres, other=other, beyond=beyond):
+        case tree.Within(metres=metres, other=other, beyond=beyond):
             of = f" of {as_asked(view, other)}" if other else ""
             return f"{'more than' if beyond else 'within'} {metres:g} m{of}"
-        case s.Between(first=first, second=second):
+        case tree.Between(first=first, second=second):
             return f"between {as_asked(view, first)}" + ("" if first == second else f" and {as_asked(view, second)}")
-        case s.Region(sides=sides, half=half):
+        case tree.Region(sides=sides, half=half):
             return region_words(sides, half)
-        case s.Measured(key=key, other=other):
+        case tree.Measured(key=key, other=other):
             return f"{COMPARATIVES[key]} than {as_asked(view, other)}"
-        case s.Faces(side=side):
+        case tree.Faces(side=side):
             return f"facing {side}"
-        case s.Is(words=words):
+        case tree.Is(words=words):
             return " ".join(words)
         case _:
             return ""
 
 
-def _items(what: s.Description) -> str:
+def _items(what: tree.Description) -> str:
     return english.listing(
         [" ".join(p.words) if p.words[-1] in _PRONOUNS else english.article(" ".join(p.words)) for p in what.phrases]
     )
 
 
-def predicate_words(view: View, tests: Sequence[s.Test], count: int, negated: bool = False) -> str:
+def predicate_words(view: View, tests: Sequence[tree.Test], count: int, negated: bool = False) -> str:
     """Return tests as a predicate: "are parked", "does not have a ladder", "is next to the van"."""
     return english.listing([_predicate(view, t, count, negated) for t in tests], "or" if negated else "and")
 
 
-def _predicate(view: View, test: s.Test, count: int, negated: bool) -> str:
+def _predicate(view: View, test: tree.Test, count: int, negated: bool) -> str:
     match test:
-        case s.Not(test=inner):
+        case tree.Not(test=inner):
             return _predicate(view, inner, count, not negated)
-        case s.Has(what=what, worn=False):
-            return f"{_do('have', 'has', count, negated)} {_items(what)}"
-        case s.Says(words=()):
-            return f"{_do('bear', 'bears', count, negated)} text that I can read"
-        case s.Says(words=words):
-            return f'{_do("say", "says", count, negated)} "{" ".join(words).upper()}"'
-        case s.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _PREDICATE_NOUNS:
-            return f"{_be(count, negated)} {english.article(' '.join(words))}"
+        case tree.Has(what=what, worn=False):
+            return f"{_verb_form('have', 'has', count, negated)} {_items(what)}"
+        case tree.Says(words=()):
+            return f"{_verb_form('bear', 'bears', count, negated)} text that I can read"
+        case tree.Says(words=words):
+            return f'{_verb_form("say", "says", count, negated)} "{" ".join(words).upper()}"'
+        case tree.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _PREDICATE_NOUNS:
+            return f"{_form_of_be(count, negated)} {english.article(' '.join(words))}"
         case _:
-            return f"{_be(count, negated)} {after_noun(view, test)}"
+            return f"{_form_of_be(count, negated)} {after_noun(view, test)}"
 
 
 _PREDICATE_NOUNS = frozenset(["car", "van", "lorry", "truck", "bus", "worker", "person", "cone", "vehicle", "digger", "excavator"])
 
 
-def _be(count: int, negated: bool) -> str:
+def _form_of_be(count: int, negated: bool) -> str:
     return ("is" if count == 1 else "are") + (" not" if negated else "")
 
 
-def _do(many: str, one: str, count: int, negated: bool) -> str:
+def _verb_form(many: str, one: str, count: int, negated: bool) -> str:
     if negated:
         return f"{'does' if count == 1 else 'do'} not {many}"
     return one if count == 1 else many
@@ -173,18 +173,18 @@ def region_words(sides: Sequence[str], half: bool) -> str:
     return {"middle": "in the middle", "top": "at the top", "bottom": "at the bottom"}.get(sides[0], f"on the {sides[0]}")
 
 
-def none_of(view: View, description: s.Description) -> str:
-    """Return the statement that nothing fits: "there is no red car in view"."""
+def none_of(view: View, description: tree.Description) -> str:
+    """Return the statement that nothing matches: "there is no red car in view"."""
     many = plural(description)
-    only_one = len(description.phrases) > 1 and not any(plural(s.Description((p,))) for p in description.phrases)
-    words = english.listing([noun(view, s.Description((p,)), many and not only_one) for p in description.phrases], "or")
+    only_one = len(description.phrases) > 1 and not any(plural(tree.Description((p,))) for p in description.phrases)
+    words = english.listing([noun(view, tree.Description((p,)), many and not only_one) for p in description.phrases], "or")
     return f"there {'are' if many and not only_one else 'is'} no {words} in view"
 
 
-def not_stated(view: View, description: s.Description) -> bool:
-    """Return whether the noun names a background ("lanes", "sky") that the scene does not model.
+def is_unmodelled_background(view: View, description: tree.Description) -> bool:
+    """Return whether a description names a background ("lanes", "sky") that the scene does not model.
 
-    That such a thing is not in view is then no evidence that it does not exist.
+    The background may be visible although the scene does not list it.
     """
     for phrase in description.phrases:
         spans = nouns_in(phrase.words, view.nouns)

@@ -6,12 +6,12 @@ from collections import Counter
 from collections.abc import Iterable
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.counted_things import narrowed
+from scope_ptz.perception.ground_truth.answers.counted_things import with_tests
 from scope_ptz.perception.ground_truth.answers.locations import what
 from scope_ptz.perception.ground_truth.answers.restating import none_of, noun
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, metres, name, names, place, reply
+from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, is_or_are, metres, name, names, place, reply
 from scope_ptz.perception.ground_truth.answers.values import pose_of
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import BACKDROP
 from scope_ptz.perception.ground_truth.thing_facts import ABSENT_VALUES, COLOUR_KEYS, colour_of, fact_words, facts, key_words
 from scope_ptz.perception.ground_truth.thing_search import find
@@ -20,17 +20,17 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 MAX_GROUPS = 10
 """Maximum number of groups of things in a description of the view."""
 MAX_TEXTS = 3
-"""Maximum number of texts in a description of the view, and of things that are described one by one."""
+"""Maximum number of texts in a description of the view, and maximum number of things that are described one by one."""
 STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing", "full", "empty", "stationary", "fallen"})
 """States that are not activities."""
 
 
-def describe(view: View, question: s.Describe) -> AnswerText:
+def describe(view: View, question: tree.Describe) -> AnswerText:
     """Describe the view, largest things first, with the legible texts."""
     if question.what is not None:
         return _describe_things(view, question.what, question.tests)
     if question.tests:
-        return _load_of(view, question.tests) or what(view, s.What(s.Description((s.Phrase(("thing",)),)), question.tests))
+        return _load_of(view, question.tests) or what(view, tree.What(tree.Description((tree.Phrase(("thing",)),)), question.tests))
     groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
     if not groups:
         return reply("I can see nothing that stands out")
@@ -40,10 +40,10 @@ def describe(view: View, question: s.Describe) -> AnswerText:
     return reply(f"I can see {parts}{readable}")
 
 
-def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
-    """Answer "what is on the trailer?" with the load that the scene states; None if there is no such statement."""
+def _load_of(view: View, tests: tuple[tree.Test, ...]) -> AnswerText | None:
+    """Answer "what is on the trailer?" with the load that the scene states; None if the scene does not state it."""
     match tests:
-        case (s.Relation(kind="on", other=other),):
+        case (tree.Relation(kind="on", other=other),):
             carrier = next(iter(find(view, other)), None)
             load = carrier.attributes.get("load") if carrier is not None else None
             if carrier is not None and isinstance(load, str) and load not in ABSENT_VALUES:
@@ -51,14 +51,14 @@ def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
     return None
 
 
-def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...]) -> AnswerText:
+def _describe_things(view: View, what: tree.Description, tests: tuple[tree.Test, ...]) -> AnswerText:
     """Describe things with all facts that the scene states about them."""
-    found = find(view, narrowed(what, tests))
-    if not found:
+    matches = find(view, with_tests(what, tests))
+    if not matches:
         return reply(none_of(view, what))
-    if len(found) > MAX_TEXTS:
-        return reply(f"there are {len(found)} {noun(view, what, many=True)}: {names(found)}")
-    return AnswerText(" ".join(english.sentence(_with_details(t)) for t in found))
+    if len(matches) > MAX_TEXTS:
+        return reply(f"there are {len(matches)} {noun(view, what, many=True)}: {names(matches)}")
+    return AnswerText(" ".join(english.sentence(_with_details(t)) for t in matches))
 
 
 def _with_details(thing: Thing) -> str:
@@ -67,8 +67,8 @@ def _with_details(thing: Thing) -> str:
     ]
     details += [" ".join(key_words(k)) for k, v in facts(thing) if v is True]
     texts = [f'it reads "{t}"' for t in thing.texts]
-    spot = f"there is {english.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
-    return "; ".join([spot, *([", ".join(details)] if details else []), *texts])
+    location = f"there is {english.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
+    return "; ".join([location, *([", ".join(details)] if details else []), *texts])
 
 
 def _groups(things: Iterable[Thing]) -> list[str]:
@@ -92,10 +92,12 @@ def _groups(things: Iterable[Thing]) -> list[str]:
 
 def happening(view: View) -> AnswerText:
     """Answer which things move or work; if none does, describe the view."""
-    busy = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
-    if not busy:
-        return AnswerText(f"Nothing is moving. {describe(view, s.Describe()).text}")
-    parts = [f"{english.article(k) if n == 1 else english.counted(n, k)} {are(n)} {doing}" for (k, doing), n in busy.items()]
+    activities = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
+    if not activities:
+        return AnswerText(f"Nothing is moving. {describe(view, tree.Describe()).text}")
+    parts = [
+        f"{english.article(k) if n == 1 else english.counted(n, k)} {is_or_are(n)} {doing}" for (k, doing), n in activities.items()
+    ]
     return reply(english.listing(parts[:MAX_GROUPS]))
 
 

@@ -28,12 +28,12 @@ def reply(text: str) -> AnswerText:
 
 
 def unknown(text: str) -> AnswerText:
-    """Return an answer that says why the question cannot be answered."""
+    """Return an answer that states why the question cannot be answered."""
     return AnswerText(english.sentence(text), known=False)
 
 
 def name(thing: Thing) -> str:
-    """Return the name of a thing, with_earlier_attempts by its colour if the name contains no colour."""
+    """Return the name of a thing, preceded by its colour if the name contains no colour."""
     colour = colour_of(thing)
     words = english.letters(thing.name).split()
     shown = thing.name if thing.name[:2].isupper() else thing.name[:1].lower() + thing.name[1:]
@@ -50,13 +50,13 @@ def names(things: Iterable[Thing]) -> str:
     return english.listing(parts)
 
 
-def several(things: Sequence[Thing]) -> str:
+def things_with_places(things: Sequence[Thing]) -> str:
     """Return things with their places: "a white van on the left and a red car in the middle"."""
     return english.listing([f"{english.article(name(t))} {place(t)}" for t in things])
 
 
 def place(thing: Thing) -> str:
-    """Return where a thing is in the frame: "on the left", "at the top right", "in the middle"."""
+    """Describe the position of a thing in the frame: "on the left", "at the top right", "in the middle"."""
     x, y = thing.box.centre
     side = "left" if x < SIDE_BAND else "right" if x > 1 - SIDE_BAND else ""
     level = "top" if y < SIDE_BAND * 0.75 else "bottom" if y > 1 - SIDE_BAND * 0.75 else ""
@@ -73,6 +73,6 @@ def metres(distance_m: float) -> str:
     return f"{round(distance_m / step) * step:g} m"
 
 
-def are(count: int) -> str:
+def is_or_are(count: int) -> str:
     """Return "is" or "are" for a count."""
     return "is" if count == 1 else "are"

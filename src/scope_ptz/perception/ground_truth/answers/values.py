@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.legible_text import fact_on_signs
-from scope_ptz.perception.ground_truth.answers.restating import as_asked, none_of, noun, plural, the
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, place, reply, unknown
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.answers.restating import as_asked, definite, none_of, noun, plural
+from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, is_or_are, place, reply, unknown
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.language.concepts import singular_phrase
 from scope_ptz.perception.ground_truth.thing_facts import (
     ABSENT_VALUES,
@@ -30,7 +30,7 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 UNSEEN = frozenset(
     "it time day weather date temperature mood today season month year hour brand owner price name age".split()  # noqa: SIM905
 )
-"""Subjects that a picture cannot answer questions about."""
+"""Subjects about which a picture gives no information."""
 _ACTIVITY_WORDS = frozenset(["doing", "activity", "action", "up"])
 _KEY_SYNONYMS = {
     "state": {"state", "status", "condition", "position"},
@@ -42,14 +42,14 @@ _KEY_SYNONYMS = {
 }
 
 
-def ask(view: View, question: s.Ask) -> AnswerText:
-    """Answer with the value of an attribute, of one thing or of several."""
+def ask(view: View, question: tree.Ask) -> AnswerText:
+    """Answer with the value of an attribute of one or more things."""
     if question.what is None:
         return fact_in_view(view, question.attribute)
-    found = find(view, question.what)
-    if not found:
-        return _of_a_part(view, question) or absent(view, question.what)
-    values = [(t, value_of(t, question.attribute)) for t in found]
+    matches = find(view, question.what)
+    if not matches:
+        return _answer_about_part(view, question) or absent(view, question.what)
+    values = [(t, value_of(t, question.attribute)) for t in matches]
     stated = [(t, v) for t, v in values if v is not None]
     if not stated:
         attribute = " ".join(question.attribute)
@@ -59,8 +59,8 @@ def ask(view: View, question: s.Ask) -> AnswerText:
         verb = "pointing "
     distinct = Counter(v for _, v in stated)
     if len(distinct) == 1:
-        who = the(view, question.what, many=len(stated) > 1)
-        return reply(f"{who} {are(len(stated))} {verb}{stated[0][1]}")
+        who = definite(view, question.what, many=len(stated) > 1)
+        return reply(f"{who} {is_or_are(len(stated))} {verb}{stated[0][1]}")
     if not plural(question.what) and len(stated) <= 4:
         return reply(english.listing([f"the {t.category} {place(t)} is {verb}{v}" for t, v in stated]))
     return reply(
@@ -76,11 +76,11 @@ def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
         return colour if colour or "person" not in thing.concepts else _clothes(thing)
     if _is_clothes(attribute):
         return _clothes(thing)
-    wanted = {canonical(english.singular(x)) for x in attribute}
+    requested = {canonical(english.singular(x)) for x in attribute}
     synonyms = {x for group in _KEY_SYNONYMS.values() if group & set(attribute) for x in group}
     for key, value in facts(thing):
         keys = {canonical(english.singular(x)) for x in key_words(key)}
-        if wanted <= keys or keys & synonyms or keys <= wanted:
+        if requested <= keys or keys & synonyms or keys <= requested:
             return _value(key, value)
     if set(attribute) & _ACTIVITY_WORDS and (pose := pose_of(thing)) is not None:
         return pose
@@ -106,7 +106,7 @@ _GERUNDS = {
 
 
 def pose_of(thing: Thing) -> str | None:
-    """Return what a person or machine is doing, as the scene states it."""
+    """Return the activity of a person or machine that the scene states."""
     for key in ("activity", "action", "doing", "task", "pose", "state"):
         if isinstance(value := thing.attributes.get(key), str):
             return _GERUNDS.get(value, value)
@@ -129,7 +129,7 @@ def _is_clothes(attribute: Sequence[str]) -> bool:
 
 
 def _clothes(thing: Thing) -> str | None:
-    """Return what a person has_item: "an orange vest and a white helmet"."""
+    """Describe the clothing of a person: "an orange vest and a white helmet"."""
     worn: list[str] = []
     for key, value in facts(thing):
         if key in {"wearing", "clothing", "clothes", "outfit", "ppe"}:
@@ -141,36 +141,36 @@ def _clothes(thing: Thing) -> str | None:
     return english.listing(worn) if worn else None
 
 
-def _of_a_part(view: View, question: s.Ask) -> AnswerText | None:
-    """Answer about a part that the scene states as a fact of its owner: "the colour of the worker's helmet"."""
+def _answer_about_part(view: View, question: tree.Ask) -> AnswerText | None:
+    """Answer about a part that the scene states as a fact of the owner: "the colour of the worker's helmet"."""
     if question.what is None:
         return None
-    found = part_values(view, question.what)
-    if not found:
+    matches = part_values(view, question.what)
+    if not matches:
         return None
     part = english.singular(question.what.phrases[0].words[-1])
-    if len({v for _, v in found}) == 1:
-        return reply(f"the {part} is {found[0][1]}" if len(found) == 1 else f"all {len(found)} are {found[0][1]}")
-    return reply(english.listing([f"the {part} of the {t.category} {place(t)} is {v}" for t, v in found]))
+    if len({v for _, v in matches}) == 1:
+        return reply(f"the {part} is {matches[0][1]}" if len(matches) == 1 else f"all {len(matches)} are {matches[0][1]}")
+    return reply(english.listing([f"the {part} of the {t.category} {place(t)} is {v}" for t, v in matches]))
 
 
-def part_values(view: View, what: s.Description) -> list[tuple[Thing, str]]:
+def part_values(view: View, what: tree.Description) -> list[tuple[Thing, str]]:
     """Return owners and values of a part that the scene states as a fact of its owner: "helmet of the worker", "cabin door"."""
     phrase = what.phrases[0]
-    owners = [t.other for t in phrase.tests if isinstance(t, s.Relation) and t.kind == "on"]
+    owners = [t.other for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on"]
     part = phrase.words
     if not owners and len(phrase.words) > 1:
-        owners, part = [s.Description((s.Phrase(phrase.words[:-1]),))], phrase.words[-1:]
+        owners, part = [tree.Description((tree.Phrase(phrase.words[:-1]),))], phrase.words[-1:]
     if not owners:
-        owners = [s.Description((s.Phrase(("thing",)),))]
+        owners = [tree.Description((tree.Phrase(("thing",)),))]
     return [(t, v) for t in find(view, owners[0]) for v in [_part_value(t, part)] if v is not None]
 
 
 def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
-    wanted = names_of(" ".join(words))
+    requested = names_of(" ".join(words))
     for key, value in facts(thing):
         part = singular_phrase(" ".join(x for x in key_words(key) if x not in COLOUR_KEYS) or key)
-        if part in wanted and isinstance(value, str) and value.lower() not in ABSENT_VALUES:
+        if part in requested and isinstance(value, str) and value.lower() not in ABSENT_VALUES:
             return value
     return None
 
@@ -183,7 +183,7 @@ def fact_in_view(view: View, attribute: Sequence[str]) -> AnswerText:
     if stated:
         values = list(dict.fromkeys(v for _, v in stated))
         return reply(f"the {' '.join(attribute)} is {english.listing(values)}")
-    signs = find(view, s.Description((s.Phrase(tuple(attribute)),)))
+    signs = find(view, tree.Description((tree.Phrase(tuple(attribute)),)))
     if "limit" in attribute:
         signs = [t for t in (signs or view.for_reading().things) if any(x.strip().isdigit() for x in t.texts)] or signs
     return fact_on_signs(view, signs, " ".join(attribute)) or unknown(
@@ -193,11 +193,11 @@ def fact_in_view(view: View, attribute: Sequence[str]) -> AnswerText:
 
 def _states(thing: Thing, attribute: Sequence[str]) -> bool:
     """Return whether one fact of the thing contains every word of the attribute."""
-    wanted = {canonical(english.singular(x)) for x in attribute}
-    return any(wanted <= {canonical(english.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
+    requested = {canonical(english.singular(x)) for x in attribute}
+    return any(requested <= {canonical(english.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
 
 
-def absent(view: View, subject: s.Description) -> AnswerText:
+def absent(view: View, subject: tree.Description) -> AnswerText:
     """Answer a question about something that is not in view."""
     if any(p.words and p.words[-1] in UNSEEN for p in subject.phrases):
         return unknown("I cannot tell that from the picture")

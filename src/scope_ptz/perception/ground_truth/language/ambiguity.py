@@ -1,4 +1,4 @@
-"""The choice between several readings of a text. Each has a cost, which does not depend on the scene."""
+"""Choose between several readings of a text by their cost. The cost does not depend on the scene."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
 
 _SPECIFIC: tuple[type[Any], ...] = (
-    s.CompareCount, s.Compare, s.Which, s.HowFar, s.MostCommon, s.TextExists, s.Read, s.IsA, s.Where, s.Count, s.CountKinds,
-    s.Happening,
+    tree.CompareCount, tree.Compare, tree.Which, tree.HowFar, tree.MostCommon, tree.TextExists, tree.Read, tree.IsA, tree.Where,
+    tree.Count, tree.CountKinds, tree.Happening,
 )  # fmt: skip
-"""Types of question that are preferred over the general ones."""
+"""Question types that are preferred to the general ones."""
 
 _TEXT_AND_PROPERTY_NOUNS = frozenset(
     [
@@ -33,48 +33,48 @@ _TEXT_AND_PROPERTY_NOUNS = frozenset(
         "colors",
     ]
 )
-"""Words for texts and properties, which name no things."""
+"""Words for texts and properties, which are not the names of things."""
 
 
 def cheapest(readings: Sequence[Any]) -> Any:
-    """Return the best of several readings, None if there are none.
+    """Return the reading with the lowest cost; None if there are no readings.
 
     Readings that cost the same are ordered by their text, so that the choice never depends on the parser's order.
     """
-    known: dict[int, float] = {}
-    costs = [(0.0 if isinstance(reading, _SPECIFIC) else 20.0) + _cost(reading, known) for reading in readings]
-    least = min(costs, default=0.0)
-    return min((reading for reading, cost in zip(readings, costs, strict=True) if cost == least), key=repr, default=None)
+    cache: dict[int, float] = {}
+    costs = [(0.0 if isinstance(reading, _SPECIFIC) else 20.0) + _cost(reading, cache) for reading in readings]
+    lowest = min(costs, default=0.0)
+    return min((reading for reading, cost in zip(readings, costs, strict=True) if cost == lowest), key=repr, default=None)
 
 
-def _cost(node: Any, known: dict[int, float]) -> float:
-    """Return the cost of a part of a reading; lower is better. Readings share parts, and ``known`` holds the costs of these."""
-    if id(node) not in known:
+def _cost(node: Any, cache: dict[int, float]) -> float:
+    """Return the cost of a part of a reading; lower is better. ``cache`` stores the costs of parts that readings share."""
+    if id(node) not in cache:
         if isinstance(node, tuple):
-            known[id(node)] = sum(_cost(child, known) for child in node)
+            cache[id(node)] = sum(_cost(child, cache) for child in node)
         else:
-            known[id(node)] = _cost_of_node(node, known) if is_dataclass(node) else 0.0
-    return known[id(node)]
+            cache[id(node)] = _cost_of_node(node, cache) if is_dataclass(node) else 0.0
+    return cache[id(node)]
 
 
-def _cost_of_node(node: Any, known: dict[int, float]) -> float:
-    total: float = sum(_cost(getattr(node, field.name), known) for field in fields(node))
+def _cost_of_node(node: Any, cache: dict[int, float]) -> float:
+    total: float = sum(_cost(getattr(node, field.name), cache) for field in fields(node))
     match node:
-        case s.Phrase(words=("thing",)):
+        case tree.Phrase(words=("thing",)):
             total += 1.5
-        case s.Phrase(words=words):
+        case tree.Phrase(words=words):
             spans = nouns_in(words)
             total += 1.0 if spans else 2.0
             total += 4.0 if words[-1] in _TEXT_AND_PROPERTY_NOUNS else 0.0
             total += 0.3 if spans and spans[0][1] < len(words) else 0.0
             total += 0.2 * max(0, len(node.tests) - 1)
-        case s.Is(words=words):
+        case tree.Is(words=words):
             total += 3.0 if nouns_in(words) else 0.5
-        case s.Which(options=s.Description(phrases=(_,))):
+        case tree.Which(options=tree.Description(phrases=(_,))):
             total += 24.0  # "who is nearest the van" does not ask about the van
-        case s.Order(reference=reference):
+        case tree.Order(reference=reference):
             total += 3.0 if reference is not None else 0.0
-        case s.Ask(attribute=words):
+        case tree.Ask(attribute=words):
             total += 3.0 if nouns_in(words) else 0.0
         case _:
             pass
@@ -86,7 +86,7 @@ def _misplaced(node: Any) -> float:
 
     In "the worker next to the van wearing a helmet", the helmet belongs to the worker.
     """
-    if not isinstance(node, s.Phrase) or not any(isinstance(t, s.Has) and t.worn for t in node.tests):
+    if not isinstance(node, tree.Phrase) or not any(isinstance(t, tree.Has) and t.worn for t in node.tests):
         return 0.0
     return 0.0 if is_person(node.words) else 50.0
 

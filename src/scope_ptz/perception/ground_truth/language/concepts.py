@@ -9,19 +9,19 @@ from importlib.resources import files
 
 from scope_ptz import english
 
-CACHED = 8192
-"""Results of a function that are kept: questions and scenes repeat the same few thousand phrases."""
+CACHE_SIZE = 8192
+"""Number of cached results per function. Questions and scenes repeat the same few thousand phrases."""
 
 
 @dataclass(frozen=True, eq=False)
 class Lexicon:
-    """All concepts, with their names and the kinds that they belong to. There is only one, so its methods cache their results."""
+    """All concepts, with their names and the kinds that they belong to. The methods cache their results."""
 
     parents: dict[str, tuple[str, ...]]
     names: dict[str, str]
-    """Every noun, in the singular, with its concept."""
+    """The concept of every noun in the singular."""
 
-    @lru_cache(maxsize=CACHED)  # noqa: B019
+    @lru_cache(maxsize=CACHE_SIZE)  # noqa: B019
     def concept(self, phrase: str) -> str | None:
         """Return the concept of a noun in the singular or plural."""
         words = phrase.replace("-", " ").split()
@@ -30,21 +30,21 @@ class Lexicon:
                 return self.names[form]
         return None
 
-    @lru_cache(maxsize=CACHED)  # noqa: B019
+    @lru_cache(maxsize=CACHE_SIZE)  # noqa: B019
     def kinds(self, concept: str) -> frozenset[str]:
         """Return the concept and everything that it is a kind of."""
-        found = {concept}
+        kinds = {concept}
         for parent in self.parents.get(concept, ()):
-            found |= self.kinds(parent)
-        return frozenset(found)
+            kinds |= self.kinds(parent)
+        return frozenset(kinds)
 
-    @lru_cache(maxsize=CACHED)  # noqa: B019
+    @lru_cache(maxsize=CACHE_SIZE)  # noqa: B019
     def all_names(self, concept: str) -> frozenset[str]:
         """Return every noun, in the singular, for the concept or for a more specific one."""
-        return frozenset(name for name, meant in self.names.items() if concept in self.kinds(meant))
+        return frozenset(name for name, named_concept in self.names.items() if concept in self.kinds(named_concept))
 
 
-@lru_cache(maxsize=CACHED)
+@lru_cache(maxsize=CACHE_SIZE)
 def singular_phrase(phrase: str) -> str:
     """Return the phrase with its last word in the singular."""
     *first, last = phrase.split()
@@ -56,39 +56,39 @@ def lexicon() -> Lexicon:
     """Load the lexicon from ``lexicon.txt``."""
     parents: dict[str, tuple[str, ...]] = {}
     names: dict[str, str] = {}
-    others: list[tuple[str, str]] = []
+    synonyms: list[tuple[str, str]] = []
     for line in files(__package__).joinpath("lexicon.txt").read_text("utf-8").splitlines():
         if not line.strip() or line.startswith("#"):
             continue
         left, _, right = line.partition(":")
-        concept, _, above = (part.strip() for part in left.partition("<"))
-        parents[concept] = tuple(p.strip() for p in above.split(",") if p.strip())
+        concept, _, parent_names = (part.strip() for part in left.partition("<"))
+        parents[concept] = tuple(p.strip() for p in parent_names.split(",") if p.strip())
         names[concept] = concept
-        others += [(other.strip(), concept) for other in right.split(",") if other.strip()]
-    for other, concept in others:
-        names.setdefault(other, concept)
-        names.setdefault(other.replace("-", " "), concept)
+        synonyms += [(synonym.strip(), concept) for synonym in right.split(",") if synonym.strip()]
+    for synonym, concept in synonyms:
+        names.setdefault(synonym, concept)
+        names.setdefault(synonym.replace("-", " "), concept)
     return Lexicon(parents, names)
 
 
-def nouns_in(words: Sequence[str], known: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
+def nouns_in(words: Sequence[str], extra_nouns: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
     """Return spans ``[start, end)`` of words that could be the noun of a phrase: those with the last end, longest first.
 
     Args:
         words: The words of the phrase.
-        known: Nouns in addition to the lexicon's (categories and names of the scene), in the singular.
+        extra_nouns: Nouns of the scene (categories and names) in addition to those of the lexicon, in the singular.
     """
-    return list(_nouns_in(tuple(words), known))
+    return list(_nouns_in(tuple(words), extra_nouns))
 
 
-@lru_cache(maxsize=CACHED)
-def _nouns_in(words: tuple[str, ...], known: frozenset[str]) -> tuple[tuple[int, int], ...]:
+@lru_cache(maxsize=CACHE_SIZE)
+def _nouns_in(words: tuple[str, ...], extra_nouns: frozenset[str]) -> tuple[tuple[int, int], ...]:
     table = lexicon()
     spans = [
         (i, j)
         for i in range(len(words))
         for j in range(i + 1, min(len(words), i + 5) + 1)
-        if table.concept(phrase := " ".join(words[i:j])) or phrase in known or singular_phrase(phrase) in known
+        if table.concept(phrase := " ".join(words[i:j])) or phrase in extra_nouns or singular_phrase(phrase) in extra_nouns
     ]
     if not spans:
         return ()

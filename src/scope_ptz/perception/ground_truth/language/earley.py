@@ -1,8 +1,8 @@
-"""Parsing with Lark's Earley parser, made faster for text whose tokens are known in advance.
+"""A faster variant of Lark's Earley parser, for text whose tokens are known in advance.
 
 An Earley parser predicts every rule that the grammar allows at a position. Most of them cannot begin with the next token and are
-dropped at once, but creating them takes most of the time. Here, only rules that can begin with the next token are predicted. This
-changes no result.
+discarded immediately, but creating them takes most of the time. This variant predicts only the rules that can begin with the next
+token. The results are the same.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Predictions = dict[NonTerminal, list[Rule]]
 
 
 class EarleyGrammar:
-    """A grammar whose parse trees hold every reading.
+    """A grammar whose parse trees contain every reading of a text.
 
     Args:
         grammar: The grammar in Lark's notation, with declared terminals.
@@ -64,7 +64,7 @@ class EarleyGrammar:
 
 
 class _Tokens:
-    """A source of tokens that tells the parser, before each token, which rules to predict."""
+    """A source of tokens that sets the parser's predictions before each token."""
 
     def __init__(self, tokens: Sequence[Token], parser: Parser, predictions: Callable[[str], Predictions]) -> None:
         self._tokens, self._parser, self._predictions = tokens, parser, predictions
@@ -83,17 +83,17 @@ def readings(tree: Tree[Token], build: Callable[[str, list[Any]], Any]) -> list[
         tree: The tree. Its readings share subtrees, and each is built once.
         build: Returns the meaning of a node, from the name of its rule and the meanings of its children.
     """
-    known: dict[int, list[Any]] = {}
+    cache: dict[int, list[Any]] = {}
 
-    def of(node: Any) -> list[Any]:
+    def readings_of(node: Any) -> list[Any]:
         if not isinstance(node, Tree):
             return [node]
-        if id(node) not in known:
-            parts = [of(child) for child in node.children]
+        if id(node) not in cache:
+            parts = [readings_of(child) for child in node.children]
             if node.data == "_ambig":
-                known[id(node)] = [reading for alternative in parts for reading in alternative]
+                cache[id(node)] = [reading for alternative in parts for reading in alternative]
             else:
-                known[id(node)] = [build(str(node.data), list(children)) for children in product(*parts)]
-        return known[id(node)]
+                cache[id(node)] = [build(str(node.data), list(children)) for children in product(*parts)]
+        return cache[id(node)]
 
-    return of(tree)
+    return readings_of(tree)

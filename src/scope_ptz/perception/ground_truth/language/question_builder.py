@@ -1,4 +1,4 @@
-"""Builds questions, as ``question_tree`` defines them, from parse trees."""
+"""Build the questions of ``question_tree`` from parse trees."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from lark import Token
 
-from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 from scope_ptz.perception.ground_truth.language.phrase_builder import (
     Children,
@@ -20,20 +20,20 @@ from scope_ptz.perception.ground_truth.language.phrase_builder import (
     value_of,
 )
 
-EVERYTHING = s.Description((s.Phrase(("thing",)),))
+EVERYTHING = tree.Description((tree.Phrase(("thing",)),))
 
 _THE_VIEW = frozenset(
     ["scene", "view", "picture", "image", "frame", "photo", "surroundings", "everything", "it", "this", "area", "situation"]
 )
 
 
-def _text_owner(what: s.Description) -> s.Description | None:
-    """Return the thing that a text is on ("the words on the van": the van); None if only "the text" is asked for."""
+def _text_owner(what: tree.Description) -> tree.Description | None:
+    """Return the thing that a text is on ("the words on the van": the van); None if the question names only "the text"."""
     phrase = what.phrases[0]
     if phrase.words[-1] not in _TEXT_NOUNS:
         return what
-    holders = [t.other for t in phrase.tests if isinstance(t, s.Relation)]
-    return holders[0] if holders else None
+    owners = [t.other for t in phrase.tests if isinstance(t, tree.Relation)]
+    return owners[0] if owners else None
 
 
 _TEXT_NOUNS = frozenset(
@@ -56,190 +56,190 @@ _TEXT_NOUNS = frozenset(
 )
 
 
-class Subject(tuple[s.Description, str]):
+class Subject(tuple[tree.Description, str]):
     """The subject of a yes-or-no question, with its scope."""
 
 
 class QuestionBuilder(NounPhrases):
-    """Builds questions. Each method builds the grammar rule of its name."""
+    """A builder of questions. Each method builds the node for the grammar rule of the same name."""
 
-    def question(self, c: Children) -> s.Question:
-        return cast(s.Question, next(x for x in c if not isinstance(x, Token)))
+    def question(self, children: Children) -> tree.Question:
+        return cast(tree.Question, next(x for x in children if not isinstance(x, Token)))
 
-    def exists(self, c: Children) -> s.Exists:
-        what = descriptions(c)[0]
+    def exists(self, children: Children) -> tree.Exists:
+        what = descriptions(children)[0]
         amount = what.phrases[0].amount if len(what.phrases) == 1 and what.phrases[0].order is None else None
         if amount is None:
-            return s.Exists(what)
-        if tokens_of(c, "ATLEAST", "MORE"):
-            return s.Exists(what, least=amount + bool(tokens_of(c, "MORE")))
-        if tokens_of(c, "ATMOST", "FEWER"):
-            return s.Exists(what, least=0, most=amount - bool(tokens_of(c, "FEWER")))
-        return s.Exists(what, least=amount, most=amount)
+            return tree.Exists(what)
+        if tokens_of(children, "ATLEAST", "MORE"):
+            return tree.Exists(what, least=amount + bool(tokens_of(children, "MORE")))
+        if tokens_of(children, "ATMOST", "FEWER"):
+            return tree.Exists(what, least=0, most=amount - bool(tokens_of(children, "FEWER")))
+        return tree.Exists(what, least=amount, most=amount)
 
-    def absent(self, c: Children) -> s.Exists:
-        return s.Exists(descriptions(c)[0], negated=True)
+    def absent(self, children: Children) -> tree.Exists:
+        return tree.Exists(descriptions(children)[0], negated=True)
 
-    def count(self, c: Children) -> s.Count:
-        return s.Count(descriptions(c)[0], tests_of(c))
+    def count(self, children: Children) -> tree.Count:
+        return tree.Count(descriptions(children)[0], tests_of(children))
 
-    def count_of(self, c: Children) -> s.Count:
-        what, owner = descriptions(c)
-        return s.Count(what, (s.Relation("on", owner),))
+    def count_of(self, children: Children) -> tree.Count:
+        what, owner = descriptions(children)
+        return tree.Count(what, (tree.Relation("on", owner),))
 
-    def count_any(self, c: Children) -> s.Count:
+    def count_any(self, children: Children) -> tree.Count:
         """Build "how many are wearing helmets?", which is about people, or "how many are red?", which is about anything."""
-        tests = tests_of(c)
-        worn = any(isinstance(t, s.Has) and t.worn for t in tests)
-        return s.Count(s.Description((s.Phrase(("people" if worn else "things",)),)), tests)
+        tests = tests_of(children)
+        worn = any(isinstance(t, tree.Has) and t.worn for t in tests)
+        return tree.Count(tree.Description((tree.Phrase(("people" if worn else "things",)),)), tests)
 
-    def count_read(self, c: Children) -> s.Count:
-        return s.Count(descriptions(c)[0], (s.Says(()),))
+    def count_read(self, children: Children) -> tree.Count:
+        return tree.Count(descriptions(children)[0], (tree.Says(()),))
 
-    def what_read(self, c: Children) -> s.What:
-        return s.What(descriptions(c)[0], (s.Says(()),))
+    def what_read(self, children: Children) -> tree.What:
+        return tree.What(descriptions(children)[0], (tree.Says(()),))
 
-    def count_kinds(self, c: Children) -> s.CountKinds:
-        return s.CountKinds(("colour",) if tokens_of(c, "COLOUR") else ("kind",), descriptions(c)[0])
+    def count_kinds(self, children: Children) -> tree.CountKinds:
+        return tree.CountKinds(("colour",) if tokens_of(children, "COLOUR") else ("kind",), descriptions(children)[0])
 
-    def subject(self, c: Children) -> Subject:
-        return Subject((descriptions(c)[0], "the"))
+    def subject(self, children: Children) -> Subject:
+        return Subject((descriptions(children)[0], "the"))
 
-    def subject_all(self, c: Children) -> Subject:
-        return Subject((descriptions(c)[0], "all"))
+    def subject_all(self, children: Children) -> Subject:
+        return Subject((descriptions(children)[0], "all"))
 
-    def subject_any(self, c: Children) -> Subject:
-        return Subject((descriptions(c)[0], "any"))
+    def subject_any(self, children: Children) -> Subject:
+        return Subject((descriptions(children)[0], "any"))
 
-    def subject_none(self, c: Children) -> Subject:
-        return Subject((descriptions(c)[0], "none"))
+    def subject_none(self, children: Children) -> Subject:
+        return Subject((descriptions(children)[0], "none"))
 
-    def yesno(self, c: Children) -> s.YesNo:
-        ((subject, scope),) = of_kind(c, Subject)
-        return s.YesNo(subject, tests_of(c), scope)
+    def yesno(self, children: Children) -> tree.YesNo:
+        ((subject, scope),) = of_kind(children, Subject)
+        return tree.YesNo(subject, tests_of(children), scope)
 
-    def yesno_has(self, c: Children) -> s.YesNo:
-        ((subject, scope),) = of_kind(c, Subject)
-        has = s.Has(descriptions(c)[0])
-        return s.YesNo(subject, (s.Not(has) if tokens_of(c, "NONE") else has,), scope)
+    def yesno_has(self, children: Children) -> tree.YesNo:
+        ((subject, scope),) = of_kind(children, Subject)
+        has = tree.Has(descriptions(children)[0])
+        return tree.YesNo(subject, (tree.Not(has) if tokens_of(children, "NONE") else has,), scope)
 
-    def isa(self, c: Children) -> s.IsA:
-        subject, what = descriptions(c)
-        return s.IsA(subject, what)
+    def isa(self, children: Children) -> tree.IsA:
+        subject, what = descriptions(children)
+        return tree.IsA(subject, what)
 
-    def ask_colour(self, c: Children) -> s.Ask:
-        return s.Ask(("colour",), self._owned(descriptions(c)))
+    def ask_colour(self, children: Children) -> tree.Ask:
+        return tree.Ask(("colour",), self._owned(descriptions(children)))
 
-    def _owned(self, found: list[s.Description]) -> s.Description:
+    def _owned(self, described: list[tree.Description]) -> tree.Description:
         """Return "helmet on the worker" for "what colour helmet is the worker wearing"."""
-        if len(found) == 1:
-            return found[0]
-        part, owner = found
+        if len(described) == 1:
+            return described[0]
+        part, owner = described
         phrase = part.phrases[0]
         words = tuple(x for x in phrase.words if x not in {"colour", "color", "colours", "colors"})
-        return s.Description((s.Phrase(words, (*phrase.tests, s.Relation("on", owner))),))
+        return tree.Description((tree.Phrase(words, (*phrase.tests, tree.Relation("on", owner))),))
 
-    def colours_seen(self, c: Children) -> s.CountKinds:
-        return s.CountKinds(("colour",), s.Description((s.Phrase(("thing",), tests_of(c)),)))
+    def colours_seen(self, children: Children) -> tree.CountKinds:
+        return tree.CountKinds(("colour",), tree.Description((tree.Phrase(("thing",), tests_of(children)),)))
 
-    def ask_worn(self, c: Children) -> s.Ask:
-        held = value_of(c, "WITH")
-        return s.Ask(("wearing",) if held is None else ("carrying",), descriptions(c)[0])
+    def ask_worn(self, children: Children) -> tree.Ask:
+        with_word = value_of(children, "WITH")
+        return tree.Ask(("wearing",) if with_word is None else ("carrying",), descriptions(children)[0])
 
-    def ask_direction(self, c: Children) -> s.Ask:
-        return s.Ask(("direction",), descriptions(c)[0])
+    def ask_direction(self, children: Children) -> tree.Ask:
+        return tree.Ask(("direction",), descriptions(children)[0])
 
-    def ask_doing(self, c: Children) -> s.Ask:
-        return s.Ask((str(value_of(c, "W")),), descriptions(c)[0])
+    def ask_doing(self, children: Children) -> tree.Ask:
+        return tree.Ask((str(value_of(children, "W")),), descriptions(children)[0])
 
-    def ask_attribute(self, c: Children) -> s.Ask | s.Read:
-        if of_kind(c, Core)[0][-1] in _TEXT_NOUNS:
-            return s.Read(descriptions(c)[0])
-        return s.Ask(tuple(of_kind(c, Core)[0]), descriptions(c)[0])
+    def ask_attribute(self, children: Children) -> tree.Ask | tree.Read:
+        if of_kind(children, Core)[0][-1] in _TEXT_NOUNS:
+            return tree.Read(descriptions(children)[0])
+        return tree.Ask(tuple(of_kind(children, Core)[0]), descriptions(children)[0])
 
-    def ask_of(self, c: Children) -> s.Ask:
-        attribute, what = descriptions(c)
+    def ask_of(self, children: Children) -> tree.Ask:
+        attribute, what = descriptions(children)
         words = attribute.phrases[0].words
         if len(words) > 1 and words[-1] in {"colour", "color"}:  # "the helmet colour of the worker"
-            return s.Ask(("colour",), self._owned([s.Description((s.Phrase(words[:-1]),)), what]))
-        return s.Ask(attribute.phrases[0].words, what)
+            return tree.Ask(("colour",), self._owned([tree.Description((tree.Phrase(words[:-1]),)), what]))
+        return tree.Ask(attribute.phrases[0].words, what)
 
-    def read(self, c: Children) -> s.Read:
-        found = descriptions(c)
-        return s.Read(_text_owner(found[-1]) if found else None)
+    def read(self, children: Children) -> tree.Read:
+        described = descriptions(children)
+        return tree.Read(_text_owner(described[-1]) if described else None)
 
-    def plate(self, c: Children) -> s.Read:
-        found = descriptions(c)
-        return s.Read(found[0] if found else None, plate=True)
+    def plate(self, children: Children) -> tree.Read:
+        described = descriptions(children)
+        return tree.Read(described[0] if described else None, plate=True)
 
-    def legible(self, c: Children) -> s.TextExists:
-        found = descriptions(c)
-        return s.TextExists(found[0] if found else None)
+    def legible(self, children: Children) -> tree.TextExists:
+        described = descriptions(children)
+        return tree.TextExists(described[0] if described else None)
 
-    def where(self, c: Children) -> s.Where:
-        return s.Where(descriptions(c)[0])
+    def where(self, children: Children) -> tree.Where:
+        return tree.Where(descriptions(children)[0])
 
-    def what_at(self, c: Children) -> s.What:
-        who = bool(tokens_of(c, "WHO"))
-        return s.What(s.Description((s.Phrase(("person",)),)) if who else EVERYTHING, tests_of(c))
+    def what_at(self, children: Children) -> tree.What:
+        who = bool(tokens_of(children, "WHO"))
+        return tree.What(tree.Description((tree.Phrase(("person",)),)) if who else EVERYTHING, tests_of(children))
 
-    def what_that(self, c: Children) -> s.What:
-        return s.What(descriptions(c)[0], tests_of(c))
+    def what_that(self, children: Children) -> tree.What:
+        return tree.What(descriptions(children)[0], tests_of(children))
 
-    def kind_is(self, c: Children) -> s.Identify:
-        kind, asked = descriptions(c)
+    def kind_is(self, children: Children) -> tree.Identify:
+        kind, description = descriptions(children)
         spans = nouns_in(kind.phrases[0].words)
         noun = kind.phrases[0].words[spans[0][0] : spans[0][1]] if spans else ()
-        return s.Identify(
-            s.Description(
-                tuple(replace(p, words=(*p.words[:-1], *noun)) if noun and p.words[-1] == "one" else p for p in asked.phrases)
+        return tree.Identify(
+            tree.Description(
+                tuple(replace(p, words=(*p.words[:-1], *noun)) if noun and p.words[-1] == "one" else p for p in description.phrases)
             )
         )
 
-    def identify(self, c: Children) -> s.Identify | s.Read:
-        what = descriptions(c)[0]
+    def identify(self, children: Children) -> tree.Identify | tree.Read:
+        what = descriptions(children)[0]
         owner = _text_owner(what)
-        return s.Identify(what) if owner is None or owner == what else s.Read(owner)
+        return tree.Identify(what) if owner is None or owner == what else tree.Read(owner)
 
-    def who(self, _: Children) -> s.What:
-        return s.What(s.Description((s.Phrase(("person",)),)))
+    def who(self, _: Children) -> tree.What:
+        return tree.What(tree.Description((tree.Phrase(("person",)),)))
 
-    def which(self, c: Children) -> s.Which:
-        key = value_of(c, "CMP") or value_of(c, "SUP")
-        return s.Which(cast(s.OrderKey, key), descriptions(c)[-1])
+    def which(self, children: Children) -> tree.Which:
+        key = value_of(children, "CMP") or value_of(children, "SUP")
+        return tree.Which(cast(tree.OrderKey, key), descriptions(children)[-1])
 
-    def far(self, c: Children) -> s.HowFar:
-        what, *other = descriptions(c)
+    def far(self, children: Children) -> tree.HowFar:
+        what, *other = descriptions(children)
         if len(what.phrases) == 2 and not other:
-            what, *other = (s.Description((p,)) for p in what.phrases)
-        return s.HowFar(what, other[0] if other else None)
+            what, *other = (tree.Description((p,)) for p in what.phrases)
+        return tree.HowFar(what, other[0] if other else None)
 
-    def compare(self, c: Children) -> s.Compare:
-        first, second = descriptions(c)
-        return s.Compare(cast(s.OrderKey, value_of(c, "CMP")), first, second)
+    def compare(self, children: Children) -> tree.Compare:
+        first, second = descriptions(children)
+        return tree.Compare(cast(tree.OrderKey, value_of(children, "CMP")), first, second)
 
-    def compare_count(self, c: Children) -> s.CompareCount:
-        first, second = descriptions(c)
-        return s.CompareCount(self._sense(c), first, second)
+    def compare_count(self, children: Children) -> tree.CompareCount:
+        first, second = descriptions(children)
+        return tree.CompareCount(self._sense(children), first, second)
 
-    def more_of(self, c: Children) -> s.CompareCount:
-        options = descriptions(c)[0].phrases
-        first, second = s.Description(options[:1]), s.Description(options[1:])
-        return s.CompareCount(self._sense(c), first, second, which=True)
+    def more_of(self, children: Children) -> tree.CompareCount:
+        options = descriptions(children)[0].phrases
+        first, second = tree.Description(options[:1]), tree.Description(options[1:])
+        return tree.CompareCount(self._sense(children), first, second, which=True)
 
-    def _sense(self, c: Children) -> Any:
-        return "same" if tokens_of(c, "SAMEAS") else "fewer" if tokens_of(c, "FEWER") else "more"
+    def _sense(self, children: Children) -> Any:
+        return "same" if tokens_of(children, "SAMEAS") else "fewer" if tokens_of(children, "FEWER") else "more"
 
-    def common(self, c: Children) -> s.MostCommon:
-        found = descriptions(c)
-        attribute = ("colour",) if tokens_of(c, "COLOUR") else ("kind",)
-        return s.MostCommon(attribute, found[-1] if found else EVERYTHING, bool(tokens_of(c, "LEAST")))
+    def common(self, children: Children) -> tree.MostCommon:
+        described = descriptions(children)
+        attribute = ("colour",) if tokens_of(children, "COLOUR") else ("kind",)
+        return tree.MostCommon(attribute, described[-1] if described else EVERYTHING, bool(tokens_of(children, "LEAST")))
 
-    def describe(self, c: Children) -> s.Describe:
-        found = descriptions(c)
-        if found and found[0].phrases[0].words[-1] not in _THE_VIEW:
-            return s.Describe(tests_of(c), found[0])
-        return s.Describe(tests_of(c) or (found[0].phrases[0].tests if found else ()))
+    def describe(self, children: Children) -> tree.Describe:
+        described = descriptions(children)
+        if described and described[0].phrases[0].words[-1] not in _THE_VIEW:
+            return tree.Describe(tests_of(children), described[0])
+        return tree.Describe(tests_of(children) or (described[0].phrases[0].tests if described else ()))
 
-    def happening(self, _: Children) -> s.Happening:
-        return s.Happening()
+    def happening(self, _: Children) -> tree.Happening:
+        return tree.Happening()

@@ -15,10 +15,10 @@ from scope_ptz.perception.ground_truth.language.question_tree import Description
 from scope_ptz.perception.ground_truth.language.tokeniser import tokenise
 
 MAX_TOKENS = 40
-"""Longer input is not parsed: it is slow to parse and unlikely to describe a picture."""
+"""Maximum number of tokens. Longer input is not parsed, because it is slow to parse and unlikely to be about a picture."""
 
 MAX_CONNECTIVES = 6
-"""Input with more connectives ("next to", "with", "that") is not parsed, because each multiplies the number of readings."""
+"""Maximum number of connectives ("next to", "with", "that"), each of which multiplies the number of readings."""
 
 _CONNECTIVES = frozenset({"REL", "WITH", "WITHOUT", "WEAR", "HAVE", "OF", "BETWEEN", "THAT", "FROM", "TO", "EXCEPT"})
 
@@ -32,20 +32,22 @@ def _grammar() -> EarleyGrammar:
 @lru_cache(maxsize=512)
 def parse_description(text: str) -> Description:
     """Return the best reading of a noun phrase. Text that fits no rule becomes a list of words that must all apply."""
-    found = _best(text, "description")
-    if isinstance(found, Description):
-        return found
+    reading = _best(text, "description")
+    if isinstance(reading, Description):
+        return reading
     return Description((Phrase(tuple(str(t) for t in tokenise(text) if t.type in {"W", "COLOUR", "SIDE", "NUM", "TEXTNOUN"})),))
 
 
 @lru_cache(maxsize=512)
 def parse_question(text: str) -> Question | None:
     """Return the best reading of a question; None if it fits no rule."""
-    found = _best(text, "question") or _best(text, "description")
-    if not isinstance(found, Description):
-        return found
-    known = all(nouns_in(p.words) for p in found.phrases)  # "any vehicles?" without its verb
-    return Exists(found) if known else None
+    reading = _best(text, "question") or _best(text, "description")
+    if not isinstance(reading, Description):
+        return reading
+    has_nouns = all(
+        nouns_in(p.words) for p in reading.phrases
+    )  # a noun phrase alone, such as "any vehicles?", asks whether there are any
+    return Exists(reading) if has_nouns else None
 
 
 def _best(text: str, start: str) -> Description | Question | None:
@@ -56,5 +58,5 @@ def _best(text: str, start: str) -> Description | Question | None:
         forest = _grammar().parse(tokens, start)
     except LarkError:
         return None
-    found: Description | Question | None = cheapest(readings(forest, QuestionBuilder().build))
-    return found
+    reading: Description | Question | None = cheapest(readings(forest, QuestionBuilder().build))
+    return reading

@@ -25,7 +25,7 @@ class Phrase:
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """Phrases joined by "and" or "or": everything that fits any of them."""
+    """Phrases joined by "and" or "or". It matches everything that any of the phrases matches."""
 
     phrases: tuple[Phrase, ...]
 
@@ -40,7 +40,7 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """A relation to other things. ``preposition`` is the original wording, because one kind covers several."""
+    """A relation to other things. ``preposition`` is the original wording, because one kind covers several prepositions."""
 
     kind: RelationKind
     other: Description
@@ -65,7 +65,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Has:
-    """A test for parts and clothes ("with a yellow helmet", "wearing orange vests"). ``worn``: it is about clothes."""
+    """A test for parts and clothes ("with a yellow helmet", "wearing orange vests"). ``worn`` is True for clothes."""
 
     what: Description
     worn: bool = False
@@ -135,8 +135,8 @@ class Exists:
 
     Attributes:
         negated: Whether the question is "is there no ...".
-        least: How many there must be at least.
-        most: How many there may be at most.
+        least: The minimum number of things.
+        most: The maximum number of things; None if there is no maximum.
     """
 
     what: Description
@@ -180,7 +180,9 @@ class IsA:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """Ask for the value of an attribute ("what colour is the van?"). ``what`` is None for any thing ("which lane is closed?")."""
+    """Ask for the value of an attribute ("what colour is the van?"). ``what`` is None if any thing may have it ("which lane is
+    closed?").
+    """
 
     attribute: Words
     what: Description | None
@@ -188,7 +190,7 @@ class Ask:
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """Ask for the text on something, or for all text when ``what`` is None. ``plate``: only the number plate."""
+    """Ask for the text on something, or for all text when ``what`` is None. With ``plate``, ask only for the number plate."""
 
     what: Description | None
     plate: bool = False
@@ -210,7 +212,7 @@ class Where:
 
 @dataclass(frozen=True, slots=True)
 class What:
-    """Ask for the names of all things that fit ("what is behind the barrier?", "which cars are parked?")."""
+    """Ask for the names of all things that match ("what is behind the barrier?", "which cars are parked?")."""
 
     what: Description
     tests: tuple[Test, ...] = ()
@@ -250,7 +252,7 @@ class Compare:
 
 @dataclass(frozen=True, slots=True)
 class CompareCount:
-    """Ask whether there are more, fewer or equally many things of two kinds. ``which``: ask of which kind there are more."""
+    """Ask whether there are more, fewer or equally many things of two kinds. With ``which``, ask which kind has more."""
 
     sense: Literal["more", "fewer", "same"]
     first: Description

@@ -1,4 +1,4 @@
-"""Tokeniser that splits text into closed-class phrases of the vocabulary, numbers, ordinals, quoted text and other words."""
+"""Split text into typed tokens: closed-class phrases of the vocabulary, numbers, ordinals, quoted text and other words."""
 
 from __future__ import annotations
 
@@ -82,23 +82,23 @@ def tokenise(text: str) -> list[Token]:
         if size := _noun_length(words, i, table):
             tokens += [Token("W", word) for word in words[i : i + size]]
             i += size
-        elif size := _closed_class_length(words, i, starts=not tokens):
+        elif size := _closed_class_length(words, i, is_first=not tokens):
             i = _add_closed_class(tokens, words, i, size)
         else:
-            counts = words[i] == "one" and i + 1 < len(words) and (words[i + 1],) not in table
-            tokens.append(Token("NUM", "1") if counts else _open_class(words[i]))
+            is_number = words[i] == "one" and i + 1 < len(words) and (words[i + 1],) not in table
+            tokens.append(Token("NUM", "1") if is_number else _open_class(words[i]))
             i += 1
     while tokens and tokens[0].type == "COMMA":
         tokens.pop(0)
     return tokens
 
 
-def _closed_class_length(words: list[str], start: int, *, starts: bool) -> int:
-    """Return the number of words in the closed-class phrase at ``start``, or 0. ``starts``: no token precedes it."""
+def _closed_class_length(words: list[str], start: int, *, is_first: bool) -> int:
+    """Return the number of words in the closed-class phrase at ``start``, or 0. ``is_first`` is True if no token precedes it."""
     table, longest = _phrases()
     for size in range(min(longest, len(words) - start), 0, -1):
-        found = table.get(tuple(words[start : start + size]))
-        if found and not (starts and found[0] == "THAT"):
+        entry = table.get(tuple(words[start : start + size]))
+        if entry and not (is_first and entry[0] == "THAT"):
             return size
     return 0
 
@@ -159,21 +159,23 @@ def _literal(words: list[str], start: int) -> tuple[str, int]:
 
 def _without_frame(words: list[str]) -> list[str]:
     """Drop phrases such as "in the picture" and "of the whole scene", because every question is about the picture."""
-    kept: list[str] = []
+    result: list[str] = []
     i = 0
     while i < len(words):
         end = i + 1
         if words[i] in _FRAME_PREPOSITIONS and i > 0:
-            while end < len(words) and words[end] in _FRAME_FILLERS and not (words[end] in _FRAME_WORDS and _closes(words, end)):
+            while (
+                end < len(words) and words[end] in _FRAME_FILLERS and not (words[end] in _FRAME_WORDS and _ends_phrase(words, end))
+            ):
                 end += 1
             if _ends_in_place(words, end) or (
-                end < len(words) and words[end] in _FRAME_WORDS and _closes(words, end) and end > i + 1
+                end < len(words) and words[end] in _FRAME_WORDS and _ends_phrase(words, end) and end > i + 1
             ):
                 i = end + 1
                 continue
-        kept.append(words[i])
+        result.append(words[i])
         i += 1
-    return kept
+    return result
 
 
 def _ends_in_place(words: list[str], at: int) -> bool:
@@ -181,6 +183,6 @@ def _ends_in_place(words: list[str], at: int) -> bool:
     return at < len(words) and words[at] in _PLACE_WORDS and words[at + 1 :] in ([], ["?"])
 
 
-def _closes(words: list[str], at: int) -> bool:
+def _ends_phrase(words: list[str], at: int) -> bool:
     """Return whether the frame word is the last of its phrase."""
     return at + 1 >= len(words) or words[at + 1] not in _FRAME_WORDS

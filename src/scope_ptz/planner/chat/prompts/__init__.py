@@ -1,6 +1,6 @@
 """Load the system prompts, which are versioned files.
 
-A released file is never changed. An improved prompt gets the next number, so that runs stay comparable.
+A released file is never changed. An improved prompt gets the next number, so that runs remain comparable.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.geometry import Limits, Pose
 
 DEFAULT_PROMPT = "standard-1"
-_BLIND = (
+_WITHOUT_PICTURES = (
     "You see nothing yourself: what the camera sees you learn from the results of count_objects, query_answer, zoom_to_object and "
     "track_object."
 )
-_SEEING = (
+_WITH_PICTURES = (
     "The last image is always the newest view of the camera; use it. count_objects, query_answer, zoom_to_object and track_object "
     "look more closely, and further than this view."
 )
@@ -44,7 +44,7 @@ class Prompt:
             presets: The camera's presets.
             limits: The camera's limits.
             start: The camera's pose when the conversation starts.
-            sees: Whether the planner takes images.
+            sees: Whether the planner accepts images.
 
         Raises:
             ConfigError: The prompt has an unknown or malformed placeholder.
@@ -59,14 +59,14 @@ class Prompt:
             "tilt": pose["tilt_deg"],
             "zoom": pose["zoom"],
         }
-        known = {name: f"{value:g}" for name, value in numbers.items()}
-        known["min_pan"], known["max_pan"] = f"{limits.min_pan_deg:g}", f"{limits.max_pan_deg:g}"
+        values = {name: f"{value:g}" for name, value in numbers.items()}
+        values["min_pan"], values["max_pan"] = f"{limits.min_pan_deg:g}", f"{limits.max_pan_deg:g}"
         if limits.pan_endless:
-            known["max_pan"] += " (endless)"
-        known["presets"] = ", ".join(" ".join(name.split()) for name in presets) if presets else "none"
-        known["sight"] = _SEEING if sees else _BLIND
+            values["max_pan"] += " (endless)"
+        values["presets"] = ", ".join(" ".join(name.split()) for name in presets) if presets else "none"
+        values["sight"] = _WITH_PICTURES if sees else _WITHOUT_PICTURES
         try:
-            return Template(self.text).substitute(known)
+            return Template(self.text).substitute(values)
         except (KeyError, ValueError) as error:
             raise ConfigError(f"The prompt {self.name} has an unknown or malformed placeholder: {error}.") from error
 

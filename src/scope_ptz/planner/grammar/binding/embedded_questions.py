@@ -27,7 +27,10 @@ _WH = re.compile(
     re.IGNORECASE,
 )
 _PLURAL = re.compile(r"(?:[^s]s|\b(?:people|men|women|children|feet))$", re.IGNORECASE)
-"""Matches words that look like plurals. It must remain coarse ("this" counts as a plural), because recorded plans depend on it."""
+"""The pattern for words that look like plurals.
+
+It must remain coarse ("this" counts as a plural), because recorded plans depend on it.
+"""
 
 _QUESTION_WORD = re.compile(
     r"(what|which|who|whom|whose|where|when|why|how|is|are|was|were|do|does|did|can|could|has|have|any)\b", re.IGNORECASE
@@ -43,40 +46,40 @@ def direct_question(text: str) -> str:
 
 def _yes_no_question(phrase: str) -> str | None:
     """Return the question for "if the gate is open" or "whether you can see a van"; None for other phrases."""
-    found = _YES_NO.fullmatch(phrase)
-    if not found:
+    match = _YES_NO.fullmatch(phrase)
+    if not match:
         return None
-    clause = re.sub(r"\b(there|it|they|that|anyone|anybody|someone|everyone)'(s|re)\b", _expanded, found[1])
+    clause = re.sub(r"\b(there|it|they|that|anyone|anybody|someone|everyone)'(s|re)\b", _expand_contraction, match[1])
     if see := re.fullmatch(r"you (?:can )?(see|spot|make out|read) (.+)", clause, re.IGNORECASE):
         return f"can you {see[1]} {see[2]}"
     if inverted := _WITH_AUXILIARY.fullmatch(clause):
         return f"{inverted[2]} {inverted[1]} {inverted[3]}"
-    if short := re.fullmatch(r"(.+?)'s (.+)", clause):
-        return f"is {short[1]} {short[2]}"
+    if match := re.fullmatch(r"(.+?)'s (.+)", clause):
+        return f"is {match[1]} {match[2]}"
     return f"is it true that {clause}"
 
 
-def _expanded(short: re.Match[str]) -> str:
-    return f"{short[1]} {'are' if short[2] == 're' else 'is'}"
+def _expand_contraction(contraction: re.Match[str]) -> str:
+    return f"{contraction[1]} {'are' if contraction[2] == 're' else 'is'}"
 
 
 def _you_see_question(phrase: str) -> str | None:
     """Return the question for "what you see" or "what you can see there"; None for other phrases."""
-    found = re.fullmatch(
+    match = re.fullmatch(
         r"(what(?: else)?|which \w+|how many \w+|who(?:m)?) you (can )?(see|find|notice|spot|observe)( .+)?", phrase, re.IGNORECASE
     )
-    return f"{found[1]} {'can' if found[2] else 'do'} you {found[3]}{found[4] or ''}" if found else None
+    return f"{match[1]} {'can' if match[2] else 'do'} you {match[3]}{match[4] or ''}" if match else None
 
 
 def _wh_question(phrase: str) -> str | None:
     """Return the question for "what colour the door is" or "what the sign says"; None for other phrases."""
-    if found := re.fullmatch(rf"{_WH.pattern} ({_AUXILIARY})( .+)?", phrase, re.IGNORECASE):
-        return f"{found[1]} {found[3]} {found[2]}{found[4] or ''}"
-    if found := re.fullmatch(rf"{_WH.pattern} ({'|'.join(_BASE_FORMS)})( .+)?", phrase, re.IGNORECASE):
-        many = re.match(r"they|these|those", found[2], re.IGNORECASE)
-        return f"{found[1]} {'do' if many else 'does'} {found[2]} {_BASE_FORMS[found[3].lower()]}{found[4] or ''}"
-    if found := re.fullmatch(r"what(?:'s| is) happening(.*)", phrase, re.IGNORECASE):
-        return f"what is happening{found[1]}"
+    if match := re.fullmatch(rf"{_WH.pattern} ({_AUXILIARY})( .+)?", phrase, re.IGNORECASE):
+        return f"{match[1]} {match[3]} {match[2]}{match[4] or ''}"
+    if match := re.fullmatch(rf"{_WH.pattern} ({'|'.join(_BASE_FORMS)})( .+)?", phrase, re.IGNORECASE):
+        many = re.match(r"they|these|those", match[2], re.IGNORECASE)
+        return f"{match[1]} {'do' if many else 'does'} {match[2]} {_BASE_FORMS[match[3].lower()]}{match[4] or ''}"
+    if match := re.fullmatch(r"what(?:'s| is) happening(.*)", phrase, re.IGNORECASE):
+        return f"what is happening{match[1]}"
     return None
 
 

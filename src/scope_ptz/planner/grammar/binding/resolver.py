@@ -15,7 +15,7 @@ from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.lexing.lexer import preset_key, within_one_edit
 from scope_ptz.planner.grammar.lexing.phrases import phrase_table
 
-_MIN_SIMILARITY = 0.8  # of two preset names, from 0 to 1
+_MIN_SIMILARITY = 0.8  # minimum similarity of two preset names, from 0 to 1
 _MAX_NAME_WORDS = 4
 _NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
 _NOT_PRESETS = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
@@ -71,9 +71,9 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
     inside = [p for p in presets if len(name_key) >= 3 and set(preset_key(name)) < set(preset_key(p))]
     if len(inside) == 1:
         return inside[0]
-    near = [preset for preset, key in keys.items() if len(key) >= 4 and within_one_edit(name_key, key)]
-    if len(near) == 1:
-        return near[0]
+    similar = [preset for preset, key in keys.items() if len(key) >= 4 and within_one_edit(name_key, key)]
+    if len(similar) == 1:
+        return similar[0]
     short = [preset for preset, key in keys.items() if abbreviates(name_key, key)]
     if len(short) == 1:
         return short[0]
@@ -186,14 +186,14 @@ class Resolver:
 
     def place(self, ref: ast.PresetRef) -> ast.PresetRef:
         """Return a reference with the exact name of one of the presets."""
-        found = self.find_place(ref)
-        if found is None:
+        preset = self.find_place(ref)
+        if preset is None:
             if self.presets is None:
                 raise UnresolvedError(f"I did not understand '{ref.name}' as the name of a preset. Which one do you mean?")
             listing = ", ".join(self.presets) or "none"
             raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {listing}. Which one do you mean?")
-        self.preset = found
-        return ast.PresetRef(found, explicit=True)
+        self.preset = preset
+        return ast.PresetRef(preset, explicit=True)
 
     def find_place(self, ref: ast.PresetRef) -> str | None:
         """Return the name of the preset that is referred to; None if there is no such preset."""
@@ -231,14 +231,14 @@ class Resolver:
 
     def _gopreset(self, step: ast.GoPreset) -> Sequence[ast.Step]:
         ref = step.ref
-        found = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.explicit else None
+        preset = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.explicit else None
         if step.how == "look" and not ref.explicit:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
-        if step.how == "show" and not ref.explicit and found is None:
+        if step.how == "show" and not ref.explicit and preset is None:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
-        if step.how == "bare" and found is None and ref.has_article and self.conversation:
+        if step.how == "bare" and preset is None and ref.has_article and self.conversation:
             return self._whatabout(ast.WhatAbout(ast.Thing(re.sub(r"^(the|an?) ", "", ref.name))))
-        if step.how == "bare" and found is None and not ref.explicit:
+        if step.how == "bare" and preset is None and not ref.explicit:
             raise UnresolvedError(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
         return [ast.GoPreset(self.place(ref))]
 
@@ -334,7 +334,7 @@ class Resolver:
                 return self.bind(steps * (step.times or 1))
         raise UnresolvedError("What shall I do again?")
 
-    # Steps with steps inside -------------------------------------------------------------------------------------------
+    # Nested steps ------------------------------------------------------------------------------------------------------
     def _repeat(self, step: ast.Repeat) -> Sequence[ast.Step]:
         return [replace(step, body=self.bind(step.body))]
 

@@ -27,10 +27,10 @@ class Understanding:
 
 
 def understand(instruction: str, presets: Sequence[str] | None, conversation: Sequence[PastTurn] = ()) -> Understanding:
-    """Return the steps of an instruction, or a clarifying question or refusal. Never raises, for any text.
+    """Return the steps of an instruction, or a clarifying question or refusal. It does not raise errors for any text.
 
     Args:
-        instruction: What the user typed.
+        instruction: The text that the user typed.
         presets: The camera's presets; None accepts preset names as written.
         conversation: The earlier turns.
     """
@@ -38,9 +38,9 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(clarification=f"What shall I do? For example: {_EXAMPLES}.")
     if is_harmful(instruction):
         return Understanding(refusal=REFUSAL)
-    known = None if presets is None else tuple(presets)
-    resolver = Resolver(known, tuple(conversation))
-    steps = parse(instruction, known or ()).steps
+    preset_names = None if presets is None else tuple(presets)
+    resolver = Resolver(preset_names, tuple(conversation))
+    steps = parse(instruction, preset_names or ()).steps
     try:
         bound = resolver.bind(steps) if steps is not None else _as_question(resolver, instruction)
     except UnresolvedError as question:
@@ -55,7 +55,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
 
 
 def _as_question(resolver: Resolver, instruction: str) -> tuple[ast.Step, ...]:
-    """Return the step that passes a question without a grammar rule to perception."""
+    """Return the step that passes a question to perception when no grammar rule matches it."""
     text = instruction.strip()
     if text.endswith("?") and len(text.split()) > 1 and text.count("?") == 1 and is_about_the_scene(text):
         return resolver.bind([ast.Ask(text)])

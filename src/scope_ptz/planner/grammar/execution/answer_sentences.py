@@ -1,4 +1,4 @@
-"""Words and sentences of the grammar planner's answers, which state only facts from tool results."""
+"""Words and sentences for the grammar planner's answers, which state only facts from tool results."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ def number(value: float) -> str:
     return str(int(value)) if float(value).is_integer() else f"{value:.2f}".rstrip("0").rstrip(".")
 
 
-def spelled(count: int) -> str:
-    """Return a count from 1 to 12 as a word, any other in digits. Used for repetitions; counts of objects are always in digits."""
+def count_word(count: int) -> str:
+    """Return a count from 1 to 12 as a word, and any other count in digits. Counts of objects are always in digits."""
     return english.number_word(count) if 0 < count <= _MAX_SPELLED else str(count)
 
 
 def head_and_rest(description: str) -> tuple[str, str]:
     """Split a description after its head noun: "red cars" and " behind the gate"."""
-    cut = _MODIFIER_START.search(description)
-    return (description[: cut.start()], description[cut.start() :]) if cut else (description, "")
+    match = _MODIFIER_START.search(description)
+    return (description[: match.start()], description[match.start() :]) if match else (description, "")
 
 
 def noun(description: str, count: float) -> str:
@@ -56,8 +56,8 @@ def _inflected(word: str, inflect: Callable[[str], str]) -> str:
     """Return an inflected form of a word. Letters that do not change keep their case."""
     plain = word.lower()
     inflected = inflect(plain)
-    differs = (i for i, (a, b) in enumerate(zip(plain, inflected, strict=False)) if a != b)
-    unchanged = next(differs, min(len(plain), len(inflected)))
+    differences = (i for i, (a, b) in enumerate(zip(plain, inflected, strict=False)) if a != b)
+    unchanged = next(differences, min(len(plain), len(inflected)))
     return word[:unchanged] + inflected[unchanged:]
 
 
@@ -78,7 +78,7 @@ def pose_text(pose: Mapping[str, float]) -> str:
 
 
 def move_text(arguments: Mapping[str, Any]) -> str:
-    """Return what a relative move did, in the past tense: "panned right 20 degrees and tilted down 10 degrees"."""
+    """Describe a relative move in the past tense: "panned right 20 degrees and tilted down 10 degrees"."""
     parts = []
     if pan := arguments.get("pan_deg"):
         parts.append(f"panned {'right' if pan > 0 else 'left'} {degrees(pan)}")
@@ -99,14 +99,14 @@ def degrees(value: float) -> str:
 
 
 def moves_text(arguments: Mapping[str, Any], times: int) -> str:
-    """Return how a loop moved: "two pans of 15 degrees to the right"."""
+    """Describe the moves of a loop: "two pans of 15 degrees to the right"."""
     plural = "" if times == 1 else "s"
     pan, tilt = arguments.get("pan_deg"), arguments.get("tilt_deg")
     if pan and not tilt and len(arguments) == 1:
-        return f"{spelled(times)} pan{plural} of {degrees(pan)} to the {'right' if pan > 0 else 'left'}"
+        return f"{count_word(times)} pan{plural} of {degrees(pan)} to the {'right' if pan > 0 else 'left'}"
     if tilt and not pan and len(arguments) == 1:
-        return f"{spelled(times)} tilt{plural} of {degrees(tilt)} {'up' if tilt > 0 else 'down'}"
-    return f"{spelled(times)} move{plural}"
+        return f"{count_word(times)} tilt{plural} of {degrees(tilt)} {'up' if tilt > 0 else 'down'}"
+    return f"{count_word(times)} move{plural}"
 
 
 def clamped_text(clamped: Sequence[str]) -> str:
@@ -117,7 +117,7 @@ def clamped_text(clamped: Sequence[str]) -> str:
 
 
 def sentence(text: str) -> str:
-    """Return the text with a capital letter and a full stop, keeping a question or exclamation mark."""
+    """Return the text with a capital first letter, and with a full stop unless it ends with other punctuation."""
     text = text.strip()
     if not text:
         return ""

@@ -40,10 +40,10 @@ def position_history(conversation: Sequence[PastTurn]) -> PositionHistory:
         return PositionHistory()
     from scope_ptz.tools.registry import TOOLS
 
-    here: VisitedPosition | None = None
+    current: VisitedPosition | None = None
     before: VisitedPosition | None = None
     for turn in conversation:
-        at_start = here
+        at_start = current
         for outcome in (o for exchange in turn.exchanges for o in exchange.outcomes):
             pose = _pose(outcome.result)
             if outcome.error is not None or pose is None or outcome.call.name not in TOOLS.moving:
@@ -51,10 +51,10 @@ def position_history(conversation: Sequence[PastTurn]) -> PositionHistory:
             at_start = at_start or _start_of_move(outcome, pose)
             before = at_start or before
             name = outcome.call.arguments.get("name")
-            here = VisitedPosition(
+            current = VisitedPosition(
                 pose, str(name) if outcome.call.name == "go_to_preset" else None, home=outcome.call.name == "go_home"
             )
-    return PositionHistory(here.preset if here else None, before)
+    return PositionHistory(current.preset if current else None, before)
 
 
 def _pose(result: dict[str, Any] | None) -> Pose | None:

@@ -22,7 +22,7 @@ class ConditionTests(RunState):
 
     def _evaluate(self, condition: ast.Condition) -> Run:
         if isinstance(condition, ast.Answered):
-            return self._last_yes, ""
+            return self._last_was_yes, ""
         if isinstance(condition, ast.Negated):
             met, reason = yield from self._evaluate(condition.part)
             return not met, reason

@@ -16,7 +16,7 @@ _TOLERANCE = 1e-6
 
 
 def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) -> dict[str, Any]:
-    """Return the arguments of the call that makes a move; empty if the camera is already there.
+    """Return the arguments of the call that makes a move; empty if the camera is already at the target.
 
     Whole numbers are returned as integers. In a loop, moves of unspecified size have their own default sizes.
     """
@@ -29,7 +29,11 @@ def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) 
             arguments.update(_zoom(part, in_loop))
         else:
             arguments.update(_aim(part, pose, limits))
-    return {key: tidy(value) for key, value in arguments.items() if isinstance(value, str) or not _is_no_motion(key, value)}
+    return {
+        key: without_rounding_noise(value)
+        for key, value in arguments.items()
+        if isinstance(value, str) or not _is_no_motion(key, value)
+    }
 
 
 def return_arguments(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
@@ -40,7 +44,7 @@ def return_arguments(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
         "tilt_deg": to.tilt_deg - pose.tilt_deg,
         "zoom_factor": to.zoom / pose.zoom,
     }
-    return {key: tidy(value) for key, value in arguments.items() if not _is_no_motion(key, value)}
+    return {key: without_rounding_noise(value) for key, value in arguments.items() if not _is_no_motion(key, value)}
 
 
 def _is_no_motion(key: str, value: float) -> bool:
@@ -48,7 +52,7 @@ def _is_no_motion(key: str, value: float) -> bool:
     return abs(value - (1.0 if key == "zoom_factor" else 0.0)) < _TOLERANCE
 
 
-def tidy(value: Any) -> Any:
+def without_rounding_noise(value: Any) -> Any:
     """Return a number without rounding noise and without a trailing ".0"."""
     if not isinstance(value, float):
         return value

@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.execution.move_arguments import arguments_of
 from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.execution.run_state import AssumedOutcome, Run
 
-MAX_LINES = 200  # further lines are left out
+MAX_LINES = 200  # further lines are omitted
 AssumedResult = Callable[[str, Mapping[str, Any]], dict[str, Any]]
 """A function that returns the assumed result of a call, given its tool and arguments."""
 
@@ -44,7 +44,7 @@ def outline(steps: Sequence[ast.Step], limits: Limits, pose: Pose, assumed_resul
 
     Args:
         steps: The steps, with names bound to presets.
-        limits: The camera's limits, which decide how often a loop can move.
+        limits: The camera's limits, which determine how many times a loop can move.
         pose: The camera's pose at the start.
         assumed_result: Returns the assumed result of a call.
     """

@@ -24,7 +24,7 @@ _ABILITIES = (
     "I can pan, tilt and zoom, go to presets and home, take pictures, count things, answer questions about the scene, read text, "
     "and zoom in on or follow things"
 )
-_DEFAULT_MAX_MOVES = 24  # limit of a loop whose instruction gives none
+_DEFAULT_MAX_MOVES = 24  # limit of a loop if the instruction does not give one
 _MAX_REQUESTED_MOVES = 100  # highest limit that an instruction can give
 
 
@@ -32,9 +32,9 @@ class Program(ConditionTests):
     """One run of the steps of an instruction, with one method for each step type."""
 
     def run(self, steps: Sequence[ast.Step]) -> Run:
-        """Run all steps. Afterwards, ``answer()`` returns the answer."""
+        """Run all steps. After that, ``answer()`` returns the answer."""
         start = VisitedPosition(self.pose, self.positions.preset, home=self.positions.before is None and self.pose == Pose())
-        self._trail = [self.positions.before, start] if self.positions.before else [start]
+        self._visited = [self.positions.before, start] if self.positions.before else [start]
         try:
             yield from self._run_steps(steps)
         except HaltedError as halt:
@@ -55,7 +55,7 @@ class Program(ConditionTests):
         self._note(phrases.sentence(text) + phrases.clamped_text(result.get("clamped", ())))
 
     def _back(self, step: ast.Back) -> Run:
-        place = self._trail[-1]
+        place = self._visited[-1]
         if step.zoom_only:
             yield from self._zoom_back(place)
         elif self._moved_to_object and (place.preset or (place.home and self._went_home)):
@@ -64,9 +64,9 @@ class Program(ConditionTests):
             self._note("The camera goes back to where it was")
         elif return_arguments(place.pose, self.pose, self.limits):
             yield from self._return(place.pose)
-        elif len(self._trail) > 1:
-            self._trail.pop()
-            yield from self._go_to(self._trail[-1])
+        elif len(self._visited) > 1:
+            self._visited.pop()
+            yield from self._go_to(self._visited[-1])
         else:
             self._note("The camera is still where it was")
 
@@ -90,24 +90,24 @@ class Program(ConditionTests):
         else:
             yield from self._return(place.pose)
 
-    def _arrived(self, preset: str | None, home: bool = False) -> None:
-        self._trail.append(VisitedPosition(self.pose, preset, home))
+    def _record_position(self, preset: str | None, home: bool = False) -> None:
+        self._visited.append(VisitedPosition(self.pose, preset, home))
         self._moved_to_object = False
 
     def _home(self, step: ast.Home) -> Run:
         yield from self._camera_call("go_home")
         self._went_home = True
-        self._arrived(None, home=True)
+        self._record_position(None, home=True)
         self._note("I went to the home view")
 
     def _gopreset(self, step: ast.GoPreset) -> Run:
         yield from self._camera_call("go_to_preset", name=step.ref.name)
-        self._arrived(step.ref.name)
+        self._record_position(step.ref.name)
         self._note(f"I went to preset {step.ref.name}")
 
     def _gothere(self, step: ast.GoThere) -> Run:
-        if self._winner:
-            yield from self._gopreset(ast.GoPreset(ast.PresetRef(self._winner)))
+        if self._best_preset:
+            yield from self._gopreset(ast.GoPreset(ast.PresetRef(self._best_preset)))
         else:
             self._note("There is no clear winner to go to")
 
@@ -162,16 +162,16 @@ class Program(ConditionTests):
         for thing in step.things:
             result = yield from self._perception_call("count_objects", description=thing.text, view=view)
             if result is not None:
-                self._last_yes = result["count"] > 0
-                seen = phrases.counted(thing.text, result["count"], complete=result.get("complete", True))
-                self._note(f"I can see {seen} {phrases.where(view)}")
+                self._last_was_yes = result["count"] > 0
+                counts_text = phrases.counted(thing.text, result["count"], complete=result.get("complete", True))
+                self._note(f"I can see {counts_text} {phrases.where(view)}")
 
     def _ask(self, step: ast.Ask) -> Run:
         result = yield from self._perception_call("query_answer", question=step.question, view=step.view or "current")
         if result is not None:
-            self._last_yes = bool(result.get("known", True)) and result["answer"].strip().lower().startswith("yes")
-            honest = result.get("known", True) or result["answer"].lower().startswith("i cannot tell")
-            self._note(result["answer"] if honest else f"I cannot tell: {result['answer']}")
+            self._last_was_yes = bool(result.get("known", True)) and result["answer"].strip().lower().startswith("yes")
+            is_stated = result.get("known", True) or result["answer"].lower().startswith("i cannot tell")
+            self._note(result["answer"] if is_stated else f"I cannot tell: {result['answer']}")
 
     def _read(self, step: ast.Read) -> Run:
         if step.thing.text in self._missing:
@@ -187,10 +187,10 @@ class Program(ConditionTests):
         yield from ()
         self._note(_ABILITIES)
 
-    def _nothing(self, step: ast.Step) -> Run:
+    def _do_nothing(self, step: ast.Step) -> Run:
         yield from ()
 
-    _sweep = _forbid = _report = _nothing
+    _sweep = _forbid = _report = _do_nothing
 
     # Control -----------------------------------------------------------------------------------------------------------
     def _repeat(self, step: ast.Repeat) -> Run:
@@ -208,15 +208,15 @@ class Program(ConditionTests):
             self._note("So I did nothing further for that")
 
     def _loop(self, step: ast.Loop) -> Run:
-        allowed, done, best = self._move_limit(step), 0, -1
+        limit, moves, best = self._move_limit(step), 0, -1
         last: dict[str, Any] = {}
         while True:
             met, reason = yield from self._test(step.until)
             best = max(best, self._last_count)
             if met:
-                self._note(f"{reason}, after {phrases.moves_text(last, done)}" if done else f"{reason}, without having to move")
+                self._note(f"{reason}, after {phrases.moves_text(last, moves)}" if moves else f"{reason}, without having to move")
                 return
-            if done >= allowed:
+            if moves >= limit:
                 break
             pose = self.pose
             for inner in step.body:
@@ -226,13 +226,15 @@ class Program(ConditionTests):
                         yield from self._camera_call("adjust_ptz", **last)
                 else:
                     yield from self._run_steps([inner])
-            done += 1
+            moves += 1
             if self.pose == pose and any(isinstance(s, ast.Move) for s in step.body):
-                yield from self._unmet(step, best, f": the camera reached its limit after {phrases.moves_text(last, done)}")
+                yield from self._end_unmet_loop(
+                    step, best, f": the camera reached its limit after {phrases.moves_text(last, moves)}"
+                )
                 return
-        yield from self._unmet(step, best, f", and stopped after {phrases.moves_text(last, done)}")
+        yield from self._end_unmet_loop(step, best, f", and stopped after {phrases.moves_text(last, moves)}")
 
-    def _unmet(self, step: ast.Loop, best: int, how: str) -> Run:
+    def _end_unmet_loop(self, step: ast.Loop, best: int, how: str) -> Run:
         """End a loop whose condition was never met: run the alternative steps, or stop the run if there are none."""
         reason = f"I never {phrases.condition_text(step.until)}{_highest_count_text(best)}{how}"
         if not step.otherwise:
@@ -250,16 +252,16 @@ class Program(ConditionTests):
         tilt = next((abs(a["tilt_deg"]) for a in sizes if a.get("tilt_deg")), 0.0)
         if bound.degrees is not None and (pan or tilt):
             return max(1, int(bound.degrees / (pan or tilt) + 1e-6))
-        whole = math.ceil(358 / pan) if pan else math.ceil(90 / tilt) if tilt else _DEFAULT_MAX_MOVES
-        return max(1, min(whole, _DEFAULT_MAX_MOVES))
+        full_range_moves = math.ceil(358 / pan) if pan else math.ceil(90 / tilt) if tilt else _DEFAULT_MAX_MOVES
+        return max(1, min(full_range_moves, _DEFAULT_MAX_MOVES))
 
     # Comparison --------------------------------------------------------------------------------------------------------
     def _compare(self, step: ast.Compare) -> Run:
         view = step.view or "current"
         first = yield from self._visible_count(step.first.text, view)
         second = yield from self._visible_count(step.second.text, view)
-        seen = f"{phrases.counted(step.first.text, first)} and {phrases.counted(step.second.text, second)}"
-        self._note(f"I can see {seen} {phrases.where(view)}")
+        counts_text = f"{phrases.counted(step.first.text, first)} and {phrases.counted(step.second.text, second)}"
+        self._note(f"I can see {counts_text} {phrases.where(view)}")
         more, less = (step.first.text, step.second.text) if first > second else (step.second.text, step.first.text)
         self._note(
             "That is the same number of both"
@@ -283,28 +285,30 @@ class Program(ConditionTests):
         text, counts = step.thing.text, dict[str, int]()
         for place in step.places:
             yield from self._camera_call("go_to_preset", name=place.name)
-            self._arrived(place.name)
+            self._record_position(place.name)
             counts[place.name] = yield from self._visible_count(text, "current")
         self._note(f"I can see {english.listing([f'{phrases.counted(text, count)} at {name}' for name, count in counts.items()])}")
         if step.any_of:
-            seen = [name for name, count in counts.items() if count]
+            matching_presets = [name for name, count in counts.items() if count]
             self._note(
-                f"{_capitalised_plural(text)} can be seen at {english.listing(seen)}"
-                if seen
+                f"{_capitalised_plural(text)} can be seen at {english.listing(matching_presets)}"
+                if matching_presets
                 else f"{_capitalised_plural(text)} can be seen at none of them"
             )
-            self._winner = seen[0] if seen else None
+            self._best_preset = matching_presets[0] if matching_presets else None
             return
         best = (max if step.sense == "more" else min)(counts.values())
-        winners = [name for name, count in counts.items() if count == best]
-        self._winner = winners[0] if len(winners) == 1 or self.assume_met else None
+        best_presets = [name for name, count in counts.items() if count == best]
+        self._best_preset = best_presets[0] if len(best_presets) == 1 or self.assume_met else None
         superlative = (
             ("more" if step.sense == "more" else "fewer")
             if len(counts) == 2
             else ("the most" if step.sense == "more" else "the fewest")
         )
         verb = f"shows {superlative} {phrases.noun(text, 2)}"
-        self._note(f"It is a tie between {english.listing(winners)}" if len(winners) > 1 else f"Preset {winners[0]} {verb}")
+        self._note(
+            f"It is a tie between {english.listing(best_presets)}" if len(best_presets) > 1 else f"Preset {best_presets[0]} {verb}"
+        )
         if step.go:
             yield from self._gothere(ast.GoThere())
 

@@ -36,7 +36,7 @@ class AssumedOutcome:
 
 
 class HaltedError(Exception):
-    """The run cannot continue. The message gives the reason, and becomes part of the answer."""
+    """An error that ends the run. The message gives the reason and becomes part of the answer."""
 
 
 @dataclass
@@ -46,7 +46,7 @@ class RunState:
     Attributes:
         pose: The camera's pose, updated after every call.
         positions: The camera's positions in earlier turns of the conversation.
-        assume_met: Whether every condition counts as met, to make a plan without a camera.
+        assume_met: Whether every condition counts as met, for plans without a camera.
         notes: The sentences of the answer.
         sources: The sources of the perception results.
     """
@@ -58,12 +58,12 @@ class RunState:
     notes: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
     _missing: set[str] = field(default_factory=set)  # descriptions of objects that were not found
-    _trail: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
-    _winner: str | None = None  # the preset that a comparison found
+    _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
+    _best_preset: str | None = None  # the preset that a comparison found
     _moved_to_object: bool = False  # whether a perception tool has moved the camera since the last preset or home
     _went_home: bool = False
     _last_count: int = -1
-    _last_yes: bool = False  # whether the last answer was yes, or the last count above zero
+    _last_was_yes: bool = False  # whether the last answer was yes, or the last count above zero
 
     def answer(self) -> str:
         """Return the answer: all notes, and the note about the sources."""

@@ -1,7 +1,7 @@
 """Split a text into lexemes: known phrases, numbers and free text.
 
-A lexeme may be several terminals at once ("left" is a direction or a verb); the grammar decides. Lexemes keep their position in the
-original text, so descriptions and questions are passed on as the user typed them.
+A lexeme may match several terminals ("left" is a direction or a verb); the grammar decides between them. Lexemes keep their
+position in the original text, so descriptions and questions are passed on as the user typed them.
 """
 
 from __future__ import annotations
@@ -66,8 +66,8 @@ class _Word:
 def _words(text: str) -> list[_Word]:
     """Return the raw tokens. Apostrophes and hyphens separate words ("don't" becomes don, t)."""
     out: list[_Word] = []
-    lowered = "".join(c.lower() if len(c.lower()) == 1 else c for c in text)
-    for match in _TOKEN.finditer(lowered):
+    lower_case = "".join(c.lower() if len(c.lower()) == 1 else c for c in text)
+    for match in _TOKEN.finditer(lower_case):
         kind, start = match.lastgroup or "", match.start()
         if match.group() in word_list("dropped"):
             continue
@@ -130,7 +130,7 @@ def _corrected(word: str, candidates: Iterable[str]) -> str | None:
 
 
 class Lexer:
-    """Splits texts into lexemes. The names of the presets are lexemes of their own."""
+    """A lexer that splits texts into lexemes. Each preset name is one lexeme."""
 
     def __init__(self, presets: tuple[str, ...] = ()) -> None:
         self._table = phrase_table()
@@ -155,40 +155,40 @@ class Lexer:
             return Lexeme(frozenset({kind}), word.start, word.end), i + 1
         if word.kind == "quote":
             return Lexeme(frozenset({"TEXT"}), word.start, word.end), i + 1
-        run = [w.text for w in takewhile(lambda w: w.kind in {"word", "num"}, words[i : i + _MAX_PHRASE_WORDS])]
-        preset = self._preset_length(run)
-        phrase = self._phrase_length(run, before)
-        number = read_number(run, [(w.start, w.end) for w in words[i : i + len(run)]])
+        sequence = [w.text for w in takewhile(lambda w: w.kind in {"word", "num"}, words[i : i + _MAX_PHRASE_WORDS])]
+        preset = self._preset_length(sequence)
+        phrase = self._phrase_length(sequence, before)
+        number = read_number(sequence, [(w.start, w.end) for w in words[i : i + len(sequence)]])
         if preset >= max(phrase, number.used, 1):
             return Lexeme(frozenset({"PRESETNAME"}), word.start, words[i + preset - 1].end), i + preset
         if number.used and number.used >= phrase:
-            return self._number(words, i, number, run[:phrase], before), i + number.used
+            return self._number(words, i, number, sequence[:phrase], before), i + number.used
         if phrase:
             return self._phrase(words, i, phrase, before), i + phrase
         return self._unknown(words, i, before), i + 1
 
-    def _preset_length(self, run: list[str]) -> int:
-        """Return the number of words at the start of a run that are the name of a preset."""
-        return self._longest([(preset_key(w) or (w,))[0] for w in run], self._presets) if self._presets else 0
+    def _preset_length(self, sequence: list[str]) -> int:
+        """Return the number of words at the start of a sequence that are the name of a preset."""
+        return self._longest([(preset_key(w) or (w,))[0] for w in sequence], self._presets) if self._presets else 0
 
-    def _phrase_length(self, run: list[str], before: list[Lexeme]) -> int:
-        """Return the number of words at the start of a run that form a known phrase.
+    def _phrase_length(self, sequence: list[str], before: list[Lexeme]) -> int:
+        """Return the number of words at the start of a sequence that form a known phrase.
 
         In some contexts only the first word counts, because the words of the phrase have separate meanings.
         """
-        phrase = self._longest(run, self._table.starting_with(run[0]) if run else {})
+        phrase = self._longest(sequence, self._table.starting_with(sequence[0]) if sequence else {})
         if phrase < 2:
             return phrase
-        kinds = self._table[tuple(run[:phrase])]
+        kinds = self._table[tuple(sequence[:phrase])]
         previous = before[-1].kinds if before else frozenset[str]()
         read_separately = False
-        if run[0] == "the":  # "the overview" if a preset has that name
-            read_separately = bool(self._presets) and self._preset_length(run[1:]) >= phrase - 1
-        elif run[0] in {"up", "down"}:  # "tilt up to 10" is a direction, not a limit
+        if sequence[0] == "the":  # "the overview" if a preset has that name
+            read_separately = bool(self._presets) and self._preset_length(sequence[1:]) >= phrase - 1
+        elif sequence[0] in {"up", "down"}:  # "tilt up to 10" is a direction, not a limit
             read_separately = bool(previous & _MOTION) and not kinds & {"UP", "DOWN", *_DIAGONALS}
-        elif run[:2] == ["if", "you"]:  # "if you can see" begins a condition; "if you can" at the end is a filler
-            read_separately = "FILLER" in kinds and phrase < len(run)
-        elif run[0] == "or":
+        elif sequence[:2] == ["if", "you"]:  # "if you can see" begins a condition; "if you can" at the end is a filler
+            read_separately = "FILLER" in kinds and phrase < len(sequence)
+        elif sequence[0] == "or":
             read_separately = bool(kinds & {"ORMORE", "ORFEWER"}) and "NUM" not in previous
         return 1 if read_separately else phrase
 
@@ -203,8 +203,8 @@ class Lexer:
     def _phrase(self, words: list[_Word], i: int, length: int, before: list[Lexeme]) -> Lexeme | None:
         kinds = self._table[tuple(w.text for w in words[i : i + length])]
         start, end = words[i].start, words[i + length - 1].end
-        alone = _starts_clause(before) and (i + length == len(words) or words[i + length].kind != "word")
-        if "ADDRESS" in kinds and alone and length < len(words):
+        is_whole_clause = _starts_clause(before) and (i + length == len(words) or words[i + length].kind != "word")
+        if "ADDRESS" in kinds and is_whole_clause and length < len(words):
             return None
         if "ADDRESS" in kinds and not (kinds := kinds - {"ADDRESS"}):
             return Lexeme(frozenset({"TEXT"}), start, end)
@@ -215,8 +215,8 @@ class Lexer:
                 return Lexeme(frozenset({"TEXT"}), start, end)
             if kinds == {"FILLER"} or addressed or (kinds <= _HEDGES and _starts_clause(before) and i + length < len(words)):
                 return None
-        doing = words[i].text.endswith("ing") and not kinds & _NEVER_GERUND
-        return Lexeme(kinds | {"GERUND"} if doing else kinds, start, end)
+        is_gerund = words[i].text.endswith("ing") and not kinds & _NEVER_GERUND
+        return Lexeme(kinds | {"GERUND"} if is_gerund else kinds, start, end)
 
     def _unknown(self, words: list[_Word], i: int, before: list[Lexeme]) -> Lexeme:
         word = words[i]
@@ -235,8 +235,8 @@ class Lexer:
         return Lexeme(self._table[(guess,)] if guess else frozenset({"TEXT"}), word.start, word.end)
 
     @staticmethod
-    def _longest(run: list[str], table: Mapping[tuple[str, ...], object]) -> int:
-        return next((n for n in range(len(run), 0, -1) if tuple(run[:n]) in table), 0)
+    def _longest(sequence: list[str], table: Mapping[tuple[str, ...], object]) -> int:
+        return next((n for n in range(len(sequence), 0, -1) if tuple(sequence[:n]) in table), 0)
 
 
 def _starts_clause(before: list[Lexeme]) -> bool:
@@ -284,6 +284,6 @@ def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
 
 def preset_key(name: str) -> tuple[str, ...]:
     """Return a preset name in the form used for comparison: lower-case words without accents, with numbers in digits."""
-    plain = unicodedata.normalize("NFKD", name.lower())
-    words = re.findall(r"[^\W\d_]+|\d+", "".join(c for c in plain if not unicodedata.combining(c)))
+    decomposed = unicodedata.normalize("NFKD", name.lower())
+    words = re.findall(r"[^\W\d_]+|\d+", "".join(c for c in decomposed if not unicodedata.combining(c)))
     return tuple(str(int(NUMBER_WORDS[w])) if w in NUMBER_WORDS and NUMBER_WORDS[w] < 100 else w for w in words)

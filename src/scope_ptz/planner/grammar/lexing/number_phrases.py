@@ -41,8 +41,8 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
     if not words:
         return NumberPhrase()
     if "/" in words[0]:
-        above, below = words[0].split("/")
-        return NumberPhrase(int(above) / int(below), 1, "FRACTION") if int(below) else NumberPhrase()
+        numerator, denominator = words[0].split("/")
+        return NumberPhrase(int(numerator) / int(denominator), 1, "FRACTION") if int(denominator) else NumberPhrase()
     if _DIGITS.fullmatch(words[0]):
         return _digits(words, spans)
     sign, start = (-1, 1) if words[0] in {"minus", "negative"} else (1, 0)
@@ -80,9 +80,9 @@ def _cardinal(words: list[str]) -> tuple[float, int]:
         if not _article_is_one(words):
             return 0.0, 0
         current, used = 1.0, 1
-    spoken = next((i for i, w in enumerate(words) if NUMBER_WORDS.get(w, 10) > 9), len(words))
-    if spoken > 1 and not used:  # "three zero", digit by digit
-        return float(_spoken_digits(words[:spoken])), spoken
+    digit_count = next((i for i, w in enumerate(words) if NUMBER_WORDS.get(w, 10) > 9), len(words))
+    if digit_count > 1 and not used:  # "three zero", digit by digit
+        return float(_spoken_digits(words[:digit_count])), digit_count
     if not used and _starts_with_hundreds(words):  # "one eighty", "two seventy"
         current, used = 100 * NUMBER_WORDS[words[0]], 1
     while used < len(words):

@@ -1,8 +1,8 @@
 """The phrases of ``vocabulary.txt``, expanded ahead of time.
 
 Expanding the patterns takes a tenth of a second, so the phrases are stored in ``vocabulary.phrases``: a line with the sets of
-terminals that occur, then a line for each first word with the rests of its phrases. An edited vocabulary is expanded again.
-``renew()`` rewrites the file.
+terminals that occur, then a line for each first word with the remaining words of its phrases. If the vocabulary was edited, the
+stored phrases are ignored until ``write_stored_phrases()`` rewrites the file.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ _COMPILED = Path(__file__).with_name("vocabulary.phrases")
 
 Words = tuple[str, ...]
 Kinds = frozenset[str]
-_NONE: dict[Words, Kinds] = {}
+_NO_PHRASES: dict[Words, Kinds] = {}
 
 
 class PhraseTable:
-    """The possible terminals of each phrase; ``FILLER`` marks words without meaning. Phrases are read by their first word.
+    """The possible terminals of each phrase, parsed on request by first word. ``FILLER`` marks words without meaning.
 
     Args:
         lines: The lines of ``vocabulary.phrases`` after its heading.
@@ -32,8 +32,8 @@ class PhraseTable:
     def __init__(self, lines: Iterable[str]) -> None:
         sets, *groups = lines
         self._sets = [frozenset(kinds.split(" ")) for kinds in sets.split("\t")]
-        self._unread = dict(line.split("\t", 1) for line in groups)
-        self._read: dict[str, dict[Words, Kinds]] = {}
+        self._groups = dict(line.split("\t", 1) for line in groups)
+        self._parsed_groups: dict[str, dict[Words, Kinds]] = {}
 
     def __contains__(self, words: Words) -> bool:
         return words in self.starting_with(words[0])
@@ -42,21 +42,21 @@ class PhraseTable:
         return self.starting_with(words[0])[words]
 
     def get(self, words: Words) -> Kinds:
-        """Return the terminals of a phrase, none if it is unknown."""
+        """Return the terminals of a phrase; an empty set if the phrase is unknown."""
         return self.starting_with(words[0]).get(words, frozenset())
 
     def phrases(self) -> dict[Words, Kinds]:
         """Return all phrases with their terminals."""
-        return {words: kinds for first in self._unread for words, kinds in self.starting_with(first).items()}
+        return {words: kinds for first in self._groups for words, kinds in self.starting_with(first).items()}
 
     def starting_with(self, first: str) -> dict[Words, Kinds]:
         """Return the phrases that begin with a word."""
-        if first not in self._unread:
-            return _NONE
-        if first not in self._read:
-            entries = (entry.split(" ") for entry in self._unread[first].split("\t"))
-            self._read[first] = {(first, *rest): self._sets[int(number)] for number, *rest in entries}
-        return self._read[first]
+        if first not in self._groups:
+            return _NO_PHRASES
+        if first not in self._parsed_groups:
+            entries = (entry.split(" ") for entry in self._groups[first].split("\t"))
+            self._parsed_groups[first] = {(first, *rest): self._sets[int(number)] for number, *rest in entries}
+        return self._parsed_groups[first]
 
 
 @cache
@@ -86,7 +86,7 @@ def compiled_text() -> str:
     return "\n".join([heading(_SOURCE), "\t".join(sets), *("\t".join([first, *entries]) for first, entries in groups.items()), ""])
 
 
-def renew() -> None:
+def write_stored_phrases() -> None:
     """Rewrite ``vocabulary.phrases`` after the vocabulary was edited."""
     _COMPILED.write_text(compiled_text(), encoding="utf-8")
 

@@ -20,8 +20,8 @@ def _forms(verb_phrase: str) -> list[str]:
     """Return the base, third-person and -ing forms of a phrase that starts with a verb."""
     verb, _, rest = verb_phrase.partition(" ")
     stem = verb[:-1] if verb.endswith("e") and not verb.endswith("ee") else verb
-    doubled = re.fullmatch(r"[a-z]*[bcdfghjklmnprstvz][aeiou][bdgmnpt]", verb) and verb not in _NOT_DOUBLED
-    gerund = (verb + verb[-1] if doubled else stem) + "ing"
+    doubles_consonant = re.fullmatch(r"[a-z]*[bcdfghjklmnprstvz][aeiou][bdgmnpt]", verb) and verb not in _NOT_DOUBLED
+    gerund = (verb + verb[-1] if doubles_consonant else stem) + "ing"
     third = verb + ("es" if verb.endswith(("s", "x", "ch", "sh", "o")) else "s")
     return [f"{form} {rest}".strip() for form in (verb, third, gerund)]
 
@@ -31,14 +31,14 @@ def expand(pattern: str) -> list[tuple[str, ...]]:
 
     ``(a|b)`` is a choice, ``[a|b]`` an optional choice, and ``~`` before a verb stands for its forms.
     """
-    found: list[tuple[str, ...]] = []
+    sequences: list[tuple[str, ...]] = []
     for variant in _variants(pattern):
         text = " ".join(variant.split())
         if text.startswith("~"):
-            found.extend(tuple(form.split()) for form in _forms(text[1:].strip()))
+            sequences.extend(tuple(form.split()) for form in _forms(text[1:].strip()))
         elif text:
-            found.append(tuple(text.split()))
-    return found
+            sequences.append(tuple(text.split()))
+    return sequences
 
 
 def _variants(pattern: str) -> list[str]:
@@ -94,4 +94,6 @@ def vocabulary() -> dict[str, tuple[str, ...]]:
     patterns = _sections("vocabulary.txt")
     macros = {f"${name}": pattern for name, _, pattern in (line.partition(" ") for line in patterns.pop("@"))}
     replace = re.compile("|".join(re.escape(name) + r"\b" for name in macros))
-    return {terminal: tuple(replace.sub(lambda match: macros[match[0]], p) for p in found) for terminal, found in patterns.items()}
+    return {
+        terminal: tuple(replace.sub(lambda match: macros[match[0]], p) for p in entries) for terminal, entries in patterns.items()
+    }

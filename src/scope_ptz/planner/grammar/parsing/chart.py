@@ -6,7 +6,7 @@ because it predicts every alternative of every optional word at every position.
 
 Lark is therefore used only to read, check and expand the grammar. In this parser, right-hand sides share a prefix tree, and only
 constituents that can begin with the given lexemes are tried, bottom-up, which takes a few milliseconds. The parser returns the
-reading with the highest sum of rule priorities; among equals, the one with the fewest rules.
+reading with the highest sum of rule priorities; ties go to the reading with the fewest rules.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _Best = tuple[float, _Link | None, Rule | None]  # score, last link, rule
 
 
 class ChartParser:
-    """Parses sequences of lexemes. Each lexeme is given as the set of terminals that it may be."""
+    """A parser of sequences of lexemes. Each lexeme is given as the set of terminals that it may match."""
 
     def __init__(self, rules: RuleBook) -> None:
         self._rules = rules
@@ -99,9 +99,9 @@ class ChartParser:
                     continue
                 reached[key] = score
                 for parent, gain, rule in node.complete:
-                    found = here.setdefault(parent, {})
-                    if end not in found or found[end][0] < score + gain:
-                        found[end] = (score + gain, link, rule)
+                    ends = here.setdefault(parent, {})
+                    if end not in ends or ends[end][0] < score + gain:
+                        ends[end] = (score + gain, link, rule)
                         agenda.append((parent, end))
                 later = chart[end]
                 for following in node.children.keys() & later.keys():

@@ -97,7 +97,7 @@ def _add_further(out: list[Step], step: Further) -> None:
 
 
 def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
-    """Return what replaces the last step if the new step belongs to it; None if the new step is separate."""
+    """Return the steps that replace the last step if the new step belongs to it; None if the new step is separate."""
     if isinstance(step, Repeat) and link in {"and", ","} and _covers_before(step, last):
         return [Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)]
     if isinstance(last, Move):
@@ -116,7 +116,7 @@ def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
 
 
 def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | None:
-    """Add a step to those that run at each of several presets."""
+    """Add a step to the steps that run at each of several presets."""
     if not last.body and (link == "and" or not last.places):
         return [replace(last, body=(step,))]
     if last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):
@@ -126,8 +126,8 @@ def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | Non
 
 def _covers_before(step: Repeat, last: Step) -> bool:
     """Return whether "three times" also covers the previous step: after a comma, or for a picture after a move."""
-    pictured = isinstance(step.body[-1], Snap) and isinstance(last, Move)
-    return (step.group or pictured) and not isinstance(last, GoPreset | Home | Repeat | Loop)
+    is_picture_after_move = isinstance(step.body[-1], Snap) and isinstance(last, Move)
+    return (step.group or is_picture_after_move) and not isinstance(last, GoPreset | Home | Repeat | Loop)
 
 
 def _verbless(step: Step) -> Move | None:
@@ -252,17 +252,17 @@ def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
         out.pop()
     turn = next((p for p in move.parts if isinstance(p, Turn)), None) if move else None
     body = step.body[0]
-    every = Turn(turn.axis if turn else "pan", turn.sign if turn else 1, Amount("degrees", step.degrees))
+    step_turn = Turn(turn.axis if turn else "pan", turn.sign if turn else 1, Amount("degrees", step.degrees))
     if turn is None or turn.amount is None:
         fixed = isinstance(body, Snap) and body.times > 1
         out.extend(
-            _interleaved(body, (Move((every,)),)) if fixed else [Unclear("Over how many degrees shall I turn, and which way?")]
+            _interleaved(body, (Move((step_turn,)),)) if fixed else [Unclear("Over how many degrees shall I turn, and which way?")]
         )
         return
     total = turn.amount.degrees if turn.amount.kind == "degrees" else 360.0
     times = math.ceil(round(total / step.degrees, 6)) if step.degrees else 1
     single = replace(body, times=1) if isinstance(body, Snap) else body
-    out.append(Repeat((Move((every,)), single, *step.body[1:]), max(1, min(times, 24))))
+    out.append(Repeat((Move((step_turn,)), single, *step.body[1:]), max(1, min(times, 24))))
 
 
 def _add_than_before(out: list[Step], step: ThanBefore) -> None:

@@ -29,7 +29,7 @@ from scope_ptz.planner.grammar.parsing.tree_nodes import Node
 
 
 class ConditionBuilder(SceneBuilder):
-    """Builds conditions, and steps that compare counts."""
+    """A builder of conditions, and of steps that compare counts."""
 
     # Conditions --------------------------------------------------------------------------------------------------------
 

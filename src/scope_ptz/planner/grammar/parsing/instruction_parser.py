@@ -14,8 +14,8 @@ from scope_ptz.planner.grammar.parsing.rules import load_rules
 _STRUCTURAL = frozenset({*SEPARATORS, "OR", "THAN", "IF", "UNLESS", "OTHERWISE", "UNTIL"})
 """Terminals that cannot be part of a description."""
 
-_FREE_WORDS = frozenset({"TEXT", "PRESETNAME"})  # cost nothing in a description
-_SOFT = frozenset(
+_FREE_WORDS = frozenset({"TEXT", "PRESETNAME"})  # terminals that have no cost in a description
+_COMMON_IN_DESCRIPTIONS = frozenset(
     {
         "AFTER", "AHEAD", "ANY", "AROUND", "BE", "BEFORE", "BY", "CAMERA", "CIRCLE", "CLOSE", "COMPASS", "DEG", "DET", "DOWN",
         "FEWERTHAN", "FIELD", "FOR", "FRACTION", "FULL", "FULLSCOPE", "HIGHER", "HOURS", "IN", "INVIEW", "LEFT", "LEVEL",
@@ -24,7 +24,7 @@ _SOFT = frozenset(
         "SEVERAL", "SURROUND", "THATREL", "THERE", "TO", "UP", "VISIBLE", "WHO", "X", "YOUSEE",
     }
 )  # fmt: skip
-"""Terminals that often occur in descriptions, and therefore have a lower cost there than the others."""
+"""Terminals that often occur in descriptions, and therefore have a lower cost there than other terminals."""
 
 MAX_CHARS = 2000  # the rest of a longer text is ignored
 MAX_LEXEMES = 120  # longer texts are not parsed
@@ -58,12 +58,12 @@ def roles(kinds: frozenset[str]) -> frozenset[str]:
         return kinds | {"WORD"}
     if kinds & _STRUCTURAL or "GERUND" in kinds:
         return kinds
-    return kinds | {"SOFT"} if kinds & _SOFT else kinds | {"HARD"}
+    return kinds | {"SOFT"} if kinds & _COMMON_IN_DESCRIPTIONS else kinds | {"HARD"}
 
 
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
-    """Return the steps of an instruction. Never raises, for any text."""
+    """Return the steps of an instruction. It does not raise errors for any text."""
     from scope_ptz.planner.grammar.parsing.step_builder import StepBuilder
 
     lexemes = Lexer(presets).lexemes(text[:MAX_CHARS])

@@ -31,7 +31,7 @@ _AIMING = (
     "orient",
     "rotat",
 )
-"""Beginnings of the verbs of LOOKAT that aim the camera; the others zoom in."""
+"""Beginnings of the verbs of LOOKAT that aim the camera; the other verbs zoom in."""
 
 _SMALL_STEP_DEG = 5.0
 _VERBS = (
@@ -65,7 +65,7 @@ class StepSize:
 
 
 class MoveBuilder(RuleBuilder):
-    """Builds moves and their amounts."""
+    """A builder of moves and their amounts."""
 
     # Amounts -----------------------------------------------------------------------------------------------------------
     def degrees(self, node: Node) -> Amount:
@@ -125,10 +125,10 @@ class MoveBuilder(RuleBuilder):
     def move(self, node: Node) -> Move | Unclear:
         parts: list[Part] = []
         for branch in node.branches():
-            made = self.visit(branch)
-            if isinstance(made, Unclear):
-                return made
-            parts.extend(made)
+            result = self.visit(branch)
+            if isinstance(result, Unclear):
+                return result
+            parts.extend(result)
         axes = [p.axis if not isinstance(p, Zoom) else "zoom" for p in parts]
         if len(set(axes)) < len(axes):
             return Unclear("That asks for two moves about the same axis at once. Which one shall I make?")
@@ -147,11 +147,11 @@ class MoveBuilder(RuleBuilder):
         amount: Amount | None = None
         step: StepSize | None = None
         for how in node.branches("how"):
-            made = self.visit(how)
-            if isinstance(made, StepSize):
-                step = made
+            result = self.visit(how)
+            if isinstance(result, StepSize):
+                step = result
             else:
-                amount = made
+                amount = result
         if step and step.divides_move and step.count and amount and amount.kind == "degrees":
             step = StepSize(Amount("degrees", abs(amount.degrees) / step.count), step.count)
         elif step and step.divides_move:
@@ -209,8 +209,8 @@ class MoveBuilder(RuleBuilder):
         return (Turn("tilt", 1, Amount("limit")),)
 
     def other_part(self, node: Node) -> tuple[Part, ...] | Unclear:
-        made: tuple[Part, ...] | Unclear = self.visit(node.branches()[0])
-        return made
+        result: tuple[Part, ...] | Unclear = self.visit(node.branches()[0])
+        return result
 
     # Absolute targets --------------------------------------------------------------------------------------------------
     def _aimed(self, node: Node, axis: Any) -> tuple[Part, ...]:
@@ -268,10 +268,10 @@ class MoveBuilder(RuleBuilder):
         return -1
 
     def _zoomed(self, node: Node, sign: int, bare: bool = False) -> tuple[Part, ...] | Unclear:
-        hows = [b for b in node.branches() if b.name.startswith("z_")]
-        if not hows:
+        amounts = [b for b in node.branches() if b.name.startswith("z_")]
+        if not amounts:
             return (Zoom("factor", _PLAIN_ZOOM if sign > 0 else 1 / _PLAIN_ZOOM),)
-        kind, value = self.visit(hows[0])
+        kind, value = self.visit(amounts[0])
         if kind == "percent" and value < 0:
             return (Zoom("percent", value),) if sign < 0 or bare else Unclear("Shall I zoom in or out?")
         if kind in {"factor", "fraction"} and not 0 < value < float("inf"):
@@ -304,8 +304,8 @@ class MoveBuilder(RuleBuilder):
         return self._zoomed(node, -1)
 
     def zoom_bare(self, node: Node) -> tuple[Part, ...] | Unclear:
-        hows = [b.name for b in node.branches()]
-        if not hows or hows[0] in {"z_little", "z_lot", "z_plain"}:
+        amounts = [b.name for b in node.branches()]
+        if not amounts or amounts[0] in {"z_little", "z_lot", "z_plain"}:
             return Unclear("Shall I zoom in or out?")
         return self._zoomed(node, 1, bare=True)
 

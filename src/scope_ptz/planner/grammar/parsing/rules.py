@@ -1,8 +1,9 @@
 """The rules of ``language.lark`` in the plain form that the chart parser needs, compiled by Lark ahead of time.
 
 Lark needs about half a second to read and expand the grammar, which would delay every ``scope ask``. The expanded rules are
-therefore stored in ``language.rules`` and their symbols in ``language.symbols``. Only rules that an instruction can begin are
-parsed. After an edit of the grammar, the rules are compiled at each start until ``renew()`` rewrites the files.
+therefore stored in ``language.rules`` and their symbols in ``language.symbols``. A stored rule is parsed only when a symbol that
+it begins with occurs. After the grammar is edited, the rules are compiled at each start until ``write_stored_rules()`` rewrites
+the files.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from pathlib import Path
 from scope_ptz.planner.grammar.compiled import compiled_lines, heading
 
 RULES_FOR_KNOWN_PRESETS = frozenset({"far_ref"})
-"""Rules that are left out of the grammar if the presets are unknown."""
+"""Rules that are omitted from the grammar if the presets are unknown."""
 
 _SOURCE = Path(__file__).with_name("language.lark")
 _RULES = Path(__file__).with_name("language.rules")
@@ -57,16 +58,16 @@ class RuleBook:
     Args:
         lines: The rules as lines of ``language.rules``.
         symbols: All symbols in the order of ``symbols_of``.
-        left_out: Names of rules to leave out.
+        omitted: Names of rules to omit.
     """
 
-    def __init__(self, lines: Sequence[str], symbols: Sequence[str], left_out: frozenset[str] = frozenset()) -> None:
+    def __init__(self, lines: Sequence[str], symbols: Sequence[str], omitted: frozenset[str] = frozenset()) -> None:
         self.symbols = tuple(symbols)
         self._groups: dict[str, list[tuple[int, str]]] = {}
         order = 0
         for line in lines:
             _, name, _, _, first, *_ = line.split(" ", 5)
-            if name not in left_out:
+            if name not in omitted:
                 self._groups.setdefault(first, []).append((order, line))
                 order += 1
 
@@ -91,7 +92,7 @@ def symbols_of(rules: Sequence[Rule]) -> list[str]:
 def compile_rules(source: str) -> list[Rule]:
     """Return a grammar's rules, with options, repetitions and groups expanded by Lark.
 
-    A rule without symbols gets an empty one, which nothing matches.
+    A rule without symbols gets an empty symbol, which nothing matches.
     """
     from lark import Lark
 
@@ -109,17 +110,17 @@ def compile_rules(source: str) -> list[Rule]:
 
 
 def compiled_texts() -> dict[Path, str]:
-    """Return the content of both files for the grammar.
+    """Return the content of ``language.rules`` and ``language.symbols`` by path.
 
-    The lines of ``language.symbols`` are all symbols, and the symbols if the presets are unknown.
+    ``language.symbols`` has two lines: all symbols, and the symbols that remain if the presets are unknown.
     """
     rules = compile_rules(_SOURCE.read_text(encoding="utf-8"))
-    other = [rule for rule in rules if rule.name not in RULES_FOR_KNOWN_PRESETS]
-    symbols = (" ".join(symbols_of(some)) for some in (rules, other))
+    without_presets = [rule for rule in rules if rule.name not in RULES_FOR_KNOWN_PRESETS]
+    symbols = (" ".join(symbols_of(group)) for group in (rules, without_presets))
     return {path: "\n".join([heading(_SOURCE), *lines, ""]) for path, lines in ((_RULES, map(str, rules)), (_SYMBOLS, symbols))}
 
 
-def renew() -> None:
-    """Rewrite both files after the grammar was edited."""
+def write_stored_rules() -> None:
+    """Rewrite ``language.rules`` and ``language.symbols`` after the grammar was edited."""
     for path, text in compiled_texts().items():
         path.write_text(text, encoding="utf-8")

@@ -59,7 +59,7 @@ _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_s
 
 
 class SceneBuilder(RuleBuilder):
-    """Builds references to presets and objects, and the steps that use them."""
+    """A builder of references to presets and objects, and of the steps that use them."""
 
     # Descriptions ------------------------------------------------------------------------------------------------------
     def np(self, node: Node) -> Thing:
@@ -72,8 +72,8 @@ class SceneBuilder(RuleBuilder):
         return Thing(bare, definite=determiner or bare != text, not_an_object=not_an_object)
 
     def thing(self, node: Node) -> Thing:
-        made: Thing = self.visit(node.branches()[0])
-        return made
+        result: Thing = self.visit(node.branches()[0])
+        return result
 
     subject = thing
 
@@ -202,12 +202,12 @@ class SceneBuilder(RuleBuilder):
         )
 
     def _refs(self, node: Node) -> tuple[PresetRef, ...]:
-        made = self.visit(node)
-        return made if isinstance(made, tuple) else (made,)
+        result = self.visit(node)
+        return result if isinstance(result, tuple) else (result,)
 
     # Counting and asking -----------------------------------------------------------------------------------------------
     def count(self, node: Node) -> Step | tuple[Step, ...]:
-        """Build a count. If the last of several descriptions is a question, it becomes a step of its own."""
+        """Build a count. If the last of several descriptions is a question, it becomes a separate step."""
         *things, last = self._things(node)
         if things and _ASKING.match(last.text):
             return (Count(tuple(things), self._view(node)), Ask(last.text + "?", self._view(node)))
@@ -221,15 +221,15 @@ class SceneBuilder(RuleBuilder):
         thing = self._thing(node)
         leaves = node.branches("words")[0].all_leaves()
         rest = self.text(leaves)
-        denied = node.has("NOT") or re.search(
+        negated = node.has("NOT") or re.search(
             r"n['’]?t$", " ".join(self.words_of(leaf) for leaf in node.leaves("BE") + node.leaves("DO"))
         )
         if not thing.text:
-            return Count((Thing(f"{'not ' if denied else ''}{rest} ones"),), self._view(node))
+            return Count((Thing(f"{'not ' if negated else ''}{rest} ones"),), self._view(node))
         if any(re.match(r"ha(?:s|ve|sn|ven)\b", self.words_of(leaf)) for leaf in node.leaves("BE")):
-            return Count((Thing(f"{thing.text} {'without' if denied else 'with'} {rest}"),), self._view(node))
-        adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing") and not denied
-        text = f"{rest} {thing.text}" if adjective else f"{thing.text} {'not ' if denied else ''}{rest}"
+            return Count((Thing(f"{thing.text} {'without' if negated else 'with'} {rest}"),), self._view(node))
+        adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing") and not negated
+        text = f"{rest} {thing.text}" if adjective else f"{thing.text} {'not ' if negated else ''}{rest}"
         return Count((Thing(described(text)),), self._view(node))
 
     def count_between(self, node: Node) -> Step:

@@ -50,7 +50,7 @@ _LINK_OF_TERMINAL = {"AND": "and", "COMMA": ",", "THEN": "then"}
 
 
 class StepBuilder(MoveBuilder, ConditionBuilder):
-    """Builds the steps of one instruction."""
+    """A builder of the steps of one instruction."""
 
     def extend(self, tree: Branch, before: list[Step]) -> list[Step]:
         """Return the steps of a sentence combined with the steps before it."""
@@ -72,8 +72,8 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
         return out
 
     @staticmethod
-    def _as_steps(made: Any) -> tuple[Step, ...]:
-        return made if isinstance(made, tuple) else (made,)
+    def _as_steps(result: Any) -> tuple[Step, ...]:
+        return result if isinstance(result, tuple) else (result,)
 
     def _body(self, node: Node, index: int) -> tuple[Step, ...]:
         """Return the steps of the child branch at ``index``."""
@@ -113,17 +113,17 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
         otherwise: tuple[Step, ...] = ()
         body: tuple[Step, ...] = ()
         for branch in node.branches():
-            made = self.visit(branch)
+            result = self.visit(branch)
             if branch.name == "block":
-                otherwise = made
-            elif isinstance(made, Bound):
-                bound = made
-            elif isinstance(made, Condition):
-                condition = made
+                otherwise = result
+            elif isinstance(result, Bound):
+                bound = result
+            elif isinstance(result, Condition):
+                condition = result
             else:
-                body = self._as_steps(made)
+                body = self._as_steps(result)
         if condition is None:
-            raise TypeError("a loop needs a condition")
+            raise TypeError("a loop must have a condition")
         return Loop(body, Negated(condition) if negate else condition, bound, otherwise)
 
     def loop(self, node: Node) -> Step:
@@ -233,8 +233,8 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
 
     def count_at(self, node: Node) -> tuple[Step, ...]:
         """Build "count cars at gate and trucks at highway"."""
-        made = [self.visit(b) for b in node.branches("np", "named", "numbered", "marked", "unmarked", "known_ref")]
-        return tuple(AtPlaces((place,), (Count((thing,)),)) for thing, place in zip(made[::2], made[1::2], strict=True))
+        result = [self.visit(b) for b in node.branches("np", "named", "numbered", "marked", "unmarked", "known_ref")]
+        return tuple(AtPlaces((place,), (Count((thing,)),)) for thing, place in zip(result[::2], result[1::2], strict=True))
 
     def visit_places(self, node: Node) -> Any:
         places = self.visit(node.branches()[-1])

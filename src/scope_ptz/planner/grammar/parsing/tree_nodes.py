@@ -22,11 +22,11 @@ class Node:
         return self.branch.name
 
     def branches(self, *names: str) -> list[Node]:
-        """Return the children that are rules; only those with one of the names, if any are given."""
+        """Return the children that are rules, filtered by name if any names are given."""
         return [Node(c) for c in self.branch.children if isinstance(c, Branch) and (not names or c.name in names)]
 
     def leaves(self, kind: str | None = None) -> list[Leaf]:
-        """Return the children that are terminals; only those of the kind, if one is given."""
+        """Return the children that are terminals, filtered by kind if a kind is given."""
         return [c for c in self.branch.children if isinstance(c, Leaf) and kind in (None, c.kind)]
 
     def leaf_kinds(self) -> list[str]:
@@ -67,7 +67,7 @@ class RuleBuilder:
         self.upper_case = text.isupper()
 
     def visit(self, node: Node) -> Any:
-        """Return what the method for the node's rule builds."""
+        """Build the result for a node with the method for its rule."""
         name = {"visit": "visit_places", "raise": "raise_it", "if": "if_"}.get(node.name, node.name)
         return getattr(self, name)(node)
 

@@ -60,28 +60,28 @@ def drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
 
 def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: random.Random) -> TaskDraft | None:
     scene = places.scene
-    at = preset_at(places.presets[start])
+    position = preset_at(places.presets[start])
     program, visited = list[ProgramCall](), [start]
     for step in shape:
         call = _step(step, places, visited, rng)
         if call is None:
             return None
-        there = position_after(places, at, call)
-        if there is None or (call.tool != "take_image" and there == at):
+        next_position = position_after(places, position, call)
+        if next_position is None or (call.tool != "take_image" and next_position == position):
             return None
-        at = there
+        position = next_position
         program.append(call)
     origin = places.at_preset(start)
-    end = TaskPlace(scene, start, tuple(program), at)
-    shots = shape.count("shot")
-    if not shots and end.key == origin.key:
+    end = TaskPlace(scene, start, tuple(program), position)
+    picture_count = shape.count("shot")
+    if not picture_count and end.key == origin.key:
         return None
     _step_phrases(program, rng)  # Published wordings depend on these random draws.
     variants = []
     for opening in _OPENINGS:
         order = joined_in_order(_step_phrases(program, rng), rng)
         variants.append(opening.format(m=order, M=capital(order)))
-    calls = tuple(required(c) for c in program) if shots else ()
+    calls = tuple(required(c) for c in program) if picture_count else ()
     return command(
         "multi_step_command",
         "-".join(shape),
@@ -89,9 +89,9 @@ def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: rando
         origin,
         tuple(variants),
         tuple(program),
-        Behaviour(final=end.final, calls=calls, pictures=shots),
+        Behaviour(final=end.final, calls=calls, pictures=picture_count),
         needs_of(program),
-        ("picture",) if shots else (),
+        ("picture",) if picture_count else (),
     )
 
 
@@ -117,34 +117,34 @@ def required(call: ProgramCall) -> RequiredCall:
 
 
 def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
-    """Return how a program changes the view: by a preset, a move or a zoom."""
-    found: list[Need] = []
+    """Return the ways in which a program changes the view: by a preset, a move or a zoom."""
+    needs: list[Need] = []
     for call in program:
         if call.tool in ("go_to_preset", "go_home"):
-            found.append("preset")
+            needs.append("preset")
         if call.arguments.get("pan_deg") or call.arguments.get("tilt_deg"):
-            found.append("move")
+            needs.append("move")
         if "zoom_factor" in call.arguments:
-            found.append("zoom")
-    return tuple(dict.fromkeys(found))
+            needs.append("zoom")
+    return tuple(dict.fromkeys(needs))
 
 
-def position_after(places: ScenePlaces, at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
+def position_after(places: ScenePlaces, position: CameraPosition, call: ProgramCall) -> CameraPosition | None:
     """Return the camera position after a call; None if a limit would clamp the move."""
     if call.tool == "go_to_preset":
         return preset_at(places.presets[str(call.arguments["name"])])
     if call.tool == "go_home":
         return preset_at(places.presets[places.scene.file.home_preset])
-    return move(at, call) if call.tool == "adjust_ptz" else at
+    return move(position, call) if call.tool == "adjust_ptz" else position
 
 
 def _step(step: str, places: ScenePlaces, visited: list[str], rng: random.Random) -> ProgramCall | None:
     match step:
         case "preset":
-            fresh = [p for p in places.presets if p not in visited]
-            if not fresh:
+            unvisited = [p for p in places.presets if p not in visited]
+            if not unvisited:
                 return None
-            visited.append(rng.choice(fresh))
+            visited.append(rng.choice(unvisited))
             return go(visited[-1])
         case "home":
             return ProgramCall(tool="go_home")

@@ -8,7 +8,7 @@ from itertools import combinations, pairwise
 
 from scope_ptz.bench.tasks.expected import AnyExpected, Choice, Number, Options, Ordering, Relation, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView
-from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view, same_form
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view, identical_forms
 from scope_ptz.taskgen.authoring.noun_phrases import about, listing, many_of, unit_of
 from scope_ptz.taskgen.authoring.object_names import NamedThing, nameable_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
@@ -26,6 +26,7 @@ def drafts(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
 
 
 def _of_two(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield comparisons of the numbers of two kinds."""
     pairs = [
         (a, b)
         for a, b in combinations(countable(place.truth), 2)
@@ -38,18 +39,18 @@ def _of_two(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
     ]
     rng.shuffle(pairs)
     for n, pair in enumerate(pairs[:14]):
-        (one, many), (two, few) = rng.sample(pair, 2)
-        first, second = many_of(one), many_of(two)
-        seen = tuple(count_evidence(place, kind, number) for kind, number in ((one, many), (two, few)))
-        kind, expected, asked = (_excess, _more, _fewer, _number_relation, _whether_more)[n % 5](first, second, many, few)
+        (first_kind, many), (second_kind, few) = rng.sample(pair, 2)
+        first, second = many_of(first_kind), many_of(second_kind)
+        evidence_views = tuple(count_evidence(place, kind, number) for kind, number in ((first_kind, many), (second_kind, few)))
+        kind, expected, question = (_excess, _more, _fewer, _number_relation, _whether_more)[n % 5](first, second, many, few)
         yield TaskDraft(
             category="comparative",
             question_type=kind,
             key=f"more:{'/'.join(sorted((first, second)))}",
             place=place,
             expected=expected,
-            question=asked,
-            evidence=seen,
+            question=question,
+            evidence=evidence_views,
             perception_calls=(count_call(first, place), count_call(second, place)),
             tags=("counts",),
             weight=max(many, few),
@@ -151,14 +152,14 @@ def _of_several(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
             ranked = tuple(many_of(kind) for kind, _ in sorted(group, key=lambda t: -t[1]))
             shuffled = rng.sample(group, size)
             names = [many_of(kind) for kind, _ in shuffled]
-            asked, expected = _ranking(names, ranked) if size == 3 else _most(names, ranked[0])
+            question, expected = _ranking(names, ranked) if size == 3 else _most(names, ranked[0])
             yield TaskDraft(
                 category="comparative",
                 question_type="ranking" if size == 3 else "most-of",
                 key=f"rank:{'/'.join(sorted(ranked))}",
                 place=place,
                 expected=expected,
-                question=asked,
+                question=question,
                 evidence=tuple(count_evidence(place, kind, n) for kind, n in shuffled),
                 perception_calls=tuple(count_call(name, place) for name in names),
                 tags=("counts",),
@@ -186,7 +187,7 @@ def _ranking(names: list[str], ranked: tuple[str, ...]) -> tuple[Question, Order
 def _most(names: list[str], winner: str) -> tuple[Question, Choice]:
     listed = listing(names, "or")
     expected = Choice(value=winner, options=dict.fromkeys(names, ()), picks=("most", "more"))
-    return Question(same_form(f"what is there most of: {listed}?", f"which are the most numerous: {listed}?")), expected
+    return Question(identical_forms(f"what is there most of: {listed}?", f"which are the most numerous: {listed}?")), expected
 
 
 def _distances(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
@@ -199,26 +200,29 @@ def _distances(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
             ranked = sorted(group, key=lambda n: n.thing.distance_m)
             gaps = [b.thing.distance_m / max(a.thing.distance_m, 0.1) for a, b in pairwise(ranked)]
             if min(gaps if size < 4 else (gaps[0], gaps[-1])) >= _MIN_DISTANCE_RATIO:
-                names = [one.the for one in rng.sample(group, size)]
+                names = [target.the for target in rng.sample(group, size)]
                 yield from _by_distance(place, ranked, names, rng)
 
 
 def _by_distance(place: TaskPlace, ranked: list[NamedThing], names: list[str], rng: random.Random) -> Iterator[TaskDraft]:
-    options: Options = {one.name: () for one in ranked}
+    options: Options = {target.name: () for target in ranked}
     either = listing(names, "or")
     near = rng.random() < 0.5
-    way, winner = ("closest to", ranked[0]) if near else ("farthest from", ranked[-1])
+    phrase, winner = ("closest to", ranked[0]) if near else ("farthest from", ranked[-1])
     if len(ranked) == 2:
-        way = "closer to" if near else "farther from"
+        phrase = "closer to" if near else "farther from"
     picks = ("closest", "closer", "nearest", "nearer") if near else ("farthest", "farther", "furthest", "further")
     choice = Choice(value=winner.name, options=options, picks=picks)
-    asked = Question(same_form(f"which is {way} the camera, {either}?", f"what is {way} the camera: {either}?"))
+    question = Question(identical_forms(f"which is {phrase} the camera, {either}?", f"what is {phrase} the camera: {either}?"))
     yield _comparison(
-        place, ("nearer" if near else "farther") if len(ranked) == 2 else "nearest-of", choice, asked, ranked, "distance"
+        place, ("nearer" if near else "farther") if len(ranked) == 2 else "nearest-of", choice, question, ranked, "distance"
     )
     if len(ranked) == 3:
         order = Ordering(
-            value=tuple(one.name for one in ranked), options=options, first=("nearest", "closest"), last=("farthest", "furthest")
+            value=tuple(target.name for target in ranked),
+            options=options,
+            first=("nearest", "closest"),
+            last=("farthest", "furthest"),
         )
         listed = listing(names)
         yield _comparison(place, "by-distance", order, Question((
@@ -233,36 +237,38 @@ def _sizes(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
         return
     named = nameable_things(place.truth)
     for group in (*_groups(named, 3, rng), *_groups(named, 4, rng)):
-        areas = {one.name: place.truth.areas(one.thing) for one in group}
-        ranked = sorted(group, key=lambda one: areas[one.name][0], reverse=True)
-        if min(areas[ranked[0].name]) < _MIN_AREA_RATIO * max(max(areas[one.name]) for one in ranked[1:]):
+        areas = {target.name: place.truth.areas(target.thing) for target in group}
+        ranked = sorted(group, key=lambda target: areas[target.name][0], reverse=True)
+        if min(areas[ranked[0].name]) < _MIN_AREA_RATIO * max(max(areas[target.name]) for target in ranked[1:]):
             continue
-        either = listing([one.the for one in rng.sample(group, len(group))], "or")
-        expected = Choice(value=ranked[0].name, options={one.name: () for one in ranked}, picks=("largest", "biggest", "most"))
-        asked = Question(
-            same_form(
+        either = listing([target.the for target in rng.sample(group, len(group))], "or")
+        expected = Choice(
+            value=ranked[0].name, options={target.name: () for target in ranked}, picks=("largest", "biggest", "most")
+        )
+        question = Question(
+            identical_forms(
                 f"which looks largest in the picture: {either}?",
                 f"which takes up the most room in the picture: {either}?",
                 f"which appears biggest in the frame: {either}?",
             )
         )
-        yield _comparison(place, "largest", expected, asked, ranked, "size")
+        yield _comparison(place, "largest", expected, question, ranked, "size")
 
 
 def _groups(named: list[NamedThing], size: int, rng: random.Random) -> list[tuple[NamedThing, ...]]:
     """Return up to twelve groups of objects of different categories."""
-    groups = [g for g in combinations(named[:12], size) if len({one.kind.category for one in g}) == size]
+    groups = [g for g in combinations(named[:12], size) if len({target.kind.category for target in g}) == size]
     rng.shuffle(groups)
     return groups[:12]
 
 
 def _comparison(
-    place: TaskPlace, kind: str, expected: Choice | Ordering, asked: Question, things: list[NamedThing], tag: str
+    place: TaskPlace, kind: str, expected: Choice | Ordering, question: Question, things: list[NamedThing], tag: str
 ) -> TaskDraft:
     """Return the draft of a comparison of single objects in one view."""
-    ids = "/".join(sorted(one.thing.instance.id for one in things))
-    measures = [one.thing.distance_m if tag == "distance" else float(one.thing.pixels) for one in things]
-    items = [place.truth.item(one.thing, measure) for one, measure in zip(things, measures, strict=True)]
+    ids = "/".join(sorted(target.thing.instance.id for target in things))
+    measures = [target.thing.distance_m if tag == "distance" else float(target.thing.pixels) for target in things]
+    items = [place.truth.item(target.thing, measure) for target, measure in zip(things, measures, strict=True)]
     lookup = "how far away is" if tag == "distance" else "where is"
     return TaskDraft(
         category="comparative",
@@ -270,9 +276,9 @@ def _comparison(
         key=f"{tag}:{ids}",
         place=place,
         expected=expected,
-        question=asked,
-        evidence=(evidence_view(place, expected, tuple(word for one in things for word in one.words), items, whole=False),),
-        perception_calls=tuple(ask_call(f"{lookup} {one.the}?", place) for one in things),
+        question=question,
+        evidence=(evidence_view(place, expected, tuple(word for target in things for word in target.words), items, whole=False),),
+        perception_calls=tuple(ask_call(f"{lookup} {target.the}?", place) for target in things),
         tags=(tag,),
         weight=len(things),
         answer_key=_answer_key(expected),

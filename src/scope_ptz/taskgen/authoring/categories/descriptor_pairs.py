@@ -40,17 +40,17 @@ def _presence(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> It
     rng.shuffle(present)
     missing = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
     for present_kind, absent_kind in zip(present, missing, strict=False):
-        twin = _presence_draft(place, present_kind, there=True)
-        yield _presence_draft(place, absent_kind, there=False, twin=twin)
+        twin = _presence_draft(place, present_kind, is_present=True)
+        yield _presence_draft(place, absent_kind, is_present=False, twin=twin)
 
 
-def _presence_draft(place: TaskPlace, kind: Kind, *, there: bool, twin: TaskDraft | None = None) -> TaskDraft:
+def _presence_draft(place: TaskPlace, kind: Kind, *, is_present: bool, twin: TaskDraft | None = None) -> TaskDraft:
     one, many = noun_of(kind), many_of(kind)
-    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if there else NoneThere(subject=unit_of(kind)[:2])
-    things = (place.truth.all_of(kind) or ())[:1] if there else ()
+    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if is_present else NoneThere(subject=unit_of(kind)[:2])
+    things = (place.truth.all_of(kind) or ())[:1] if is_present else ()
     return TaskDraft(
         category="descriptor",
-        question_type="there" if there else "not-there",
+        question_type="there" if is_present else "not-there",
         key=f"there:{one}",
         place=place,
         expected=expected,
@@ -62,39 +62,41 @@ def _presence_draft(place: TaskPlace, kind: Kind, *, there: bool, twin: TaskDraf
                 (f"do you see any {many}?", f"whether you see any {many}"),
             )
         ),
-        evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=not there),),
+        evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=not is_present),),
         perception_calls=(ask_call(f"are there any {many}?", place),),
-        tags=("presence",) if there else ("none-there",),
+        tags=("presence",) if is_present else ("none-there",),
         twin=twin,
-        answer_key="yes" if there else "none",
+        answer_key="yes" if is_present else "none",
     )
 
 
 def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about whether an object has a given colour: its own, or one that is clearly different."""
-    for one in unique_things(place.truth, coloured=False, min_pixels=400):
-        colour = plain_colour(own_colour(one.thing.instance))
-        if colour is None or colour in one.name or not colour_shows(one.thing.instance):
+    for target in unique_things(place.truth, coloured=False, min_pixels=400):
+        colour = plain_colour(own_colour(target.thing.instance))
+        if colour is None or colour in target.name or not colour_shows(target.thing.instance):
             continue
         other_colours = [
             c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not similar_colours(c, colour)
         ]
-        for asked in (colour, rng.choice(other_colours)):
-            expected = YesNo(value=asked == colour, affirms=(asked,), denies=(colour,) if asked != colour else ())
+        for asked_colour in (colour, rng.choice(other_colours)):
+            expected = YesNo(
+                value=asked_colour == colour, affirms=(asked_colour,), denies=(colour,) if asked_colour != colour else ()
+            )
             yield TaskDraft(
                 category="descriptor",
                 question_type="is-coloured",
-                key=f"is-coloured:{one.thing.instance.id}",
+                key=f"is-coloured:{target.thing.instance.id}",
                 place=place,
                 expected=expected,
                 question=Question(
                     (
-                        (f"is {one.the} {asked}?", f"whether {one.the} is {asked}"),
-                        (f"is it true that {one.the} is {asked}?", f"if it is true that {one.the} is {asked}"),
+                        (f"is {target.the} {asked_colour}?", f"whether {target.the} is {asked_colour}"),
+                        (f"is it true that {target.the} is {asked_colour}?", f"if it is true that {target.the} is {asked_colour}"),
                     )
                 ),
-                evidence=(evidence_view(place, expected, one.words, [place.truth.item(one.thing, colour)], whole=False),),
-                perception_calls=(ask_call(f"what colour is {one.the}?", place),),
+                evidence=(evidence_view(place, expected, target.words, [place.truth.item(target.thing, colour)], whole=False),),
+                perception_calls=(ask_call(f"what colour is {target.the}?", place),),
                 tags=("verification",),
                 answer_key="yes" if expected.value else "no",
             )
@@ -103,16 +105,18 @@ def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft
 def _colour_if_there(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about the colour of an absent object, each with a twin about a present one."""
     missing = scene_kinds_first(place, [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None], rng)
-    shown = [one for one in unique_things(place.truth, coloured=False, min_pixels=300) if own_colour(one.thing.instance)]
+    shown = [target for target in unique_things(place.truth, coloured=False, min_pixels=300) if own_colour(target.thing.instance)]
     rng.shuffle(shown)
-    for one, absent in zip(shown, missing, strict=False):
-        colour = plain_colour(own_colour(one.thing.instance))
-        if colour is None or colour in one.name or not colour_shows(one.thing.instance):
+    for target, absent in zip(shown, missing, strict=False):
+        colour = plain_colour(own_colour(target.thing.instance))
+        if colour is None or colour in target.name or not colour_shows(target.thing.instance):
             continue
-        value = Choice(value=colour, options=colour_options(), subject=unit_of(one.kind)[:2])
+        value = Choice(value=colour, options=colour_options(), subject=unit_of(target.kind)[:2])
         none = NoneThere(subject=unit_of(absent)[:2], claims=wordings(colour_options()))
-        item = place.truth.item(one.thing, colour)
-        twin = _colour_if_there_draft(place, one.name, value, evidence_view(place, value, one.words, [item], whole=False), colour)
+        item = place.truth.item(target.thing, colour)
+        twin = _colour_if_there_draft(
+            place, target.name, value, evidence_view(place, value, target.words, [item], whole=False), colour
+        )
         yield replace(
             _colour_if_there_draft(place, noun_of(absent), none, evidence_view(place, none, about(absent), whole=True), "none"),
             question_type="no-colour",

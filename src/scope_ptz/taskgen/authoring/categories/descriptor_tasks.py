@@ -44,12 +44,12 @@ Values = Mapping[tuple[str, str], Sequence[str]]
 
 def values_of(things: Sequence[SceneThing]) -> Values:
     """Return the values that the attributes of the given objects have, by category and attribute."""
-    found: dict[tuple[str, str], set[str]] = {}
+    values_by_key: dict[tuple[str, str], set[str]] = {}
     for thing in things:
         for key, value in thing.attributes.items():
             if isinstance(value, str) and value and " and " not in value:
-                found.setdefault((thing.category, key), set()).add(value)
-    return {key: sorted(values) for key, values in found.items()}
+                values_by_key.setdefault((thing.category, key), set()).add(value)
+    return {key: sorted(values) for key, values in values_by_key.items()}
 
 
 def options(values: Sequence[str]) -> Options:
@@ -64,8 +64,8 @@ def one_of(value: str, values: Sequence[str], category: str) -> Options:
     """
     same: dict[str, set[str]] = {value: set()}
     for other in values:
-        like = next((known for known in same if _is_same(known, other, category)), other)
-        same.setdefault(like, set()).update({other, other.removesuffix(f" {category}")} - {like})
+        equivalent = next((name for name in same if _is_same(name, other, category)), other)
+        same.setdefault(equivalent, set()).update({other, other.removesuffix(f" {category}")} - {equivalent})
     return {name: (*words, *sorted(same[name] - {*words})) for name, words in options(list(same)).items()}
 
 
@@ -87,26 +87,30 @@ def _attributes(place: TaskPlace, values: Values) -> Iterator[TaskDraft]:
     named = [*unique_things(place.truth, coloured=False, min_pixels=300), *named_things(place.truth, 300)]
     if not place.swept:
         named += list(extreme_things(place.truth, 300))
-    for one in named:
-        yield from _colour(place, one)
-        yield from _clothes(place, one)
-        yield from _state(place, one)
-        yield from _other_attributes(place, one, values)
+    for target in named:
+        yield from _colour(place, target)
+        yield from _clothes(place, target)
+        yield from _state(place, target)
+        yield from _other_attributes(place, target, values)
 
 
-def _colour(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
-    colour = plain_colour(own_colour(one.thing.instance))
-    in_name = {colour, str(one.thing.instance.attributes.get("colour"))} & set(one.name.split())
-    if colour is not None and colour_shows(one.thing.instance) and not in_name:
-        yield _choice(place, one, "colour", Choice(value=colour, options=colour_options()), _COLOUR_FORMS)
+def _colour(place: TaskPlace, target: NamedThing) -> Iterator[TaskDraft]:
+    colour = plain_colour(own_colour(target.thing.instance))
+    in_name = {colour, str(target.thing.instance.attributes.get("colour"))} & set(target.name.split())
+    if colour is not None and colour_shows(target.thing.instance) and not in_name:
+        yield _choice(place, target, "colour", Choice(value=colour, options=colour_options()), _COLOUR_FORMS)
 
 
-def _clothes(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
+def _clothes(place: TaskPlace, target: NamedThing) -> Iterator[TaskDraft]:
     """Yield questions about the colour of clothes and umbrellas."""
-    facts = one.thing.instance.attributes
+    facts = target.thing.instance.attributes
     for key, garment, verb in _GARMENTS:
-        worn = plain_colour(facts.get(key))
-        if worn is not None and one.thing.pixels >= _GARMENT_PX and not {worn, str(facts.get(key))} & set(one.name.split()):
+        garment_colour = plain_colour(facts.get(key))
+        if (
+            garment_colour is not None
+            and target.thing.pixels >= _GARMENT_PX
+            and not {garment_colour, str(facts.get(key))} & set(target.name.split())
+        ):
             forms = (
                 (f"what colour {garment} is {{n}} {verb}?", f"what colour {garment} {{n}} is {verb}"),
                 (
@@ -114,47 +118,49 @@ def _clothes(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
                     f"the colour of the {garment} that {{n}} is {verb}",
                 ),
             )
-            yield _choice(place, one, key, Choice(value=worn, options=colour_options()), forms)
+            yield _choice(place, target, key, Choice(value=garment_colour, options=colour_options()), forms)
 
 
-def _state(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
+def _state(place: TaskPlace, target: NamedThing) -> Iterator[TaskDraft]:
     """Yield questions about the state of an object, such as open or closed."""
-    facts = one.thing.instance.attributes
+    facts = target.thing.instance.attributes
     state = facts.get("state")
     for pair in STATES:
-        named = {word for value in pair for word in (value, *_SYNONYMS.get(value, ()))} & set(one.name.split())
-        if {"lit", "unlit"} & set(pair) and "light" in facts and set(one.name.split()) & COLOUR_WORDS:
+        named = {word for value in pair for word in (value, *_SYNONYMS.get(value, ()))} & set(target.name.split())
+        if {"lit", "unlit"} & set(pair) and "light" in facts and set(target.name.split()) & COLOUR_WORDS:
             continue  # its colour is that of its light, so its name reveals that it is lit
         min_pixels = _CONTENT_PX if {"full", "empty"} & set(pair) else _STATE_PX
-        shows = not one.thing.cut and one.thing.pixels >= min_pixels and one.thing.instance.category not in _STATE_HARD_TO_SEE
+        shows = (
+            not target.thing.cut and target.thing.pixels >= min_pixels and target.thing.instance.category not in _STATE_HARD_TO_SEE
+        )
         if state in pair and not named and shows:
             # The order of the two states must be the same in every build, and vary between objects.
-            first, second = pair[:: 1 if sum(map(ord, one.thing.instance.id)) % 2 else -1]
+            first, second = pair[:: 1 if sum(map(ord, target.thing.instance.id)) % 2 else -1]
             forms = (
                 (f"is {{n}} {first} or {second}?", f"whether {{n}} is {first} or {second}"),
                 (f"what state is {{n}} in, {first} or {second}?", f"if {{n}} is {first} or {second}"),
             )
-            yield _choice(place, one, "state", Choice(value=str(state), options=options(pair)), forms)
+            yield _choice(place, target, "state", Choice(value=str(state), options=options(pair)), forms)
 
 
-def _other_attributes(place: TaskPlace, one: NamedThing, values: Values) -> Iterator[TaskDraft]:
+def _other_attributes(place: TaskPlace, target: NamedThing, values: Values) -> Iterator[TaskDraft]:
     """Yield questions about the kind, material and load of an object, and about what a person carries."""
-    category = one.thing.instance.category
+    category = target.thing.instance.category
     for key, usual_forms in _ATTRIBUTE_FORMS.items():
         if (key == "kind" and category not in _RECOGNISABLE_KINDS) or (key == "material" and category in _MATERIAL_HIDDEN_BY_PAINT):
             continue
-        known = values.get((category, key), ())
-        value = one.thing.instance.attributes.get(key)
+        scene_values = values.get((category, key), ())
+        value = target.thing.instance.attributes.get(key)
         if (
             isinstance(value, str)
-            and value in known
-            and len(choice := one_of(value, known, category)) >= 2
-            and one.thing.pixels >= (_CONTENT_PX if key == "load" else _STATE_PX)
-            and value not in one.name.lower()
+            and value in scene_values
+            and len(choice := one_of(value, scene_values, category)) >= 2
+            and target.thing.pixels >= (_CONTENT_PX if key == "load" else _STATE_PX)
+            and value not in target.name.lower()
             and value not in _HIDDEN_BY_HAND
         ):
-            forms = _ONLY_ONE_OF_CATEGORY_FORMS if key == "kind" and one.name == one.kind.category else usual_forms
-            yield _choice(place, one, key, Choice(value=value, options=choice), forms)
+            forms = _ONLY_ONE_OF_CATEGORY_FORMS if key == "kind" and target.name == target.kind.category else usual_forms
+            yield _choice(place, target, key, Choice(value=value, options=choice), forms)
 
 
 _COLOUR_FORMS = (
@@ -209,19 +215,19 @@ _ATTRIBUTE_FORMS: dict[str, tuple[tuple[str, str], ...]] = {
 }
 
 
-def _choice(place: TaskPlace, one: NamedThing, key: str, expected: Choice, forms: Sequence[tuple[str, str]]) -> TaskDraft:
-    words = {"n": one.the, "c": one.kind.category}
-    asked = Question(tuple((d.format(**words), i.format(**words)) for d, i in forms))
-    item = place.truth.item(one.thing, expected.value)
+def _choice(place: TaskPlace, target: NamedThing, key: str, expected: Choice, forms: Sequence[tuple[str, str]]) -> TaskDraft:
+    words = {"n": target.the, "c": target.kind.category}
+    question = Question(tuple((d.format(**words), i.format(**words)) for d, i in forms))
+    item = place.truth.item(target.thing, expected.value)
     return TaskDraft(
         category="descriptor",
         question_type=key,
-        key=f"{key}:{one.thing.instance.id}",
+        key=f"{key}:{target.thing.instance.id}",
         place=place,
         expected=expected,
-        question=asked,
-        evidence=(evidence_view(place, expected, one.words, [item], whole=one.positional and not place.swept),),
-        perception_calls=(ask_call(asked.forms[0][0], place),),
+        question=question,
+        evidence=(evidence_view(place, expected, target.words, [item], whole=target.positional and not place.swept),),
+        perception_calls=(ask_call(question.forms[0][0], place),),
         tags=("attribute", key, scope_of(place)),
         answer_key=expected.value,
     )

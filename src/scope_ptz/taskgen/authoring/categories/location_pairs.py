@@ -40,16 +40,16 @@ def _in_half_pairs(place: TaskPlace, nouns: frozenset[str], rng: random.Random) 
     absent = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
     for (kind, sides), missing in zip(present, absent, strict=False):
         side = ("left", "right")[next(iter(sides)) or 0]
-        yield _half_pair(place, missing, side, there=False, twin=_half_pair(place, kind, side, there=True))
+        yield _half_pair(place, missing, side, is_present=False, twin=_half_pair(place, kind, side, is_present=True))
 
 
-def _half_pair(place: TaskPlace, kind: Kind, side: str, *, there: bool, twin: TaskDraft | None = None) -> TaskDraft:
+def _half_pair(place: TaskPlace, kind: Kind, side: str, *, is_present: bool, twin: TaskDraft | None = None) -> TaskDraft:
     one, many = noun_of(kind), many_of(kind)
-    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if there else NoneThere(subject=unit_of(kind)[:2])
-    items = [place.truth.item(t, True) for t in (place.truth.all_of(kind) or ())[:1]] if there else []
+    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if is_present else NoneThere(subject=unit_of(kind)[:2])
+    items = [place.truth.item(t, True) for t in (place.truth.all_of(kind) or ())[:1]] if is_present else []
     return TaskDraft(
         category="location",
-        question_type="half-there" if there else "half-none",
+        question_type="half-there" if is_present else "half-none",
         key=f"half-there:{one}:{side}",
         place=place,
         expected=expected,
@@ -65,27 +65,27 @@ def _half_pair(place: TaskPlace, kind: Kind, side: str, *, there: bool, twin: Ta
                 ),
             )
         ),
-        evidence=(evidence_view(place, expected, about(kind), items, whole=not there),),
+        evidence=(evidence_view(place, expected, about(kind), items, whole=not is_present),),
         perception_calls=(ask_call(f"are there any {many} in the {side} half of the picture?", place),),
-        tags=("presence",) if there else ("none-there",),
+        tags=("presence",) if is_present else ("none-there",),
         twin=twin,
-        answer_key="yes" if there else "none",
+        answer_key="yes" if is_present else "none",
     )
 
 
 def _where_if_there(place: TaskPlace, named: list[NamedThing], nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about the quarter that an absent object is in, each with a twin about a present one."""
     missing = scene_kinds_first(place, [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None], rng)
-    placed = [(n, place.truth.side(n.thing, 0), place.truth.side(n.thing, 1)) for n in named if n.name[-1].isalpha()]
-    for (one, side, level), absent in zip([p for p in placed if None not in p[1:]], missing, strict=False):
+    located = [(n, place.truth.side(n.thing, 0), place.truth.side(n.thing, 1)) for n in named if n.name[-1].isalpha()]
+    for (one, side, level), absent in zip([p for p in located if None not in p[1:]], missing, strict=False):
         value = Choice(
             value=f"{('top', 'bottom')[level or 0]} {('left', 'right')[side or 0]}",
             options=corner_options(),
             subject=unit_of(one.kind)[:2],
         )
         none = NoneThere(subject=unit_of(absent)[:2], claims=wordings(corner_options()))
-        seen = evidence_view(place, value, one.words, [place.truth.item(one.thing, value.value)], whole=False)
-        twin = _where_if(place, one.name, value, seen, value.value)
+        evidence = evidence_view(place, value, one.words, [place.truth.item(one.thing, value.value)], whole=False)
+        twin = _where_if(place, one.name, value, evidence, value.value)
         yield replace(
             _where_if(place, noun_of(absent), none, evidence_view(place, none, about(absent), whole=True), "none"),
             question_type="nowhere",
@@ -93,7 +93,7 @@ def _where_if_there(place: TaskPlace, named: list[NamedThing], nouns: frozenset[
         )
 
 
-def _where_if(place: TaskPlace, name: str, expected: Choice | NoneThere, seen: EvidenceView, answer_key: str) -> TaskDraft:
+def _where_if(place: TaskPlace, name: str, expected: Choice | NoneThere, evidence: EvidenceView, answer_key: str) -> TaskDraft:
     one = article(name)
     forms = (
         (f"in which quarter of the picture is {the(name)}, if there is one?",
@@ -103,7 +103,7 @@ def _where_if(place: TaskPlace, name: str, expected: Choice | NoneThere, seen: E
         (f"can you find {one}, and in which quarter of the frame is it?",
          f"whether you can find {one}, and in which quarter of the frame it is"),
     )  # fmt: skip
-    asked = f"are there any {plural(name)}?" if answer_key == "none" else f"where in the frame is {the(name)}?"
+    question = f"are there any {plural(name)}?" if answer_key == "none" else f"where in the frame is {the(name)}?"
     return TaskDraft(
         category="location",
         question_type="where-if",
@@ -111,8 +111,8 @@ def _where_if(place: TaskPlace, name: str, expected: Choice | NoneThere, seen: E
         place=place,
         expected=expected,
         question=Question(forms),
-        evidence=(seen,),
-        perception_calls=(ask_call(asked, place),),
+        evidence=(evidence,),
+        perception_calls=(ask_call(question, place),),
         tags=("none-there",) if answer_key == "none" else ("frame",),
         answer_key=answer_key,
     )

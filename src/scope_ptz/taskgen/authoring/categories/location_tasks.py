@@ -38,18 +38,18 @@ def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[
 
 
 def _halves(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
-    for one in named:
+    for target in named:
         for axis in (0, 1):
-            side = place.truth.side(one.thing, axis)
+            side = place.truth.side(target.thing, axis)
             if side is None:
                 continue
             expected = Choice(value=_SIDES[axis][side], options=_SIDE_OPTIONS[axis])
             yield _about(
                 place,
-                one,
+                target,
                 f"half-{axis}",
                 expected,
-                _half_forms(one.the, axis),
+                _half_forms(target.the, axis),
             )
 
 
@@ -70,72 +70,72 @@ def _half_forms(the: str, axis: int) -> tuple[tuple[str, str], ...]:
 
 
 def _corners(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
-    for one in named:
-        side, level = place.truth.side(one.thing, 0), place.truth.side(one.thing, 1)
+    for target in named:
+        side, level = place.truth.side(target.thing, 0), place.truth.side(target.thing, 1)
         if side is None or level is None:
             continue
         expected = Choice(value=f"{('top', 'bottom')[level]} {('left', 'right')[side]}", options=corner_options())
         yield _about(
             place,
-            one,
+            target,
             "quarter",
             expected,
             (
-                (f"in which quarter of the picture is {one.the}?", f"in which quarter of the picture {one.the} is"),
+                (f"in which quarter of the picture is {target.the}?", f"in which quarter of the picture {target.the} is"),
                 (
-                    f"where in the frame is {one.the}: top left, top right, bottom left or bottom right?",
-                    f"which quarter of the frame holds {one.the}",
+                    f"where in the frame is {target.the}: top left, top right, bottom left or bottom right?",
+                    f"which quarter of the frame holds {target.the}",
                 ),
             ),
         )
 
 
 def _relations(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
-    for one, two in (tuple(rng.sample(pair, 2)) for pair in combinations(named, 2)):
-        order = place.truth.in_order((one.thing, two.thing), 0, 0.08)
-        if order is None or one.kind.category == two.kind.category:
+    for target, other in (tuple(rng.sample(pair, 2)) for pair in combinations(named, 2)):
+        order = place.truth.in_order((target.thing, other.thing), 0, 0.08)
+        if order is None or target.kind.category == other.kind.category:
             continue
-        left = order[0] is one.thing
+        left = order[0] is target.thing
         expected: Relation | YesNo
         if rng.random() < 0.6:
             kind, expected = (
                 "beside",
                 Relation(
                     value="forward" if left else "backward",
-                    subject=(one.name,),
-                    object=(two.name,),
+                    subject=(target.name,),
+                    object=(other.name,),
                     forward=("left",),
                     backward=("right",),
                 ),
             )
-            asked = Question(
+            question = Question(
                 (
-                    (f"on which side of {two.the} is {one.the}?", f"on which side of {two.the} {one.the} is"),
-                    (f"is {one.the} to the left or to the right of {two.the}?",
-                     f"whether {one.the} is to the left or to the right of {two.the}"),
+                    (f"on which side of {other.the} is {target.the}?", f"on which side of {other.the} {target.the} is"),
+                    (f"is {target.the} to the left or to the right of {other.the}?",
+                     f"whether {target.the} is to the left or to the right of {other.the}"),
                 )
             )  # fmt: skip
         else:
             kind, side = "is-beside", rng.choice(("left", "right"))
             expected = YesNo(value=(side == "left") == left)
-            asked = Question(
+            question = Question(
                 (
-                    (f"is {one.the} to the {side} of {two.the}?",
-                     f"whether {one.the} is to the {side} of {two.the}"),
-                    (f"does {one.the} appear to the {side} of {two.the}?",
-                     f"whether {one.the} appears to the {side} of {two.the}"),
+                    (f"is {target.the} to the {side} of {other.the}?",
+                     f"whether {target.the} is to the {side} of {other.the}"),
+                    (f"does {target.the} appear to the {side} of {other.the}?",
+                     f"whether {target.the} appears to the {side} of {other.the}"),
                 )
             )  # fmt: skip
-        items = [place.truth.item(n.thing) for n in (one, two)]
+        items = [place.truth.item(n.thing) for n in (target, other)]
         yield TaskDraft(
             category="location",
             question_type=kind,
-            key=f"beside:{one.thing.instance.id}:{two.thing.instance.id}",
+            key=f"beside:{target.thing.instance.id}:{other.thing.instance.id}",
             place=place,
             expected=expected,
-            question=asked,
-            evidence=(evidence_view(place, expected, (*one.words, *two.words), items, whole=False),),
-            perception_calls=(ask_call(asked.forms[0][0], place),),
+            question=question,
+            evidence=(evidence_view(place, expected, (*target.words, *other.words), items, whole=False),),
+            perception_calls=(ask_call(question.forms[0][0], place),),
             tags=("relation",),
             answer_key=("yes" if expected.value else "no") if isinstance(expected, YesNo) else "left" if left else "right",
         )
@@ -143,17 +143,17 @@ def _relations(place: TaskPlace, named: list[NamedThing], rng: random.Random) ->
 
 def _order(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
     one_per_category = list({n.kind.category: n for n in named}.values())
-    for three in list(combinations(one_per_category, 3))[:6]:
-        order = place.truth.in_order([n.thing for n in three], 0, 0.06)
+    for triple in list(combinations(one_per_category, 3))[:6]:
+        order = place.truth.in_order([n.thing for n in triple], 0, 0.06)
         if order is None:
             continue
-        names = {n.thing.instance.id: n.name for n in three}
+        names = {n.thing.instance.id: n.name for n in triple}
         value = tuple(names[s.instance.id] for s in order)
         shuffled = list(value)
         rng.shuffle(shuffled)
         listed = listing([the(name) for name in shuffled])
-        items = [place.truth.item(n.thing) for n in three]
-        sets: list[tuple[str, Ordering | Choice, Question]] = [
+        items = [place.truth.item(n.thing) for n in triple]
+        variants: list[tuple[str, Ordering | Choice, Question]] = [
             (
                 "row",
                 Ordering(value=value, options=dict.fromkeys(value, ()), first=("left", "leftmost"), last=("right", "rightmost")),
@@ -183,16 +183,16 @@ def _order(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Ite
                 ),
             ),
         ]
-        for kind, expected, asked in sets:
+        for kind, expected, question in variants:
             yield TaskDraft(
                 category="location",
                 question_type=kind,
                 key=f"{kind}:{'/'.join(sorted(value))}",
                 place=place,
                 expected=expected,
-                question=asked,
-                evidence=(evidence_view(place, expected, tuple(w for n in three for w in n.words), items, whole=False),),
-                perception_calls=tuple(ask_call(f"where is {n.the}?", place) for n in three),
+                question=question,
+                evidence=(evidence_view(place, expected, tuple(w for n in triple for w in n.words), items, whole=False),),
+                perception_calls=tuple(ask_call(f"where is {n.the}?", place) for n in triple),
                 tags=("order",),
                 weight=3,
                 answer_key="/".join(value) if kind == "row" else value[0],
@@ -234,15 +234,15 @@ def _in_half(place: TaskPlace) -> Iterator[TaskDraft]:
             )
 
 
-def _about(place: TaskPlace, one: NamedThing, kind: str, expected: Choice, forms: tuple[tuple[str, str], ...]) -> TaskDraft:
+def _about(place: TaskPlace, target: NamedThing, kind: str, expected: Choice, forms: tuple[tuple[str, str], ...]) -> TaskDraft:
     return TaskDraft(
         category="location",
         question_type=kind,
-        key=f"{kind}:{one.thing.instance.id}",
+        key=f"{kind}:{target.thing.instance.id}",
         place=place,
         expected=expected,
         question=Question(forms),
-        evidence=(evidence_view(place, expected, one.words, [place.truth.item(one.thing, expected.value)], whole=False),),
+        evidence=(evidence_view(place, expected, target.words, [place.truth.item(target.thing, expected.value)], whole=False),),
         perception_calls=(ask_call(forms[0][0], place),),
         tags=("frame",),
         answer_key=expected.value,

@@ -35,38 +35,38 @@ def drafts(place: TaskPlace) -> list[TaskDraft]:
 
 
 def _in_view(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
-    for one in named:
-        texts = texts_to_read(one, place)
-        expected = expected_text(one, texts)
+    for target in named:
+        texts = texts_to_read(target, place)
+        expected = expected_text(target, texts)
         if texts and expected is not None:
-            yield _draft(place, one, expected, texts, place, ())
+            yield _draft(place, target, expected, texts, place, ())
 
 
 def _zoomed(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     """Yield drafts about texts that are not legible in a view, but are legible after zooming in."""
     if any("zoom_factor" in call.arguments for call in place.calls):
         return  # tasks do not zoom in twice
-    for one in named:
-        part_ids = with_parts(place.scene, one.thing.instance.id)
+    for target in named:
+        part_ids = with_parts(place.scene, target.thing.instance.id)
         lettered = any(text.parent in part_ids for text in place.scene.file.texts)
-        if one.positional or not lettered or place.truth.texts_on(one.thing.instance):
+        if target.positional or not lettered or place.truth.texts_on(target.thing.instance):
             continue
-        close = framed(place, one.thing, one.thing.instance)
+        close = framed(place, target.thing, target.thing.instance)
         if close is None:
             continue
-        texts = texts_to_read(one, close)
-        expected = expected_text(one, texts)
+        texts = texts_to_read(target, close)
+        expected = expected_text(target, texts)
         if texts and expected is not None:
-            call = ProgramCall(tool="zoom_to_object", arguments={"description": one.name})
-            yield _draft(place, one, expected, texts, close, (call,))
+            call = ProgramCall(tool="zoom_to_object", arguments={"description": target.name})
+            yield _draft(place, target, expected, texts, close, (call,))
 
 
 def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
     """Return texts sorted from top to bottom if they are lines of one text; otherwise None."""
     if not texts:
         return None
-    found = {t.text.text.strip(): t for t in texts}
-    order = sorted(found.values(), key=lambda t: t.box[1] + t.box[3])
+    by_text = {t.text.text.strip(): t for t in texts}
+    order = sorted(by_text.values(), key=lambda t: t.box[1] + t.box[3])
     for upper, lower in pairwise(order):
         height = min(upper.box[3] - upper.box[1], lower.box[3] - lower.box[1])
         shared = min(upper.box[2], lower.box[2]) - max(upper.box[0], lower.box[0])
@@ -86,7 +86,7 @@ def prices(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
     return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
 
 
-def expected_text(one: NamedThing, texts: tuple[TextSighting, ...] | None) -> Text | None:
+def expected_text(target: NamedThing, texts: tuple[TextSighting, ...] | None) -> Text | None:
     """Return the whole text on an object as the expected answer.
 
     Return None if there is no text, if it is too long, or if the object's name contains most of its words.
@@ -95,22 +95,22 @@ def expected_text(one: NamedThing, texts: tuple[TextSighting, ...] | None) -> Te
         return None
     pieces = list(dict.fromkeys(t.text.text.strip() for t in texts))
     whole = " ".join(pieces)
-    name, words = (re.findall(r"\w+", text.lower()) for text in (one.name, whole))
+    name, words = (re.findall(r"\w+", text.lower()) for text in (target.name, whole))
     if len(whole) > MAX_TEXT_CHARS or len(pieces) > 4 or 2 * sum(word in name for word in words) >= len(words) or not words:
         return None
     return Text(accepted=(whole,), ocr=True)
 
 
-def texts_to_read(one: NamedThing, place: TaskPlace) -> tuple[TextSighting, ...] | None:
+def texts_to_read(target: NamedThing, place: TaskPlace) -> tuple[TextSighting, ...] | None:
     """Return the lines of text on an object (for a price card, only the price); None if they are not one text."""
-    found = lines(place.truth.texts_on(one.thing.instance))
-    box = next((s.box for s in place.truth.first.sightings if s.instance.number == one.thing.instance.number), None)
-    if found and not all(on_it(box, text) for text in found):
+    readable = lines(place.truth.texts_on(target.thing.instance))
+    box = next((s.box for s in place.truth.first.sightings if s.instance.number == target.thing.instance.number), None)
+    if readable and not all(is_on_object(box, text) for text in readable):
         return None
-    return prices(found) if found and one.kind.category == "price card" else found
+    return prices(readable) if readable and target.kind.category == "price card" else readable
 
 
-def on_it(box: BoxTuple | None, text: TextSighting) -> bool:
+def is_on_object(box: BoxTuple | None, text: TextSighting) -> bool:
     """Return whether the middle of a text is inside the box of an object, so that the text visibly belongs to the object."""
     x, y = (text.box[0] + text.box[2]) / 2, (text.box[1] + text.box[3]) / 2
     return box is not None and box[0] <= x <= box[2] and box[1] <= y <= box[3]
@@ -159,27 +159,27 @@ _PRICES: tuple[_Forms, _Forms] = (
 
 def _draft(
     place: TaskPlace,
-    one: NamedThing,
+    target: NamedThing,
     expected: Text,
     texts: tuple[TextSighting, ...],
     close: TaskPlace,
     zoom: tuple[ProgramCall, ...],
 ) -> TaskDraft:
-    plate = str(one.thing.instance.attributes.get("plate", ""))
-    plated, price = expected.accepted == (plate,), one.kind.category == "price card"
-    forms = (_PLATES if plated else _PRICES if price else _WRITING)[bool(zoom)]
-    forms = tuple((direct.format(n=one.the), inside.format(n=one.the)) for direct, inside in forms)
-    question = f"what is the number plate of {one.the}?" if plated else f"what does {one.the} say?"
+    plate = str(target.thing.instance.attributes.get("plate", ""))
+    is_plate, price = expected.accepted == (plate,), target.kind.category == "price card"
+    forms = (_PLATES if is_plate else _PRICES if price else _WRITING)[bool(zoom)]
+    forms = tuple((direct.format(n=target.the), inside.format(n=target.the)) for direct, inside in forms)
+    question = f"what is the number plate of {target.the}?" if is_plate else f"what does {target.the} say?"
     # The evidence items are measured in the view in which the text is legible.
     items = [close.truth.text_item(t) for t in texts]
     return TaskDraft(
         category="ocr",
-        question_type=("plate-" if plated else "price-" if price else "") + ("close-up" if zoom else "in-view"),
-        key=f"text:{one.thing.instance.id}",
+        question_type=("plate-" if is_plate else "price-" if price else "") + ("close-up" if zoom else "in-view"),
+        key=f"text:{target.thing.instance.id}",
         place=place,
         expected=expected,
         question=Question(forms),
-        evidence=(evidence_view(close, expected, one.words, items, whole=False),),
+        evidence=(evidence_view(close, expected, target.words, items, whole=False),),
         perception_calls=(*zoom, ask_call(question, place)),
         needs=tuple(dict.fromkeys((*place.needs, *(("zoom",) if zoom else ())))),
         tags=("text",),

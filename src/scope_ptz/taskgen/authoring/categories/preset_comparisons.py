@@ -33,26 +33,26 @@ _MIN_TOTAL = 4
 
 
 def drafts(places: Sequence[TaskPlace], rng: random.Random) -> list[TaskDraft]:
-    """Return comparisons of two or three presets, which are visited one after the other."""
-    found = list(_compared(places))
-    rng.shuffle(found)
-    return found
+    """Return comparisons of two or three presets, which are visited in sequence."""
+    comparisons = list(_comparisons(places))
+    rng.shuffle(comparisons)
+    return comparisons
 
 
-def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
+def _comparisons(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
     names = [str(place.preset) for place in places]
     start = comparison_start(places[0], places[1])
     if len(set(names)) < len(places) or (len(places) == 3 and start.start in names[1:]):
         return
-    known = [dict(countable(place.truth)) for place in places]
-    for kind in known[0]:
-        numbers = [counts.get(kind) for counts in known]
-        found = [number for number in numbers if number is not None]
-        if len(found) < len(places) or sum(found) < _MIN_TOTAL or (len(places) == 3 and found.count(max(found)) > 1):
+    counts_by_place = [dict(countable(place.truth)) for place in places]
+    for kind in counts_by_place[0]:
+        numbers = [counts.get(kind) for counts in counts_by_place]
+        certain = [number for number in numbers if number is not None]
+        if len(certain) < len(places) or sum(certain) < _MIN_TOTAL or (len(places) == 3 and certain.count(max(certain)) > 1):
             continue
         many = many_of(kind)
-        best = "same" if len(set(found)) == 1 else names[found.index(max(found))]
-        options: Options = {name: _spoken(name) for name in names}
+        best = "same" if len(set(certain)) == 1 else names[certain.index(max(certain))]
+        options: Options = {name: _without_hyphens(name) for name in names}
         if len(places) == 2:
             options = {**options, "same": SAME}
         words = dict(zip("pqr", names, strict=False))
@@ -63,15 +63,15 @@ def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
             place=start,
             expected=Choice(value=best, options=options, picks=("more", "most")),
             instructions=tuple(text.format(many=many, **words) for text in (_OF_TWO if len(places) == 2 else _OF_THREE)),
-            evidence=tuple(count_evidence(place, kind, n) for place, n in zip(places, found, strict=True)),
+            evidence=tuple(count_evidence(place, kind, n) for place, n in zip(places, certain, strict=True)),
             program=tuple(call for place, name in zip(places, names, strict=True) for call in (go(name), count_call(many, place))),
             needs=("preset",),
             tags=("two-views",) if len(places) == 2 else ("three-views",),
-            weight=sum(found),
+            weight=sum(certain),
             answer_key=best,
         )
 
 
-def _spoken(name: str) -> Wordings:
-    """Return the name of a preset without hyphens, if it has any, as a further wording."""
+def _without_hyphens(name: str) -> Wordings:
+    """Return the name of a preset without hyphens as an additional wording; no wording if the name has no hyphens."""
     return (name.replace("-", " "),) if "-" in name else ()

@@ -57,7 +57,7 @@ def drafts(one: TaskPlace, two: TaskPlace, places: ScenePlaces, nouns: frozenset
     if p is None or q is None or p == q:
         return []
     return [
-        *_totals(one, two, p, q), *_branches(one, p, places, rng), *_either(one, two, p, q, nouns, rng),
+        *_totals(one, two, p, q), *_branches(one, p, places, rng), *_in_either_view(one, two, p, q, nouns, rng),
         *_checks(one, p, places, nouns, rng),
     ]  # fmt: skip
 
@@ -100,14 +100,14 @@ def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraf
 
 def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
     """Return drafts about sums and differences within one view."""
-    found = list[TaskDraft]()
+    result = list[TaskDraft]()
     plain = list(plain_counts(place.truth))
     rng.shuffle(plain)
     for (one, n), (two, m) in pairwise(plain):
         if min(n, m) < 2 or not disjoint(place.truth, (one, two)):
             continue
         first, second = many_of(one), many_of(two)
-        if _unlike(one, two):
+        if _only_one_alive(one, two):
             continue
         together = Question(
             (
@@ -122,16 +122,16 @@ def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
             )
         )
         question_types = ([("together", n + m, together)] if n + m > 3 else []) + ([("excess", n - m, difference)] if n > m else [])
-        for question_type, value, asked in question_types:
+        for question_type, value, question in question_types:
             # The answer has no unit, so that a reply with the two counts is not parsed as their sum or difference.
-            found.append(
+            result.append(
                 TaskDraft(
                     category="multi_step_reasoning",
                     question_type=question_type,
                     key=f"{question_type}:{first}:{second}",
                     place=place,
                     expected=Number(value=value),
-                    question=asked,
+                    question=question,
                     evidence=(_count_view(place, one, n), _count_view(place, two, m)),
                     perception_calls=(count_call(first, place), count_call(second, place)),
                     tags=("arithmetic",),
@@ -139,15 +139,15 @@ def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
                     answer_key=str(value),
                 )
             )
-    return found
+    return result
 
 
-def _unlike(one: Kind, two: Kind) -> bool:
+def _only_one_alive(one: Kind, two: Kind) -> bool:
     """Return whether only one of two kinds is alive. A question about their sum would sound unnatural."""
-    return (one.category in _ALIVE) != (two.category in _ALIVE)
+    return (one.category in _LIVING_CATEGORIES) != (two.category in _LIVING_CATEGORIES)
 
 
-_ALIVE = GROUPS["person"] | {"dog", "pigeon", "cyclist"}
+_LIVING_CATEGORIES = GROUPS["person"] | {"dog", "pigeon", "cyclist"}
 
 
 def _branches(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
@@ -233,10 +233,12 @@ def _check(
     )
 
 
-def _either(one: TaskPlace, two: TaskPlace, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+def _in_either_view(
+    one: TaskPlace, two: TaskPlace, p: str, q: str, nouns: frozenset[str], rng: random.Random
+) -> Iterator[TaskDraft]:
     """Yield questions about whether an absent kind is visible at one of two presets, each with a twin about a present kind."""
-    missing_there = set(absent_kinds(two.truth, nouns))
-    absent = [kind for kind in absent_kinds(one.truth, nouns) if kind in missing_there]
+    absent_in_second = set(absent_kinds(two.truth, nouns))
+    absent = [kind for kind in absent_kinds(one.truth, nouns) if kind in absent_in_second]
     shown = [
         (kind, place)
         for place, other in ((one, two), (two, one))

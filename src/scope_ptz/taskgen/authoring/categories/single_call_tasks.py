@@ -1,4 +1,4 @@
-"""Single-call tasks, which take one tool call: moves, presets, home, pictures, close-ups, tracking and counts."""
+"""Single-call tasks, which require one tool call: moves, presets, home, pictures, close-ups, tracking and counts."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> It
         _tracking(pool),
         _sweeps(places),
         _moves(places, rng),
-        _services(places, rng),
+        _other_commands(places, rng),
         _tilts(places, rng),
     ]
     while streams:
@@ -76,10 +76,10 @@ def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> It
 
 def _adjusted(places: ScenePlaces, name: str, call: ProgramCall, kind: str, rng: random.Random) -> TaskDraft | None:
     start = places.at_preset(name)
-    there = move(start.at, call)
-    if there is None:
+    destination = move(start.at, call)
+    if destination is None:
         return None
-    end = TaskPlace(start.scene, name, (call,), there)
+    end = TaskPlace(start.scene, name, (call,), destination)
     instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(" and ".join(call_phrases(call, rng)))))
     return command("single_call", kind, f"adjust:{end.key}", start, instructions, (call,), Behaviour(final=end.final), end.needs)
 
@@ -129,7 +129,7 @@ def _presets(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
         )
 
 
-def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+def _other_commands(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield commands to go home, to take a picture, and to list the presets."""
     scene, home = places.scene, places.scene.file.home_preset
     others = [name for name in places.presets if name != home]
@@ -137,8 +137,8 @@ def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     for n, name in enumerate(others[:3]):
         start = places.at_preset(name)
         final = TaskPlace(scene, name, (), preset_at(places.presets[home])).final
-        ways = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
-        instructions = tuple(text for way in ways for text in polite(way))
+        wordings = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
+        instructions = tuple(text for wording in wordings for text in polite(wording))
         yield command(
             "single_call",
             "home",
@@ -149,7 +149,7 @@ def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
             Behaviour(final=final),
             ("preset",),
         )
-        shot = tuple(
+        picture_calls = tuple(
             f"{w} of the {name} view{e}"
             for w in ("Take a picture", "Save a still", "Capture an image", "Take a snapshot")
             for e in (".", ", please.", " as it is now.")
@@ -159,7 +159,7 @@ def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
             "picture",
             f"picture:{name}",
             start,
-            shot,
+            picture_calls,
             (ProgramCall(tool="take_image"),),
             Behaviour(final=start.final, calls=(RequiredCall(tool="take_image"),), pictures=1),
             (),
@@ -180,30 +180,30 @@ def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
     for place in pool:
         if not place.is_start_view and place.preset is None:
             continue
-        here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
-        for one in nameable_things(place.truth, 400):
-            target = framing(here, one.thing, one.thing.instance)
-            if target is None or len(one.thing.instance.attributes) == 0:
+        current_place = TaskPlace(place.scene, place.preset or place.start, (), place.at)
+        for target in nameable_things(place.truth, 400):
+            required_framing = framing(current_place, target.thing, target.thing.instance)
+            if required_framing is None or len(target.thing.instance.attributes) == 0:
                 continue
             instructions = tuple(
                 t
                 for w in (
-                    f"zoom in on {one.the}",
-                    f"get a close-up of {one.the}",
-                    f"frame {one.the}",
-                    f"centre {one.the} and zoom in on it",
+                    f"zoom in on {target.the}",
+                    f"get a close-up of {target.the}",
+                    f"frame {target.the}",
+                    f"centre {target.the} and zoom in on it",
                 )
                 for t in polite(w)
             )
-            call = ProgramCall(tool="zoom_to_object", arguments={"description": one.name})
+            call = ProgramCall(tool="zoom_to_object", arguments={"description": target.name})
             yield command(
                 "single_call",
                 "close-up",
-                f"close-up:{one.thing.instance.id}",
-                here,
+                f"close-up:{target.thing.instance.id}",
+                current_place,
                 instructions,
                 (call,),
-                Behaviour(framing=target),
+                Behaviour(framing=required_framing),
                 ("zoom",),
                 ("framing",),
             )
@@ -212,9 +212,11 @@ def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
 def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
     """Yield commands to follow a moving object that is the only one of its kind and is still in view 1.5 s later."""
     for n, place in enumerate(pool):
-        here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
-        at_start = here.truth.samples[0]
-        later = here.truth.read_truth(here.scene, str(here.at.viewpoint), here.truth.projection, here.truth.time_s + 1.5)
+        current_place = TaskPlace(place.scene, place.preset or place.start, (), place.at)
+        at_start = current_place.truth.samples[0]
+        later = current_place.truth.read_truth(
+            current_place.scene, str(current_place.at.viewpoint), current_place.truth.projection, current_place.truth.time_s + 1.5
+        )
         for sighting in at_start.visible:
             actor = sighting.instance
             kind = Kind(actor.category)
@@ -225,7 +227,7 @@ def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
             if any(s.pixels > TRACE_PX for s in rivals) or actor.number not in {s.instance.number for s in later.visible}:
                 continue
             seconds = (4.0, 5.0, 6.0, 8.0)[n % 4]
-            ways = (
+            wordings = (
                 f"follow the {kind.category} for {seconds:g} seconds",
                 f"keep the {kind.category} in view for {seconds:g} seconds",
                 f"track the {kind.category} for the next {seconds:g} seconds",
@@ -236,8 +238,8 @@ def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
                 "single_call",
                 "follow",
                 f"follow:{actor.id}",
-                here,
-                tuple(text for way in ways for text in polite(way)),
+                current_place,
+                tuple(text for wording in wordings for text in polite(wording)),
                 (call,),
                 Behaviour(calls=(RequiredCall(tool="track_object", arguments=required),)),
                 ("move",),

@@ -1,0 +1,355 @@
+"""The same benchmark tasks through the simulated camera in process, the AXIS driver and the ONVIF driver.
+
+    python benchmarks/driver_parity.py [--tasks 120] [--split core] [--json FILE]
+    python benchmarks/driver_parity.py --true-speed
+
+The drivers talk to a virtual camera in this process, over HTTP on the loopback interface. Each task starts at its preset, in its
+world and at its scene time, which is held. The built-in planner and ground-truth perception run it on each path; perception of the
+drivers is simulation-only. Printed are the shares of tasks with the same calls, the same answer and the same final pose as in
+process, and every deviation. The same pixels are behind each path, so this tests the drivers. It says nothing about pictures of
+real cameras.
+
+Motors are 50 times faster than real ones unless --true-speed is given. Then ten tasks run at real speed, and the table shows where
+time is spent.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import statistics
+import sys
+from collections.abc import AsyncIterator, Callable, Iterable, Sequence
+from contextlib import AsyncExitStack, asynccontextmanager, nullcontext
+from dataclasses import asdict, dataclass, field
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from anyio import to_thread
+
+from scope_ptz.agent.loop import Agent
+from scope_ptz.agent.store import NoImages
+from scope_ptz.agent.timing import Timings
+from scope_ptz.bench.tasks.splits import SPLITS, load_split
+from scope_ptz.bench.tasks.stratified import stratified_sample
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.camera.axis.camera import AxisCamera
+from scope_ptz.camera.base import Camera, PresetInfo
+from scope_ptz.camera.network.address import DeviceAddress
+from scope_ptz.camera.network.credentials import Credentials
+from scope_ptz.camera.network.http import DeviceHttp, DeviceTimeouts
+from scope_ptz.camera.network.settling import Settling
+from scope_ptz.camera.onvif.camera import OnvifCamera
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
+from scope_ptz.perception.base import Perception
+from scope_ptz.perception.ground_truth import GroundTruthPerception
+from scope_ptz.perception.ground_truth.served import ServedTruth, ServedTruthPerception
+from scope_ptz.planner.base import Briefing, CallTools, State
+from scope_ptz.planner.grammar import GrammarPlanner
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.library import Library
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.virtual_camera.accounts import Account, Role
+from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.http.server import ServedCamera, serve
+from scope_ptz.virtual_camera.onvif.app import OnvifApp
+
+IN_PROCESS, DRIVERS = "in process", ("axis", "onvif")
+TOLERANCE_DEG, ZOOM_SHARE = 0.3, 0.02
+"""How far the final pose of a driver may be from the one in process."""
+
+ARGUMENT_TOLERANCE = 0.01
+"""How far numbers in the arguments of calls may differ. The planner calculates some of them from the reported pose."""
+
+FAST = 50.0
+TRUE_SPEED_TASKS = 10
+STAGES = {"planner": "planner_s", "perception": "perception_s", "camera": "camera_s", "rendering": "render_s", "total": "total_s"}
+OPERATOR = Credentials("parity", "parity-on-loopback")
+SEED = 1
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tasks", type=int, help="number of tasks (default: 120, or 10 with --true-speed)")
+    parser.add_argument("--split", choices=SPLITS, default="core", help="tasks of 'unseen' are in varied worlds (default: core)")
+    parser.add_argument("--task", action="append", default=[], metavar="ID", help="run this task only; repeat it for several")
+    parser.add_argument("--time-scale", type=float, default=FAST, help="speed of the motors (default: %(default)g times real)")
+    parser.add_argument("--true-speed", action="store_true", help="motors at real speed; print latency by stage")
+    parser.add_argument("--json", type=Path, help="also write the results to this file")
+    arguments = parser.parse_args()
+    everything = load_split(arguments.split)
+    local = one_viewpoint(everything)
+    usable = asyncio.run(that_use_the_camera(local))
+    count = arguments.tasks or (TRUE_SPEED_TASKS if arguments.true_speed else 120)
+    tasks = [task for task in usable if task.id in arguments.task] if arguments.task else stratified_sample(usable, count, SEED)
+    if not tasks:
+        parser.error("none of these tasks uses the camera and stays in one viewpoint")
+    time_scale = 1.0 if arguments.true_speed else arguments.time_scale
+    measured = asyncio.run(measure(tasks, time_scale=time_scale, progress=lambda text: print(text, file=sys.stderr)))
+    if arguments.json is not None:
+        arguments.json.write_text(json.dumps([asdict(each) for each in measured], indent=1, default=str))
+    print(
+        f"{len(everything)} tasks, of which {len(local)} stay in one viewpoint. In {len(usable)} of these the planner makes calls;"
+    )
+    print(f"it ends the others with a question at once. Measured: {len(measured)}.\n")
+    print("\n".join(report(measured)))
+    if arguments.true_speed:
+        print("\n".join(latency_table(measured)))
+    return 1 if any(each.deviations() for each in measured) else 0
+
+
+# Tasks ----------------------------------------------------------------------------------------------------------------------
+def one_viewpoint(tasks: Iterable[Task]) -> list[Task]:
+    """Return the tasks that one camera can do. The others go to another viewpoint, where a site has another camera."""
+    scenes, kept = Library(), list[Task]()
+    for task in tasks:
+        file = scenes(task.world).file
+        viewpoint_of = {preset.name: preset.viewpoint for preset in file.presets}
+        start = viewpoint_of[task.preset]
+        visited = {viewpoint_of.get(str(call.arguments.get("name"))) for call in task.reference if call.tool == "go_to_preset"}
+        if any(call.tool == "go_home" for call in task.reference):
+            visited.add(viewpoint_of[file.home_preset])
+        if visited <= {start}:
+            kept.append(task)
+    return kept
+
+
+async def that_use_the_camera(tasks: Sequence[Task]) -> list[Task]:
+    """Return the tasks in which the planner makes a call. One that it ends with a question at once says nothing about a driver."""
+    scenes = Library()
+
+    async def uses_camera(task: Task) -> bool:
+        listed = scenes(task.world).file.presets
+        viewpoint = next(preset.viewpoint for preset in listed if preset.name == task.preset)
+        presets = tuple(preset.name for preset in listed if preset.viewpoint == viewpoint)
+        briefing = Briefing(presets=presets, pose=Pose(), limits=Limits())
+        return isinstance(await GrammarPlanner().step(State(instruction=task.instruction, briefing=briefing)), CallTools)
+
+    return [task for task in tasks if await uses_camera(task)]
+
+
+# Runs -----------------------------------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class PathRun:
+    """A task on one path. ``answer`` is the reply without the note on its source."""
+
+    calls: list[tuple[str, dict[str, Any]]]
+    outcome: str
+    answer: str
+    pose: Pose
+    timings: Timings
+    perception: str
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A task on all paths."""
+
+    task: str
+    runs: dict[str, PathRun] = field(default_factory=dict)
+
+    def deviations(self) -> list[tuple[str, str, str]]:
+        """Return path, kind and description of every deviation from the run in process."""
+        own, found = self.runs[IN_PROCESS], []
+        for path in DRIVERS:
+            run = self.runs[path]
+            if not same_calls(own.calls, run.calls):
+                found.append((path, "calls", f"{_first_difference(own.calls, run.calls)}"))
+            if (run.outcome, run.answer) != (own.outcome, own.answer):
+                found.append((path, "answer", f"{run.outcome}: {run.answer!r} instead of {own.outcome}: {own.answer!r}"))
+            if not same_pose(own.pose, run.pose):
+                found.append((path, "pose", f"{_text(run.pose)} instead of {_text(own.pose)}"))
+        return found
+
+
+async def measure(
+    tasks: Iterable[Task], *, time_scale: float = FAST, progress: Callable[[str], None] = lambda _: None
+) -> list[Measured]:
+    """Run tasks on all paths.
+
+    Args:
+        tasks: The tasks. Each must stay in one viewpoint.
+        time_scale: How many times faster than real the motors are.
+        progress: Receives a line of text after each task.
+    """
+    scenes = Library()
+    measured: list[Measured] = []
+
+    def place(task: Task) -> tuple[str, str]:
+        presets = scenes(task.world).file.presets
+        return task.world, next(preset.viewpoint for preset in presets if preset.name == task.preset)
+
+    for (world, viewpoint), group in groupby(sorted(tasks, key=place), key=place):
+        device = VirtualDevice(
+            scenes(world), viewpoint=viewpoint, accounts=[Account(OPERATOR.user, OPERATOR.password, Role.OPERATOR)],
+            time_scale=time_scale,
+        )  # fmt: skip
+        async with drivers(device, scenes, settling_of(time_scale)) as paths:
+            for task in group:
+                measured.append(Measured(task.id))
+                if time_scale == 1.0:  # reads what the task shows, so that no path pays for files
+                    await _in_process(scenes, viewpoint, task, real=False)
+                measured[-1].runs[IN_PROCESS] = await _in_process(scenes, viewpoint, task, real=time_scale == 1.0)
+                for name, (camera, perception) in paths.items():
+                    # A clock that nothing advances: the motors have a time of their own.
+                    device.clock = SceneClock(task.time_s)
+                    await camera.go_to_preset(task.preset)
+                    measured[-1].runs[name] = await _run(camera, perception, task)
+                progress(f"{len(measured)} {task.id}: {'; '.join(map(': '.join, measured[-1].deviations())) or 'same'}")
+    return measured
+
+
+@asynccontextmanager
+async def drivers(
+    device: VirtualDevice, scenes: Callable[[str], Scene], settling: Settling
+) -> AsyncIterator[dict[str, tuple[Camera, Perception]]]:
+    """Serve a camera, and connect each driver to it, with perception that reads the served ground truth."""
+    await to_thread.run_sync(device.expose)  # the first look at a viewpoint reads its files; drivers wait for replies only so long
+    async with AsyncExitStack() as stack:
+        (served,) = await stack.enter_async_context(
+            serve([device], truth=True, onvif=lambda each: OnvifApp(each, rtsp_port=554))  # no stream is opened
+        )  # fmt: skip
+        axis = await AxisCamera.open(_http(served), OPERATOR, settling=settling)
+        stack.push_async_callback(axis.close)
+        onvif = await OnvifCamera.open(_http(served), OPERATOR, stream="snapshot", settling=settling)
+        stack.push_async_callback(onvif.close)
+        paths = dict[str, tuple[Camera, Perception]]()
+        for name, camera in (("axis", axis), ("onvif", onvif)):
+            perception = ServedTruthPerception(ServedTruth(_http(served), camera.clock), scenes)
+            stack.push_async_callback(perception.close)
+            paths[name] = (camera, perception)
+        yield paths
+
+
+def settling_of(time_scale: float) -> Settling:
+    """Return the waiting times of drivers for motors that are faster than real ones."""
+    if time_scale == 1.0:
+        return Settling()
+    own = Settling()
+    return Settling(
+        poll_s=max(own.poll_s / time_scale, 0.004),
+        start_s=max(own.start_s / time_scale, 0.15),
+        picture_interval_s=own.picture_interval_s / time_scale,
+    )
+
+
+class StillScene(SceneClock):
+    """A clock whose scene time stands still while motors run in real time."""
+
+    def __init__(self, time_s: float) -> None:
+        super().__init__(time_s, realtime=True)
+        self._time_s = time_s
+
+    def now_s(self) -> float:
+        return self._time_s
+
+
+class OneViewpoint(SimulatedCamera):
+    """A simulated camera with the presets of one viewpoint, and only their names: a device knows no others, and no descriptions."""
+
+    async def presets(self) -> list[PresetInfo]:
+        local = {preset.name for preset in self._scene.file.presets if preset.viewpoint == self.viewpoint}
+        return [PresetInfo(preset.name) for preset in await super().presets() if preset.name in local]
+
+
+async def _in_process(scenes: Callable[[str], Scene], viewpoint: str, task: Task, *, real: bool) -> PathRun:
+    clock = StillScene(task.time_s) if real else SceneClock(task.time_s)
+    camera = OneViewpoint(scenes(task.world), viewpoint=viewpoint, clock=clock)
+    with nullcontext() if real else clock.hold():
+        await camera.go_to_preset(task.preset)
+        return await _run(camera, GroundTruthPerception(scenes), task)
+
+
+async def _run(camera: Camera, perception: Perception, task: Task) -> PathRun:
+    agent = Agent(GrammarPlanner(), camera, perception, NoImages(), snapshots=False)
+    result = await agent.run(task.instruction)
+    calls = [
+        (outcome.call.name, dict(outcome.call.arguments)) for exchange in result.exchanges for outcome in exchange.outcomes
+    ]  # fmt: skip
+    ended = result.ended
+    return PathRun(calls, ended.outcome, without_source(ended.text), ended.pose.pose(), ended.timings, perception.name)
+
+
+def _http(served: ServedCamera) -> DeviceHttp:
+    # On a busy machine a reply may take longer than a person would wait.
+    return DeviceHttp(DeviceAddress(served.host, served.port), OPERATOR, timeouts=DeviceTimeouts(reply_s=60.0))
+
+
+# Comparison -----------------------------------------------------------------------------------------------------------------
+def without_source(answer: str) -> str:
+    """Return an answer without its last note, which names the perception backend."""
+    return answer.rpartition(" (Source: ")[0] or answer
+
+
+def same_calls(own: Sequence[tuple[str, dict[str, Any]]], other: Sequence[tuple[str, dict[str, Any]]]) -> bool:
+    """Return whether two runs made the same calls in the same order."""
+    return len(own) == len(other) and all(a[0] == b[0] and _same(a[1], b[1]) for a, b in zip(own, other, strict=True))
+
+
+def _same(one: Any, two: Any) -> bool:
+    if isinstance(one, dict) and isinstance(two, dict):
+        return one.keys() == two.keys() and all(_same(one[key], two[key]) for key in one)
+    if isinstance(one, float | int) and isinstance(two, float | int):
+        return abs(one - two) <= ARGUMENT_TOLERANCE
+    return bool(one == two)
+
+
+def same_pose(own: Pose, other: Pose) -> bool:
+    """Return whether a final pose is within the tolerances."""
+    return (
+        abs(wrap_pan_deg(own.pan_deg - other.pan_deg)) <= TOLERANCE_DEG
+        and abs(own.tilt_deg - other.tilt_deg) <= TOLERANCE_DEG
+        and abs(other.zoom / own.zoom - 1) <= ZOOM_SHARE
+    )
+
+
+def _first_difference(own: list[tuple[str, dict[str, Any]]], other: list[tuple[str, dict[str, Any]]]) -> str:
+    k = next((k for k, (a, b) in enumerate(zip(own, other, strict=False)) if a[0] != b[0] or not _same(a[1], b[1])), None)
+    if k is None:
+        return f"{len(other)} calls instead of {len(own)}"
+    return f"call {k + 1} is {other[k]} instead of {own[k]}"
+
+
+def _text(pose: Pose) -> str:
+    return f"pan {pose.pan_deg:.3f}, tilt {pose.tilt_deg:.3f}, zoom {pose.zoom:.4f}"
+
+
+# Report ---------------------------------------------------------------------------------------------------------------------
+def report(measured: Sequence[Measured]) -> list[str]:
+    """Return the lines of the report."""
+    total = len(measured)
+    lines = ["| path | same calls | same answer | same final pose | all three |", "|---|---|---|---|---|"]
+    for path in DRIVERS:
+        wrong = [{kind for where, kind, _ in each.deviations() if where == path} for each in measured]
+        cells = [sum(kind not in found for found in wrong) for kind in ("calls", "answer", "pose")]
+        cells.append(sum(not found for found in wrong))
+        lines.append(f"| {path} | " + " | ".join(f"{n}/{total} ({n / total:.1%})" for n in cells) + " |")
+    lines += ["", "| path | largest pan difference (deg) | tilt (deg) | zoom (%) |", "|---|---|---|---|"]
+    for path in DRIVERS:
+        pairs = [(each.runs[IN_PROCESS].pose, each.runs[path].pose) for each in measured]
+        pan = max(abs(wrap_pan_deg(a.pan_deg - b.pan_deg)) for a, b in pairs)
+        tilt, zoom = max(abs(a.tilt_deg - b.tilt_deg) for a, b in pairs), max(abs(b.zoom / a.zoom - 1) for a, b in pairs)
+        lines.append(f"| {path} | {pan:.4f} | {tilt:.4f} | {100 * zoom:.3f} |")
+    named = [f"- {each.task}, {path}, {kind}: {text}" for each in measured for path, kind, text in each.deviations()]
+    return [*lines, "", *(["Deviations:", *named] if named else ["No deviations."])]
+
+
+def latency_table(measured: Sequence[Measured]) -> list[str]:
+    """Return a table of seconds by stage: medians over tasks, and medians of each task's difference to the run in process."""
+    lines = ["", "Seconds per task by stage, median (difference to in process in the same task, median)", ""]
+    lines += [f"| path | {' | '.join(STAGES)} |", "|---|" + "---|" * len(STAGES)]
+    for path in (IN_PROCESS, *DRIVERS):
+        cells = []
+        for name in STAGES.values():
+            spent = [getattr(each.runs[path].timings, name) for each in measured]
+            more = [t - getattr(each.runs[IN_PROCESS].timings, name) for t, each in zip(spent, measured, strict=True)]
+            cells.append(f"{statistics.median(spent):.3f}" + (f" ({statistics.median(more):+.3f})" if path != IN_PROCESS else ""))
+        lines.append(f"| {path} | {' | '.join(cells)} |")
+    return lines
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,1 @@
+"""Sessions with cameras on a ``scope serve`` server."""

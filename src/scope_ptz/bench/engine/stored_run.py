@@ -1,0 +1,98 @@
+"""The data that a run stores in its sample for checks and judges."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from scope_ptz.agent.records import RECORD, Called, Decided, Ended, Started
+from scope_ptz.agent.trace import FILE_NAME, Trace
+from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints, episode_of
+from scope_ptz.errors import TraceError
+
+STORE = "scope"
+"""Key of SCOPE's data in the store of a sample."""
+
+
+def sample_name(task: str, epoch: int) -> str:
+    """Return the name of the sample of a run. ``task`` is the task's id."""
+    return f"{task}#{epoch}"
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRun:
+    """The data of a run, as its sample stores them.
+
+    Attributes:
+        trace: The trace as JSON lines; empty if the run never began.
+        presets: The viewpoint of each preset.
+        home: The viewpoint of the home preset.
+        sees: Whether the planner received frames.
+        pictures: References to pictures in the log, by their names in the trace.
+        truths: The true counts, by the index of the tool call; empty if they have not been computed.
+    """
+
+    trace: str
+    presets: Mapping[str, str]
+    home: str
+    sees: bool = False
+    pictures: Mapping[str, str] = field(default_factory=dict)
+    truths: Mapping[str, int | None] = field(default_factory=dict)
+
+    def to_store(self) -> dict[str, Any]:
+        """Convert the data to the form in which a sample stores them."""
+        return {
+            "trace": self.trace, "presets": dict(self.presets), "home": self.home, "sees": self.sees,
+            "pictures": dict(self.pictures), "truths": dict(self.truths),
+        }  # fmt: skip
+
+    @classmethod
+    def from_store(cls, store: Any) -> StoredRun:
+        """Read the data from a sample's store. Raises ``TraceError`` if it does not contain them."""
+        try:
+            return cls(**{name: store[name] for name in ("trace", "presets", "home", "sees", "pictures", "truths")})
+        except (KeyError, TypeError) as error:
+            raise TraceError(
+                "A sample of this log contains no run, so the log is not from this benchmark. Use a log of `scope bench run`."
+            ) from error
+
+    @property
+    def places(self) -> PresetViewpoints:
+        """The viewpoints of the presets and of home."""
+        return PresetViewpoints(self.presets, self.home)
+
+    def episode(self, trace: Trace) -> Episode:
+        """Return the run as an episode, which is the input of the checks."""
+        return episode_of(trace, self.places, planner_sees=self.sees, keeps_files=False)
+
+
+def trace_of(text: str, folder: Path) -> Trace | None:
+    """Parse a trace from JSON lines; return None if the run never began.
+
+    Args:
+        text: The JSON lines.
+        folder: The folder of the trace. Error messages name it.
+
+    Raises:
+        TraceError: The trace is damaged.
+    """
+    try:
+        records = [RECORD.validate_json(line) for line in text.splitlines() if line]
+    except ValidationError as error:
+        raise TraceError(f"The trace of a run in {folder} is damaged: {error.errors(include_url=False)[0]['msg']}.") from error
+    if not records:
+        return None
+    first, last = records[0], records[-1]
+    if not isinstance(first, Started):
+        raise TraceError(f"The trace of a run in {folder} is damaged: it does not begin with the header of a {FILE_NAME}.")
+    return Trace(
+        folder=folder,
+        started=first,
+        decisions=tuple(r for r in records if isinstance(r, Decided)),
+        calls=tuple(r for r in records if isinstance(r, Called)),
+        ended=last if isinstance(last, Ended) else None,
+    )

@@ -1,0 +1,332 @@
+"""Compose a picture from overlapping frames: match their tone, remove moving objects, and blend them in two bands.
+
+Large structures are blended over the whole overlap, which hides the edges of frames. Fine detail comes from the frame whose centre
+is nearest, so that small errors of a pose do not blur it (Brown and Lowe, 2007). Where three or more frames show a direction, those
+that differ from the median contain a moving object and are excluded.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.camera.capture.placing import PlacedFrame
+from scope_ptz.geometry import Equirectangular, Perspective, angle_between_deg
+from scope_ptz.simulator.mapping.grid import Grid
+
+UNSEEN = (64, 64, 64)
+"""RGB colour of pixels that no frame shows."""
+
+BLOCK = (192, 384)
+"""Rows and columns of the blocks in which a picture is composed."""
+
+MARGIN_PX = 24  # margin around a block, so that neighbouring blocks detect the same moving objects
+LOW_SCALE = 8  # the low band has one value per 8 x 8 pixels of a frame
+SHARE_SCALE = 4  # weights have one value per 4 x 4 pixels of a frame
+COARSE_PX = 4  # weights and low bands are evaluated at every fourth pixel of a block
+NEGLIGIBLE = 2e-3  # a frame whose weight is below this in a whole block adds no detail to it
+MOVED = 14.0
+"""Difference from the median after smoothing, on a scale of 0 to 255, above which a frame shows a moving object."""
+
+MIXED_CELLS, MIXED_MOVED = 2.5, 20.0
+"""Smoothing, in cells of the coarsest frame, and maximum difference for the comparison of frames of different zooms. Such frames
+never look exactly the same."""
+
+SHARP_POWER, SOFT_POWER = 12, 2
+"""Exponents of the weight, which decreases from the centre of a frame to its edge: for fine detail, and for large structures."""
+
+FINE_SHARE = 0.8
+"""Minimum density of a fine frame, relative to the densest one. Coarse frames only vote, and fill the rest of the picture."""
+
+FINE_EDGE = 0.06
+"""Weight of fine frames below which coarse frames replace them."""
+
+MIN_WEIGHT = 1e-7  # weight at the edge of a frame
+MAX_CACHED_FRAMES = 40
+_STEP = 8
+GREY = np.array([0.299, 0.587, 0.114], np.float32)
+
+View = Equirectangular | Perspective
+
+Floats = NDArray[np.float32]
+Picture = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class FramePicture:
+    """The pixels of a frame.
+
+    Attributes:
+        image: Array of shape ``(H, W, 3)``, RGB, in the common tone.
+        low: The low band of the image, reduced by ``LOW_SCALE`` in both directions.
+        share: The weight, reduced by ``SHARE_SCALE``: 1 in the centre, 0 at the edge and at hidden parts.
+    """
+
+    image: Picture
+    low: Floats
+    share: Floats
+
+
+def frame_picture(image: Picture, hidden: Mask | None, gain: NDArray[np.float64]) -> FramePicture:
+    """Prepare the pixels of a frame, (H, W, 3) RGB, for composition: apply the gain, and compute the low band and the weights."""
+    toned = image if np.allclose(gain, 1.0, atol=1e-3) else _with_gain(image, gain)
+    height, width = image.shape[:2]
+    low = cv2.resize(toned, (max(1, width // LOW_SCALE), max(1, height // LOW_SCALE)), interpolation=cv2.INTER_AREA)
+    low = cv2.GaussianBlur(low.astype(np.float32), (0, 0), 1.0, borderType=cv2.BORDER_REPLICATE)
+    rows, columns = max(1, height // SHARE_SCALE), max(1, width // SHARE_SCALE)
+    y, x = ((np.arange(n) + 0.5) / n for n in (rows, columns))
+    share = (np.minimum(y, 1 - y)[:, None] * 2) * (np.minimum(x, 1 - x)[None, :] * 2)
+    if hidden is not None:
+        open_ = cv2.resize((~hidden).astype(np.uint8), (columns, rows), interpolation=cv2.INTER_AREA)
+        fine = cv2.erode((~hidden).astype(np.uint8), np.ones((9, 9), np.uint8))
+        open_ = np.minimum(open_, cv2.resize(fine, (columns, rows), interpolation=cv2.INTER_NEAREST))
+        share = share * np.clip(cv2.distanceTransform(open_, cv2.DIST_L2, 3) / 12, 0, 1)
+    return FramePicture(toned, low, share.astype(np.float32))
+
+
+def _with_gain(image: Picture, gain: NDArray[np.float64]) -> Picture:
+    tables = np.clip(np.arange(256)[:, None] * gain, 0, 255).round().astype(np.uint8)
+    return np.asarray(cv2.merge([cv2.LUT(np.ascontiguousarray(image[..., k]), tables[:, k]) for k in range(3)]))
+
+
+class Composer:
+    """Composes pictures from frames on the sphere.
+
+    Args:
+        frames: The frames.
+        read: A function that returns the pixels of frame ``i``.
+    """
+
+    def __init__(self, frames: Sequence[PlacedFrame], read: Callable[[int], FramePicture]) -> None:
+        self._frames, self._read = frames, read
+        self._middles = np.array([frame.axes[2] for frame in frames]).reshape(-1, 3)
+        self._reach_deg = np.array([frame.reach_deg for frame in frames])
+        self._pictures: OrderedDict[int, FramePicture] = OrderedDict()
+
+    def compose(
+        self,
+        projection: View,
+        chosen: Sequence[int],
+        progress: Callable[[int, int], None] = lambda *_: None,
+    ) -> tuple[Picture, Mask]:
+        """Compose a picture with a projection from frames.
+
+        Args:
+            projection: The projection of the picture.
+            chosen: The numbers of the frames to use.
+            progress: Called with the number of finished blocks and the number of all blocks.
+
+        Returns:
+            The picture, (H, W, 3) RGB, and the mask (H, W) of the pixels that a frame shows.
+        """
+        picture = np.empty((projection.height, projection.width, 3), np.uint8)
+        picture[:] = UNSEEN
+        seen = np.zeros(picture.shape[:2], bool)
+        blocks = list(_blocks(projection.height, projection.width))
+        for number, (rows, columns) in enumerate(blocks):
+            self._block(projection, rows, columns, chosen, picture, seen)
+            progress(number + 1, len(blocks))
+        return picture, seen
+
+    def _block(
+        self, projection: View, rows: slice, columns: slice, chosen: Sequence[int], out: Picture, seen: Mask
+    ) -> None:  # fmt: skip
+        whole = (
+            slice(max(0, rows.start - MARGIN_PX), min(projection.height, rows.stop + MARGIN_PX)),
+            slice(max(0, columns.start - MARGIN_PX), min(projection.width, columns.stop + MARGIN_PX)),
+        )
+        grid = Grid(projection, _STEP, whole)
+        rays = grid.directions()
+        layers = [layer for k in self._near(rays, chosen) if (layer := self._layer(k, grid, rays)) is not None]
+        if not layers:
+            return
+        image, found = _blended(layers, projection.density)
+        top, left = rows.start - whole[0].start, columns.start - whole[1].start
+        inner = slice(top, top + rows.stop - rows.start), slice(left, left + columns.stop - columns.start)
+        part, shown = image[inner], found[inner]
+        out[rows, columns][shown] = part[shown]
+        seen[rows, columns] = shown
+
+    def _near(self, rays: NDArray[np.float64], chosen: Sequence[int]) -> list[int]:
+        """Return the numbers of the frames that may show some of the directions."""
+        indices = np.array(chosen, dtype=np.int64)
+        middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
+        reach = float(angle_between_deg(rays, middle).max())
+        apart = angle_between_deg(self._middles[indices], middle)
+        return [int(k) for k in indices[apart < reach + self._reach_deg[indices]]]
+
+    def _layer(self, index: int, grid: Grid, rays: NDArray[np.float64]) -> _Layer | None:
+        frame = self._frames[index]
+        nodes = frame.points(rays)
+        if not np.any(np.all((nodes > -0.1) & (nodes < 1.1), axis=-1)):
+            return None
+        size = np.array([frame.width, frame.height])
+        spots = grid.to_pixels(np.nan_to_num(np.clip(nodes, -3.0, 4.0), nan=-3.0) * size - 0.5)
+        inside = np.all((spots >= 0) & (spots <= (size - 1).astype(np.float32)), axis=-1)
+        coarse = spots[_every(spots.shape[0])[:, None], _every(spots.shape[1])[None, :]] + np.float32(0.5)
+        pixels = self._pixels(index)
+        share = _look_up(pixels.share, coarse / SHARE_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_CONSTANT)
+        if not share.any() or not inside.any():
+            return None
+        low = _look_up(pixels.low, coarse / LOW_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_REPLICATE)
+        return _Layer(pixels.image, spots, inside, low, share, frame.focal_px)
+
+    def _pixels(self, index: int) -> FramePicture:
+        if index not in self._pictures:
+            self._pictures[index] = self._read(index)
+            while len(self._pictures) > MAX_CACHED_FRAMES:
+                self._pictures.popitem(last=False)
+        self._pictures.move_to_end(index)
+        return self._pictures[index]
+
+
+@dataclass(frozen=True, slots=True)
+class _Layer:
+    """A frame in a block of ``(H, W)`` pixels.
+
+    Attributes:
+        image: The frame.
+        spots: The frame's pixel coordinates for each pixel of the block, ``(H, W, 2)``.
+        inside: Whether the frame shows each pixel, ``(H, W)``.
+        low: Its low band on the coarse grid, ``(H / 4, W / 4, 3)``.
+        share: Its weight on the coarse grid, ``(H / 4, W / 4)``.
+        focal_px: Its focal length in pixels, which is its density in pixels per radian.
+    """
+
+    image: Picture
+    spots: Floats
+    inside: Mask
+    low: Floats
+    share: Floats
+    focal_px: float
+
+
+def _blended(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
+    """Blend layers. Return the picture (H, W, 3) and the mask (H, W) of the pixels that any layer shows.
+
+    Args:
+        layers: The layers of a block.
+        density: Density of the picture in pixels per radian.
+    """
+    densest = max(layer.focal_px for layer in layers)
+    trust, disputed = _votes(layers, density)
+    fine = [layer.focal_px >= FINE_SHARE * densest for layer in layers]
+    shares = [layer.share * weight for layer, weight in zip(layers, trust, strict=True)]
+    peaked = [share**SHARP_POWER + MIN_WEIGHT * (layer.share > 0) for share, layer in zip(shares, layers, strict=True)]
+    wide = [share**SOFT_POWER + MIN_WEIGHT * (layer.share > 0) for share, layer in zip(shares, layers, strict=True)]
+    best = np.max([share for share, good in zip(shares, fine, strict=True) if good], axis=0)
+    peaked, wide = _by_fineness(peaked, fine, best), _by_fineness(wide, fine, best)
+    # Where frames disagree, the low band comes from one frame too, because a mixture would show ghosts.
+    mixed = [soft + disputed * (sharp - soft) for soft, sharp in zip(wide, peaked, strict=True)]
+    low = np.zeros_like(layers[0].low)
+    for layer, weight in zip(layers, mixed, strict=True):
+        low += weight[..., None] * layer.low
+    height, width = layers[0].inside.shape
+    picture = _enlarged(low, height, width)
+    total, shown = np.zeros((height, width), np.float32), np.zeros((height, width), bool)
+    details = np.zeros_like(picture)
+    for layer, weight in zip(layers, peaked, strict=True):
+        shown |= layer.inside & (_enlarged(layer.share, height, width) > 0)
+        if weight.max() < NEGLIGIBLE:
+            continue
+        amount = _enlarged(weight, height, width) * layer.inside
+        full = cv2.remap(layer.image, layer.spots, None, cv2.INTER_LANCZOS4, borderMode=cv2.BORDER_REPLICATE)
+        details += amount[..., None] * (full - _enlarged(layer.low, height, width))
+        total += amount
+    picture += details / np.maximum(total, 1e-6)[..., None]
+    return np.clip(np.rint(picture), 0, 255).astype(np.uint8), shown
+
+
+def _by_fineness(weights: Sequence[Floats], fine: Sequence[bool], best: Floats) -> list[Floats]:
+    """Normalise weights to the sum 1. Coarse frames get weight only where the fine frames have little or none."""
+    totals = {
+        kind: sum((weight for weight, good in zip(weights, fine, strict=True) if good is kind), np.zeros_like(best))
+        for kind in (True, False)
+    }
+    here = np.where(totals[False] > 0, np.clip(best / FINE_EDGE, 0, 1), 1)
+    shares = {True: here, False: 1 - here}
+    return [
+        np.asarray(weight / np.maximum(totals[good], 1e-30) * shares[good], np.float32)
+        for weight, good in zip(weights, fine, strict=True)
+    ]
+
+
+def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floats]:
+    """Return the trust in each layer, and the disagreement of the trusted layers, on the coarse grid, from 0 to 1."""
+    shape = layers[0].share.shape
+    if len(layers) == 1:
+        return [np.ones(shape, np.float32)], np.zeros(shape, np.float32)
+    coarsest = min(layer.focal_px for layer in layers)
+    mixed = max(layer.focal_px for layer in layers) > coarsest / FINE_SHARE
+    cells, limit = (MIXED_CELLS, MIXED_MOVED) if mixed else (1.0, MOVED)
+    greys = np.stack([_smoothed(layer.low @ GREY, layer.focal_px, coarsest, density, cells) for layer in layers])
+    absent = np.stack([layer.share <= 0.02 for layer in layers])
+    greys = np.where(absent, np.nan, greys)
+    order = np.sort(greys, axis=0)  # NaN comes last
+    count = (~absent).sum(axis=0)
+    take = np.clip(count - 1, 0, None)
+    middle = (_at(order, take // 2) + _at(order, (take + 1) // 2)) / 2
+    away = np.nan_to_num(np.abs(greys - middle))
+    moved = np.stack([_grown(each, limit) for each in np.where(count >= 3, away, 0)])
+    trust = [1 - (1 - 1e-3) * _spread(each) for each in moved]
+    trusted = np.where(moved, np.nan, greys)
+    order = np.sort(trusted, axis=0)
+    count = (~np.isnan(trusted)).sum(axis=0)
+    spread = np.nan_to_num(_at(order, np.clip(count - 1, 0, None)) - order[0])
+    return trust, _spread(spread > limit)
+
+
+def _smoothed(grey: Floats, focal_px: float, coarsest_px: float, density: float, cells: float) -> Floats:
+    """Smooth a low band to ``cells`` cells of the coarsest frame, so that different sharpness does not count as a difference."""
+    target, current = (LOW_SCALE * density / focal / COARSE_PX for focal in (coarsest_px, focal_px))
+    sigma = math.sqrt(max(0.0, (cells * target) ** 2 - current**2))
+    return grey if sigma < 0.3 else np.asarray(cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE))
+
+
+def _at(stack: Floats, index: NDArray[np.int64]) -> Floats:
+    return np.asarray(np.take_along_axis(stack, index[None], axis=0)[0])
+
+
+def _grown(away: Floats, limit: float) -> Mask:
+    """Return the mask of the connected areas in which a difference exceeds a third of a limit, and the limit somewhere."""
+    _, labels = cv2.connectedComponents((away > limit / 3).astype(np.uint8))
+    above = np.unique(labels[away > limit])
+    return np.isin(labels, above[above > 0])
+
+
+def _spread(mask: Mask) -> Floats:
+    """Return a mask, enlarged and with soft edges, as values from 0 to 1."""
+    if not mask.any():
+        return np.zeros(mask.shape, np.float32)
+    grown = cv2.dilate(mask.astype(np.float32), np.ones((7, 7), np.uint8))
+    return np.asarray(cv2.GaussianBlur(grown, (5, 5), 0))
+
+
+def _look_up(picture: Floats, spots: NDArray[np.floating], kind: int, border: int) -> NDArray[np.float32]:
+    """Return the values of a picture at pixel coordinates (H, W, 2)."""
+    return np.asarray(cv2.remap(picture, spots, None, kind, borderMode=border))
+
+
+def _every(length: int) -> NDArray[np.int64]:
+    """Return the rows or columns of the coarse grid, one in the middle of every four."""
+    return np.minimum(np.arange(-(-length // COARSE_PX)) * COARSE_PX + COARSE_PX // 2, length - 1)
+
+
+def _enlarged(coarse: Floats, height: int, width: int) -> Floats:
+    """Interpolate values on the coarse grid to every pixel of a block."""
+    size = coarse.shape[1] * COARSE_PX, coarse.shape[0] * COARSE_PX
+    return np.asarray(cv2.resize(coarse, size, interpolation=cv2.INTER_LINEAR)[:height, :width])
+
+
+def _blocks(height: int, width: int) -> Iterator[tuple[slice, slice]]:
+    """Yield the rows and columns of blocks, column by column, so that consecutive blocks use the same frames."""
+    for left in range(0, width, BLOCK[1]):
+        for top in range(0, height, BLOCK[0]):
+            yield slice(top, min(top + BLOCK[0], height)), slice(left, min(left + BLOCK[1], width))

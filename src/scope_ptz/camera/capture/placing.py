@@ -1,0 +1,58 @@
+"""A frame at its adjusted position on the sphere."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from scope_ptz.geometry import Perspective, pan_tilt_deg
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedFrame:
+    """A frame with its adjusted orientation, which may include roll, unlike the pose of a camera.
+
+    Attributes:
+        axes: The right, up and forward axes, as the rows of a (3, 3) matrix.
+        focal_px: Focal length in pixels.
+        width: Width in pixels.
+        height: Height in pixels.
+    """
+
+    axes: Floats
+    focal_px: float
+    width: int
+    height: int
+
+    @property
+    def reach_deg(self) -> float:
+        """Largest angle between the centre of the frame and any of its pixels, in degrees."""
+        return math.degrees(math.atan(math.hypot(self.width, self.height) / 2 / self.focal_px))
+
+    @property
+    def upright(self) -> Perspective:
+        """The view in the same direction, with the same field of view and no roll."""
+        pan, tilt = pan_tilt_deg(self.axes[2])
+        hfov_deg = math.degrees(2 * math.atan(self.width / 2 / self.focal_px))
+        return Perspective(float(pan), float(tilt), hfov_deg, self.width, self.height)
+
+    def directions(self, points: ArrayLike) -> Floats:
+        """Return unit vectors (..., 3) through normalised points (..., 2)."""
+        p = np.asarray(points, dtype=np.float64)
+        local = np.stack(
+            [(p[..., 0] - 0.5) * self.width, (0.5 - p[..., 1]) * self.height, np.full(p.shape[:-1], self.focal_px)], axis=-1
+        )
+        return np.asarray(local @ self.axes / np.linalg.norm(local, axis=-1, keepdims=True))
+
+    def points(self, directions: ArrayLike) -> Floats:
+        """Return normalised points (..., 2) of directions (..., 3), NaN for directions behind the lens."""
+        local = np.asarray(directions, dtype=np.float64) @ self.axes.T
+        depth = np.where(local[..., 2] > 0.05, local[..., 2], np.nan)
+        x = 0.5 + self.focal_px * local[..., 0] / depth / self.width
+        y = 0.5 - self.focal_px * local[..., 1] / depth / self.height
+        return np.stack([x, y], axis=-1)

@@ -1,0 +1,266 @@
+"""The unfinished capture on disk: its settings, frames and poses, so that the same command can resume it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.camera.guard.rules import PixelMask, Region
+from scope_ptz.errors import CameraError, OutputError
+from scope_ptz.geometry import Perspective, Pose
+
+SETTINGS, FRAMES, CLOSE_UPS = "capture.json", "frames.jsonl", "close-ups.json"
+
+
+class _Stored(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class CaptureSettings(_Stored):
+    """The settings of a capture. A capture can be resumed only with the same settings.
+
+    Attributes:
+        camera: Name of the camera, including its address.
+        frame_width: Width of its frames in pixels.
+        frame_height: Height of its frames in pixels.
+        pan_range_deg: Captured range of pan in degrees.
+        tilt_range_deg: Captured range of tilt in degrees.
+        zoom_range: Limits of the magnification.
+        pan_endless: Whether pan has no stops.
+        zoom_table: Rows of magnification and reported horizontal field of view in degrees.
+        zooms: Magnifications at which the whole range is captured, in addition to the widest one.
+        close_ups: Maximum number of close-ups.
+        overlap: Share of a frame that the next one also shows.
+        keep_out: Regions that must not be shown.
+        masks: Hidden rectangles of the frames.
+        rolled: Whether frames were turned upright and have black corners.
+    """
+
+    format: Literal[1] = 1
+    camera: str
+    frame_width: int
+    frame_height: int
+    pan_range_deg: tuple[float, float]
+    tilt_range_deg: tuple[float, float]
+    zoom_range: tuple[float, float]
+    pan_endless: bool
+    zoom_table: tuple[tuple[float, float], ...]
+    zooms: tuple[float, ...]
+    close_ups: int
+    overlap: float
+    keep_out: tuple[Region, ...] = ()
+    masks: tuple[PixelMask, ...] = ()
+    rolled: bool = False
+
+
+class Shot(_Stored):
+    """A frame of a capture, or a pose that the rules of the site do not permit.
+
+    Attributes:
+        key: Its name in the plan, such as ``1x-007``; unique in a capture.
+        file: File of the picture; empty if there is none.
+        pan_deg: Reported pan at exposure in degrees.
+        tilt_deg: Reported tilt in degrees.
+        zoom: Reported magnification.
+        hfov_deg: Reported horizontal field of view in degrees.
+        preset: Name of the preset at which it was taken; empty if none.
+        taken_s: The time at which it was taken, in Unix seconds.
+    """
+
+    key: str
+    file: str = Field(default="", pattern=r"^(\d{5}\.png)?$")
+    pan_deg: float
+    tilt_deg: float
+    zoom: float
+    hfov_deg: float
+    preset: str = ""
+    taken_s: float = 0.0
+
+    @property
+    def pose(self) -> Pose:
+        """The reported pose."""
+        return Pose(self.pan_deg, self.tilt_deg, self.zoom)
+
+
+class _State(_Stored):
+    settings: CaptureSettings
+    started_at: str
+    complete: bool = False
+
+
+class CaptureSession:
+    """The folder of an unfinished capture.
+
+    Args:
+        folder: The folder. It is created if needed.
+        settings: The settings of the capture.
+        started_at: The time at which it began, in ISO 8601 and UTC. A resumed capture keeps its original time.
+
+    Raises:
+        OutputError: The folder contains a capture with other settings, or cannot be read or written.
+    """
+
+    def __init__(self, folder: Path, settings: CaptureSettings, started_at: str) -> None:
+        self.folder, self.settings = folder, settings
+        self._shots: dict[str, Shot] = {}
+        self._next_number = 0
+        self._state = _State(settings=settings, started_at=started_at)
+        if folder.exists():
+            self._resume()
+        else:
+            self._write(SETTINGS, self._state.model_dump_json(indent=1))
+
+    @property
+    def started_at(self) -> str:
+        """The time at which the capture began."""
+        return self._state.started_at
+
+    @property
+    def complete(self) -> bool:
+        """Whether every frame has been taken."""
+        return self._state.complete
+
+    @property
+    def shots(self) -> tuple[Shot, ...]:
+        """The frames so far, in the order in which they were taken."""
+        return tuple(shot for shot in self._shots.values() if shot.file)
+
+    @property
+    def refused(self) -> int:
+        """Number of poses that the rules of the site did not permit."""
+        return sum(not shot.file for shot in self._shots.values())
+
+    def find(self, key: str) -> Shot | None:
+        """Return the frame of a key; None if it has not been taken yet."""
+        return self._shots.get(key)
+
+    def add(self, key: str, frame: Frame, preset: str = "") -> Shot:
+        """Store a frame.
+
+        Raises:
+            CameraError: The frame is not a perspective view, or its size differs from that of the capture.
+            OutputError: The frame cannot be written.
+        """
+        size = (self.settings.frame_width, self.settings.frame_height)
+        if not isinstance(frame.projection, Perspective):
+            raise CameraError("A capture needs perspective frames, but the camera returned a panorama. Use a perspective stream.")
+        if (frame.width, frame.height) != size:
+            raise CameraError(
+                f"The camera changed its picture from {size[0]}x{size[1]} to {frame.width}x{frame.height} pixels during the "
+                "capture. Set a fixed picture size in the camera, and run the same command again."
+            )
+        view = frame.projection
+        name = f"{self._next_number:05d}.png"
+        self._next_number += 1
+        encoded, content = cv2.imencode(".png", cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_PNG_COMPRESSION, 1])
+        if not encoded:
+            raise CameraError("A frame of the camera cannot be encoded.")
+        self._write(name, content.tobytes())
+        shot = Shot(
+            key=key,
+            file=name,
+            pan_deg=view.pan_deg,
+            tilt_deg=view.tilt_deg,
+            zoom=frame.pose.zoom,
+            hfov_deg=view.hfov_deg,
+            preset=preset,
+            taken_s=time.time(),
+        )
+        self._append(shot)
+        return shot
+
+    def add_refused(self, key: str, pose: Pose) -> None:
+        """Record that the rules of the site do not permit a pose."""
+        self._append(Shot(key=key, pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom, hfov_deg=0.0))
+
+    def image(self, shot: Shot) -> NDArray[np.uint8]:
+        """Return a frame's picture as (H, W, 3) RGB.
+
+        Raises:
+            OutputError: The file is missing or damaged.
+        """
+        picture = cv2.imread(str(self.folder / shot.file), cv2.IMREAD_COLOR_RGB)
+        if picture is None or picture.shape[:2] != (self.settings.frame_height, self.settings.frame_width):
+            raise OutputError(f"{self.folder / shot.file} is missing or damaged. Remove {self.folder} and capture again.")
+        return np.asarray(picture, np.uint8)
+
+    def close_ups(self) -> list[Pose] | None:
+        """Return the stored poses of close-ups; None if they have not been chosen yet."""
+        path = self.folder / CLOSE_UPS
+        if not path.exists():
+            return None
+        try:
+            return [Pose(*map(float, row)) for row in json.loads(path.read_text(encoding="utf-8"))]
+        except (OSError, ValueError, TypeError):
+            return None  # they are chosen again
+
+    def store_close_ups(self, poses: Sequence[Pose]) -> None:
+        """Store the poses of close-ups."""
+        self._write(CLOSE_UPS, json.dumps([(pose.pan_deg, pose.tilt_deg, pose.zoom) for pose in poses]))
+
+    def finish(self) -> None:
+        """Record that every frame has been taken."""
+        self._state = self._state.model_copy(update={"complete": True})
+        self._write(SETTINGS, self._state.model_dump_json(indent=1))
+
+    def remove(self) -> None:
+        """Remove the folder."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _resume(self) -> None:
+        try:
+            state = _State.model_validate_json((self.folder / SETTINGS).read_bytes())
+            lines = (self.folder / FRAMES).read_text(encoding="utf-8").splitlines() if (self.folder / FRAMES).exists() else []
+        except (OSError, ValidationError, UnicodeDecodeError) as error:
+            raise OutputError(
+                f"{self.folder} does not contain a capture that can be resumed. Remove it, and run the command again."
+            ) from error
+        changed = [name for name, value in state.settings if value != getattr(self.settings, name)]
+        if changed:
+            raise OutputError(
+                f"{self.folder} contains an unfinished capture with a different {changed[0].replace('_', ' ')}. Run the command "
+                "with the same options to resume it, or remove the folder to start over."
+            )
+        self._state = state
+        for line in lines:
+            try:
+                shot = Shot.model_validate_json(line)
+            except ValidationError:
+                continue  # the program was killed while it wrote this line, so the frame is taken again
+            if not shot.file or (self.folder / shot.file).is_file():
+                self._shots[shot.key] = shot
+        self._next_number = max((int(shot.file[:5]) + 1 for shot in self._shots.values() if shot.file), default=0)
+
+    def _append(self, shot: Shot) -> None:
+        self._shots[shot.key] = shot
+        try:
+            path = self.folder / FRAMES
+            truncated = path.exists() and path.stat().st_size and not path.read_bytes().endswith(b"\n")
+            with path.open("a", encoding="utf-8") as file:
+                file.write(("\n" if truncated else "") + shot.model_dump_json() + "\n")
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def _write(self, name: str, content: str | bytes) -> None:
+        """Write a file atomically."""
+        data = content.encode() if isinstance(content, str) else content
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            fresh = self.folder / f".{name}.new"
+            fresh.write_bytes(data)
+            fresh.replace(self.folder / name)
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def _unwritable(self, error: OSError) -> OutputError:
+        return OutputError(f"The capture cannot be stored in {self.folder}: {error.strerror or error}.")

@@ -1,0 +1,48 @@
+"""Arithmetic with velocities, poses and axes for a guarded camera."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from scope_ptz.camera.capabilities import Velocity
+from scope_ptz.geometry import Axis, Pose
+
+
+def velocity_fields(velocity: Velocity) -> dict[str, float]:
+    """Return a velocity as a dictionary."""
+    return {"pan_dps": velocity.pan_dps, "tilt_dps": velocity.tilt_dps, "zoom_rate": velocity.zoom_rate}
+
+
+def capped(velocity: Velocity, top: Velocity) -> Velocity:
+    """Return a velocity of at most the top speed on each axis."""
+
+    def cap(speed: float, limit: float) -> float:
+        return math.copysign(min(abs(speed), limit), speed)
+
+    return Velocity(
+        cap(velocity.pan_dps, top.pan_dps), cap(velocity.tilt_dps, top.tilt_dps), cap(velocity.zoom_rate, top.zoom_rate)
+    )
+
+
+def scaled(velocity: Velocity, share: float) -> Velocity:
+    """Return a share of a velocity."""
+    return Velocity(velocity.pan_dps * share, velocity.tilt_dps * share, velocity.zoom_rate * share)
+
+
+def advanced(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
+    """Return the pose of a camera after some time at a velocity."""
+    zoom = pose.zoom * 2.0 ** max(-10.0, min(10.0, velocity.zoom_rate * seconds))
+    return Pose(pose.pan_deg + velocity.pan_dps * seconds, pose.tilt_deg + velocity.tilt_dps * seconds, zoom)
+
+
+def changes(start: Pose, end: Pose) -> tuple[tuple[Axis, bool], ...]:
+    """Return for pan and tilt whether they differ."""
+    return ("pan", start.pan_deg != end.pan_deg), ("tilt", start.tilt_deg != end.tilt_deg)
+
+
+def joined(*axes: Any) -> tuple[Axis, ...]:
+    """Return axes of several reports once each, in the order pan, tilt, zoom."""
+    found = {axis for group in axes for axis in group}
+    order: tuple[Axis, ...] = ("pan", "tilt", "zoom")
+    return tuple(axis for axis in order if axis in found)

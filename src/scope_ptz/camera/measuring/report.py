@@ -1,0 +1,89 @@
+"""A report on a camera for the table of tested devices. It identifies the model, but not the owner or the location."""
+
+from __future__ import annotations
+
+import json
+import re
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.measuring.profile import CalibrationRecord, ProbeRecord
+
+_IDENTIFIERS = re.compile(
+    r"(?:\d{1,3}\.){3}\d{1,3}(?::\d+)?"  # IPv4 addresses
+    r"|(?:[0-9A-Fa-f]{2}[:-]){5}[0-9A-Fa-f]{2}"  # MAC addresses
+    r"|\b(?=[0-9A-Fa-f]*\d)[0-9A-Fa-f]{12}\b"  # the same without separators, which are the serial numbers of AXIS
+    r"|\S+@\S+"
+)
+
+
+def report_text(probe: ProbeRecord, calibration: CalibrationRecord | None = None) -> str:
+    """Return a report as Markdown: a row of the table of tested devices, and the details as JSON.
+
+    It contains only selected fields. Presets are counted, because their names may reveal places. These fields contain no
+    addresses, accounts or serial numbers. If a device puts one into its model name, it is redacted.
+
+    Args:
+        probe: The values that the camera reports.
+        calibration: The measurements; None if there are none.
+    """
+    offers = {
+        "drive": probe.drives,
+        "presets": probe.edits_presets,
+        f"focus ({', '.join(probe.focus_actions)})": bool(probe.focus_actions),
+        f"iris ({', '.join(probe.iris_actions)})": bool(probe.iris_actions),
+    }
+    can = ", ".join(name for name, offered in offers.items() if offered) or "poses and pictures only"
+    measured = "no" if calibration is None else "contradictions" if calibration.contradictions else "yes"
+    row = (probe.model, probe.firmware or "not reported", probe.driver, can, measured)
+    details = {
+        "scope_ptz": _version(),
+        "model": probe.model,
+        "firmware": probe.firmware,
+        "driver": probe.driver,
+        "pan_range_deg": probe.pan_range_deg,
+        "tilt_range_deg": probe.tilt_range_deg,
+        "pan_endless": probe.pan_endless,
+        "zoom_range": probe.zoom_range,
+        "hfov_deg_by_zoom": probe.zoom_table,
+        "frame": (probe.frame_width, probe.frame_height),
+        "snapshot_s": round(probe.snapshot_s, 3),
+        "drives": probe.drives,
+        "edits_presets": probe.edits_presets,
+        "presets": len(probe.presets),
+        "focus": probe.focus_actions,
+        "iris": probe.iris_actions,
+        "assumed": probe.assumed,
+        "calibration": None if calibration is None else _measured(calibration),
+    }
+    table = "| Model | Firmware | Driver | Can | Calibrated |\n|---|---|---|---|---|\n"
+    cells = " | ".join(text.replace("|", "/").replace("\n", " ") for text in row)
+    text = f"# Camera report\n\n{table}| {cells} |\n\n```json\n{json.dumps(details, indent=1)}\n```\n"
+    return _IDENTIFIERS.sub("(removed)", text)
+
+
+def report_name(probe: ProbeRecord) -> str:
+    """Return the file name of a report."""
+    words = re.sub(r"[^a-z0-9]+", "-", _IDENTIFIERS.sub("", probe.model).lower()).strip("-")[:60]
+    return f"camera-report-{words or 'camera'}.md"
+
+
+def _measured(record: CalibrationRecord) -> dict[str, object]:
+    return {
+        "pan_scale": round(record.pan_scale, 4),
+        "tilt_scale": round(record.tilt_scale, 4),
+        "tilt_offset_deg": round(record.tilt_offset_deg, 2),
+        "hfov_deg_by_zoom": [(round(each.zoom, 3), round(each.measured_deg, 2)) for each in record.fields],
+        "move_s": round(record.move_s, 2),
+        "settling_s": round(record.settling_s, 2),
+        "residual_px": round(record.residual_px, 2),
+        "contradictions": record.contradictions,
+    }
+
+
+def _version() -> str:
+    try:
+        return version("scope-ptz")
+    except PackageNotFoundError:
+        return "unknown"

@@ -1,0 +1,42 @@
+"""Waiting for the focus of a device."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from time import monotonic
+
+import anyio
+
+from scope_ptz.camera.lens import LensState
+from scope_ptz.errors import CameraError
+
+STANDING_READINGS = 6
+"""Number of consecutive equal positions after which the focus has settled."""
+
+BLIND_S = 2.0
+"""Seconds that a device without a focus position is given to focus."""
+
+TIMEOUT_S = 15.0
+
+
+async def wait_until_focused(read: Callable[[], Awaitable[LensState]], poll_s: float) -> LensState:
+    """Wait until the focus has settled, and return the state of the lens.
+
+    Args:
+        read: Reads the lens.
+        poll_s: Seconds between two readings.
+
+    Raises:
+        CameraError: The focus is still moving at the time limit.
+    """
+    state, started_s, equal = await read(), monotonic(), 0
+    if state.focus is None:
+        await anyio.sleep(BLIND_S)
+        return await read()
+    while monotonic() - started_s < TIMEOUT_S:
+        await anyio.sleep(poll_s)
+        before, state = state, await read()
+        equal = equal + 1 if state.focus == before.focus else 0
+        if equal >= STANDING_READINGS:
+            return state
+    raise CameraError(f"The focus still moves after {TIMEOUT_S:g} s. Set it to manual, or check that nobody else is moving it.")

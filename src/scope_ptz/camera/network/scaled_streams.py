@@ -1,0 +1,66 @@
+"""Live pictures of devices that do not stream in frame size: scaled video, or a sequence of snapshots."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from scope_ptz.camera.network.errors import PictureError
+from scope_ptz.camera.network.streams import LivePicture, LiveStream
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class SnapshotStream(LiveStream):
+    """A stream that consists of snapshots.
+
+    Args:
+        take: Takes a snapshot.
+    """
+
+    def __init__(self, take: Callable[[], Awaitable[tuple[bytes, NDArray[np.uint8]]]]) -> None:
+        self._take = take
+
+    async def next(self) -> LivePicture:
+        data, image = await self._take()
+        return LivePicture(image, data, monotonic())
+
+    async def close(self) -> None:
+        """Do nothing, because nothing is open between snapshots."""
+
+
+class ScaledStream(LiveStream):
+    """A stream whose pictures are scaled to the size of frames."""
+
+    def __init__(self, stream: LiveStream, width: int, height: int) -> None:
+        self._stream, self._width, self._height = stream, width, height
+
+    async def next(self) -> LivePicture:
+        picture = await self._stream.next()
+        return LivePicture(scaled(picture.image, self._width, self._height), picture.data, picture.arrived_s)
+
+    async def close(self) -> None:
+        await self._stream.close()
+
+
+def scaled(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+    """Return a picture scaled to another size with the same aspect ratio.
+
+    Raises:
+        PictureError: The picture has another aspect ratio.
+    """
+    import cv2
+    import numpy as np
+
+    if image.shape[1::-1] == (width, height):
+        return image
+    if abs(image.shape[1] * height - image.shape[0] * width) > max(image.shape):
+        raise PictureError(
+            f"The stream has {image.shape[1]}x{image.shape[0]} pixels, whose aspect ratio differs from {width}x{height}. "
+            "Change the stream's size in the camera, or use ?stream=snapshot.",
+            "size",
+        )
+    return np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)

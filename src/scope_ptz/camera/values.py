@@ -1,0 +1,139 @@
+"""The values that cameras return: camera information, frames, presets and arrivals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from scope_ptz.camera.capabilities import NO_CAPABILITIES, Capabilities
+from scope_ptz.camera.picture_aim import towards_point
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from scope_ptz.geometry import Axis, Limits, Optics, Pose, Projection
+
+
+@dataclass(frozen=True, slots=True)
+class CameraInfo:
+    """Information about a camera that is known before it moves.
+
+    Attributes:
+        name: The camera's name, as traces show it.
+        limits: Limits of pan, tilt and zoom.
+        optics: Field of view by zoom.
+        frame_width: Width of a frame in pixels.
+        frame_height: Height of a frame in pixels.
+        simulated: Whether the pictures are computed.
+        capabilities: Further capabilities of the camera.
+        rendering: Version of the simulator's rendering; None for other cameras.
+        assumed: Values that the driver assumes until they are measured, such as "field of view".
+        firmware: Version of the device's firmware, "" if it reports none.
+        dry_run: Whether commands are only reported, so that every frame shows the view at the start.
+    """
+
+    name: str
+    limits: Limits
+    optics: Optics
+    frame_width: int
+    frame_height: int
+    simulated: bool
+    capabilities: Capabilities = NO_CAPABILITIES
+    rendering: int | None = None
+    assumed: tuple[str, ...] = ()
+    firmware: str = ""
+    dry_run: bool = False
+
+    def towards(self, pose: Pose, x: float, y: float, zoom_factor: float = 1.0) -> Pose:
+        """Return the pose that centres a point of the picture at a pose. It may be beyond the limits.
+
+        Args:
+            pose: Where the camera is.
+            x: The point from 0 (left border) to 1 (right border).
+            y: The point from 0 (top) to 1 (bottom).
+            zoom_factor: Factor of the focal length.
+
+        Raises:
+            InputError: The point is not within the picture, or the factor is not above 0.
+        """
+        return towards_point(self.optics, self.limits, (self.frame_width, self.frame_height), pose, x, y, zoom_factor)
+
+
+@dataclass(frozen=True, slots=True)
+class FrameOrigin:
+    """The origin of a simulated frame.
+
+    Only the simulator and ground-truth perception read it; frames of real cameras have none.
+    """
+
+    scene: str
+    viewpoint: str
+    pose: Pose
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A picture with the geometry that maps any of its pixels to a direction.
+
+    Attributes:
+        image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
+        pose: The camera's pose at exposure; for a stitched panorama the pose at the start of the sweep.
+        hfov_deg: Horizontal field of view in degrees.
+        time_s: Time of exposure on the camera's clock, in seconds.
+        projection: The mapping between pixels and directions.
+        origin: Where a simulated frame comes from, None for real cameras.
+    """
+
+    image: NDArray[np.uint8]
+    pose: Pose
+    hfov_deg: float
+    time_s: float
+    projection: Projection
+    origin: FrameOrigin | None = None
+
+    def __post_init__(self) -> None:
+        if self.image.ndim != 3 or self.image.shape[2] != 3 or self.image.dtype != "uint8":
+            raise ValueError(f"the image of a frame must be an (H, W, 3) uint8 array; got {self.image.shape} {self.image.dtype}")
+        self.image.flags.writeable = False
+
+    @property
+    def width(self) -> int:
+        return int(self.image.shape[1])
+
+    @property
+    def height(self) -> int:
+        return int(self.image.shape[0])
+
+    def _repr_html_(self) -> str:
+        """Return the HTML that a notebook displays: the picture, with pose and field of view below."""
+        from scope_ptz.camera.notebook import figure_html
+
+        pose = self.pose.as_dict()
+        where = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · zoom {pose['zoom']:.1f}x"
+        place = f"{self.origin.scene} / {self.origin.viewpoint} · " if self.origin else ""
+        return figure_html(self.image, f"{place}{where} · {self.hfov_deg:.0f}° wide · {self.time_s:.1f} s")
+
+
+@dataclass(frozen=True, slots=True)
+class PresetInfo:
+    """A named pose. ``description`` may be empty."""
+
+    name: str
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """The end of a move.
+
+    Attributes:
+        pose: The pose reached.
+        clamped: The axes that a limit stopped.
+        limited_by: The reason, as a noun phrase, why the camera stopped early, if it was not a limit of the device.
+    """
+
+    pose: Pose
+    clamped: tuple[Axis, ...] = field(default=())
+    limited_by: str = ""

@@ -1,0 +1,138 @@
+"""``scope camera capture``: capture a twin of a site with its camera."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.camera.by_hand import CameraSpecArgument
+from scope_ptz.cli.exit import put, put_json, run_async
+from scope_ptz.cli.options import JsonOption
+from scope_ptz.errors import InputError
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from scope_ptz.factory.cameras.captures import CapturedScene
+
+
+def capture(
+    camera: CameraSpecArgument,
+    to: Annotated[
+        Path | None, typer.Option("--to", metavar="FOLDER", help="Folder in which to create the scene (default: SCOPE_SCENES_DIR).")
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option("--name", help="Name of the scene, such as my-yard (default: the camera's name in scope.yaml).")
+    ] = None,
+    zoom: Annotated[
+        list[float] | None, typer.Option("--zoom", help="Also capture the whole range at this magnification (repeatable).")
+    ] = None,
+    close_ups: Annotated[
+        int, typer.Option("--close-ups", min=0, help="Maximum number of close-ups of areas with fine detail.")
+    ] = 40,
+    pan: Annotated[
+        str | None, typer.Option("--pan", metavar="FROM:TO", help="Range of pan in degrees (default: the whole range).")
+    ] = None,
+    tilt: Annotated[
+        str | None, typer.Option("--tilt", metavar="FROM:TO", help="Range of tilt in degrees (default: the whole range).")
+    ] = None,
+    overlap: Annotated[float, typer.Option("--overlap", help="Share of a picture that the next one also shows.")] = 0.45,
+    as_json: JsonOption = False,
+) -> None:
+    """Capture a camera's surroundings as a scene: a twin of the site with pictures, but without ground truth.
+
+    The camera moves for a few minutes and then returns to its original pose. Running the same command again resumes an interrupted
+    capture.
+    """
+    from scope_ptz.camera.capture.plan import Ranges
+    from scope_ptz.camera.capture.taking import CaptureOptions
+    from scope_ptz.factory.cameras.captures import capture_scene, scene_folder
+    from scope_ptz.settings import load_settings
+
+    folder = to or load_settings().scenes_dir
+    if folder is None:
+        raise InputError("Specify the folder of scenes with --to, or set SCOPE_SCENES_DIR.")
+    target = scene_folder(camera, folder, name)
+    ranges = Ranges(_range("--pan", pan), _range("--tilt", tilt))
+    options = CaptureOptions(ranges, tuple(zoom or ()), close_ups, overlap)
+    scenes: list[CapturedScene] = []
+    with _Bars(shown=not as_json) as bars:
+
+        async def work() -> None:
+            scenes.append(await capture_scene(camera, target, options, bars))
+
+        run_async(work)
+    if as_json:
+        put_json({**asdict(scenes[0]), "folder": str(scenes[0].folder)})
+        return
+    for line in _lines(scenes[0]):
+        put(line)
+
+
+def _range(option: str, text: str | None) -> tuple[float, float] | None:
+    if text is None:
+        return None
+    try:
+        low, high = (float(part) for part in text.split(":"))
+    except ValueError:
+        raise InputError(f"{option} must be FROM:TO in degrees, such as -30:60; got '{text[:40]}'.") from None
+    return low, high
+
+
+def _lines(scene: CapturedScene) -> list[str]:
+    unplaced = scene.frames - scene.registered
+    lines = [f"Wrote {scene.folder}: {scene.frames} pictures, {scene.tiles} sharper tiles, {len(scene.presets)} presets."]
+    if scene.correction_deg is not None and scene.largest_correction_deg is not None:
+        lines.append(
+            f"The median correction of the reported poses is {scene.correction_deg:.2f} degrees, and the largest is "
+            f"{scene.largest_correction_deg:.2f} degrees."
+        )
+    if scene.focal_factor is not None and abs(scene.focal_factor - 1) > 0.005:
+        lines.append(f"The focal length at the widest zoom is {scene.focal_factor:.3f} times the reported one. The scene uses it.")
+    if unplaced:
+        lines.append(f"{unplaced} pictures have too little detail to be registered. Their reported poses are used.")
+    if scene.refused:
+        lines.append(f"{scene.refused} poses were skipped because the rules of the site do not permit them.")
+    if scene.left_out_presets:
+        lines.append(f"Presets outside the captured range were skipped: {', '.join(scene.left_out_presets)}.")
+    if scene.unseen_share:
+        lines.append(
+            f"{scene.unseen_share:.1%} of the directions in reach of the camera were not captured. They are grey in the scene."
+        )
+    lines.append("The scene has no ground truth. Choose a vision model or a text reader with --perception.")
+    lines.append(
+        f"Try: SCOPE_SCENES_DIR={scene.folder.parent} scope ask --scene {scene.name} --perception MODEL 'what do you see?'"
+    )
+    return lines
+
+
+class _Bars:
+    """Progress bars, one for each phase, on stderr if it is a terminal."""
+
+    def __init__(self, *, shown: bool) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+        self._progress = Progress(
+            TextColumn("{task.description:20}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn(),
+            console=Console(stderr=True), disable=not (shown and sys.stderr.isatty()),
+        )  # fmt: skip
+        self._tasks: dict[str, int] = {}
+
+    def __enter__(self) -> _Bars:
+        self._progress.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self._progress.stop()
+
+    def __call__(self, part: str, done: int, total: int) -> None:
+        from rich.progress import TaskID
+
+        if part not in self._tasks:
+            self._tasks[part] = self._progress.add_task(part, total=total)
+        self._progress.update(TaskID(self._tasks[part]), completed=done, total=total)

@@ -1,0 +1,71 @@
+"""``scope camera focus|iris``: the lens of a camera by hand."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Annotated, Any, cast
+
+import typer
+
+from scope_ptz.cli.camera.by_hand import CameraSpecArgument, DryRun, opened_camera
+from scope_ptz.cli.exit import put, put_json, run_async
+from scope_ptz.cli.options import JsonOption
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+
+    from scope_ptz.camera.base import Camera
+    from scope_ptz.camera.lens import FocusAction, IrisAction, LensState
+
+Step = Annotated[float, typer.Option("--step", help="Length of a step, as a share of the range.")]
+
+
+def focus(
+    camera: CameraSpecArgument,
+    action: Annotated[
+        str | None, typer.Argument(help="auto, manual (hold), once (focus and hold), near, or far. Without it, print the focus.")
+    ] = None,
+    step: Step = 0.05,
+    dry_run: DryRun = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Set the focus, or print it."""
+
+    async def adjust(opened: Camera) -> LensState:
+        return await (opened.lens() if action is None else opened.set_focus(cast("FocusAction", action), step=step))
+
+    _run(camera, adjust, "focus", dry_run=dry_run, as_json=as_json)
+
+
+def iris(
+    camera: CameraSpecArgument,
+    action: Annotated[str | None, typer.Argument(help="auto, manual (hold), open, or close. Without it, print the iris.")] = None,
+    step: Step = 0.05,
+    dry_run: DryRun = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Set the iris, or print it."""
+
+    async def adjust(opened: Camera) -> LensState:
+        return await (opened.lens() if action is None else opened.set_iris(cast("IrisAction", action), step=step))
+
+    _run(camera, adjust, "iris", dry_run=dry_run, as_json=as_json)
+
+
+def _run(
+    spec: str, adjust: Callable[[Camera], Awaitable[LensState]], what: str, *, dry_run: bool, as_json: bool
+) -> None:  # fmt: skip
+    async def work() -> None:
+        async with opened_camera(spec, dry_run=dry_run) as opened:
+            state = await adjust(opened)
+        put_json(asdict(state)) if as_json else put(_text(state, what))
+
+    run_async(work)
+
+
+def _text(state: LensState, what: str) -> str:
+    values: tuple[Any, Any] = (state.autofocus, state.focus) if what == "focus" else (state.autoiris, state.iris)
+    mode = {True: "automatic", False: "manual", None: "mode not reported"}[values[0]]
+    ends = "near to far" if what == "focus" else "closed to open"
+    at = "position not reported" if values[1] is None else f"at {values[1]:.0%} from {ends}"
+    return f"{what}: {mode}, {at}"

@@ -1,0 +1,17 @@
+"""The group ``scope runs``, whose commands are imported when one of them is used or listed."""
+
+from __future__ import annotations
+
+from scope_ptz.cli.lazy_group import LazyGroup
+
+HELP = """Stored runs: list, show, index, export and prune them; list audit logs.
+
+They are in the runs folder (SCOPE_RUNS_DIR, or --runs-dir). Its file `store.sqlite` is an index, which can be rebuilt.
+"""
+
+
+class RunsGroup(LazyGroup):
+    """The group of run commands."""
+
+    module = "scope_ptz.cli.runs.app"
+    attribute = "runs_app"

@@ -1,0 +1,134 @@
+"""``scope serve``, ``scope console`` and ``scope token``: run the server and manage its tokens."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from scope_ptz.errors import InputError
+
+if TYPE_CHECKING:
+    from scope_ptz.serve.security.tokens import TokenFile
+
+SWITCH_INTERVAL_S = 0.001
+"""Seconds that a thread may run Python before others get a turn. The default of 5 ms lets rendering delay a ``stop``."""
+
+
+def run_server(
+    cameras: list[str],
+    pairs: list[str],
+    host: str,
+    port: int,
+    names: list[str],
+    tokens: Path | None,
+    runs_dir: Path | None,
+    idle_after: float | None,
+    idle_preset: str,
+    *,
+    page: bool = False,
+    as_json: bool,
+) -> None:
+    """Serve cameras until Ctrl-C, and the operator's page too if ``page`` is set."""
+    from scope_ptz.cli.exit import put, put_json, run_async
+    from scope_ptz.settings import load_settings
+    from scope_ptz.virtual_camera.heap import use_one_heap
+
+    use_one_heap()
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
+    try:
+        from scope_ptz.serve.security.gate import Access
+        from scope_ptz.serve.security.origins import is_loopback
+        from scope_ptz.serve.server import serve
+        from scope_ptz.serve.site.service import Site, SiteOptions, idle_returns, site_cameras
+        from scope_ptz.serve.site.station import IdleReturn
+
+        if page:
+            from scope_ptz.console.server import serve_console as serving
+        else:
+            serving = serve
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] not in ("fastapi", "sqlalchemy", "starlette", "streamlit", "uvicorn", "websockets"):
+            raise
+        raise InputError(
+            f"The server needs {error.name}. Install it with: pip install 'scope-ptz[{'console' if page else 'serve'}]'."
+        ) from error
+    settings = load_settings()
+    needed = tokens is not None or not is_loopback(host) or bool(names)
+    access = Access(host, _tokens(tokens or settings.tokens) if needed else None, tuple(names))
+    chosen = site_cameras(cameras, settings)
+    idle = None if idle_after is None else IdleReturn(idle_after, idle_preset)
+    options = SiteOptions(runs_dir or settings.runs_dir, tuple(cameras), tuple(pairs), idle=idle, idle_of=idle_returns())
+
+    async def work() -> None:
+        import anyio
+
+        site = Site(chosen, options)
+        async with serving(site, access, port=port) as bound:
+            shown = f"[{host}]" if ":" in host else host
+            url = f"http://{shown}:{bound}"
+            if as_json:
+                put_json({"url": url, "cameras": list(site.stations), "pairs": list(site.pairs.names), "tokens": needed})
+            elif page:
+                put(f"Open {url} in a browser ({'with tokens' if needed else 'on this machine only'}). Press Ctrl-C to stop.")
+            else:
+                first = next(iter(site.stations))
+                put(
+                    f"Serving {len(site.stations)} cameras at {url}/api/v1 ({'with tokens' if needed else 'on this machine only'})."
+                )
+                put("")
+                put("Try:")
+                put(f"  curl {url}/api/v1/cameras")
+                put(f"  python -c \"import scope_ptz; print(scope_ptz.open('{url}/{first}').ask('zoom in 2x'))\"")
+                put("")
+                put("Press Ctrl-C to stop.")
+            sys.stdout.flush()
+            await anyio.sleep_forever()
+
+    run_async(work)
+
+
+def add_token(name: str, role: str, tokens: Path | None, *, as_json: bool) -> None:
+    """Create a token and print it."""
+    from scope_ptz.cli.exit import put, put_json
+
+    if role not in ("viewer", "operator"):
+        raise InputError(f"--role must be viewer or operator; got '{role[:40]}'.")
+    file = _file(tokens)
+    secret = file.add(name, "operator" if role == "operator" else "viewer")
+    if as_json:
+        put_json({"name": name, "role": role, "token": secret, "file": str(file.path)})
+    else:
+        put(secret)
+        sys.stderr.write(f"This is the token of {name} ({role}). It cannot be shown again: {file.path} stores only its hash.\n")
+
+
+def list_tokens(tokens: Path | None, *, as_json: bool) -> None:
+    """Print the names and roles of tokens."""
+    from scope_ptz.cli.exit import put, put_json
+
+    entries = _file(tokens).tokens
+    if as_json:
+        put_json([{"name": each.name, "role": each.role, "created": each.created.isoformat()} for each in entries])
+        return
+    for each in entries:
+        put(f"{each.name:<30} {each.role:<9} {each.created:%Y-%m-%d}")
+    if not entries:
+        put("No tokens. Create one with `scope token add NAME --role operator`.")
+
+
+def remove_token(name: str, tokens: Path | None) -> None:
+    """Remove a token. A running server refuses it from the next request on."""
+    _file(tokens).remove(name)
+
+
+def _file(tokens: Path | None) -> TokenFile:
+    from scope_ptz.settings import load_settings
+
+    return _tokens(tokens or load_settings().tokens)
+
+
+def _tokens(path: Path) -> TokenFile:
+    from scope_ptz.serve.security.tokens import TokenFile
+
+    return TokenFile(path)

@@ -1,0 +1,12 @@
+// Messages that state who controls a camera and who requests control.
+
+import { shared } from "./app_state.js";
+
+const LOCAL = "local"; // the name of every client of a server without tokens
+
+export function controls(holder) {
+  if (holder === LOCAL) return "This computer is in control, in another window or program.";
+  return holder === shared.me?.name ? `${holder} is in control, in another window.` : `${holder} is in control.`;
+}
+
+export const asks = (name) => (name === LOCAL ? "Another window or program on this computer asks for control." : `${name} asks for control.`);

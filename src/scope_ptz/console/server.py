@@ -1,0 +1,81 @@
+"""Serve the operator's page together with the API."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, MutableMapping
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import streamlit as st
+from starlette.applications import Starlette
+from starlette.responses import Response
+from starlette.routing import Mount
+from starlette.staticfiles import StaticFiles
+from streamlit import config
+
+from scope_ptz.serve.http.app import API_PREFIX, api_application
+from scope_ptz.serve.security.gate import Access, Gate
+from scope_ptz.serve.security.sign_in import sign_in_route
+from scope_ptz.serve.server import serve
+from scope_ptz.serve.site.service import Site
+
+FOLDER = Path(__file__).parent
+ASSETS_PREFIX = "/console"
+
+PAGE_POLICY = "; ".join(
+    (
+        "default-src 'self'",
+        "script-src 'self' blob: 'unsafe-inline' 'wasm-unsafe-eval'",  # Streamlit starts with an inline script
+        "style-src 'self' 'unsafe-inline'",
+        "img-src 'self' blob: data:",
+        "font-src 'self' data:",
+        "connect-src 'self'",
+        "worker-src 'self' blob:",
+        "object-src 'none'",
+        "frame-ancestors 'none'",
+        "base-uri 'none'",
+        "form-action 'self'",
+    )
+)
+"""The content security policy of the page, which neither loads from nor sends to other hosts."""
+
+_SETTINGS: dict[str, Any] = {
+    "browser.gatherUsageStats": False,
+    "client.showErrorDetails": "none",
+    "client.toolbarMode": "viewer",
+    "server.fileWatcherType": "none",
+    "server.headless": True,
+}
+
+
+@asynccontextmanager
+async def serve_console(site: Site, access: Access, *, port: int = 8000) -> AsyncIterator[int]:
+    """Serve the page and the API while the context is open, and return the port.
+
+    Streamlit allows one page per process.
+
+    Args:
+        site: The site. This function enters its context.
+        access: The access rules. The server listens on their host.
+        port: The port; 0 for any free one.
+
+    Raises:
+        ConfigError: The port is in use or not permitted.
+    """
+    for name, value in _SETTINGS.items():
+        config.set_option(name, value)
+    assets = Mount(ASSETS_PREFIX, _Assets(directory=FOLDER / "page"))
+    page = st.App(FOLDER / "ui.py", routes=[sign_in_route(access), Mount(API_PREFIX, api_application(site, access)), assets])
+    gate = Gate(page, access, page_policy=PAGE_POLICY)
+    async with page.lifespan()(Starlette()), serve(site, access, port=port, app=gate) as bound:
+        yield bound
+
+
+class _Assets(StaticFiles):
+    """Serves the page's scripts and styles. Browsers revalidate them on each load."""
+
+    async def get_response(self, path: str, scope: MutableMapping[str, Any]) -> Response:
+        response = await super().get_response(path, scope)
+        response.headers["Cache-Control"] = "no-cache"
+        return response

@@ -1,0 +1,5 @@
+"""Cameras: parse their specs and open them, and read the site file, profiles and passwords."""
+
+from scope_ptz.factory.cameras.opening import BUILT_IN_SCHEMES, CameraSpec, OpenCamera, camera_names, open_camera, parse_camera
+
+__all__ = ["BUILT_IN_SCHEMES", "CameraSpec", "OpenCamera", "camera_names", "open_camera", "parse_camera"]

@@ -1,0 +1,318 @@
+"""Parse camera specs, and open cameras with their clock and ground truth."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+from urllib.parse import parse_qsl
+
+from scope_ptz.camera.base import Camera
+from scope_ptz.camera.clocks import Clock
+from scope_ptz.camera.control import user_name
+from scope_ptz.camera.spec import CameraSpec
+from scope_ptz.entry_points import CAMERAS, call_factory, expect_product, find, installed, one_line
+from scope_ptz.errors import CameraError, InputError, ScopeError, UnknownNameError
+from scope_ptz.factory.cameras.network import NETWORK_SCHEMES, check_network_spec
+from scope_ptz.factory.scenes import scene_search
+from scope_ptz.settings import find_camera_file, load_settings
+
+if TYPE_CHECKING:
+    from scope_ptz.perception.ground_truth.served import ServedTruth
+    from scope_ptz.simulator.pack import Scene
+
+__all__ = ["BUILT_IN_SCHEMES", "CameraSpec", "OpenCamera", "camera_names", "open_camera", "parse_camera"]
+
+BUILT_IN_SCHEMES = ("sim", "blender", *NETWORK_SCHEMES)
+
+_FRAME_OPTIONS = ("width", "height")
+_OPTIONS = {"sim": _FRAME_OPTIONS, "blender": (*_FRAME_OPTIONS, "samples")}
+_BLENDER_FILES = (".blend", ".py")
+
+
+def parse_camera(text: str) -> CameraSpec:
+    """Parse a camera spec.
+
+    Args:
+        text: A scene (``highway-works`` or ``sim:highway-works``), a scene or file rendered by Blender
+            (``blender:highway-works``, ``blender:yard.blend``), a camera on the network (``axis://operator@10.0.0.7``), or
+            ``SCHEME:ADDRESS`` for the camera of a plug-in. Options follow a question mark:
+            ``blender:yard.blend?samples=4&width=640&height=360``. A name without a colon may also be a camera in ``scope.yaml``.
+
+    Raises:
+        InputError: The spec is empty, its scheme or an option is unknown, a file does not exist, or it contains a password.
+    """
+    text = text.strip()
+    scheme, colon, rest = text.partition(":")
+    if not colon:
+        if (named := _named(text)) is not None:
+            return named
+        scheme, rest = "sim", text
+    scheme = scheme.lower()
+    address, _, query = rest.partition("?")
+    if _has_credentials(scheme, address):
+        raise InputError(
+            f"Remove user:password@ from the camera spec `{scheme}:...`: traces and the shell history would store the password."
+        )
+    if scheme not in BUILT_IN_SCHEMES and find(CAMERAS, scheme) is None:
+        raise InputError(_unknown_scheme(scheme, text))
+    spec = CameraSpec(scheme, address.removeprefix("//"), dict(parse_qsl(query, keep_blank_values=True)))
+    if scheme in BUILT_IN_SCHEMES:
+        _check_built_in(spec)
+    return spec
+
+
+def _named(text: str) -> CameraSpec | None:
+    """Return the spec of a camera in ``scope.yaml``; None if that file has no camera of this name."""
+    if find_camera_file(load_settings()) is None:
+        return None
+    from scope_ptz.factory.cameras.named import named_cameras
+
+    named = named_cameras().get(text)
+    if named is None:
+        return None
+    if ":" not in named.camera:
+        raise InputError(f"The camera '{text}' in scope.yaml must have a spec with a scheme, such as sim:{named.camera[:60]}.")
+    return replace(parse_camera(named.camera), name=text)
+
+
+def camera_names() -> tuple[str, ...]:
+    """Return the camera specs that can be opened: scenes, scenes that Blender can render live, and schemes of plug-ins."""
+    from scope_ptz.blender.sources import scene_names
+    from scope_ptz.simulator.pack import list_scenes
+
+    scenes = list_scenes(scene_search(load_settings()))
+    live = [f"blender:{name}" for name in scene_names()]
+    plugins = [f"{entry.name}:ADDRESS" for entry in installed(CAMERAS) if entry.name not in BUILT_IN_SCHEMES]
+    network = [f"{scheme}://USER@HOST" for scheme in NETWORK_SCHEMES]
+    named: tuple[str, ...] = ()
+    if find_camera_file(load_settings()) is not None:
+        from scope_ptz.factory.cameras.named import named_cameras
+
+        named = tuple(named_cameras())
+    return (*named, *scenes, *live, "blender:FILE.blend", *network, *plugins)
+
+
+class OpenCamera:
+    """A camera that is ready for use. Close it with ``aclose`` or use it as an async context manager.
+
+    Attributes:
+        spec: The spec from which the camera was opened.
+        camera: The camera.
+        scene: The scene that the camera shows, with the ground truth of its frames if there is any; None for other cameras.
+        served_truth: Connects to the ground truth that a virtual camera serves; None for other cameras, and for one whose rules in
+            ``scope.yaml`` change its pictures or poses.
+    """
+
+    def __init__(
+        self,
+        spec: CameraSpec,
+        camera: Camera,
+        scene: Scene | None = None,
+        release: Callable[[], Awaitable[None]] | None = None,
+        served_truth: Callable[[], ServedTruth] | None = None,
+    ) -> None:
+        self.spec, self.camera, self.scene, self.served_truth = spec, camera, scene, served_truth
+        self._release = release
+
+    @property
+    def clock(self) -> Clock:
+        """The camera's clock."""
+        return self.camera.clock
+
+    @property
+    def has_truth(self) -> bool:
+        """Whether ground truth exists for the camera's frames."""
+        return self.scene is not None and self.scene.file.captured is None
+
+    @property
+    def scenes(self) -> Callable[[str], Scene] | None:
+        """A function that returns a scene by name, for ``make_perception``; None for a camera without a scene."""
+        return None if self.scene is None else {self.scene.name: self.scene}.__getitem__
+
+    def record_instruction(self, instruction: str) -> None:
+        """Record an instruction in the camera's audit log, if it has one."""
+        from scope_ptz.camera.guard.guarded import GuardedCamera
+
+        if isinstance(self.camera, GuardedCamera):
+            self.camera.record_instruction(instruction)
+
+    async def aclose(self) -> None:
+        """Close the camera and the worker process that was started for it, if any. Calling it again has no effect."""
+        release, self._release = self._release, None
+        try:
+            await self.camera.close()
+        finally:
+            if release is not None:
+                await release()
+
+    async def __aenter__(self) -> OpenCamera:
+        return self
+
+    async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        await self.aclose()
+
+
+async def open_camera(
+    spec: CameraSpec | str,
+    *,
+    viewpoint: str | None = None,
+    preset: str | None = None,
+    time_s: float | None = None,
+    realtime: bool = False,
+    actor: str | None = None,
+    measuring: bool = False,
+    dry_run: Callable[[str], None] | None = None,
+) -> OpenCamera:
+    """Open a camera. A camera named in ``scope.yaml`` follows the rules in that file.
+
+    Args:
+        spec: A parsed spec, or its text.
+        viewpoint: The camera's viewpoint in the scene; the default is that of the home preset.
+        preset: The preset to start at. It determines the viewpoint, so only one of the two may be given.
+        time_s: Scene time at the start, in seconds; the default is the scene's own start time.
+        realtime: Whether scene time follows the wall clock, so that a person can watch. Otherwise, moves take no wall-clock time.
+        actor: Who controls the camera, as recorded in the audit log and shown to other programs that request control; the default
+            is the user of the operating system.
+        measuring: Whether the camera is opened for a measurement. The driver may then assume values that are not known yet.
+        dry_run: If given, commands are not executed; it is called with a sentence for each of them. A simulated camera starts
+            at its preset.
+
+    Returns:
+        The open camera, which the caller closes.
+
+    Raises:
+        InputError: The spec, the viewpoint, the preset or the combination of options is invalid.
+        PackError: The files of a scene are damaged.
+        CameraError: The camera failed or did not answer.
+        BlenderError: Blender cannot be started, or cannot open the scene or the file.
+    """
+    if isinstance(spec, str):
+        spec = parse_camera(spec)
+    if viewpoint and preset:
+        raise InputError("Give --viewpoint or --preset, not both: a preset determines the viewpoint.")
+    if spec.scheme == "sim":
+        opened = _open_simulated(spec, viewpoint, time_s, realtime=realtime)
+    elif spec.scheme == "blender":
+        from scope_ptz.factory.cameras.blender import open_live_blender
+
+        live = await open_live_blender(spec, viewpoint=viewpoint, time_s=time_s, realtime=realtime)
+        opened = OpenCamera(spec, live.camera, live.scene, live.release)
+    elif spec.scheme in NETWORK_SCHEMES:
+        opened = await _open_network(spec, viewpoint, time_s, actor, measuring=measuring)
+    else:
+        opened = await _open_plugin(spec, viewpoint, time_s)
+    try:
+        if spec.name:
+            from scope_ptz.factory.cameras.named import apply_rules
+
+            ruled = apply_rules(opened.camera, spec.name, actor=actor or f"scope: {user_name()}")
+            if ruled is not opened.camera:
+                opened.camera, opened.served_truth = ruled, None
+        if preset and (dry_run is None or opened.camera.info.simulated):
+            await opened.camera.go_to_preset(preset)
+        if dry_run is not None:
+            from scope_ptz.camera.guard.dry_run import DryRunCamera
+
+            simulated = opened.camera.info.simulated
+            opened.camera = DryRunCamera(opened.camera, dry_run)
+            if preset and not simulated:
+                await opened.camera.go_to_preset(preset)
+    except BaseException:
+        await opened.aclose()
+        raise
+    return opened
+
+
+def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | None, *, realtime: bool) -> OpenCamera:
+    from scope_ptz.camera.simulated import SimulatedCamera
+    from scope_ptz.factory.scenes import open_scene
+    from scope_ptz.simulator.clock import SceneClock
+
+    scene = open_scene(spec.address, cache_pictures=True)
+    clock = SceneClock(scene.file.start_s if time_s is None else time_s, realtime=realtime)
+    width, height = frame_size(spec)
+    return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, width=width, height=height), scene)
+
+
+async def _open_network(
+    spec: CameraSpec, viewpoint: str | None, time_s: float | None, actor: str | None, *, measuring: bool
+) -> OpenCamera:
+    from scope_ptz.factory.cameras.network import open_network_camera
+
+    _reject_scene_options(spec, viewpoint, time_s, "a camera on the network")
+    connected = await open_network_camera(spec, actor=actor or f"scope: {user_name()}", measuring=measuring)
+    return OpenCamera(spec, connected.camera, None, connected.release, connected.served_truth)
+
+
+def _reject_scene_options(spec: CameraSpec, viewpoint: str | None, time_s: float | None, kind: str) -> None:
+    if viewpoint is not None or time_s is not None:
+        option = "--viewpoint" if viewpoint is not None else "--at"
+        raise InputError(f"{option} needs a camera in a scene, but '{spec}' is {kind}. Remove the option.")
+
+
+async def _open_plugin(spec: CameraSpec, viewpoint: str | None, time_s: float | None) -> OpenCamera:
+    """Open a camera of an installed plug-in. The plug-in's factory may be a plain or an async function."""
+    entry = find(CAMERAS, spec.scheme)
+    if entry is None:
+        raise InputError(_unknown_scheme(spec.scheme, str(spec)))
+    _reject_scene_options(spec, viewpoint, time_s, f"the camera of {entry.package}")
+    product = call_factory(entry, object, spec)
+    if inspect.isawaitable(product):
+        try:
+            product = await product
+        except ScopeError:
+            raise
+        except Exception as error:  # the code of another package can raise anything
+            raise CameraError(f"The camera '{spec}' ({entry.package}) cannot be opened: {one_line(error)}.") from error
+    return OpenCamera(spec, expect_product(entry, Camera, product))  # type: ignore[type-abstract]
+
+
+def frame_size(spec: CameraSpec) -> tuple[int, int]:
+    """Return the frame width and height from the options of a spec. The default is 1280 x 720 pixels."""
+    return int(spec.options.get("width", 1280)), int(spec.options.get("height", 720))
+
+
+def _has_credentials(scheme: str, address: str) -> bool:
+    """Return whether an address looks like ``user:password@host``. Names of Blender files may contain both characters."""
+    if scheme in BUILT_IN_SCHEMES and scheme not in NETWORK_SCHEMES and not address.startswith("//"):
+        return False
+    before, at, _ = address.rpartition("@")
+    return bool(at) and ":" in before
+
+
+def _unknown_scheme(scheme: str, text: str) -> str:
+    if text.lower().endswith(_BLENDER_FILES) and len(scheme) == 1:  # a drive letter of Windows
+        return f"'{text}' is a file: write blender:{text} to open it with Blender."
+    # The message omits the address, which may contain a password if the scheme is mistyped.
+    return str(UnknownNameError("camera scheme", scheme, [*BUILT_IN_SCHEMES, *(entry.name for entry in installed(CAMERAS))]))
+
+
+def _check_built_in(spec: CameraSpec) -> None:
+    if spec.scheme in NETWORK_SCHEMES:
+        check_network_spec(spec)
+        return
+    if not spec.address:
+        raise InputError(
+            "The camera spec does not name a scene. Name one, for example highway-works; `scope scene list` lists the scenes."
+        )
+    known = _OPTIONS[spec.scheme]
+    for name, value in spec.options.items():
+        if name not in known:
+            raise UnknownNameError("camera option", name, known)
+        if not value.isdecimal() or not 0 < int(value) <= 10_000:
+            raise InputError(f"The camera option {name} must be a whole number from 1 to 10000; got '{value[:40]}'.")
+    is_file = spec.address.lower().endswith(_BLENDER_FILES)
+    if spec.scheme == "sim" and is_file:
+        raise InputError(f"'{spec.address}' is a file: write blender:{spec.address} to open it with Blender.")
+    if spec.scheme == "blender":
+        if is_file and not Path(spec.address).is_file():
+            raise InputError(f"The file {spec.address} does not exist.")
+        if not is_file:
+            from scope_ptz.blender.sources import scene_names
+
+            if spec.address not in (names := scene_names()):
+                raise UnknownNameError("scene that Blender can build", spec.address, [*names, "FILE.blend"])

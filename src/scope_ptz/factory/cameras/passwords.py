@@ -1,0 +1,117 @@
+"""The credentials of network cameras. They never come from a command line."""
+
+from __future__ import annotations
+
+import getpass
+import sys
+from types import ModuleType
+
+from scope_ptz.camera.network.credentials import Credentials
+from scope_ptz.camera.spec import CameraSpec
+from scope_ptz.errors import ConfigError, InputError
+from scope_ptz.settings import load_settings, read_secret
+
+KEYRING_SERVICE = "scope-ptz"
+"""The service under which passwords are stored in the operating system's keyring. The entry's user is ``USER@HOST``."""
+
+
+def find_credentials(spec: CameraSpec) -> Credentials:
+    """Return the credentials of a camera: the user from its spec, and the password from the source that the site configures.
+
+    An entry in ``scope.yaml`` may name the source. Otherwise, these sources are tried in order: the environment variable
+    SCOPE_CAMERA_PASSWORD, the keyring, and a prompt if the program runs in a terminal.
+
+    Args:
+        spec: A spec such as ``axis://operator@10.0.0.7``.
+
+    Raises:
+        InputError: The spec names no user.
+        ConfigError: There is no password.
+    """
+    account = account_of(spec)
+    password = _password(account, _password_source(spec))
+    if not password:
+        raise ConfigError(
+            f"There is no password for {account[:80]}. Store one with `scope camera password {spec}`, or set the environment "
+            "variable SCOPE_CAMERA_PASSWORD."
+        )
+    return Credentials(account.rpartition("@")[0], password)
+
+
+def account_of(spec: CameraSpec) -> str:
+    """Return the account of a spec as ``USER@HOST``, with the port if it is given.
+
+    Raises:
+        InputError: The spec names no user.
+    """
+    user, at, _ = spec.address.rpartition("@")
+    if not at or not user:
+        raise InputError(f"The camera spec must name the account: {spec.scheme}://USER@{spec.address[:80]}")
+    return spec.address.rstrip("/")
+
+
+def store_password(spec: CameraSpec, password: str) -> None:
+    """Store a password in the operating system's keyring.
+
+    Raises:
+        InputError: The spec names no user, or the password is empty.
+        ConfigError: No keyring is available, or it does not store the password.
+    """
+    account = account_of(spec)
+    if not password:
+        raise InputError("The password is empty. Enter a password.")
+    keyring = _keyring()
+    if keyring is None:
+        raise ConfigError("No keyring can be used here. Install the extra `camera`, or set SCOPE_CAMERA_PASSWORD.")
+    try:
+        keyring.set_password(KEYRING_SERVICE, account, password)
+    except Exception as error:  # each keyring backend raises its own exceptions
+        raise ConfigError(f"The keyring did not store the password: {type(error).__name__}.") from None
+
+
+def _password_source(spec: CameraSpec) -> str | None:
+    if not spec.name:
+        return None
+    from scope_ptz.factory.cameras.named import named_cameras
+
+    named = named_cameras().get(spec.name)
+    return None if named is None else named.password
+
+
+def _password(account: str, source: str | None) -> str | None:
+    if source == "keyring":
+        return _from_keyring(account)
+    if source == "prompt":
+        return _from_prompt(account)
+    if source is not None:
+        return read_secret(source.removeprefix("env:"))
+    configured = load_settings().camera_password
+    if configured is not None and configured.get_secret_value():
+        return configured.get_secret_value()
+    return _from_keyring(account) or _from_prompt(account)
+
+
+def _from_prompt(account: str) -> str | None:
+    if not (sys.stdin.isatty() and sys.stderr.isatty()):
+        return None
+    return getpass.getpass(f"Password for {account}: ", stream=sys.stderr)
+
+
+def _from_keyring(account: str) -> str | None:
+    keyring = _keyring()
+    if keyring is None:
+        return None
+    try:
+        password: str | None = keyring.get_password(KEYRING_SERVICE, account)
+    except Exception:  # treat a locked or broken keyring as absent: another source may have the password
+        return None
+    return password
+
+
+def _keyring() -> ModuleType | None:
+    """Return the keyring module; None if it is not installed."""
+    try:
+        import keyring
+    except ImportError:
+        return None
+    return keyring

@@ -1,0 +1,1 @@
+"""The server: cameras, runs and conversations that many clients share, behind an HTTP API."""

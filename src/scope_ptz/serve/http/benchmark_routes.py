@@ -1,0 +1,234 @@
+"""Routes for evaluations: start, follow, cancel and resume them, view single runs, and read the report."""
+
+from __future__ import annotations
+
+from collections import Counter
+from functools import partial
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Path, Query, Response
+from fastapi.responses import FileResponse
+
+from scope_ptz.bench.scoring.trials import Trial
+from scope_ptz.errors import ConfigError, InputError, TraceError, UnknownNameError
+from scope_ptz.serve.http.benchmark_models import (
+    BenchmarkModel,
+    CheckModel,
+    EvaluationModel,
+    EvaluationStart,
+    SplitModel,
+    TrialDetails,
+    TrialList,
+    TrialModel,
+    TrialStep,
+)
+from scope_ptz.serve.http.dependencies import Operator, RunOperator, StoppingOperator, TheSite, Viewer
+from scope_ptz.serve.http.errors import responses
+from scope_ptz.serve.site.benchmark.choices import missing_packages, split_choices
+from scope_ptz.serve.site.benchmark.evaluations import EvaluationRequest
+from scope_ptz.serve.site.benchmark.trajectories import names_of, steps_of
+from scope_ptz.serve.site.service import Site
+
+REPORT_POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+)
+"""The content security policy of reports. Reports have no scripts and load only their own pictures."""
+_MEDIA_TYPES = {"tasks": "text/html", "frames": "image/jpeg", "tables": "text/csv"}
+
+router = APIRouter(prefix="/benchmark", tags=["benchmark"])
+EvaluationId = Annotated[str, Path(min_length=1, max_length=120)]
+Sample = Annotated[str, Path(min_length=1, max_length=200)]
+_ERRORS = responses(404, 409)
+
+
+@router.get("", responses=responses())
+async def benchmark(site: TheSite, client: Viewer) -> BenchmarkModel:  # noqa: ARG001 - checks the token
+    """Return the pairs and splits that can be evaluated, and the id of the evaluation in progress."""
+    splits = await site.journal.read(split_choices)
+    return BenchmarkModel(
+        pairs=list(site.pairs.names),
+        splits=[SplitModel(name=each.name, tasks=each.tasks, by_category=each.by_category) for each in splits],
+        missing=missing_packages(),
+        running=await site.journal.read(site.evaluations.running),
+    )
+
+
+@router.get("/evaluations", responses=responses())
+async def list_evaluations(site: TheSite, client: Viewer) -> list[EvaluationModel]:  # noqa: ARG001 - checks the token
+    """List the evaluations that were started on the server, newest first."""
+    return [EvaluationModel.of(each) for each in await site.journal.read(site.evaluations.all)]
+
+
+@router.post("/evaluations", status_code=202, responses=responses(404, 409, 507))
+async def start_evaluation(site: TheSite, client: RunOperator, body: EvaluationStart) -> EvaluationModel:
+    """Start an evaluation and reply immediately. It runs in a separate process. Only one evaluation runs at a time."""
+    if missing := missing_packages():
+        raise ConfigError(missing)
+    chosen = next((each for each in await site.journal.read(split_choices) if each.name == body.split), None)
+    if chosen is None:
+        raise InputError(f"The split '{body.split}' is not installed. `GET /benchmark` lists the installed splits.")
+    categories = tuple(dict.fromkeys(body.categories))
+    if absent := [name for name in categories if name not in chosen.by_category]:
+        raise InputError(f"The split '{body.split}' has no tasks of the category {absent[0].replace('_', ' ')}.")
+    request = EvaluationRequest(site.pairs.check(body.pair), body.split, body.limit, categories)
+    return await _status(site, await site.journal.read(partial(site.evaluations.start, request, client.name)))
+
+
+@router.get("/evaluations/{evaluation}", responses=_ERRORS)
+async def evaluation_state(site: TheSite, client: Viewer, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
+    """Return an evaluation: its state, its scores so far, and the estimated remaining time."""
+    return await _status(site, evaluation)
+
+
+@router.post("/evaluations/{evaluation}/cancel", status_code=202, responses=_ERRORS)
+async def cancel_evaluation(site: TheSite, client: StoppingOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
+    """Cancel an evaluation. Finished runs are kept, and the evaluation can be resumed."""
+    await site.journal.read(partial(site.evaluations.cancel, evaluation))
+    return await _status(site, evaluation)
+
+
+@router.post("/evaluations/{evaluation}/resume", status_code=202, responses=responses(404, 409, 507))
+async def resume_evaluation(site: TheSite, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
+    """Resume an evaluation that has ended: execute its missing and broken runs."""
+    await site.journal.read(partial(site.evaluations.resume, evaluation))
+    return await _status(site, evaluation)
+
+
+@router.delete("/evaluations/{evaluation}", status_code=204, responses=_ERRORS)
+async def remove_evaluation(site: TheSite, client: Operator, evaluation: EvaluationId) -> Response:  # noqa: ARG001 - checks the token
+    """Remove an evaluation that has ended, with its logs and its report."""
+    await site.journal.read(partial(site.evaluations.remove, evaluation))
+    return Response(status_code=204)
+
+
+@router.get("/evaluations/{evaluation}/trials", responses=_ERRORS)
+async def list_trials(
+    site: TheSite,
+    client: Viewer,  # noqa: ARG001 - checks the token
+    evaluation: EvaluationId,
+    verdict: Annotated[
+        Literal["failed", "correct", "incorrect", "unscored", "infrastructure"] | None,
+        Query(description="`failed` matches every verdict except `correct`"),
+    ] = None,
+    error_mode: Annotated[str | None, Query(max_length=60)] = None,
+    category: Annotated[str | None, Query(max_length=60)] = None,
+    limit: Annotated[int, Query(ge=1, le=500)] = 100,
+    offset: Annotated[int, Query(ge=0, le=1_000_000)] = 0,
+) -> TrialList:
+    """List the finished runs of an evaluation, with their expected and actual answers."""
+    trials = await _trials(site, evaluation)
+    modes = Counter(trial.error_mode.value for trial in trials if trial.error_mode is not None)
+    matches = [
+        trial
+        for trial in trials
+        if (verdict is None or (trial.headline != "correct" if verdict == "failed" else trial.headline == verdict))
+        and (error_mode is None or (trial.error_mode is not None and trial.error_mode.value == error_mode))
+        and (category is None or trial.task.category == category)
+    ]
+    shown = [TrialModel.of(trial) for trial in matches[offset : offset + limit]]
+    return TrialList(trials=shown, count=len(matches), error_modes=dict(modes.most_common()))
+
+
+@router.get("/evaluations/{evaluation}/trials/{sample}", responses=_ERRORS)
+async def trial_details(site: TheSite, client: Viewer, evaluation: EvaluationId, sample: Sample) -> TrialDetails:  # noqa: ARG001 - checks the token
+    """Return a run with its checks, its steps and the names of its pictures."""
+    trial = await _trial(site, evaluation, sample)
+    steps, start, missing = [], None, ""
+    try:
+        folder = site.evaluations.folder(evaluation)
+        trace = await site.journal.read(partial(site.trajectories.trace, folder, trial))
+        steps = [TrialStep.model_validate(each) for each in steps_of(trace)]
+        start = next((name for name, position in names_of(trace).items() if position is None), None)
+    except TraceError as error:
+        missing = str(error)
+    return TrialDetails(
+        trial=TrialModel.of(trial),
+        demands=list(trial.task.demands),
+        checks=[CheckModel(name=each.name, passed=each.passed, reason=each.reason) for each in trial.checks],
+        start_picture=start,
+        steps=steps,
+        missing=missing,
+    )
+
+
+@router.get(
+    "/evaluations/{evaluation}/trials/{sample}/pictures/{part}/{name}",
+    response_class=Response,
+    responses={200: {"content": {"image/jpeg": {}}, "description": "The picture"}, **_ERRORS},
+)
+async def trial_picture(
+    site: TheSite,
+    client: Viewer,  # noqa: ARG001 - checks the token
+    evaluation: EvaluationId,
+    sample: Sample,
+    part: Literal["frames", "pictures"],
+    name: Annotated[str, Path(min_length=1, max_length=60)],
+    marks: Annotated[bool, Query(description="Draw the detections in the picture")] = False,
+) -> Response:
+    """Return a picture of a run, optionally with numbered boxes around the detections."""
+    trial = await _trial(site, evaluation, sample)
+    folder = site.evaluations.folder(evaluation)
+    read = partial(site.trajectories.picture, folder, trial, f"{part}/{name}", marks=marks)
+    return Response(await site.journal.read(read), media_type="image/jpeg", headers={"Cache-Control": "private, max-age=3600"})
+
+
+@router.post("/evaluations/{evaluation}/report", status_code=202, responses=responses(404, 409, 507))
+async def make_report(site: TheSite, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
+    """Start writing the report of an evaluation. When it is complete, the field `report` of the evaluation is `ready`."""
+    if missing := missing_packages():
+        raise ConfigError(missing)
+    await site.journal.read(partial(site.evaluations.make_report, evaluation))
+    return await _status(site, evaluation)
+
+
+@router.get(
+    "/evaluations/{evaluation}/report/index.html",
+    response_class=FileResponse,
+    responses={200: {"content": {"text/html": {}}, "description": "The report"}, **_ERRORS},
+)
+async def report_page(site: TheSite, client: Viewer, evaluation: EvaluationId) -> FileResponse:  # noqa: ARG001 - checks the token
+    """Return the first page of the report."""
+    folder = await site.journal.read(partial(site.evaluations.folder, evaluation))
+    page = await site.journal.read(folder.report_page)
+    if page is None:
+        raise TraceError("There is no report of this evaluation yet, or it is older than the last runs. Make it first.")
+    return FileResponse(page, media_type="text/html", headers={"Content-Security-Policy": REPORT_POLICY})
+
+
+@router.get(
+    "/evaluations/{evaluation}/report/{part}/{name}",
+    response_class=FileResponse,
+    responses={
+        200: {"content": {"text/html": {}, "image/jpeg": {}, "text/csv": {}}, "description": "A page, picture or table"},
+        **_ERRORS,
+    },
+)
+async def report_file(
+    site: TheSite,
+    client: Viewer,  # noqa: ARG001 - checks the token
+    evaluation: EvaluationId,
+    part: Literal["tasks", "frames", "tables"],
+    name: Annotated[str, Path(min_length=1, max_length=120)],
+) -> FileResponse:
+    """Return a page, picture or table of the report."""
+    folder = await site.journal.read(partial(site.evaluations.folder, evaluation))
+    path = await site.journal.read(partial(folder.report_file, part, name))
+    if path is None:
+        raise UnknownNameError("file of the report", name[:120], ())
+    return FileResponse(path, media_type=_MEDIA_TYPES[part], headers={"Content-Security-Policy": REPORT_POLICY})
+
+
+async def _status(site: Site, evaluation: str) -> EvaluationModel:
+    return EvaluationModel.of(await site.journal.read(partial(site.evaluations.status, evaluation)))
+
+
+async def _trials(site: Site, evaluation: str) -> list[Trial]:
+    folder = await site.journal.read(partial(site.evaluations.folder, evaluation))
+    return await site.journal.read(folder.trials)
+
+
+async def _trial(site: Site, evaluation: str, sample: str) -> Trial:
+    trial = next((each for each in await _trials(site, evaluation) if each.sample == sample), None)
+    if trial is None:
+        raise UnknownNameError("run of this evaluation", sample[:120], ())
+    return trial

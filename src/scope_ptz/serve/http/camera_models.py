@@ -1,0 +1,113 @@
+"""The bodies of requests and replies about cameras, scene time and virtual cameras."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, BeforeValidator, Field
+
+from scope_ptz.serve.http.models import Body, ControlModel, Problem
+from scope_ptz.serve.site.camera_cards import Ability, HealthState
+from scope_ptz.serve.site.camera_kinds import CameraKind
+from scope_ptz.serve.site.scene_time import SceneTime
+from scope_ptz.serve.site.virtual_cameras import VirtualCamera
+from scope_ptz.simulator.clock import MAX_SPEED, MAX_TIME_S, MIN_SPEED
+
+
+def _number(given: object) -> object:
+    """Convert an integer to a float; JSON does not distinguish the two."""
+    return float(given) if isinstance(given, int) and not isinstance(given, bool) else given
+
+
+class SceneTimeModel(BaseModel):
+    """The scene time in seconds, whether it is playing, and its speed relative to real time."""
+
+    time_s: float
+    playing: bool
+    speed: float
+
+    @classmethod
+    def of(cls, now: SceneTime | None) -> SceneTimeModel | None:
+        """Create the model of a scene time; None for a camera that shows the real world."""
+        return None if now is None else cls(time_s=now.time_s, playing=now.playing, speed=now.speed)
+
+
+class SceneTimeBody(Body):
+    """A change of scene time. Omitted fields stay the same."""
+
+    time_s: Annotated[float, Field(ge=0.0, le=MAX_TIME_S, allow_inf_nan=False), BeforeValidator(_number)] | None = None
+    playing: bool | None = None
+    speed: Annotated[float, Field(ge=MIN_SPEED, le=MAX_SPEED, allow_inf_nan=False), BeforeValidator(_number)] | None = None
+
+
+class VirtualCameraBody(Body):
+    """A virtual camera to turn on. ``viewpoint`` is a viewpoint of the scene; by default, the viewpoint of the home preset."""
+
+    viewpoint: Annotated[str, Field(min_length=1, max_length=60)] | None = None
+
+
+class VirtualCameraModel(BaseModel):
+    """A virtual camera. Its addresses are null while it is off.
+
+    Only the reply to the request that turns it on contains ``password``.
+    """
+
+    on: bool
+    viewpoint: str | None = None
+    vapix_url: str | None = None
+    onvif_url: str | None = None
+    rtsp_url: str | None = None
+    account: str | None = None
+    password: str | None = None
+
+    @classmethod
+    def of(cls, camera: VirtualCamera | None, password: str | None = None) -> VirtualCameraModel:
+        """Create the model of a virtual camera; None means that it is off."""
+        if camera is None:
+            return cls(on=False)
+        return cls(
+            on=True, viewpoint=camera.viewpoint, vapix_url=camera.vapix_url, onvif_url=camera.onvif_url, rtsp_url=camera.rtsp_url,
+            account=camera.account, password=password,
+        )  # fmt: skip
+
+
+class SceneModel(BaseModel):
+    """The scene of a simulated camera: its viewpoints, and the numbers of its presets and moving objects."""
+
+    name: str
+    title: str
+    viewpoints: list[str]
+    presets: int
+    moving: int
+
+
+class HealthModel(BaseModel):
+    """Whether a camera works.
+
+    ``state`` is "connected" if it answers, "ready" if it will be opened on first use, and "failed" with ``problem``.
+    """
+
+    state: HealthState
+    problem: Problem | None
+
+
+class CameraCardModel(BaseModel):
+    """The card of a camera in the camera list.
+
+    ``configured`` is true for a camera in ``scope.yaml``. ``scene_time`` is null until a simulated camera is used. ``has_picture``
+    is true if there is a thumbnail.
+    """
+
+    name: str
+    title: str
+    kind: CameraKind
+    scene: SceneModel | None
+    abilities: list[Ability]
+    health: HealthModel
+    configured: bool
+    has_picture: bool
+    open: bool
+    run: str | None
+    control: ControlModel
+    scene_time: SceneTimeModel | None
+    virtual_camera: VirtualCameraModel

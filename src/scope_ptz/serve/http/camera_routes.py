@@ -1,0 +1,91 @@
+"""Routes that list the cameras and return the state of one."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from fastapi import APIRouter
+
+from scope_ptz.camera.base import Camera
+from scope_ptz.camera.guard.guarded import GuardedCamera
+from scope_ptz.camera.guard.wrapper import layers
+from scope_ptz.serve.http.dependencies import TheSite, TheStation, Viewer, presets_of
+from scope_ptz.serve.http.errors import responses
+from scope_ptz.serve.http.models import (
+    CameraState,
+    CameraSummary,
+    ControlModel,
+    ControlRequestModel,
+    LimitsModel,
+    PoseModel,
+    PresetModel,
+    RegionModel,
+    SpeedModel,
+)
+from scope_ptz.serve.site.clients import Client
+from scope_ptz.serve.site.station import Station
+
+router = APIRouter(prefix="/cameras", tags=["cameras"])
+
+
+@router.get("", responses=responses())
+async def list_cameras(site: TheSite, client: Viewer) -> list[CameraSummary]:  # noqa: ARG001 - checks the token
+    """List the cameras."""
+    return [
+        CameraSummary(
+            name=station.name,
+            open=station.is_open,
+            run=station.running.id if station.running else None,
+            holder=station.desk.holder.name if station.desk.holder else None,
+        )
+        for station in site.stations.values()
+    ]
+
+
+@router.get("/{camera}", responses=responses(404, 409, 503))
+async def camera_state(site: TheSite, station: TheStation, client: Viewer) -> CameraState:
+    """Return the state of a camera. The first request opens the camera."""
+    opened = await station.opened()
+    camera = opened.camera
+    info, pose = camera.info, await camera.pose()
+    return CameraState(
+        name=station.name,
+        title=info.name,
+        simulated=info.simulated,
+        scene=opened.scene.name if opened.scene is not None else None,
+        viewpoint=await station.viewpoint(),
+        frame_width=info.frame_width,
+        frame_height=info.frame_height,
+        pose=PoseModel.of(pose),
+        hfov_deg=info.optics.hfov_deg(pose.zoom),
+        time_s=camera.clock.now_s(),
+        limits=LimitsModel(**asdict(info.limits)),
+        top_speed=SpeedModel(**asdict(info.capabilities.top_speed)),
+        edits_presets=info.capabilities.edits_presets,
+        fields_of_view=list(info.optics.table),
+        presets=[PresetModel.of(each) for each in await presets_of(site, station).known()],
+        keep_out=_keep_out(camera),
+        run=station.running.id if station.running else None,
+        can_undo=station.can_undo,
+        control=control_model(station, client),
+        assumed=list(info.assumed),
+    )
+
+
+def control_model(station: Station, client: Client) -> ControlModel:
+    """Return the client that controls a camera and the requests for control, as the given client sees them."""
+    desk, holder = station.desk, station.desk.holder
+    return ControlModel(
+        holder=holder.name if holder else None,
+        since=desk.since if holder else None,
+        mine=holder is not None and holder.key == client.key,
+        requests=[ControlRequestModel(client=each.key, name=each.name, since=each.since) for each in desk.requests],
+    )
+
+
+def _keep_out(camera: Camera) -> list[RegionModel]:
+    for each in layers(camera):
+        if isinstance(each, GuardedCamera):
+            regions = each.rules.keep_out
+            return [RegionModel(name=region.name, pan_deg=region.pan_deg, tilt_deg=region.tilt_deg) for region in regions]
+    return []

@@ -1,0 +1,92 @@
+"""Dependencies of the request handlers: the site, the client, and a camera by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated
+
+from fastapi import Depends, Path, Request, WebSocket
+from starlette.exceptions import HTTPException
+from starlette.requests import HTTPConnection
+
+from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.rate_limits import Kind
+from scope_ptz.serve.site.clients import Client
+from scope_ptz.serve.site.presets import Presets
+from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.station import Station
+
+
+def site_of(connection: HTTPConnection) -> Site:
+    """Return the site of the application."""
+    site: Site = connection.app.state.site
+    return site
+
+
+def access_of(connection: HTTPConnection) -> Access:
+    """Return the access rules of the server."""
+    access: Access = connection.app.state.access
+    return access
+
+
+def _site(request: Request) -> Site:
+    return site_of(request)
+
+
+def _access(request: Request) -> Access:
+    return access_of(request)
+
+
+def client_of(connection: HTTPConnection) -> Client:
+    """Return the client that sends a request, as stored by the ``Gate`` middleware.
+
+    Raises:
+        HTTPException: The request did not pass the gate.
+    """
+    client = getattr(connection.state, "client", None)
+    if not isinstance(client, Client):
+        raise HTTPException(401, "This request needs a token.")
+    return client
+
+
+def _counted(kind: Kind, *, operates: bool) -> Callable[[Request], Client]:
+    def dependency(request: Request) -> Client:
+        client = _operator(request) if operates else client_of(request)
+        access_of(request).limits.count(client.key, kind, client.name)
+        return client
+
+    return dependency
+
+
+def _operator(request: Request) -> Client:
+    client = client_of(request)
+    if not client.operates:
+        raise HTTPException(403, "This request needs the role of an operator, but your token has the role of a viewer.")
+    return client
+
+
+def _station(request: Request, camera: Annotated[str, Path(max_length=120)]) -> Station:
+    return site_of(request).station(camera)
+
+
+def station_of(socket: WebSocket, camera: str) -> Station:
+    """Return a camera for a WebSocket. Raises ``UnknownNameError`` if the site has no such camera."""
+    return site_of(socket).station(camera)
+
+
+def presets_of(site: Site, station: Station) -> Presets:
+    """Return the presets of a camera."""
+    return Presets(station, site.journal.root / "thumbnails")
+
+
+TheSite = Annotated[Site, Depends(_site)]
+TheAccess = Annotated[Access, Depends(_access)]
+TheStation = Annotated[Station, Depends(_station)]
+Viewer = Annotated[Client, Depends(_counted("read", operates=False))]
+"""A client that watches."""
+Operator = Annotated[Client, Depends(_counted("command", operates=True))]
+"""A client that sends commands."""
+RunOperator = Annotated[Client, Depends(_counted("run", operates=True))]
+"""A client that starts a run."""
+StoppingOperator = Annotated[Client, Depends(_operator)]
+"""A client that stops a camera or a run. These requests have no rate limit."""

@@ -1,0 +1,118 @@
+"""Error replies. All have the same form: a code for programs and a message for people."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.exceptions import HTTPException
+from starlette.routing import Match
+
+from scope_ptz.camera.control import ControlHeldError
+from scope_ptz.camera.guard.guarded import KeepOutError
+from scope_ptz.errors import (
+    CameraError,
+    InputError,
+    OutputError,
+    PackError,
+    PerceptionError,
+    PlannerError,
+    ScopeError,
+    StoreError,
+    ToolCallError,
+    TraceError,
+    UnknownNameError,
+)
+from scope_ptz.serve.http.models import ErrorReply
+from scope_ptz.serve.site.errors import (
+    BusyError,
+    EvaluationRunningError,
+    NotInControlError,
+    NotSimulatedError,
+    RefusedByCameraError,
+    StoppedError,
+    TooManyRequestsError,
+)
+
+# The first matching class applies.
+_STATUS: tuple[tuple[type[ScopeError], int, str], ...] = (
+    (NotInControlError, 409, "not_in_control"),
+    (BusyError, 409, "busy"),
+    (StoppedError, 409, "stopped"),
+    (EvaluationRunningError, 409, "evaluation_in_progress"),
+    (RefusedByCameraError, 409, "refused_by_camera"),
+    (NotSimulatedError, 409, "not_simulated"),
+    (TooManyRequestsError, 429, "too_many_requests"),
+    (ControlHeldError, 409, "held_by_another_program"),
+    (KeepOutError, 409, "kept_out"),
+    (UnknownNameError, 404, "unknown"),
+    (OutputError, 507, "cannot_be_written"),
+    (InputError, 409, "not_possible"),
+    (ToolCallError, 409, "not_possible"),
+    (TraceError, 404, "not_stored"),
+    (PackError, 503, "scene_damaged"),
+    (StoreError, 503, "store_unavailable"),
+    (CameraError, 503, "camera_failed"),
+    (PerceptionError, 503, "perception_failed"),
+    (PlannerError, 503, "planner_failed"),
+)
+
+_CODES = {400: "malformed", 401: "sign_in", 403: "not_allowed", 404: "unknown", 405: "method", 413: "too_large", 415: "media_type"}
+
+
+def responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Return the OpenAPI entries for an operation's error replies: the given statuses, and those common to all operations."""
+    return {status: {"model": ErrorReply} for status in (400, 401, 403, 422, 429, *statuses)}
+
+
+def add_error_handlers(app: FastAPI) -> None:
+    """Add handlers to an application that give all error replies the same form."""
+    app.add_exception_handler(ScopeError, _scope_error)
+    app.add_exception_handler(RequestValidationError, _wrong_request)
+    app.add_exception_handler(HTTPException, http_error)
+
+
+def error_reply(status: int, code: str, message: str, headers: dict[str, str] | None = None) -> JSONResponse:
+    """Return an error reply."""
+    # A message may quote a lone surrogate from the request, which cannot be encoded.
+    message = message.encode("utf-8", "replace").decode()
+    return JSONResponse({"error": {"code": code, "message": message}}, status, headers)
+
+
+def status_of(error: Exception) -> tuple[int, str]:
+    """Return the status of a reply with an error, and the code of the error."""
+    return next(((status, code) for kind, status, code in _STATUS if isinstance(error, kind)), (500, "failed"))
+
+
+async def _scope_error(_: Request, error: Exception) -> JSONResponse:
+    status, code = status_of(error)
+    headers = {"Retry-After": str(round(error.retry_s))} if isinstance(error, TooManyRequestsError) else None
+    return error_reply(status, code, str(error), headers)
+
+
+async def _wrong_request(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, RequestValidationError)  # noqa: S101 - registered for this class only
+    first = error.errors()[0]
+    where = ".".join(str(part)[:60] for part in first["loc"])
+    return error_reply(422, "wrong_request", f"{where}: {first['msg']}")
+
+
+async def http_error(request: Request, error: Exception) -> JSONResponse:
+    """Reply to an HTTP error that the framework raised."""
+    assert isinstance(error, HTTPException)  # noqa: S101 - registered for this class only
+    headers = dict(error.headers) if error.headers else None
+    if error.status_code == 405:
+        headers = {"Allow": ", ".join(_methods(request))}
+    return error_reply(error.status_code, _CODES.get(error.status_code, "failed"), str(error.detail), headers)
+
+
+def _methods(request: Request) -> list[str]:
+    """Return all methods that a path accepts. The framework reports only the methods of one operation."""
+    methods: set[str] = set()
+    for route in request.app.routes:
+        match, _ = route.matches(request.scope)
+        if match is not Match.NONE:
+            methods |= getattr(route, "methods", None) or set()
+    return sorted(methods)

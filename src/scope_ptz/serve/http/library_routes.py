@@ -1,0 +1,263 @@
+"""Routes for stored runs: lists, export, pictures and feedback."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from functools import partial
+from pathlib import Path as FilePath
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Path, Query, Response
+from fastapi.responses import FileResponse
+from starlette.background import BackgroundTask
+
+from scope_ptz.agent.filmstrip import write_filmstrip
+from scope_ptz.agent.trace import picture_names, picture_of
+from scope_ptz.errors import InputError, TraceError, UnknownNameError
+from scope_ptz.factory.run_export import AnyFormat, run_drafts
+from scope_ptz.factory.run_export import export_runs as write_export
+from scope_ptz.serve.http.dependencies import Operator, TheSite, Viewer
+from scope_ptz.serve.http.errors import responses
+from scope_ptz.serve.http.models import FeedbackBody, Kept, Mark, Moment, PictureModel, RunDetails, RunList
+from scope_ptz.serve.http.run_reading import run_filter, trace_of_run
+from scope_ptz.serve.site.marks import call_of, drawn, marks_of
+from scope_ptz.store.conversations import load_conversation
+from scope_ptz.store.feedback import add_feedback, feedback_on, remove_feedback
+from scope_ptz.store.queries import MAX_COUNT, distinct_values
+from scope_ptz.store.retention import keep
+from scope_ptz.store.rows import FeedbackRow, RunKind
+from scope_ptz.taskgen.generating.run_draft_file import RunDraft
+
+MAX_EXPORT = 10_000
+"""Maximum number of runs in one export."""
+
+MAX_DRAFTS = 100
+"""Maximum number of runs that are read for a list of drafts."""
+
+router = APIRouter(tags=["library"])
+RunId = Annotated[str, Path(min_length=1, max_length=120)]
+_ERRORS = responses(404, 409, 503)
+
+
+@router.get("/runs", responses=responses(404, 409, 503))
+async def list_runs(
+    site: TheSite,
+    client: Viewer,
+    text: Annotated[str, Query(max_length=200, description="Words that the instruction or the answer contains")] = "",
+    kind: RunKind | None = None,
+    camera: Annotated[str | None, Query(max_length=120)] = None,
+    planner: Annotated[str | None, Query(max_length=120)] = None,
+    perception: Annotated[str | None, Query(max_length=120)] = None,
+    outcome: Annotated[str | None, Query(max_length=40)] = None,
+    tool: Annotated[str | None, Query(max_length=60)] = None,
+    conversation: Annotated[str | None, Query(max_length=60)] = None,
+    rating: Annotated[Literal["good", "bad"] | None, Query()] = None,
+    since: Moment | None = None,
+    until: Moment | None = None,
+    limit: Annotated[int, Query(ge=1, le=500)] = 50,
+    after: Annotated[str | None, Query(max_length=60, description="The value of `next` in the previous page")] = None,
+) -> RunList:
+    """List runs, the newest first. Only the owner of a conversation can ask for its runs."""
+    if conversation is not None:
+        await site.journal.read(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
+    chosen = run_filter(
+        text=text,
+        kind=kind,
+        camera=camera,
+        planner=planner,
+        perception=perception,
+        outcome=outcome,
+        tool=tool,
+        conversation=conversation,
+        rating=rating,
+        since=since,
+        until=until,
+    )
+    store = site.journal.store
+    await site.journal.settle()
+    page = await site.journal.read(partial(store.runs, chosen, limit=limit, after=after))
+    count = await site.journal.read(partial(store.count, chosen))
+    return RunList(runs=page.runs, next=page.next, count=count, count_is_limit=count >= MAX_COUNT)
+
+
+@router.get("/runs/values", responses=responses(503))
+async def run_values(site: TheSite, client: Viewer) -> dict[str, list[str]]:  # noqa: ARG001 - checks the token
+    """Return the cameras, planners, perception backends and outcomes of all stored runs, for menus."""
+    return await site.journal.read(partial(distinct_values, site.journal.store.database))
+
+
+@router.get(
+    "/runs/export",
+    response_class=FileResponse,
+    responses={
+        200: {"content": {"application/x-ndjson": {}, "application/zip": {}}, "description": "The file"},
+        **responses(404, 409, 503),
+    },
+)
+async def export_runs(
+    site: TheSite,
+    client: Viewer,  # noqa: ARG001 - checks the token
+    form: Annotated[AnyFormat, Query(alias="format")] = "jsonl",
+    text: Annotated[str, Query(max_length=200)] = "",
+    camera: Annotated[str | None, Query(max_length=120)] = None,
+    outcome: Annotated[str | None, Query(max_length=40)] = None,
+    rating: Annotated[Literal["good", "bad"] | None, Query()] = None,
+    since: Moment | None = None,
+    until: Moment | None = None,
+) -> FileResponse:
+    """Download runs: as data, as chat messages for fine-tuning, as drafts of tasks, or as folders with all pictures."""
+    chosen = run_filter(
+        text=text,
+        camera=camera,
+        outcome=outcome,
+        rating=rating,
+        since=since,
+        until=until,
+    )
+    store = site.journal.store
+    number, name = tempfile.mkstemp(suffix=f".{form}")
+    os.close(number)
+    path = FilePath(name)
+    try:
+        ids = (await site.journal.read(partial(store.ids, chosen)))[:MAX_EXPORT]
+        await site.journal.read(partial(write_export, store, ids, path, form))
+    except BaseException:
+        await site.journal.read(partial(path.unlink, missing_ok=True))
+        raise
+    kind, suffix = ("application/zip", "zip") if form == "zip" else ("application/x-ndjson", "jsonl")
+    return FileResponse(
+        path,
+        media_type=kind,
+        filename=f"{'drafts' if form == 'drafts' else 'runs'}.{suffix}",
+        background=BackgroundTask(path.unlink, missing_ok=True),
+    )
+
+
+@router.get("/runs/drafts", responses=responses(409, 503))
+async def list_run_drafts(
+    site: TheSite,
+    client: Viewer,  # noqa: ARG001 - checks the token
+    text: Annotated[str, Query(max_length=200)] = "",
+    camera: Annotated[str | None, Query(max_length=120)] = None,
+    outcome: Annotated[str | None, Query(max_length=40)] = None,
+    since: Moment | None = None,
+    until: Moment | None = None,
+) -> list[RunDraft]:
+    """Convert the newest runs with good feedback to drafts of benchmark tasks. Runs without a draft have the reason."""
+    chosen = run_filter(text=text, camera=camera, outcome=outcome, rating="good", since=since, until=until)
+    store = site.journal.store
+    await site.journal.settle()
+    page = await site.journal.read(partial(store.runs, chosen, limit=MAX_DRAFTS))
+    return await site.journal.read(lambda: list(run_drafts(store, [run.id for run in page.runs])))
+
+
+@router.get("/runs/{run}/details", responses=_ERRORS)
+async def run_details(site: TheSite, client: Viewer, run: RunId) -> RunDetails:  # noqa: ARG001 - checks the token
+    """Return the stored data of a run: its times, calls, pictures and feedback."""
+    store = site.journal.store
+    await site.journal.settle()
+    stored = await site.journal.read(partial(store.run, run))
+    feedback = await site.journal.read(partial(feedback_on, store.database, run))
+    return RunDetails(run=stored.run, steps=stored.steps, frames=stored.frames, feedback=feedback)
+
+
+@router.get("/runs/{run}/pictures", responses=_ERRORS)
+async def list_pictures(site: TheSite, client: Viewer, run: RunId) -> list[PictureModel]:  # noqa: ARG001 - checks the token
+    """List the pictures of a run with their marks."""
+    trace = await trace_of_run(site, run)
+    pictures = []
+    for name, position in picture_names(trace).items():
+        call = trace.calls[position] if position is not None else None
+        marks = [Mark(**mark) for mark in marks_of(call_of(trace, name), name)]
+        message = str((call.outcome.result or {}).get("message", "")) if call is not None else ""
+        tool = call.outcome.call.name if call is not None else None
+        pictures.append(PictureModel(name=name, position=position, tool=tool, message=message, marks=marks))
+    return pictures
+
+
+@router.get(
+    "/runs/{run}/pictures/{part}/{name}",
+    response_class=Response,
+    responses={200: {"content": {"image/jpeg": {}, "image/png": {}}, "description": "The picture"}, **_ERRORS},
+)
+async def run_picture(
+    site: TheSite,
+    client: Viewer,  # noqa: ARG001 - checks the token
+    run: RunId,
+    part: Literal["frames", "pictures"],
+    name: Annotated[str, Path(min_length=1, max_length=60)],
+    marks: Annotated[bool, Query(description="Whether to draw the marks on the picture")] = False,
+) -> Response:
+    """Return a picture of a run, either as it was taken or with numbered boxes drawn on it."""
+    trace, file = await trace_of_run(site, run), f"{part}/{name}"
+    if file not in picture_names(trace):
+        raise UnknownNameError("picture", file[:80], ())
+
+    def read() -> bytes:
+        try:
+            data = picture_of(trace.folder, file).read_bytes()
+        except OSError as error:
+            raise TraceError(f"The file of the picture {file} of this run is missing.") from error
+        return drawn(data, marks_of(call_of(trace, file), file)) if marks else data
+
+    kind = "image/jpeg" if marks or name.endswith(".jpg") else "image/png"
+    return Response(await site.journal.read(read), media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
+
+
+@router.get(
+    "/runs/{run}/filmstrip",
+    response_class=Response,
+    responses={200: {"content": {"image/png": {}}, "description": "The filmstrip"}, **_ERRORS},
+)
+async def filmstrip(site: TheSite, client: Viewer, run: RunId) -> Response:  # noqa: ARG001 - checks the token
+    """Return the filmstrip of a run: one picture of all its steps."""
+    trace = await trace_of_run(site, run)
+    if trace.ended is None:
+        raise InputError("The run is still in progress. Its filmstrip is available when it has ended.")
+
+    def read() -> bytes:
+        path: FilePath | None = trace.folder / "filmstrip.png"
+        assert path is not None  # noqa: S101 - for the type checker
+        if not path.is_file() and (path := write_filmstrip(trace)) is None:
+            raise TraceError("This run has no pictures.")
+        return path.read_bytes()
+
+    return Response(await site.journal.read(read), media_type="image/png")
+
+
+@router.put("/runs/{run}/kept", status_code=204, responses=_ERRORS)
+async def keep_run(site: TheSite, client: Operator, run: RunId, body: Kept) -> Response:  # noqa: ARG001 - checks the token
+    """Set whether a run is kept when old runs are removed."""
+    await site.journal.read(partial(keep, site.journal.store.database, run, kept=body.kept))
+    return Response(status_code=204)
+
+
+@router.get("/runs/{run}/feedback", tags=["feedback"], responses=_ERRORS)
+async def list_feedback(site: TheSite, client: Viewer, run: RunId) -> list[FeedbackRow]:  # noqa: ARG001 - checks the token
+    """List the feedback on a run."""
+    return await site.journal.read(partial(feedback_on, site.journal.store.database, run))
+
+
+@router.post("/runs/{run}/feedback", status_code=201, tags=["feedback"], responses=_ERRORS)
+async def give_feedback(site: TheSite, client: Operator, run: RunId, body: FeedbackBody) -> FeedbackRow:
+    """Rate a run or one of its calls. Later feedback by the same person on the same run or call replaces earlier feedback."""
+    await site.journal.settle()
+    return await site.journal.read(
+        partial(
+            add_feedback,
+            site.journal.store.database,
+            run,
+            body.rating,
+            body.comment,
+            actor=client.name,
+            position=body.position,
+        )
+    )
+
+
+@router.delete("/feedback/{number}", status_code=204, tags=["feedback"], responses=_ERRORS)
+async def withdraw_feedback(site: TheSite, client: Operator, number: Annotated[int, Path(ge=0, le=2**53)]) -> Response:
+    """Withdraw feedback that the client gave."""
+    await site.journal.read(partial(remove_feedback, site.journal.store.database, number, actor=client.name))
+    return Response(status_code=204)

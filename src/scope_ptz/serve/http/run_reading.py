@@ -1,0 +1,140 @@
+"""Read runs for the API, both in progress and stored."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import aclosing
+from datetime import datetime
+from functools import partial
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from scope_ptz.agent.trace import Trace, read_trace
+from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.serve.http.models import RunState
+from scope_ptz.serve.site.run_handle import Record, RunHandle
+from scope_ptz.serve.site.service import Site
+from scope_ptz.store.request_file import read_request
+from scope_ptz.store.rows import UNFINISHED, RunFilter
+
+HEARTBEAT_S = 15.0
+"""Seconds without an event after which a comment is sent to keep the connection alive."""
+
+
+def state_of(handle: RunHandle) -> RunState:
+    """Return the state of a run in progress."""
+    ended, request = handle.ended, handle.request
+    return RunState(
+        id=handle.id,
+        camera=request.camera,
+        kind=request.kind,
+        instruction=handle.instruction,
+        conversation=request.conversation,
+        actor=request.actor,
+        running=not handle.done.is_set(),
+        outcome=ended.outcome if ended is not None else UNFINISHED,
+        answer=ended.text if ended is not None else "",
+        events=len(handle.records),
+        preview=list(handle.preview),
+    )
+
+
+async def stored_state(site: Site, run_id: str) -> RunState:
+    """Return the state of a run that is not in memory.
+
+    Raises:
+        UnknownNameError: There is no such run.
+    """
+    trace = await trace_of_run(site, run_id)
+    request = await site.journal.read(partial(read_request, trace.folder))
+    started, ended = trace.started, trace.ended
+    return RunState(
+        id=run_id,
+        camera=request.camera or started.scene or started.camera,
+        kind=request.kind,
+        instruction=started.instruction,
+        conversation=request.conversation,
+        actor=request.actor,
+        running=False,
+        outcome=ended.outcome if ended is not None else UNFINISHED,
+        answer=ended.text if ended is not None else "",
+        events=len(records_of(trace)),
+        preview=[],
+    )
+
+
+async def trace_of_run(site: Site, run_id: str) -> Trace:
+    """Return the trace of a run.
+
+    Raises:
+        UnknownNameError: There is no such run.
+        TraceError: Its trace is damaged.
+    """
+    folder = site.journal.store.folder(run_id)
+    if not await site.journal.read((folder / "trace.jsonl").is_file):
+        raise UnknownNameError("run", run_id[:120], ())
+    return await site.journal.read(partial(read_trace, folder))
+
+
+def records_of(trace: Trace) -> list[Record]:
+    """Return the records of a trace in the order in which they were written: the calls of a step follow its decision."""
+    records: list[Record] = [trace.started]
+    for decision in trace.decisions:
+        records.append(decision)
+        records += [call for call in trace.calls if call.step == decision.step]
+    return [*records, *([] if trace.ended is None else [trace.ended])]
+
+
+async def live_events(handle: RunHandle, after: int, closing: asyncio.Event) -> AsyncIterator[str]:
+    """Yield the records of a run in progress as server-sent events, with comments during pauses."""
+    async with aclosing(handle.events(after)) as events:
+        following = asyncio.ensure_future(anext(events, None))
+        ending = asyncio.ensure_future(closing.wait())
+        try:
+            while True:
+                done, _ = await asyncio.wait({following, ending}, timeout=HEARTBEAT_S, return_when=asyncio.FIRST_COMPLETED)
+                if following in done:
+                    event = following.result()
+                    if event is None:
+                        return
+                    yield sse(event.number, event.record)
+                    following = asyncio.ensure_future(anext(events, None))
+                elif ending in done:
+                    return
+                else:
+                    yield ": the run is in progress\n\n"
+        finally:
+            for task in (following, ending):
+                task.cancel()
+            await asyncio.gather(following, ending, return_exceptions=True)
+
+
+async def stored_events(trace: Trace, after: int) -> AsyncIterator[str]:
+    """Yield the records of a stored run as server-sent events."""
+    for number, record in enumerate(records_of(trace)):
+        if number > after:
+            yield sse(number, record)
+
+
+def sse(number: int, record: BaseModel) -> str:
+    """Format a record as a server-sent event."""
+    name: str = record.event  # type: ignore[attr-defined] # every record has this field
+    return f"id: {number}\nevent: {name}\ndata: {record.model_dump_json()}\n\n"
+
+
+def run_filter(*, since: datetime | None, until: datetime | None, rating: str | None, **fields: Any) -> RunFilter:
+    """Create the filter for a request.
+
+    Raises:
+        InputError: A time or a text is outside the supported range.
+    """
+    ratings = {"good": 1, "bad": -1, None: None}
+    try:
+        for time in (since, until):
+            if time is not None:
+                time.timestamp()
+        return RunFilter(since=since, until=until, rating=ratings[rating], **fields)  # type: ignore[arg-type]
+    except (ValidationError, OverflowError, OSError, ValueError) as error:
+        raise InputError("A time or a text of the filter is outside the supported range.") from error

@@ -1,0 +1,100 @@
+"""Routes that start, follow and cancel runs."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Path, Query
+from fastapi.responses import StreamingResponse
+
+from scope_ptz.errors import InputError
+from scope_ptz.serve.http.dependencies import RunOperator, StoppingOperator, TheSite, Viewer
+from scope_ptz.serve.http.errors import responses
+from scope_ptz.serve.http.models import RunStart, RunState
+from scope_ptz.serve.http.run_reading import live_events, state_of, stored_events, stored_state, trace_of_run
+from scope_ptz.serve.site.clients import Client
+from scope_ptz.serve.site.run_handle import RunHandle
+from scope_ptz.serve.site.running import Task
+from scope_ptz.serve.site.service import Site
+from scope_ptz.store.conversations import load_conversation
+from scope_ptz.store.rows import RunKind
+
+router = APIRouter(tags=["runs"])
+RunId = Annotated[str, Path(min_length=1, max_length=120)]
+_ERRORS = responses(404, 409, 503)
+
+
+@router.post("/runs", status_code=202, responses=_ERRORS)
+async def start_run(site: TheSite, client: RunOperator, body: RunStart) -> RunState:
+    """Start a run and return immediately. Follow it at `/runs/{run}/events`; it continues even if nobody follows it."""
+    return state_of(await _start(site, client, body))
+
+
+@router.post("/ask", responses=_ERRORS)
+async def ask(site: TheSite, client: RunOperator, body: RunStart) -> RunState:
+    """Run an instruction and return when it has ended."""
+    handle = await _start(site, client, body)
+    await handle.done.wait()
+    if handle.failure is not None:
+        raise handle.failure
+    return state_of(handle)
+
+
+async def _start(site: Site, client: Client, body: RunStart) -> RunHandle:
+    station, pair = site.station(body.camera), body.pair
+    if body.conversation is not None:
+        conversation = await site.journal.read(
+            partial(load_conversation, site.journal.store.database, body.conversation, owner=client.name)
+        )
+        if conversation.camera != station.name:
+            raise InputError(
+                f"This conversation is about {conversation.camera}, not about {station.name}. Start another conversation."
+            )
+        pair = pair or conversation.pair
+    kind: RunKind = "dry_run" if body.dry_run else "instruction"
+    # The default replaces a conversation's pair that is no longer configured.
+    name = site.pairs.check(pair if pair in site.pairs.names or body.pair is not None else None)
+    return await site.runner.start(station, Task(body.instruction, name, body.conversation, kind), client)
+
+
+@router.get("/runs/{run}", responses=_ERRORS)
+async def run_state(site: TheSite, client: Viewer, run: RunId) -> RunState:  # noqa: ARG001 - checks the token
+    """Return the state of a run, in progress or ended."""
+    handle = site.runner.find(run)
+    return state_of(handle) if handle is not None else await stored_state(site, run)
+
+
+@router.get(
+    "/runs/{run}/events",
+    response_class=StreamingResponse,
+    responses={200: {"content": {"text/event-stream": {}}, "description": "The records of the run"}, **_ERRORS},
+)
+async def run_events(
+    site: TheSite,
+    client: Viewer,  # noqa: ARG001 - checks the token
+    run: RunId,
+    last_event_id: Annotated[str | None, Header(max_length=20)] = None,
+    after: Annotated[int, Query(ge=-1, le=1_000_000, description="Number of the last event that the client has received")] = -1,
+) -> StreamingResponse:
+    """Stream the records of a run as server-sent events until it ends, from the first one or after event number `after`.
+
+    The name of an event is `start`, `decision`, `call` or `end`. Its data is the record in the format of the trace, and its id is
+    its number. A disconnected client resumes with `Last-Event-ID`, even after a restart of the server.
+    """
+    if last_event_id is not None and last_event_id.isascii() and last_event_id.isdecimal():
+        after = int(last_event_id)
+    handle = site.runner.find(run)
+    events = live_events(handle, after, site.closing) if handle is not None else stored_events(await trace_of_run(site, run), after)
+    headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
+    return StreamingResponse(events, media_type="text/event-stream", headers=headers)
+
+
+@router.post("/runs/{run}/cancel", status_code=202, responses=_ERRORS)
+async def cancel_run(site: TheSite, client: StoppingOperator, run: RunId) -> RunState:  # noqa: ARG001 - checks the token
+    """Cancel a run. It ends with the outcome "cancelled". A run that has already ended does not change."""
+    handle = site.runner.find(run)
+    if handle is None:
+        return await stored_state(site, run)
+    handle.cancel()
+    return state_of(handle)

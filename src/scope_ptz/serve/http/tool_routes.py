@@ -1,0 +1,96 @@
+"""Routes for the nine tools, one operation each."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import Field, ValidationError
+
+from scope_ptz.agent.records import Called
+from scope_ptz.errors import ScopeError
+from scope_ptz.serve.http.dependencies import Operator, TheSite, TheStation, Viewer
+from scope_ptz.serve.http.errors import responses
+from scope_ptz.serve.http.models import PoseModel, ToolReply
+from scope_ptz.serve.site.running import Task
+from scope_ptz.tools.registry import TOOLS, schemas
+from scope_ptz.tools.tool import Tool
+
+router = APIRouter(tags=["tools"])
+
+
+@router.get("/tools", responses=responses())
+async def list_tools(client: Viewer) -> list[dict[str, Any]]:  # noqa: ARG001 - checks the token
+    """Return the schemas of the tools in the OpenAI function format."""
+    return schemas()
+
+
+def _add(tool: Tool) -> None:
+    arguments = tool.arguments
+    body = {"required": bool(arguments.model_json_schema().get("required")), "content": {"application/json": {"schema": {}}}}
+    body["content"] = {"application/json": {"schema": _schema(tool)}}
+
+    async def call(
+        request: Request,
+        site: TheSite,
+        station: TheStation,
+        client: Operator,
+        pair: Annotated[str | None, Field(min_length=1, max_length=120)] = None,
+    ) -> ToolReply:
+        given = await _arguments(request, tool)
+        task = Task.tool_call(tool.name, given, site.pairs.check(pair))
+        handle = await site.runner.start(station, task, client)
+        await handle.done.wait()
+        called = next((record for record in handle.records if isinstance(record, Called)), None)
+        if called is None or handle.failure is not None:
+            raise handle.failure or ScopeError("The call was cancelled.")
+        outcome = called.outcome
+        return ToolReply(
+            run=handle.id, result=outcome.result, error=outcome.error, fault=called.fault, pose=PoseModel.of(called.pose.pose())
+        )
+
+    summary = (arguments.__doc__ or tool.name).strip().splitlines()[0]
+    router.add_api_route(
+        f"/cameras/{{camera}}/tools/{tool.name}",
+        call,
+        methods=["POST"],
+        name=tool.name,
+        operation_id=f"call_{tool.name}",
+        description=f"{summary}\n\nA failed call is reported in `error` and `fault`. Each call is stored as a run of one step.",
+        responses=responses(404, 409, 503),
+        openapi_extra={"requestBody": body},
+    )
+
+
+def _schema(tool: Tool) -> dict[str, Any]:
+    return tool.arguments.model_json_schema()
+
+
+async def _arguments(request: Request, tool: Tool) -> dict[str, Any]:
+    """Return the arguments of a call. Mutually exclusive arguments pass here; the tool reports them in its reply.
+
+    Raises:
+        RequestValidationError: The body is not a JSON object, or an argument is unknown or has the wrong type.
+    """
+    import json
+
+    content = await request.body()
+    try:
+        given = json.loads(content) if content.strip() else {}
+        if not isinstance(given, dict):
+            raise RequestValidationError([{"loc": ("body",), "msg": "Expected a JSON object of arguments", "type": "dict_type"}])
+        tool.arguments.model_validate(given)
+    except (ValueError, RecursionError) as error:
+        if not isinstance(error, ValidationError):
+            raise RequestValidationError(
+                [{"loc": ("body",), "msg": "The body is not valid JSON", "type": "json_invalid"}]
+            ) from error
+        problems = [each for each in error.errors(include_url=False, include_input=False) if each["loc"]]
+        if problems:
+            raise RequestValidationError([{**each, "loc": ("body", *each["loc"])} for each in problems]) from error
+    return given
+
+
+for _tool in TOOLS.values():
+    _add(_tool)

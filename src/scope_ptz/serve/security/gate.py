@@ -1,0 +1,253 @@
+"""Admit only authorised requests to the API, the page, the WebSockets and the media."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from http.cookies import CookieError, SimpleCookie
+from typing import Any
+
+from starlette.datastructures import MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from scope_ptz.errors import ConfigError
+from scope_ptz.serve.security.origins import LOOPBACK_NAMES, Origins, is_loopback
+from scope_ptz.serve.security.rate_limits import RateLimits
+from scope_ptz.serve.security.sessions import COOKIE, Sessions
+from scope_ptz.serve.security.tokens import TokenFile
+from scope_ptz.serve.site.clients import LOCAL, Client
+
+MAX_BODY_BYTES = 256 * 1024
+"""Maximum size of a request body, in bytes."""
+
+OPEN_PATHS = frozenset({"/api/v1/session", "/api/v1/health", "/sign-in"})
+"""Paths that need no token: those for signing in, and the health check."""
+
+SIGN_IN_PATH = "/sign-in"
+
+CHECK_S = 2.0
+"""Seconds between checks that the client of a request in progress is still authorised."""
+
+API_POLICY = "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+"""The content security policy of the API. Its replies are never pages."""
+
+_CLIENT = re.compile(r"[A-Za-z0-9_-]{1,64}")
+
+
+@dataclass(slots=True)
+class Access:
+    """The access rules of a server.
+
+    Attributes:
+        host: The address that the server listens on.
+        tokens: The token file. With None, tokens are not needed, and every program on this machine is an operator.
+        hosts: Additional host names of the server, such as the name of a reverse proxy.
+        limits: Limits on the number of requests.
+        sessions: The sessions of signed-in browsers.
+
+    Raises:
+        ConfigError: The server would accept requests from the network, or have additional host names, without tokens.
+    """
+
+    host: str
+    tokens: TokenFile | None = None
+    hosts: Iterable[str] = ()
+    limits: RateLimits = field(default_factory=RateLimits)
+    sessions: Sessions = field(default_factory=Sessions)
+
+    def __post_init__(self) -> None:
+        if not is_loopback(self.host) and (self.tokens is None or not self.tokens.tokens):
+            raise ConfigError(
+                f"The server would be open to the network at {self.host} without tokens. Create a token with "
+                "`scope token add NAME --role operator`, or listen on this machine only."
+            )
+        if self.hosts and (self.tokens is None or not self.tokens.tokens):
+            raise ConfigError(
+                "A server with additional host names needs tokens. Create a token with `scope token add NAME --role operator`."
+            )
+
+    @property
+    def needs_token(self) -> bool:
+        """Whether clients must present a token."""
+        return self.tokens is not None
+
+    def origins(self) -> Origins:
+        """Return the check of hosts and origins."""
+        listening = () if self.host in ("0.0.0.0", "::") else (self.host,)  # noqa: S104 - compared, not bound to
+        return Origins({*LOOPBACK_NAMES, *listening, *self.hosts})
+
+    def client(self, headers: dict[str, str]) -> Client | None:
+        """Return the client that sends a request; None if its token is missing or wrong."""
+        tab = headers.get("scope-client", "")
+        tab = f":{tab}" if _CLIENT.fullmatch(tab) else ""
+        if self.tokens is None:
+            return Client(LOCAL, f"{LOCAL}{tab}", "operator")
+        scheme, _, secret = headers.get("authorization", "").partition(" ")
+        if scheme.lower() == "bearer" and secret:
+            token = self.tokens.find(secret.strip())
+            return None if token is None else Client(token.name, f"{token.name}{tab}", token.role)
+        session = self.sessions.find(cookie_of(headers))
+        if session is None or not self.tokens.is_valid(session.token):
+            return None
+        return Client(session.token.name, f"{session.token.name}:{session.key}{tab}", session.token.role)
+
+
+class Gate:
+    """ASGI middleware that admits only authorised clients and sets the security headers of replies.
+
+    It stores the client in ``scope["state"]["client"]``.
+
+    Args:
+        app: The wrapped application.
+        access: The access rules.
+        page_policy: The content security policy of everything outside ``/api``.
+    """
+
+    def __init__(self, app: ASGIApp, access: Access, *, page_policy: str = API_POLICY) -> None:
+        self._app, self._access, self._page_policy = app, access, page_policy
+        self._origins = access.origins()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        headers = _headers(scope)
+        websocket = scope["type"] == "websocket"
+        reply = _Reply(scope, send, API_POLICY if scope["path"].startswith("/api") else self._page_policy)
+        if problem := self._origins.problem(headers, method=scope.get("method", "GET"), websocket=websocket):
+            await reply.refuse(403, "refused", problem)
+            return
+        client = self._access.client(headers)
+        if client is None and scope["path"] not in OPEN_PATHS:
+            if not websocket and _wants_page(scope, headers):
+                await reply.redirect(SIGN_IN_PATH)
+            else:
+                await reply.refuse(
+                    401, "sign_in", "This request needs a token. Send it as `Authorization: Bearer TOKEN`, or sign in."
+                )
+            return
+        if int(headers.get("content-length", "0") or 0) > MAX_BODY_BYTES:
+            await reply.refuse(413, "too_large", f"The body of a request must have at most {MAX_BODY_BYTES} bytes.")
+            return
+        scope.setdefault("state", {})["client"] = client
+        if client is None or not self._access.needs_token:
+            await self._app(scope, _limited(receive), reply.send)
+        else:
+            await self._serve_while_authorised(client, headers, scope, receive, reply)
+
+    async def _serve_while_authorised(
+        self, client: Client, headers: dict[str, str], scope: Scope, receive: Receive, reply: _Reply
+    ) -> None:
+        """Serve a request, and end it if its token is removed or its session ends. Otherwise, a stream would never end."""
+        work = asyncio.ensure_future(self._app(scope, _limited(receive), reply.send))
+        try:
+            while not (await asyncio.wait({work}, timeout=CHECK_S))[0]:
+                if self._access.client(headers) != client:
+                    work.cancel()
+                    await asyncio.gather(work, return_exceptions=True)
+                    await reply.end()
+                    return
+            work.result()
+        finally:
+            if not work.done():
+                work.cancel()
+                await asyncio.gather(work, return_exceptions=True)
+
+
+class _Reply:
+    """Sends a reply with security headers."""
+
+    def __init__(self, scope: Scope, send: Send, policy: str) -> None:
+        self._scope, self._send, self._policy = scope, send, policy
+        self._begun = self._ended = False
+
+    async def send(self, message: Message) -> None:
+        self._begun |= message["type"] in ("http.response.start", "websocket.accept")
+        self._ended |= message["type"] == "websocket.close" or (
+            message["type"] == "http.response.body" and not message.get("more_body", False)
+        )
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            headers.setdefault("Content-Security-Policy", self._policy)
+            headers["X-Content-Type-Options"] = "nosniff"
+            headers["X-Frame-Options"] = "DENY"
+            headers["Referrer-Policy"] = "same-origin"  # with "no-referrer", browsers send forms without their origin
+            headers["Cross-Origin-Resource-Policy"] = "same-origin"
+            headers["Cross-Origin-Opener-Policy"] = "same-origin"
+            headers["Permissions-Policy"] = "camera=(), microphone=(), geolocation=()"
+            if self._scope["path"].startswith("/api"):
+                headers.setdefault("Cache-Control", "no-store")
+        await self._send(message)
+
+    async def refuse(self, status: int, code: str, message: str) -> None:
+        if self._scope["type"] == "websocket":
+            await self._send(
+                {"type": "websocket.close", "code": 1008, "reason": message[:120]}
+            )  # if the WebSocket has not been accepted yet, the client gets 403
+            return
+        body = json.dumps({"error": {"code": code, "message": message}}).encode()
+        extra = [(b"www-authenticate", b"Bearer")] if status == 401 else []
+        await self._send_complete(status, [(b"content-type", b"application/json"), *extra], body)
+
+    async def end(self) -> None:
+        """End an unfinished reply, because its client is no longer authorised."""
+        if self._ended:
+            return
+        if not self._begun or self._scope["type"] == "websocket":
+            await self.refuse(401, "sign_in", "Your token was removed, or your session has ended. Sign in again.")
+        else:
+            await self.send({"type": "http.response.body", "body": b""})
+
+    async def redirect(self, path: str) -> None:
+        await self._send_complete(303, [(b"location", path.encode())], b"")
+
+    async def _send_complete(self, status: int, headers: list[tuple[bytes, bytes]], body: bytes) -> None:
+        headers.append((b"content-length", str(len(body)).encode()))
+        await self.send({"type": "http.response.start", "status": status, "headers": headers})
+        await self._send({"type": "http.response.body", "body": body})
+
+
+def cookie_of(headers: dict[str, str]) -> str:
+    """Return the value of the session cookie; empty if there is none."""
+    try:
+        morsel = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+    except CookieError:
+        return ""
+    return morsel.value if morsel is not None else ""
+
+
+def _headers(scope: Scope) -> dict[str, str]:
+    """Return the headers by lower-case name.
+
+    The values of a repeated header are joined. A joined value is valid only for cookies. An invalid content length is replaced with
+    one above the limit.
+    """
+    result: dict[str, str] = {}
+    for name, value in scope["headers"]:
+        key = name.decode("latin-1").lower()
+        text = value.decode("latin-1")
+        result[key] = f"{result[key]}; {text}" if key in result else text
+    if not result.get("content-length", "0").isdecimal():
+        result["content-length"] = str(MAX_BODY_BYTES + 1)
+    return result
+
+
+def _wants_page(scope: Scope, headers: dict[str, str]) -> bool:
+    is_page = not scope["path"].startswith("/api") and "text/html" in headers.get("accept", "")
+    return bool(scope.get("method") == "GET" and is_page)
+
+
+def _limited(receive: Receive) -> Receive:
+    """Wrap a source of messages so that it disconnects if the body exceeds the limit, whatever length the headers state."""
+    received_bytes = 0
+
+    async def limited() -> Any:
+        nonlocal received_bytes
+        message = await receive()
+        received_bytes += len(message.get("body", b"")) if message["type"] == "http.request" else 0
+        return {"type": "http.disconnect"} if received_bytes > MAX_BODY_BYTES else message
+
+    return limited

@@ -1,0 +1,68 @@
+"""Check that a request names this server as its host, and that no other site made a browser send it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from ipaddress import ip_address
+from urllib.parse import urlsplit
+
+LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether a listening address can be reached from this machine only."""
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+class Origins:
+    """Checks where requests come from.
+
+    A page of another site must not be able to use a browser's session, or a server on loopback that needs no token. Requests of
+    such a page carry the origin of the other site. If the name of that site resolves to this server (DNS rebinding), the requests
+    have a host name that is not one of the server's.
+
+    Args:
+        hosts: The host names and addresses of the server, without ports.
+    """
+
+    def __init__(self, hosts: Iterable[str]) -> None:
+        self._hosts = frozenset(host.lower() for host in hosts)
+
+    def problem(self, headers: Mapping[str, str], *, method: str, websocket: bool = False) -> str:
+        """Return the reason for refusing a request; empty if the request is allowed.
+
+        Args:
+            headers: The headers of the request, by lower-case name.
+            method: The HTTP method.
+            websocket: Whether the request opens a WebSocket.
+        """
+        host = headers.get("host", "")
+        if _host_name(host) not in self._hosts:
+            return "The Host header does not name this server. Add the name to the server with `--name`."
+        origin = headers.get("origin")
+        if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+            return "Requests from pages of other sites are refused."
+        if headers.get("sec-fetch-site", "none") in ("cross-site", "same-site") and not _is_link(headers, method, websocket):
+            return "Requests from pages of other sites are refused."
+        return ""
+
+
+def _is_link(headers: Mapping[str, str], method: str, websocket: bool) -> bool:
+    """Return whether the request follows a link to this server. Such a request only opens a page."""
+    fetch = headers.get("sec-fetch-mode"), headers.get("sec-fetch-dest")
+    return method == "GET" and not websocket and fetch == ("navigate", "document")
+
+
+def _host_name(host: str) -> str:
+    """Return the name in a Host header without the port and the brackets of IPv6; empty if the header is invalid."""
+    try:
+        parts = urlsplit(f"//{host}")
+        port_is_number = parts.port is None or parts.port >= 0
+    except ValueError:
+        return ""
+    if parts.path or parts.query or parts.fragment or parts.username is not None or not port_is_number:
+        return ""
+    return (parts.hostname or "").lower()

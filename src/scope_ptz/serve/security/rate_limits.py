@@ -1,0 +1,78 @@
+"""Limits on the number of requests of a client."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass
+from time import monotonic
+from typing import Literal
+
+from scope_ptz.serve.site.errors import TooManyRequestsError
+
+Kind = Literal["read", "command", "run", "sign_in"]
+
+MAX_CLIENTS = 10_000
+"""Maximum number of counters. The counter of the least recently active client is dropped first."""
+
+NAME_FACTOR = 10
+"""The joint limit of all clients of one name, as a multiple of the limit of one client."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """The allowed average number of requests per second, and the allowed burst after a pause."""
+
+    per_s: float
+    burst: int
+
+
+DEFAULT_RATES: Mapping[Kind, Rate] = {
+    "read": Rate(50.0, 200),
+    "command": Rate(25.0, 60),
+    "run": Rate(1.0, 20),
+    "sign_in": Rate(0.2, 10),
+}
+
+
+class RateLimits:
+    """Limits the requests of each client, separately for each kind of request. ``stop`` requests are never counted.
+
+    All clients of one name, such as the browser tabs of a user, also have a joint limit, because a program can act as many clients.
+
+    Args:
+        rates: The limit of each kind; None for no limits.
+    """
+
+    def __init__(self, rates: Mapping[Kind, Rate] | None = DEFAULT_RATES) -> None:
+        self._rates = rates or {}
+        self._left: OrderedDict[tuple[str, Kind], tuple[float, float]] = OrderedDict()
+
+    def count(self, client: str, kind: Kind, name: str | None = None) -> None:
+        """Count a request.
+
+        Args:
+            client: The client.
+            kind: The kind of the request.
+            name: The name that the client shares with others, if any.
+
+        Raises:
+            TooManyRequestsError: The client sent too many requests. The error contains the seconds until the client may retry.
+        """
+        rate = self._rates.get(kind)
+        if rate is None:
+            return
+        if name is not None:
+            self._count(f"all of {name}", kind, Rate(NAME_FACTOR * rate.per_s, NAME_FACTOR * rate.burst))
+        self._count(client, kind, rate)
+
+    def _count(self, client: str, kind: Kind, rate: Rate) -> None:
+        now_s = monotonic()
+        left, since_s = self._left.pop((client, kind), (float(rate.burst), now_s))
+        left = min(float(rate.burst), left + (now_s - since_s) * rate.per_s)
+        allowed = left >= 1.0
+        self._left[client, kind] = (left - 1.0 if allowed else left, now_s)
+        if len(self._left) > MAX_CLIENTS:
+            self._left.popitem(last=False)
+        if not allowed:
+            raise TooManyRequestsError(max(1.0, (1.0 - left) / rate.per_s))

@@ -1,0 +1,59 @@
+"""Sessions of browsers. A browser presents its token once; afterwards, a cookie identifies its session."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+from collections import OrderedDict
+from dataclasses import dataclass
+from time import monotonic
+
+from scope_ptz.serve.security.tokens import Token
+
+COOKIE = "scope_session"
+LIFETIME_S = 12 * 3600.0  # seconds until a session ends
+MAX_SESSIONS = 1_000
+"""Maximum number of sessions. A new session beyond this limit ends the oldest one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """A signed-in browser. ``key`` identifies the session but does not authorise anyone to use it."""
+
+    token: Token
+    key: str
+    ends_s: float
+
+
+class Sessions:
+    """The sessions of one server. They are in memory only, so a restart signs all browsers out."""
+
+    def __init__(self, *, lifetime_s: float = LIFETIME_S) -> None:
+        self._lifetime_s = lifetime_s
+        self._sessions: OrderedDict[str, Session] = OrderedDict()
+
+    def begin(self, token: Token) -> str:
+        """Begin a session and return the value of its cookie."""
+        secret = secrets.token_urlsafe(32)
+        digest = _digest(secret)
+        self._sessions[digest] = Session(token, digest[:16], monotonic() + self._lifetime_s)
+        while len(self._sessions) > MAX_SESSIONS:
+            self._sessions.popitem(last=False)
+        return secret
+
+    def find(self, secret: str) -> Session | None:
+        """Return the session of a cookie; None if there is none, or if it has ended."""
+        digest = _digest(secret)
+        session = self._sessions.get(digest)
+        if session is not None and monotonic() > session.ends_s:
+            del self._sessions[digest]
+            return None
+        return session
+
+    def end(self, secret: str) -> None:
+        """End a session. Ending one that does not exist has no effect."""
+        self._sessions.pop(_digest(secret), None)
+
+
+def _digest(secret: str) -> str:
+    return hashlib.sha256(secret[:200].encode("utf-8", "replace")).hexdigest()

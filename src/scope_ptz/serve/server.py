@@ -1,0 +1,92 @@
+"""Serve a site with uvicorn, in the running event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
+
+import anyio
+import uvicorn
+from starlette.types import ASGIApp
+
+from scope_ptz.serve.http.app import application
+from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.site.service import Site
+from scope_ptz.virtual_camera.http.server import listen
+
+SHUTDOWN_S = 5
+"""Seconds that open replies have to finish when the server shuts down."""
+
+MAX_CONNECTIONS = 500
+
+
+@asynccontextmanager
+async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | None = None) -> AsyncIterator[int]:
+    """Serve a site while the context is open, and return the port.
+
+    Args:
+        site: The site. This function enters its context.
+        access: The access rules. The server listens on their host.
+        port: The port; 0 for any free one.
+        app: The application, wrapped in a ``Gate``; by default, the API alone.
+
+    Raises:
+        ConfigError: The port is in use or not permitted.
+    """
+    (listener,) = listen(access.host, [port])
+    async with site:
+        server = _Server(configuration(app or application(site, access)))
+        running = asyncio.create_task(server.serve([listener]))
+        try:
+            await _until_ready(server, running)
+            yield int(listener.getsockname()[1])
+        finally:
+            with anyio.CancelScope(shield=True):
+                site.closing.set()
+                server.should_exit = True
+                await asyncio.gather(running, return_exceptions=True)
+
+
+def configuration(app: ASGIApp) -> uvicorn.Config:
+    """Return the uvicorn configuration for an application."""
+    return uvicorn.Config(
+        app,
+        lifespan="off",
+        log_config=None,
+        log_level="warning",  # where logging is set up, as Streamlit does, uvicorn would report every connection
+        access_log=False,
+        server_header=False,
+        proxy_headers=False,  # address headers from clients are not trusted
+        ws="websockets-sansio",
+        ws_max_size=64 * 1024,
+        ws_per_message_deflate=False,  # pictures are compressed already
+        limit_concurrency=MAX_CONNECTIONS,
+        timeout_keep_alive=30,
+        timeout_graceful_shutdown=SHUTDOWN_S,
+    )
+
+
+async def _until_ready(server: _Server, running: asyncio.Task[None]) -> None:
+    waiting = asyncio.ensure_future(server.ready.wait())
+    await asyncio.wait({waiting, running}, return_when=asyncio.FIRST_COMPLETED)
+    waiting.cancel()
+    if running.done():
+        running.result()
+
+
+class _Server(uvicorn.Server):
+    """A server that sets ``ready`` once it listens, and leaves the handling of process signals to the surrounding program."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.ready = asyncio.Event()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self.ready.set()
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield

@@ -1,0 +1,1 @@
+"""The served site: cameras with their control, pairs of models, runs and conversations. This package does not depend on HTTP."""

@@ -1,0 +1,105 @@
+"""Read the steps and pictures of single runs from the log of an evaluation."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.agent.trace import picture_names
+from scope_ptz.bench.scoring.trials import Trial
+from scope_ptz.errors import TraceError, UnknownNameError
+from scope_ptz.serve.site.benchmark.choices import missing_packages
+from scope_ptz.serve.site.benchmark.evaluation_folder import EvaluationFolder, modified
+from scope_ptz.serve.site.marks import call_of, drawn, marks_of
+
+if TYPE_CHECKING:
+    from scope_ptz.agent.trace import Trace
+    from scope_ptz.bench.engine.sample_files import SampleFiles
+
+MAX_OPEN = 4
+"""Maximum number of runs that are cached in memory, with their pictures."""
+
+
+class Trajectories:
+    """Reads runs of evaluations. The last few are cached, because clients request each picture of a run separately."""
+
+    def __init__(self) -> None:
+        self._open: OrderedDict[tuple[str, str, float], SampleFiles] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def trace(self, folder: EvaluationFolder, trial: Trial) -> Trace:
+        """Return the trace of a run.
+
+        Raises:
+            TraceError: The log does not contain the run yet, or a package is missing.
+        """
+        return self._sample(folder, trial).trace
+
+    def picture(self, folder: EvaluationFolder, trial: Trial, name: str, *, marks: bool) -> bytes:
+        """Return a picture of a run as JPEG. With ``marks``, draw the detections in it.
+
+        Raises:
+            UnknownNameError: The run has no such picture.
+            TraceError: The log does not contain the picture, or a package is missing.
+        """
+        sample = self._sample(folder, trial)
+        if name not in names_of(sample.trace):
+            raise UnknownNameError("picture", name[:80], ())
+        data = sample.picture(name)
+        if data is None:
+            raise TraceError("The log does not contain this picture.")
+        return drawn(data, marks_of(call_of(sample.trace, name), name)) if marks else data
+
+    def _sample(self, folder: EvaluationFolder, trial: Trial) -> SampleFiles:
+        if missing := missing_packages():
+            raise TraceError(missing)
+        from scope_ptz.bench.engine.sample_files import open_sample  # imported late: needs the bench extra
+
+        log = folder.newest_log()
+        if log is None:
+            raise TraceError("The evaluation has no log yet.")
+        key = (folder.path.name, trial.sample, modified(log))
+        with self._lock:
+            if key in self._open:
+                self._open.move_to_end(key)
+                return self._open[key]
+            try:
+                sample = open_sample(log, trial.sample)
+            except TraceError as error:
+                raise TraceError(
+                    "The steps and pictures of this run are not in the log yet. The log is written after every few runs; if the "
+                    "evaluation was interrupted, resume it to add them."
+                ) from error
+            self._open[key] = sample
+            while len(self._open) > MAX_OPEN:
+                self._open.popitem(last=False)
+            return sample
+
+
+def names_of(trace: Trace) -> dict[str, int | None]:
+    """Return the names of the pictures of a run, in order, each with the index of its tool call; None for the start picture."""
+    return picture_names(trace)
+
+
+def steps_of(trace: Trace) -> list[dict[str, Any]]:
+    """Return the tool calls of a run as JSON data: tool, arguments, message, error flag, duration, and pictures."""
+    names = names_of(trace)
+    steps = []
+    for position, call in enumerate(trace.calls):
+        outcome = call.outcome
+        result = outcome.result or {}
+        pictures = [
+            {"name": name, "marks": len(marks_of(call_of(trace, name), name))} for name, at in names.items() if at == position
+        ]
+        steps.append(
+            {
+                "tool": outcome.call.name,
+                "arguments": outcome.call.arguments,
+                "message": outcome.error if outcome.error is not None else str(result.get("message", "")),
+                "failed": outcome.error is not None,
+                "seconds": call.timings.total_s,
+                "pictures": pictures,
+            }
+        )
+    return steps

@@ -1,0 +1,37 @@
+"""Tool calls by a person instead of a planner. Each is recorded as a run of one step."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall
+
+BY_HAND = "by-hand"
+"""The planner name in the traces of these runs."""
+
+
+class OneCall(Planner):
+    """A planner that makes one tool call and answers with its result.
+
+    Args:
+        name: The name of the tool.
+        arguments: The arguments of the tool.
+    """
+
+    name = BY_HAND
+
+    def __init__(self, name: str, arguments: dict[str, Any]) -> None:
+        self._call = ToolCall(id="call1", name=name, arguments=arguments)
+
+    async def step(self, state: State) -> Decision:
+        if not state.history:
+            return CallTools(calls=(self._call,))
+        outcome = state.history[-1].outcomes[0]
+        if outcome.error is not None:
+            return Finish(kind="refused", text=outcome.error)
+        return Finish(kind="answered", text=str((outcome.result or {}).get("message") or "Done."))
+
+
+def call_text(name: str, arguments: dict[str, Any]) -> str:
+    """Return a call as text: ``count_objects(description='cones')``."""
+    return f"{name}({', '.join(f'{key}={value!r}' for key, value in arguments.items())})"

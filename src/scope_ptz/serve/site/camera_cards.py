@@ -1,0 +1,144 @@
+"""The cards of the camera list. A card states the kind and the abilities of a camera, and whether it works."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass, replace
+from time import monotonic
+from typing import Literal
+
+import anyio
+from anyio import to_thread
+
+from scope_ptz.camera.base import CameraInfo
+from scope_ptz.errors import CameraError, ScopeError
+from scope_ptz.factory.cameras import parse_camera
+from scope_ptz.factory.scenes import open_scene
+from scope_ptz.serve.site.camera_kinds import CameraKind, has_rules, kind_of, scene_of
+from scope_ptz.serve.site.station import Station
+from scope_ptz.simulator.models import SceneFile
+
+Ability = Literal["move", "drive", "presets", "focus", "iris", "scene_time", "ground_truth", "virtual_camera"]
+HealthState = Literal["connected", "ready", "failed"]
+
+CHECK_S = 20.0
+"""Seconds without an answer after which a camera counts as failed."""
+
+FRESH_S = 2.0
+"""Seconds for which the result of a check is reused. Several pages can share one check."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneFacts:
+    """Facts about a stored scene: its viewpoints, numbers of presets and moving objects, and whether it has ground truth."""
+
+    name: str
+    title: str
+    viewpoints: tuple[str, ...]
+    presets: int
+    moving: int
+    has_truth: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CameraCard:
+    """The card of a camera in a list.
+
+    Attributes:
+        title: The name of the device or the title of the scene; empty if it is not known yet.
+        kind: The kind of the camera.
+        scene: The stored scene that a simulated camera shows; None for other cameras.
+        abilities: The known abilities.
+        health: "connected" if it answers, "ready" if it will be opened on first use, "failed" with ``problem``.
+        problem: The reason why it cannot be used; None if it can.
+        configured: Whether it is a camera in ``scope.yaml``.
+        has_picture: Whether there is a picture of it.
+    """
+
+    title: str
+    kind: CameraKind
+    scene: SceneFacts | None
+    abilities: tuple[Ability, ...]
+    health: HealthState
+    problem: ScopeError | None
+    configured: bool = False
+    has_picture: bool = False
+
+
+class CameraCards:
+    """Creates the cards of cameras. It connects to devices, but does not open scenes or start Blender."""
+
+    def __init__(self) -> None:
+        self._scenes: dict[str, SceneFacts] = {}
+        self._checks: dict[str, tuple[asyncio.Task[ScopeError | None], float]] = {}
+
+    async def card(self, station: Station) -> CameraCard:
+        """Check whether a camera works, and return its card. A failure is part of the card."""
+        try:
+            kind = kind_of(station.spec)
+        except ScopeError as error:
+            return CameraCard("", "plug_in", None, (), "failed", error, configured=True)
+        card = CameraCard("", kind, None, (), "ready", None, configured=bool(parse_camera(station.spec).name))
+        name = scene_of(station.spec)
+        try:
+            scene = None if name is None else await self._scene(name)
+        except ScopeError as error:
+            return replace(card, health="failed", problem=error)
+        if scene is not None:
+            ruled = has_rules(station.spec)
+            card = replace(card, title=scene.title, scene=scene, abilities=_of_scene(scene, ruled=ruled), has_picture=not ruled)
+        if not station.is_open and kind in ("simulated", "blender"):
+            return card if station.problem is None else replace(card, health="failed", problem=station.problem)
+        problem = await self._check(station)
+        opened = station.open_camera
+        if opened is not None and scene is None:
+            card = replace(card, title=opened.camera.info.name, abilities=_of_device(opened.camera.info))
+        works = problem is None
+        return replace(card, health="connected" if works else "failed", problem=problem, has_picture=works)
+
+    async def _scene(self, name: str) -> SceneFacts:
+        if name not in self._scenes:
+            self._scenes[name] = await to_thread.run_sync(_scene_facts, name)
+        return self._scenes[name]
+
+    async def _check(self, station: Station) -> ScopeError | None:
+        """Return the error of a camera that cannot be used; None if it can. Concurrent requests share one check."""
+        task, since_s = self._checks.get(station.name, (None, 0.0))
+        if task is None or (task.done() and monotonic() - since_s > FRESH_S):
+            task = asyncio.create_task(_problem(station))
+            self._checks[station.name] = task, monotonic()
+        return await asyncio.shield(task)
+
+
+async def _problem(station: Station) -> ScopeError | None:
+    try:
+        with anyio.fail_after(CHECK_S):
+            await (await station.camera()).pose()
+    except TimeoutError:
+        return CameraError(f"{station.name} did not answer within {CHECK_S:g} s.")
+    except ScopeError as error:
+        return error
+    return CameraError(station.live.problem) if station.live.problem else None
+
+
+def _scene_facts(name: str) -> SceneFacts:
+    file: SceneFile = open_scene(name).file
+    viewpoints = tuple(each.name for each in file.viewpoints)
+    return SceneFacts(name, file.title, viewpoints, len(file.presets), len(file.actors), file.captured is None)
+
+
+def _of_scene(scene: SceneFacts, *, ruled: bool) -> tuple[Ability, ...]:
+    known: list[tuple[Ability, bool]] = [
+        ("move", True), ("drive", True), ("presets", True), ("scene_time", True),
+        ("ground_truth", scene.has_truth), ("virtual_camera", not ruled),
+    ]  # fmt: skip
+    return tuple(name for name, has in known if has)
+
+
+def _of_device(info: CameraInfo) -> tuple[Ability, ...]:
+    can = info.capabilities
+    known: list[tuple[Ability, bool]] = [
+        ("move", True), ("drive", can.drives), ("presets", can.edits_presets), ("focus", bool(can.focus)),
+        ("iris", bool(can.iris)), ("scene_time", info.simulated),
+    ]  # fmt: skip
+    return tuple(name for name, has in known if has)

@@ -1,0 +1,44 @@
+"""Determine the kind of a camera from its spec, without opening the camera."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+from scope_ptz.camera.guard.rules import CameraRules, Mounting
+from scope_ptz.factory.cameras import parse_camera
+from scope_ptz.factory.cameras.named import named_cameras
+
+CameraKind = Literal["simulated", "blender", "axis", "onvif", "plug_in"]
+
+_KINDS = {"sim": "simulated"}
+
+
+def kind_of(spec: str) -> CameraKind:
+    """Return the kind of a camera.
+
+    Raises:
+        InputError: The spec is invalid, or the camera is no longer in ``scope.yaml``.
+    """
+    scheme = parse_camera(spec).scheme
+    name = _KINDS.get(scheme, scheme)
+    return next((kind for kind in get_args(CameraKind) if kind == name), "plug_in")
+
+
+def has_scene_time(spec: str) -> bool:
+    """Return whether a camera shows a simulated world, whose time can be changed."""
+    return kind_of(spec) in ("simulated", "blender")
+
+
+def scene_of(spec: str) -> str | None:
+    """Return the name of the stored scene that a simulated camera shows; None for other cameras."""
+    parsed = parse_camera(spec)
+    return parsed.address if parsed.scheme == "sim" else None
+
+
+def has_rules(spec: str) -> bool:
+    """Return whether ``scope.yaml`` changes the pictures of a camera or restricts its poses."""
+    name = parse_camera(spec).name
+    if not name:
+        return False
+    named = named_cameras()[name]
+    return named.mounting != Mounting() or named.rules != CameraRules()

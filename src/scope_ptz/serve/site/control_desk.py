@@ -1,0 +1,149 @@
+"""Control of a camera: one client at a time has it, until it is handed over or expires."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AsyncExitStack
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from time import monotonic
+
+from scope_ptz.camera.base import Camera
+from scope_ptz.errors import UnknownNameError
+from scope_ptz.serve.site.clients import Client
+from scope_ptz.serve.site.errors import NotInControlError
+
+LEASE_S = 120.0
+"""Seconds without a command after which control expires."""
+
+MAX_REQUESTS = 20
+"""Maximum number of clients that can wait for control."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A request for control. ``key`` identifies the client in the answer."""
+
+    key: str
+    name: str
+    since: datetime
+
+
+class ControlDesk:
+    """Control of one camera.
+
+    A command takes control if nobody has it. Otherwise, the client requests control, and the holder hands it over or keeps it.
+    Control expires if the holder sends no commands, so that a closed laptop does not block a camera. It cannot expire during a
+    run.
+
+    Args:
+        camera: The camera's name.
+        busy: Returns whether a run is in progress.
+        lease_s: Seconds without a command after which control expires.
+    """
+
+    def __init__(self, camera: str, busy: Callable[[], bool], *, lease_s: float = LEASE_S) -> None:
+        self._camera, self._busy, self._lease_s = camera, busy, lease_s
+        self._holder: Client | None = None
+        self._since = datetime.now(UTC)
+        self._used_s = 0.0
+        self._left = False
+        self._requests: dict[str, Request] = {}
+        self._lock = AsyncExitStack()
+        self.changes = 0
+        """Number of changes so far. Watchers compare it to notice changes."""
+
+    @property
+    def holder(self) -> Client | None:
+        """The client that has control; None if nobody has it."""
+        expired = not self._busy() and (self._left or monotonic() - self._used_s > self._lease_s)
+        return None if expired else self._holder
+
+    @property
+    def since(self) -> datetime:
+        """The time at which the holder got control."""
+        return self._since
+
+    @property
+    def requests(self) -> tuple[Request, ...]:
+        """The requests for control, the oldest first."""
+        return tuple(self._requests.values())
+
+    async def require(self, client: Client, camera: Camera) -> None:
+        """Make sure that a client has control, which it takes if nobody has it.
+
+        Raises:
+            NotInControlError: Another client has control.
+            ControlHeldError: Another user of this camera object has control.
+        """
+        holder = self.holder
+        if holder is not None and holder.key != client.key:
+            raise NotInControlError(self._camera, holder.name)
+        if holder is None:
+            await self._hand_to(client, camera)
+        self._used_s, self._left = monotonic(), False
+
+    async def ask(self, client: Client, camera: Camera) -> bool:
+        """Take control if nobody has it; otherwise, ask for it. Return whether the client has control."""
+        holder = self.holder
+        if holder is None or holder.key == client.key:
+            await self.require(client, camera)
+            return True
+        if client.key not in self._requests and len(self._requests) < MAX_REQUESTS:
+            self._requests[client.key] = Request(client.key, client.name, datetime.now(UTC))
+            self.changes += 1
+        return False
+
+    async def answer(self, holder: Client, key: str, camera: Camera, *, grant: bool, to: Client | None = None) -> None:
+        """Answer a request for control: hand control over to the client, or refuse.
+
+        Args:
+            holder: The client that answers.
+            key: The key of the client that asks.
+            camera: The camera.
+            grant: Whether control is handed over.
+            to: The client that asks; by default, an operator with the name and the key of the request.
+
+        Raises:
+            NotInControlError: ``holder`` does not have control.
+            UnknownNameError: The client has not asked for control.
+        """
+        if (current := self.holder) is None or current.key != holder.key:
+            raise NotInControlError(self._camera, current.name if current else "nobody")
+        if key not in self._requests:
+            raise UnknownNameError("request for control", key[:80], ())
+        request = self._requests.pop(key)
+        self.changes += 1
+        if grant:
+            await self._hand_to(to or Client(request.name, key, "operator"), camera)
+
+    async def release(self, client: Client) -> None:
+        """Give control up, or withdraw a request for it. A client with neither is ignored.
+
+        During a run, control is given up when the run ends, unless the client sends another command first.
+        """
+        if self._requests.pop(client.key, None) is not None:
+            self.changes += 1
+        if self._holder is not None and self._holder.key == client.key:
+            self._left = True
+            await self.run_ended()
+
+    async def run_ended(self) -> None:
+        """Clear control if its holder gave it up and no run is in progress."""
+        if self._left and not self._busy():
+            await self.clear()
+
+    async def clear(self) -> None:
+        """Take control away from its holder, if any."""
+        self._holder, self._left = None, False
+        self.changes += 1
+        await self._lock.aclose()
+
+    async def _hand_to(self, client: Client, camera: Camera) -> None:
+        await self._lock.aclose()
+        self._holder = None
+        # The camera's own lock shows other users of the same device who has control.
+        await self._lock.enter_async_context(camera.control(client.name))
+        self._holder, self._since, self._used_s, self._left = client, datetime.now(UTC), monotonic(), False
+        self._requests.pop(client.key, None)
+        self.changes += 1

@@ -1,0 +1,113 @@
+"""The runs that the server stores: run folders and their index. A failure of the index never stops a run."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
+
+import anyio
+from anyio import to_thread
+
+from scope_ptz.agent.trace import read_trace
+from scope_ptz.errors import ScopeError, TraceError
+from scope_ptz.planner.base import PastTurn
+from scope_ptz.store.conversations import runs_of_conversation, touch_conversation
+from scope_ptz.store.export import exchanges_of
+from scope_ptz.store.run_store import RunStore
+
+MAX_TURNS = 20
+"""Maximum number of conversation turns that the planner receives."""
+
+SETTLE_S = 2.0
+"""Maximum time in seconds that a request for a list of runs waits until runs that just ended are indexed."""
+
+_T = TypeVar("_T")
+
+logger = logging.getLogger(__name__)
+
+
+class Journal:
+    """The runs folder of a server.
+
+    Args:
+        root: The runs folder.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.store = RunStore(root)
+        self._turns: dict[str, tuple[PastTurn, ...]] = {}
+        self._waiting: asyncio.Queue[str] = asyncio.Queue()
+
+    async def read(self, work: Callable[[], _T]) -> _T:
+        """Call a function in a worker thread and return its result. Functions that read the store or files block."""
+        return await to_thread.run_sync(work)
+
+    def index_soon(self, run_id: str) -> None:
+        """Queue a run for indexing."""
+        self._waiting.put_nowait(run_id)
+
+    async def run(self) -> None:
+        """Index queued runs until cancelled. First index all runs, including those of a server that was killed."""
+        await self._try(self.store.index)
+        while True:
+            run_id = await self._waiting.get()
+            # If indexing the run fails, index all runs.
+            if not await self._try(partial(self.store.index_run, run_id)):
+                await asyncio.sleep(1.0)
+                await self._try(self.store.index)
+            self._waiting.task_done()
+
+    async def settle(self, limit_s: float = SETTLE_S) -> None:
+        """Wait at most ``limit_s`` seconds until all queued runs are indexed, so that lists contain runs that just ended."""
+        with anyio.move_on_after(limit_s):
+            await self._waiting.join()
+
+    async def turns(self, conversation: str) -> tuple[PastTurn, ...]:
+        """Return the earlier turns of a conversation. After a restart, they are read from the run folders."""
+        if conversation not in self._turns:
+            self._turns[conversation] = await self.read(lambda: self._stored_turns(conversation))
+        return self._turns[conversation]
+
+    async def add_turn(self, conversation: str, turn: PastTurn) -> None:
+        """Add a turn to a conversation."""
+        self._turns[conversation] = (*await self.turns(conversation), turn)[-MAX_TURNS:]
+        await self._try(partial(touch_conversation, self.store.database, conversation))
+
+    def forget(self, conversation: str) -> None:
+        """Remove the cached turns of a conversation."""
+        self._turns.pop(conversation, None)
+
+    def close(self) -> None:
+        """Close the store."""
+        self.store.close()
+
+    def _stored_turns(self, conversation: str) -> tuple[PastTurn, ...]:
+        turns = []
+        for run_id in runs_of_conversation(self.store.database, conversation, limit=MAX_TURNS):
+            try:
+                trace = read_trace(self.store.folder(run_id))
+            except TraceError:
+                continue
+            if trace.ended is not None and trace.ended.outcome != "cancelled":
+                started = trace.started
+                turn = PastTurn(
+                    instruction=started.instruction,
+                    exchanges=exchanges_of(trace),
+                    reply=trace.ended.text,
+                    start=started.pose.pose(),
+                )
+                turns.append(turn)
+        return tuple(turns)
+
+    async def _try(self, work: Callable[[], object]) -> bool:
+        try:
+            await to_thread.run_sync(work)
+        except (ScopeError, OSError) as error:
+            logger.warning("The index of runs is not up to date: %s", error)
+            return False
+        return True

@@ -1,0 +1,111 @@
+"""Pairs of a planner and a perception backend, which requests select by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR
+from scope_ptz.endpoints.catalogue import served_models
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import ServerFailure
+from scope_ptz.errors import ScopeError, UnknownNameError
+from scope_ptz.factory.cameras import OpenCamera
+from scope_ptz.factory.models import ModelOptions, make_perception, make_planner, perception_note, resolve_models
+from scope_ptz.perception.base import Perception
+from scope_ptz.perception.no_perception import NoPerception
+from scope_ptz.planner.base import Planner
+
+DEFAULT_PAIR = f"{GRAMMAR}+{BUILT_IN_PERCEPTION[0]}"
+
+HealthState = Literal["built_in", "ready", "unreachable", "not_configured"]
+
+
+@dataclass(frozen=True, slots=True)
+class Models:
+    """An open planner and perception backend. ``note`` is a sentence about the built-in perception; empty for a vision model."""
+
+    planner: Planner
+    perception: Perception
+    note: str
+
+    async def close(self) -> None:
+        """Close the planner and the perception backend."""
+        await self.planner.close()
+        await self.perception.close()
+
+
+@dataclass(frozen=True, slots=True)
+class Health:
+    """The name of a model and whether it can be used."""
+
+    name: str
+    state: HealthState
+
+
+class Pairs:
+    """The pairs that requests may name.
+
+    Args:
+        names: The pairs, each ``PLANNER+PERCEPTION`` or one model that does both. The first one is the default.
+    """
+
+    def __init__(self, names: Sequence[str] = ()) -> None:
+        self.names = tuple(dict.fromkeys(names)) or (DEFAULT_PAIR,)
+
+    def check(self, name: str | None) -> str:
+        """Return the name of a pair if it exists; for None, the default pair.
+
+        Raises:
+            UnknownNameError: There is no such pair.
+        """
+        if name is None:
+            return self.names[0]
+        if name not in self.names:
+            raise UnknownNameError("pair", name[:120], self.names)
+        return name
+
+    async def open(self, name: str, opened: OpenCamera, seed: int = 0) -> Models:
+        """Create the planner and the perception backend of a pair for a camera.
+
+        The built-in pair has no perception on a camera without ground truth: tools that need perception fail there.
+
+        Raises:
+            InputError: The pair is not configured correctly.
+        """
+        pair = await resolve_models(_options(name))
+        perception: Perception
+        if opened.scenes is None and name == DEFAULT_PAIR:
+            perception, note = NoPerception("Choose another pair, with a vision model."), ""
+        else:
+            perception, note = make_perception(pair.perception, opened.scenes, seed), perception_note(pair.perception)
+        return Models(make_planner(pair.planner), perception, note)
+
+    async def health(self, name: str) -> tuple[Health, Health]:
+        """Return whether the planner and the perception backend of a pair can be used.
+
+        Raises:
+            UnknownNameError: There is no such pair.
+        """
+        planner, _, perception = self.check(name).partition("+")
+        try:
+            pair = await resolve_models(_options(name))
+        except ScopeError:
+            return Health(planner, "not_configured"), Health(perception or planner, "not_configured")
+        seen = pair.perception.spec.endpoint if pair.perception.spec else None
+        return Health(planner, await _state(pair.planner.endpoint)), Health(perception or planner, await _state(seen))
+
+
+def _options(name: str) -> ModelOptions:
+    return ModelOptions() if name == DEFAULT_PAIR else ModelOptions(pair=name)
+
+
+async def _state(endpoint: Endpoint | None) -> HealthState:
+    if endpoint is None:
+        return "built_in"
+    try:
+        await served_models(endpoint)
+    except ServerFailure:
+        return "unreachable"
+    return "ready"

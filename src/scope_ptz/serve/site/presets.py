@@ -1,0 +1,226 @@
+"""The presets of a camera, with thumbnails and with renaming, which cameras do not offer."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from anyio import to_thread
+
+from scope_ptz.camera.base import Arrival, Camera, Frame, PresetInfo
+from scope_ptz.camera.guard.mounted import MountedCamera
+from scope_ptz.camera.guard.wrapper import innermost, layers
+from scope_ptz.camera.scene_presets import preset_pose
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.errors import CameraError, InputError, UnknownNameError
+from scope_ptz.factory.scenes import open_scene
+from scope_ptz.serve.site.camera_kinds import has_rules, scene_of
+from scope_ptz.serve.site.clients import Client
+from scope_ptz.serve.site.errors import RefusedByCameraError
+from scope_ptz.serve.site.live_picture import encode_jpeg
+from scope_ptz.serve.site.station import Place, Station
+from scope_ptz.simulator.pack import Scene
+
+THUMBNAIL_WIDTH = 320
+
+
+@dataclass(frozen=True, slots=True)
+class KnownPreset:
+    """A preset, its place if the camera can tell it or has been there, and whether there is a picture of it."""
+
+    preset: PresetInfo
+    place: Place | None
+    has_picture: bool
+
+
+class Presets:
+    """The presets of one camera.
+
+    A thumbnail is taken when a preset is saved or visited, and stored in a folder. Thumbnails of a scene's presets are rendered.
+
+    Args:
+        station: The camera.
+        folder: The folder with the thumbnails of all cameras.
+    """
+
+    def __init__(self, station: Station, folder: Path) -> None:
+        self._station, self._folder = station, folder / station.name
+
+    async def known(self) -> list[KnownPreset]:
+        """Return the presets in a stable order, with what is known about them."""
+        camera = await self._station.camera()
+        scene = (await self._station.opened()).scene
+        rendered = set() if scene is None or has_rules(self._station.spec) else {preset.name for preset in scene.file.presets}
+        return [
+            KnownPreset(
+                preset,
+                _place_in_scene(camera, preset.name) or self._station.visited.get(preset.name),
+                preset.name in rendered or self._path(preset.name).is_file(),
+            )
+            for preset in await camera.presets()
+        ]
+
+    async def go_to(self, client: Client, name: str) -> Arrival:
+        """Go to a preset.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+        """
+        async with self._station.commanding(client) as camera:
+            await self._check(camera, name)
+            arrival = await camera.go_to_preset(name)
+            await self._visit(name)
+            await self._store(name, await camera.frame())
+        return arrival
+
+    async def save(self, client: Client, name: str, description: str = "") -> PresetInfo:
+        """Save the current view as a preset. A preset of the same name is replaced."""
+        camera = await self._station.require_control(client)
+        with _detecting_refusals():
+            saved = await camera.save_preset(name, description)
+        await self._visit(name)
+        await self._store(name, await camera.frame())
+        self._station.preset_changes += 1
+        return saved
+
+    async def rename(self, client: Client, name: str, new_name: str) -> PresetInfo:
+        """Rename a preset. The camera goes to the preset and back, because only the device knows its position.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+            InputError: The new name is in use or not permitted.
+            RefusedByCameraError: The camera cannot save or remove this preset.
+        """
+        async with self._station.commanding(client) as camera:
+            presets = {each.name: each for each in await camera.presets()}
+            if name not in presets:
+                raise UnknownNameError("preset", name[:60], presets)
+            if new_name in presets:
+                raise InputError(f"A preset named '{new_name[:60]}' already exists. Choose another name.")
+            before = await self._station.place()
+            await camera.go_to_preset(name)
+            frame = await camera.frame()
+            await self._visit(new_name)
+            try:
+                with _detecting_refusals():
+                    saved = await camera.save_preset(new_name, presets[name].description)
+                    try:
+                        await camera.remove_preset(name)
+                    except CameraError:
+                        await camera.remove_preset(new_name)
+                        raise
+            finally:
+                await self._station.return_to(camera, before)
+            await self._store(new_name, frame)
+            self._forget(name)
+        self._station.preset_changes += 1
+        return saved
+
+    async def remove(self, client: Client, name: str) -> None:
+        """Remove a preset.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+            RefusedByCameraError: The camera cannot remove it.
+        """
+        camera = await self._station.require_control(client)
+        await self._check(camera, name)
+        with _detecting_refusals():
+            await camera.remove_preset(name)
+        self._forget(name)
+        self._station.preset_changes += 1
+
+    async def thumbnail(self, name: str) -> bytes:
+        """Return a small JPEG of a preset's view.
+
+        Raises:
+            UnknownNameError: There is no such preset, or it has no thumbnail yet.
+        """
+        camera = await self._station.camera()
+        await self._check(camera, name)
+        path = self._path(name)
+        if path.is_file():
+            return await to_thread.run_sync(path.read_bytes)
+        scene = (await self._station.opened()).scene
+        if scene is None or name not in {preset.name for preset in scene.file.presets} or has_rules(self._station.spec):
+            raise UnknownNameError("picture of the preset", name[:60], ())
+        return await self._rendered(scene, name)
+
+    async def home_picture(self) -> bytes:
+        """Return a small JPEG of a scene's home view, without opening the camera.
+
+        Raises:
+            UnknownNameError: The camera shows no stored scene, or its rules change its pictures.
+        """
+        name = scene_of(self._station.spec)
+        if name is None or has_rules(self._station.spec):
+            raise UnknownNameError("picture of the camera", self._station.name, ())
+        scene = await to_thread.run_sync(partial(open_scene, name, cache_pictures=True))
+        path = self._path(scene.file.home_preset)
+        if path.is_file():
+            return await to_thread.run_sync(path.read_bytes)
+        return await self._rendered(scene, scene.file.home_preset)
+
+    async def _rendered(self, scene: Scene, name: str) -> bytes:
+        renderer = SimulatedCamera(scene, width=2 * THUMBNAIL_WIDTH, height=2 * THUMBNAIL_WIDTH * 9 // 16)
+        await renderer.go_to_preset(name)
+        return await self._store(name, await renderer.frame())
+
+    async def _visit(self, name: str) -> None:
+        self._station.visited[name] = await self._station.place()
+
+    async def _check(self, camera: Camera, name: str) -> None:
+        names = [preset.name for preset in await camera.presets()]
+        if name not in names:
+            raise UnknownNameError("preset", name[:60], names)
+
+    def _path(self, name: str) -> Path:
+        # Preset names are untrusted input, so only their hashes become part of a path.
+        return self._folder / f"{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:24]}.jpg"
+
+    async def _store(self, name: str, frame: Frame) -> bytes:
+        def write() -> bytes:
+            jpeg = encode_jpeg(frame.image, min(THUMBNAIL_WIDTH, frame.width))
+            try:
+                self._folder.mkdir(parents=True, exist_ok=True)
+                self._path(name).write_bytes(jpeg)
+            except OSError:  # a thumbnail that cannot be stored is taken again
+                pass
+            return jpeg
+
+        return await to_thread.run_sync(write)
+
+    def _forget(self, name: str) -> None:
+        self._station.visited.pop(name, None)
+        self._path(name).unlink(missing_ok=True)
+
+
+def _place_in_scene(camera: Camera, name: str) -> Place | None:
+    """Return the place of a preset of a simulated camera in the coordinates of ``camera``; None for other cameras."""
+    presets = getattr(innermost(camera), "scene_presets", None)
+    if presets is None:
+        return None
+    preset = presets.find(name)
+    pose = preset_pose(preset)
+    for each in layers(camera):
+        if isinstance(each, MountedCamera):
+            pose = each.world_pose(pose)
+    return Place(pose, preset.viewpoint)
+
+
+@contextmanager
+def _detecting_refusals() -> Iterator[None]:
+    """Raise ``RefusedByCameraError`` if the camera refuses to edit a preset, such as its home position.
+
+    A refusal is a plain ``CameraError``; failures of the camera are subclasses, which pass unchanged.
+    """
+    try:
+        yield
+    except CameraError as error:
+        if type(error) is CameraError:
+            raise RefusedByCameraError(str(error)) from error
+        raise

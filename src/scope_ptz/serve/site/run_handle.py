@@ -1,0 +1,93 @@
+"""A run in progress, which any number of clients can follow."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncGenerator
+from dataclasses import dataclass
+
+import anyio
+
+from scope_ptz.agent.records import Called, Decided, Ended, Started
+from scope_ptz.store.request_file import RunRequest
+
+Record = Started | Decided | Called | Ended
+
+
+@dataclass(frozen=True, slots=True)
+class RunEvent:
+    """A record of a run with its number, counted from 0. The stored run gives its records the same numbers."""
+
+    number: int
+    record: Record
+
+
+class RunHandle:
+    """A run in progress.
+
+    Attributes:
+        id: The name of its folder.
+        instruction: The instruction.
+        request: The request: who asked, on which camera, in which conversation.
+        preview: The commands that a dry run would send, one sentence each.
+        records: The records so far.
+        scope: The scope that cancels the run.
+        failure: The error that ended the run, if any.
+        done: Set when no more records will come.
+    """
+
+    def __init__(self, run_id: str, instruction: str, request: RunRequest) -> None:
+        self.id, self.instruction, self.request = run_id, instruction, request
+        self.preview: list[str] = []
+        self.records: list[Record] = []
+        self.scope = anyio.CancelScope()
+        self.failure: Exception | None = None
+        self._changed = anyio.Event()
+        self.done = anyio.Event()
+
+    def add(self, record: Record) -> None:
+        """Add a record and notify all followers."""
+        self.records.append(record)
+        self._wake()
+
+    def finish(self, failure: Exception | None = None) -> None:
+        """Notify all followers that no more records will come."""
+        self.failure = failure
+        self.done.set()
+        self._wake()
+
+    def cancel(self) -> None:
+        """Cancel the run. It ends with the outcome "cancelled"."""
+        self.scope.cancel()
+
+    @property
+    def ended(self) -> Ended | None:
+        """The record of the end of the run; None while it is in progress."""
+        last = self.records[-1] if self.records else None
+        return last if isinstance(last, Ended) else None
+
+    async def started(self) -> None:
+        """Wait for the first record.
+
+        Raises:
+            ScopeError: The run failed or was cancelled before its first record.
+        """
+        while not self.records and not self.done.is_set():
+            await self._changed.wait()
+        if not self.records and self.failure is not None:
+            raise self.failure
+
+    async def events(self, after: int = -1) -> AsyncGenerator[RunEvent]:
+        """Yield the records whose number is above ``after`` as they arrive, until the run ends."""
+        number = after + 1
+        while True:
+            changed, done = self._changed, self.done.is_set()
+            while number < len(self.records):
+                yield RunEvent(number, self.records[number])
+                number += 1
+            if done:
+                return
+            await changed.wait()
+
+    def _wake(self) -> None:
+        changed, self._changed = self._changed, anyio.Event()
+        changed.set()

@@ -1,0 +1,166 @@
+"""Start and execute runs on a station, independently of the clients that follow them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from dataclasses import dataclass
+from typing import Any
+
+from scope_ptz.agent.loop import Agent
+from scope_ptz.agent.records import Budgets, RunLabels
+from scope_ptz.agent.store import RunFolder
+from scope_ptz.agent.trace import TraceWriter
+from scope_ptz.camera.base import Camera
+from scope_ptz.camera.guard.dry_run import DryRunCamera
+from scope_ptz.errors import ScopeError
+from scope_ptz.factory.models import dry_run_note
+from scope_ptz.planner.base import PastTurn, Planner
+from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
+from scope_ptz.serve.site.by_hand import OneCall, call_text
+from scope_ptz.serve.site.clients import Client
+from scope_ptz.serve.site.errors import StoppedError
+from scope_ptz.serve.site.journal import Journal
+from scope_ptz.serve.site.run_handle import Record, RunHandle
+from scope_ptz.serve.site.station import Station
+from scope_ptz.store.request_file import RunRequest
+from scope_ptz.store.rows import RunKind
+
+MAX_FINISHED = 50
+"""Maximum number of ended runs in memory. Older ones are read from their folders."""
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """The work of a run.
+
+    Attributes:
+        instruction: The instruction, or the text of a tool call.
+        pair: The name of the pair of models.
+        conversation: The id of its conversation, if any.
+        kind: Whether it is an instruction, a dry run, or a tool call by a person.
+        planner: A planner that replaces the one of the pair.
+        snapshots: Whether views are stored in addition to the frames that perception reads.
+    """
+
+    instruction: str
+    pair: str
+    conversation: str | None = None
+    kind: RunKind = "instruction"
+    planner: Planner | None = None
+    snapshots: bool = True
+
+    @classmethod
+    def tool_call(cls, name: str, arguments: dict[str, Any], pair: str) -> Task:
+        """Return the task of calling one tool."""
+        text = call_text(name, arguments)[:MAX_INSTRUCTION_CHARS]
+        return cls(text, pair, kind="tool", planner=OneCall(name, arguments), snapshots=False)
+
+
+class Runner:
+    """Executes runs. It holds their state, so that a client can disconnect and reconnect.
+
+    Args:
+        journal: The store of the runs.
+        budgets: The limits of a run.
+    """
+
+    def __init__(self, journal: Journal, budgets: Budgets) -> None:
+        self._journal, self._budgets = journal, budgets
+        self._handles: dict[str, RunHandle] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def find(self, run_id: str) -> RunHandle | None:
+        """Return a run that is in progress or ended recently; None for others."""
+        return self._handles.get(run_id)
+
+    async def start(self, station: Station, task: Task, client: Client) -> RunHandle:
+        """Start a run, and return it after its first record.
+
+        Raises:
+            NotInControlError: Another client controls the camera.
+            BusyError: A run is in progress on the camera.
+            ScopeError: The run failed before its first step.
+        """
+        camera = await station.require_control(client)
+        request = RunRequest(kind=task.kind, camera=station.name, conversation=task.conversation, actor=client.name)
+        folder = RunFolder.create(self._journal.root, task.instruction)
+        handle = RunHandle(folder.path.name, task.instruction, request)
+        # The station is busy from here to the end of `_execute`. There must be no `await` between the check above and this line.
+        station.running = handle
+        self._remember(handle)
+        work = asyncio.create_task(self._execute(station, camera, task, folder, handle))
+        self._tasks.add(work)
+        work.add_done_callback(self._tasks.discard)
+        await handle.started()
+        return handle
+
+    async def close(self) -> None:
+        """Cancel all runs and wait until each has recorded its end."""
+        for handle in self._handles.values():
+            handle.cancel()
+        if self._tasks:
+            await asyncio.wait(self._tasks, timeout=10.0)
+
+    def _remember(self, handle: RunHandle) -> None:
+        self._handles[handle.id] = handle
+        ended = [key for key, each in self._handles.items() if each.done.is_set()]
+        for key in ended[: max(0, len(ended) - MAX_FINISHED)]:
+            del self._handles[key]
+
+    async def _execute(self, station: Station, camera: Camera, task: Task, folder: RunFolder, handle: RunHandle) -> None:
+        failure: Exception | None = None
+        try:
+            with handle.scope:
+                await self._run(station, camera, task, folder, handle)
+        except ScopeError as error:
+            failure = error
+        except Exception as error:  # a bug must not leave the camera busy forever
+            logger.exception("A run on %s failed unexpectedly", station.name)
+            failure = ScopeError(f"The run failed unexpectedly: {type(error).__name__}. The server's log has details.")
+        finally:
+            folder.discard_if_not_started()
+            if handle.records:
+                self._journal.index_soon(handle.id)
+            elif failure is None:
+                failure = StoppedError(station.name)
+            station.running = None
+            station.touch()
+            await station.desk.run_ended()
+            handle.finish(failure)
+
+    async def _run(self, station: Station, camera: Camera, task: Task, folder: RunFolder, handle: RunHandle) -> None:
+        models = await station.models(task.pair)
+        if task.kind == "dry_run":
+            camera = DryRunCamera(camera, handle.preview.append)
+        else:
+            await station.remember()
+            (await station.opened()).record_instruction(f"{handle.request.actor}: {task.instruction}")
+        conversation: tuple[PastTurn, ...] = ()
+        if task.conversation is not None:
+            conversation = await self._journal.turns(task.conversation)
+        handle.request.write(folder.path)
+        note = dry_run_note(models.note) if task.kind == "dry_run" else models.note
+        labels = RunLabels(perception_note=note, seed=0)
+        agent = Agent(
+            task.planner or models.planner,
+            camera,
+            models.perception,
+            folder,
+            budgets=self._budgets,
+            labels=labels,
+            snapshots=task.snapshots,
+        )
+        with TraceWriter(folder.trace) as trace:
+
+            def listen(record: Record) -> None:
+                trace(record)  # first, so that every record that a client sees is stored
+                handle.add(record)
+                if len(handle.records) == 1:
+                    self._journal.index_soon(handle.id)
+
+            result = await agent.run(task.instruction, conversation=conversation, listener=listen)
+        if task.conversation is not None and task.kind == "instruction":
+            await self._journal.add_turn(task.conversation, result.past_turn())

@@ -1,0 +1,256 @@
+"""One camera of the site. It is opened on first use and shared by all clients."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from dataclasses import dataclass
+from time import monotonic
+
+import anyio
+from anyio import to_thread
+
+from scope_ptz.camera.base import Arrival, Camera
+from scope_ptz.camera.guard.wrapper import innermost
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.errors import CameraError, InputError, PackError, ScopeError
+from scope_ptz.factory.cameras import OpenCamera, open_camera
+from scope_ptz.geometry import Pose
+from scope_ptz.serve.site.clients import Client
+from scope_ptz.serve.site.control_desk import LEASE_S, ControlDesk
+from scope_ptz.serve.site.errors import BusyError
+from scope_ptz.serve.site.live_picture import LivePicture
+from scope_ptz.serve.site.pairs import Models, Pairs
+from scope_ptz.serve.site.run_handle import RunHandle
+from scope_ptz.simulator.prefetch import Prefetch
+
+MAX_UNDO = 50
+"""Maximum number of poses that ``undo`` can return to."""
+
+PREFETCH_END_S = 20.0
+"""Seconds that the picture may take that is being read when the camera is closed."""
+
+DRIVE_GROUP_S = 2.0
+"""Drive commands that follow each other within this many seconds are undone together."""
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class IdleReturn:
+    """The preset to which an unused camera returns, and the delay in seconds. An empty name means the home position."""
+
+    after_s: float
+    preset: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A position of a camera: its pose, and its viewpoint if it is simulated."""
+
+    pose: Pose
+    viewpoint: str | None
+
+
+class Station:
+    """One camera of the site, with its control, models and undo history.
+
+    Args:
+        name: The name that requests use.
+        spec: The camera's spec. It must not come from a request.
+        pairs: The pairs of models.
+        actor: The name under which the camera is controlled, for its audit log and for other programs.
+        idle: Where the camera returns when nobody uses it; None to leave it where it is.
+        lease_s: Seconds without a command after which control expires.
+    """
+
+    def __init__(
+        self, name: str, spec: str, pairs: Pairs, *, actor: str, idle: IdleReturn | None = None, lease_s: float = LEASE_S
+    ) -> None:
+        self.name = name
+        self.spec, self._pairs, self._actor, self._idle = spec, pairs, actor, idle
+        self._opened: OpenCamera | None = None
+        self._prefetch: Prefetch | None = None
+        self._opening = asyncio.Lock()
+        self._models: dict[str, Models] = {}
+        self._places: deque[Place] = deque(maxlen=MAX_UNDO)
+        self.problem: ScopeError | None = None
+        """Why the camera could not be opened the last time; None if it was."""
+        self.visited: dict[str, Place] = {}
+        """Where the camera was at presets whose pose it cannot tell, by the preset's name."""
+        self._driven_s = -DRIVE_GROUP_S
+        self._commanded_s = monotonic()
+        self._returned = True
+        self.running: RunHandle | None = None
+        self.desk = ControlDesk(name, lambda: self.running is not None, lease_s=lease_s)
+        self.live = LivePicture(name, self.camera)
+        self.preset_changes = 0
+        """Number of preset changes so far. Watchers compare it to notice changes."""
+
+    async def opened(self) -> OpenCamera:
+        """Return the open camera, which the first call opens.
+
+        Raises:
+            CameraError: The camera fails, does not answer, or is controlled by another program.
+        """
+        async with self._opening:
+            if self._opened is None:
+                try:
+                    self._opened = await open_camera(self.spec, realtime=True, actor=self._actor)
+                except ScopeError as error:
+                    self.problem = error
+                    raise
+                self.problem = None
+                if isinstance(camera := innermost(self._opened.camera), SimulatedCamera):
+                    self._prefetch = camera.prefetch()
+            return self._opened
+
+    async def camera(self) -> Camera:
+        """Return the open camera. Raises as ``opened`` does."""
+        return (await self.opened()).camera
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the camera has been opened."""
+        return self._opened is not None
+
+    @property
+    def open_camera(self) -> OpenCamera | None:
+        """The camera, if it has been opened."""
+        return self._opened
+
+    async def models(self, pair: str) -> Models:
+        """Return the planner and the perception backend of a pair for this camera. The first call creates them."""
+        if pair not in self._models:
+            self._models[pair] = await self._pairs.open(pair, await self.opened())
+        return self._models[pair]
+
+    async def require_control(self, client: Client) -> Camera:
+        """Return the camera for a command of a client, which gets control if nobody has it.
+
+        Raises:
+            NotInControlError: Another client controls the camera.
+            BusyError: A run is in progress.
+        """
+        camera = await self.camera()
+        await self.desk.require(client, camera)
+        if self.running is not None:
+            raise BusyError(self.name, self.running.id)
+        self.touch()
+        return camera
+
+    @asynccontextmanager
+    async def commanding(self, client: Client) -> AsyncIterator[Camera]:
+        """Return a context in which a client moves the camera. ``undo`` returns to the pose before it."""
+        camera = await self.require_control(client)
+        await self.remember()
+        try:
+            yield camera
+        finally:
+            self.touch()
+
+    def touch(self) -> None:
+        """Record that the camera is in use."""
+        self._commanded_s, self._returned = monotonic(), False
+
+    async def remember(self) -> None:
+        """Record the current pose, for ``undo``."""
+        place = await self.place()
+        if not self._places or self._places[-1] != place:
+            self._places.append(place)
+
+    async def drive(self, client: Client, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
+        """Drive the camera at constant velocities until the timeout."""
+        camera = await self.require_control(client)
+        if monotonic() - self._driven_s > DRIVE_GROUP_S:
+            await self.remember()
+        self._driven_s = monotonic()
+        await camera.drive(pan_dps, tilt_dps, zoom_rate, timeout_s=timeout_s)
+
+    async def stop(self) -> None:
+        """Cancel the run in progress, if any, and stop the camera. The caller needs no control."""
+        if self.running is not None:
+            self.running.cancel()
+        if self._opened is not None:
+            await self._opened.camera.stop()
+
+    async def undo(self, client: Client) -> Arrival:
+        """Return to the position before the last command.
+
+        Raises:
+            InputError: There is nothing to undo.
+        """
+        camera = await self.require_control(client)
+        here = await self.place()
+        while self._places and self._places[-1] == here:
+            self._places.pop()
+        if not self._places:
+            raise InputError("There is no earlier view to return to.")
+        return await self.return_to(camera, self._places.pop())
+
+    async def return_to(self, camera: Camera, place: Place) -> Arrival:
+        """Move the camera to an earlier position."""
+        if place.viewpoint is not None and place.viewpoint != await self.viewpoint():
+            await camera.go_to_preset(self._preset_at(place.viewpoint))
+        return await camera.move(place.pose)
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is an earlier view to return to."""
+        return bool(self._places)
+
+    async def watch_idle(self) -> None:
+        """Until cancelled, move the camera to its idle preset whenever nobody uses it."""
+        idle = self._idle
+        while idle is not None:
+            await anyio.sleep(min(1.0, idle.after_s / 2))
+            unused_s = monotonic() - self._commanded_s
+            if self._returned or self.running is not None or not self.is_open or unused_s < idle.after_s:
+                continue
+            self._returned = True
+            try:
+                camera = await self.camera()
+                await (camera.go_to_preset(idle.preset) if idle.preset else camera.go_home())
+            except ScopeError as error:
+                logger.warning("%s is not used and cannot return to its preset: %s", self.name, error)
+
+    def cancel_prefetch(self) -> None:
+        """Read no more pictures in the background."""
+        if self._prefetch is not None:
+            self._prefetch.cancel()
+
+    async def close(self) -> None:
+        """Stop and close the camera, and close the connections to models."""
+        opened, self._opened = self._opened, None
+        for models in self._models.values():
+            await models.close()
+        if opened is not None:
+            await self.desk.clear()
+            with suppress(CameraError):
+                await opened.camera.stop()
+            await opened.aclose()
+        if self._prefetch is not None:
+            # A thread that still computes when the interpreter ends would abort the program.
+            self.cancel_prefetch()
+            with suppress(PackError, OSError):
+                await to_thread.run_sync(self._prefetch.wait, PREFETCH_END_S)
+
+    async def viewpoint(self) -> str | None:
+        """Return the viewpoint of a simulated camera; None for others."""
+        return getattr(innermost(await self.camera()), "viewpoint", None)
+
+    async def place(self) -> Place:
+        """Return the current position of the camera."""
+        return Place(await (await self.camera()).pose(), await self.viewpoint())
+
+    def _preset_at(self, viewpoint: str) -> str:
+        scene = self._opened.scene if self._opened is not None else None
+        for preset in scene.file.presets if scene is not None else ():
+            if preset.viewpoint == viewpoint:
+                return preset.name
+        raise InputError(
+            f"The earlier view was taken from the viewpoint '{viewpoint}', which no preset uses, so the camera cannot return there."
+        )

@@ -1,0 +1,163 @@
+"""A cache of decoded pictures on disk, so that later programs need not decode them again.
+
+A sheet of decoded pictures is a sparse file that is mapped into memory, so only the parts that a view samples are read. A list
+next to it contains the pictures that are complete. The pictures of the pack are always verified by their checksums.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import mmap
+import os
+import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO, Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from PIL import __version__ as pillow_version
+
+try:
+    import fcntl
+except ImportError:  # Windows: files are not sparse by default, and mapped files cannot be removed
+    fcntl = None  # type: ignore[assignment]
+
+MAX_BYTES = 1_500_000_000
+"""Limit on the disk space of all sheets, in bytes. The least recently used sheets are removed."""
+
+SPARE_BYTES = 1_000_000_000
+"""Minimum free disk space in bytes. If there is less, nothing is cached."""
+
+_SHEET, _LIST, _BLOB = ".sheet", ".list", ".blob"
+_LINE = re.compile(r"(\d{1,9}) (\d{1,9})")
+_BLOCK_BYTES = 512  # unit of ``st_blocks``
+
+
+class PictureCache:
+    """A folder of decoded pictures.
+
+    Args:
+        folder: The folder, which is created on demand. If it cannot be written, nothing is cached.
+        version: Version of the code that fills sheets. Sheets of another version are not used.
+    """
+
+    def __init__(self, folder: Path, version: str) -> None:
+        self._folder = folder
+        self._version = f"{version} {cv2.__version__} {pillow_version} {np.dtype(np.uint16).str}"
+
+    def name(self, *parts: object) -> str:
+        """Return a file name for content that is determined by ``parts``."""
+        return hashlib.sha256(repr((self._version, parts)).encode()).hexdigest()[:32]
+
+    def sheet(self, name: str, shape: tuple[int, ...], dtype: type[np.generic]) -> CachedSheet | None:
+        """Return a sheet, which is empty if it is new; None if it cannot be cached."""
+        size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+        path = self._folder / (name + _SHEET)
+        try:
+            if not self._has_room(path, size):
+                return None
+            return CachedSheet(path, size, shape, dtype)
+        except OSError:
+            return None
+
+    def blob(self, name: str) -> bytes | None:
+        """Return the content that ``store_blob`` stored under a name, or None."""
+        path = self._folder / (name + _BLOB)
+        try:
+            content = path.read_bytes()
+            os.utime(path)
+        except OSError:
+            return None
+        digest, content = content[:32], content[32:]
+        return content if hashlib.sha256(content).digest() == digest else None
+
+    def store_blob(self, name: str, content: bytes) -> None:
+        """Store bytes under a name."""
+        path = self._folder / (name + _BLOB)
+        new = path.with_suffix(f".{os.getpid()}.new")
+        with suppress(OSError):
+            if self._has_room(path, len(content)):
+                new.write_bytes(hashlib.sha256(content).digest() + content)
+                new.replace(path)
+
+    def _has_room(self, path: Path, size: int) -> bool:
+        """Create the folder, remove old files, and return whether a file of this size can be written."""
+        if fcntl is None:
+            return False
+        self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if path.exists():
+            size = max(0, size - path.stat().st_blocks * _BLOCK_BYTES)
+        else:
+            self._remove_oldest()
+        # Writing to a mapped file on a full disk ends the program, so there must be room for the whole sheet.
+        return shutil.disk_usage(self._folder).free >= size + SPARE_BYTES
+
+    def _remove_oldest(self) -> None:
+        entries = [(path, path.stat()) for path in self._folder.iterdir() if path.suffix in (_SHEET, _BLOB)]
+        total = sum(entry.st_blocks * _BLOCK_BYTES for _, entry in entries)
+        for path, entry in sorted(entries, key=lambda pair: pair[1].st_mtime_ns):
+            if total <= MAX_BYTES:
+                return
+            path.with_suffix(_LIST).unlink(missing_ok=True)
+            path.unlink(missing_ok=True)
+            total -= entry.st_blocks * _BLOCK_BYTES
+
+
+class CachedSheet:
+    """A sheet in a file. Several programs may fill and read it at the same time.
+
+    Attributes:
+        array: The pixels. Parts that no program has filled are zero.
+    """
+
+    def __init__(self, path: Path, size: int, shape: tuple[int, ...], dtype: type[np.generic]) -> None:
+        self._list = path.with_suffix(_LIST)
+        with path.open("a+b") as file, self._locked() as listed:
+            if os.fstat(file.fileno()).st_size != size:
+                listed.truncate(0)
+                file.truncate(size)
+            os.utime(path)
+            self._memory = mmap.mmap(file.fileno(), size)
+        self._row_bytes = size // shape[0]
+        self._filling: IO[str] | None = None
+        self.array: NDArray[Any] = np.frombuffer(self._memory, dtype).reshape(shape)
+
+    def complete(self) -> set[tuple[int, int]]:
+        """Return the pictures that are complete: (index of the picture, index of the scale)."""
+        try:
+            *lines, _ = self._list.read_text(encoding="ascii").split("\n")  # the last line may be incomplete
+        except (OSError, ValueError):
+            return set()
+        return {(int(match[1]), int(match[2])) for line in lines if (match := _LINE.fullmatch(line))}
+
+    @contextmanager
+    def filling(self) -> Iterator[None]:
+        """Prevent other programs from filling the sheet inside this context. It may be nested, but not used in several threads."""
+        if self._filling is not None:
+            yield
+            return
+        with self._locked() as listed:
+            self._filling = listed
+            try:
+                yield
+            finally:
+                self._filling = None
+
+    def completed(self, picture: int, scale: int, rows: tuple[int, int]) -> None:
+        """Record that a picture is complete, after flushing its rows to disk. Call this inside ``filling``."""
+        start = rows[0] * self._row_bytes // mmap.ALLOCATIONGRANULARITY * mmap.ALLOCATIONGRANULARITY
+        self._memory.flush(start, min(rows[1] * self._row_bytes, len(self._memory)) - start)
+        if self._filling is not None:
+            self._filling.write(f"{picture} {scale}\n")
+            self._filling.flush()
+
+    @contextmanager
+    def _locked(self) -> Iterator[IO[str]]:
+        """Open the list with an exclusive lock, which is released when the list is closed."""
+        with self._list.open("a", encoding="ascii") as listed:
+            fcntl.flock(listed, fcntl.LOCK_EX)
+            yield listed

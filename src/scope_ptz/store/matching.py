@@ -1,0 +1,34 @@
+"""Split texts into words as the full-text index does, ignoring case and accents."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+
+def words_of(text: str) -> list[str]:
+    """Return the words of a text in lower case, without accents."""
+    return re.findall(r"[^\W_]+", _plain(text))
+
+
+def has_words(instruction: str, answer: str, words: str) -> int:
+    """Return 1 if two texts contain all words, otherwise 0. It is an SQL function.
+
+    Args:
+        instruction: The first text.
+        answer: The second text.
+        words: The words, separated by spaces. The last one may be the beginning of a word.
+    """
+    text = _plain(f"{instruction}\n{answer}")
+    *whole, beginning = words.split(" ")
+    # A substring search rules out most texts. It is ten times as fast as splitting them into words.
+    if beginning not in text or not all(word in text for word in whole):
+        return 0
+    found = set(re.findall(r"[^\W_]+", text))
+    return int(found.issuperset(whole) and any(word.startswith(beginning) for word in found))
+
+
+def _plain(text: str) -> str:
+    if not text.isascii():
+        text = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
+    return text.lower()

@@ -1,0 +1,42 @@
+"""Limit the memory use of a program that creates and releases many pictures in several threads."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+
+import anyio
+
+from scope_ptz.simulator.sheets.memory import release_free_memory
+
+RELEASE_EVERY_S = 60.0
+
+_M_ARENA_MAX = -8  # of mallopt in the GNU C library
+
+
+def use_one_heap() -> bool:
+    """Make all threads of this program share one heap. Call it before threads are started.
+
+    The GNU C library gives each thread its own heap. Short-lived pictures fragment these heaps, so the memory use of a camera with
+    streams grows by about 100 MB within minutes. One heap takes no more processor time. With another C library, and on
+    other systems, nothing changes.
+
+    Returns:
+        Whether the setting was accepted.
+    """
+    if sys.platform != "linux":
+        return False
+    try:
+        return bool(ctypes.CDLL(None).mallopt(_M_ARENA_MAX, 1))
+    except (OSError, AttributeError):  # a C library without this setting
+        return False
+
+
+async def release_memory_regularly(every_s: float = RELEASE_EVERY_S) -> None:
+    """Return freed memory to the operating system again and again, until cancelled.
+
+    Pictures of different sizes fragment the heap, so its size would otherwise grow by 1 to 2% in ten minutes of streaming.
+    """
+    while True:
+        await anyio.sleep(every_s)
+        await anyio.to_thread.run_sync(release_free_memory)

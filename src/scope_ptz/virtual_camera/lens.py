@@ -1,0 +1,131 @@
+"""Focus and iris of the virtual device, and their effect on its picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+SHARP_FOCUS = 0.62
+"""The focus position at which the scene is sharp. It does not depend on the zoom, because the lens is parfocal."""
+
+AUTO_IRIS = 0.5
+"""The iris opening for correct exposure of the scene."""
+
+TRAVEL_S = 3.0
+"""Time in seconds in which the focus moves from one end of its range to the other."""
+
+_BLUR_PX = 12.0  # standard deviation of the blur for a defocus of the whole range, at 1x in a picture 1280 pixels wide
+_MAX_BLUR_PX = 8.0
+_STOPS = 4.0  # stops (factors of two) of light from the closed to the open iris
+_GAMMA = 2.2
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """Modes, the iris, and the motion of the focus: start, speed (shares of the range per second) and end."""
+
+    autofocus: bool = True
+    autoiris: bool = True
+    iris: float = AUTO_IRIS
+    start: float = SHARP_FOCUS
+    end: float = SHARP_FOCUS
+    speed: float = 0.0
+    started_s: float = 0.0
+
+
+class VirtualLens:
+    """Focus and iris. Positions are shares of their ranges: 0 is near or closed, 1 is far or open.
+
+    Commands come from one thread. ``expose`` may run in another one at the same time.
+
+    Args:
+        now_s: A function that returns the time of the motors in seconds.
+    """
+
+    def __init__(self, now_s: Callable[[], float]) -> None:
+        self._now_s, self._state = now_s, _State()
+
+    @property
+    def autofocus(self) -> bool:
+        return self._state.autofocus
+
+    @property
+    def autoiris(self) -> bool:
+        return self._state.autoiris
+
+    @property
+    def iris(self) -> float:
+        return AUTO_IRIS if self._state.autoiris else self._state.iris
+
+    @property
+    def focus(self) -> float:
+        """The current position of the focus."""
+        state = self._state
+        way = state.end - state.start
+        done = state.speed * (self._now_s() - state.started_s)
+        return state.end if done >= abs(way) else state.start + math.copysign(done, way)
+
+    @property
+    def focusing(self) -> bool:
+        """Whether the focus is moving."""
+        return self.focus != self._state.end
+
+    def set_autofocus(self, *, on: bool) -> None:
+        """Turn autofocus on, which focuses immediately, or off, which keeps the current focus."""
+        if on:
+            self._travel(SHARP_FOCUS, 1 / TRAVEL_S, autofocus=True)
+        else:
+            self.stop_focus()
+
+    def move_focus(self, position: float) -> None:
+        """Move the focus to a position within its range. It turns autofocus off."""
+        self._travel(_share(position), 1 / TRAVEL_S)
+
+    def drive_focus(self, speed: float) -> None:
+        """Move the focus to an end of its range, at a share of its top speed from -1 to 1. It turns autofocus off."""
+        if not speed:
+            self.stop_focus()
+        else:
+            self._travel(1.0 if speed > 0 else 0.0, min(abs(speed), 1.0) / TRAVEL_S)
+
+    def stop_focus(self) -> None:
+        """Stop the focus. This turns autofocus off."""
+        self._travel(self.focus, 0.0)
+
+    def set_autoiris(self, *, on: bool) -> None:
+        """Turn the automatic iris on, or off, which keeps the current opening."""
+        self._state = replace(self._state, autoiris=on, iris=self.iris)
+
+    def set_iris(self, opening: float) -> None:
+        """Set the iris within its range. It turns the automatic iris off."""
+        self._state = replace(self._state, autoiris=False, iris=_share(opening))
+
+    def through(self, image: NDArray[np.uint8], zoom: float) -> NDArray[np.uint8]:
+        """Apply the effect of the lens to a picture: blur it if it is out of focus, and darken or brighten it with the iris.
+
+        Args:
+            image: Array of shape ``(H, W, 3)``, uint8. It is returned unchanged if the lens is in focus with an automatic iris.
+            zoom: The magnification. The depth of field decreases with it.
+        """
+        width = image.shape[1]
+        blur_px = min(_BLUR_PX * abs(self.focus - SHARP_FOCUS) * math.sqrt(zoom), _MAX_BLUR_PX) * width / 1280
+        if blur_px > 0.2:
+            image = np.asarray(cv2.GaussianBlur(image, (0, 0), blur_px), np.uint8)
+        stops = _STOPS * (self.iris - AUTO_IRIS)
+        if stops:
+            light = (np.arange(256) / 255.0) ** _GAMMA * 2.0**stops
+            image = np.asarray(cv2.LUT(image, np.round(255 * np.clip(light, 0, 1) ** (1 / _GAMMA)).astype(np.uint8)), np.uint8)
+        return image
+
+    def _travel(self, end: float, speed: float, *, autofocus: bool = False) -> None:
+        here, now_s = self.focus, self._now_s()
+        self._state = replace(self._state, autofocus=autofocus, start=here, end=end, speed=speed, started_s=now_s)
+
+
+def _share(value: float) -> float:
+    return min(max(value, 0.0), 1.0)

@@ -1,0 +1,30 @@
+"""The pace of a stream that is slower than the camera's picture."""
+
+from __future__ import annotations
+
+
+class Pace:
+    """Selects frames of the live picture so that a stream keeps its own rate.
+
+    Args:
+        source_hz: Frames per second of the live picture.
+        rate_hz: Maximum number of frames per second of the stream; 0 for every frame.
+    """
+
+    def __init__(self, source_hz: float, rate_hz: float) -> None:
+        self._period_s = 1 / rate_hz if rate_hz else 0.0
+        self._early_s = 0.5 / source_hz
+        self._due_s = 0.0
+
+    def takes(self, taken_s: float) -> bool:
+        """Return whether the frame that was taken at a time belongs in the stream. Call it once for each frame, in order.
+
+        A frame may be up to half a frame interval early. Otherwise, a rate that does not divide the camera's rate would be reduced.
+        """
+        if not self._period_s:
+            return True
+        if taken_s < self._due_s - self._early_s:
+            return False
+        on_time = taken_s < self._due_s + self._period_s
+        self._due_s = (self._due_s if on_time else taken_s) + self._period_s
+        return True

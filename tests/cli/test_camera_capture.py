@@ -1,0 +1,80 @@
+"""``scope camera capture``: invalid options, and the use of a twin as a scene in other commands."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.factory.cameras.virtual import VirtualCameraOptions, make_devices
+from tests.cli.conftest import SCENE, Scope
+
+CAMERA = f"sim:{SCENE}?width=320&height=180"
+SMALL = ("--pan", "-10:10", "--tilt", "-10:-8", "--close-ups", "0")
+
+
+@pytest.mark.parametrize(("options", "message"), [
+    (["--name", "My Yard"], "lower-case letters"),
+    (["--name", "yard-v3"], "name of a variation"),
+    ([], "needs a name"),
+    (["--name", SCENE], "already exists"),
+    (["--name", "yard", "--pan", "left"], "--pan must be FROM:TO"),
+    (["--name", "yard", "--tilt", "50:60"], "cannot be captured from"),
+    (["--name", "yard", "--zoom", "99"], "A zoom to capture"),
+    (["--name", "yard", "--overlap", "0"], "overlap"),
+])  # fmt: skip
+def test_wrong_options_end_in_one_line(scope: Scope, scenes: Path, options: list[str], message: str) -> None:
+    done = scope("camera", "capture", CAMERA, "--to", str(scenes), *options)
+    assert (done.code, done.out) == (2, "")
+    assert message in done.err
+    assert len(done.err.splitlines()) == 1
+    assert not any(path.name.startswith(".yard") for path in scenes.iterdir())
+
+
+def test_without_a_folder_of_scenes_there_is_nowhere_to_write(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SCOPE_SCENES_DIR")
+    done = scope("camera", "capture", "sim:highway-works", "--name", "yard")
+    assert (done.code, done.out) == (2, "")
+    assert "--to" in done.err
+
+
+@pytest.mark.full
+def test_a_twin_works_as_a_scene(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "scenes"
+    done = scope("camera", "capture", CAMERA, "--to", str(folder), "--name", "my-yard", *SMALL)
+    assert done.code == 0, done.err
+    assert "my-yard" in done.out
+    assert "no ground truth" in done.out
+    monkeypatch.setenv("SCOPE_SCENES_DIR", str(folder))
+    assert "my-yard" in scope("scene", "list").out
+    shown = scope("scene", "show", "my-yard", "--contact-sheet", str(tmp_path / "sheet.png"))
+    assert (shown.code, "no ground truth" in shown.out) == (0, True)
+    assert "no ground truth" in scope("scene", "show", "my-yard", "--all", "--contact-sheet", str(tmp_path / "sheet.png")).out
+    view = tmp_path / "view.png"
+    assert scope("scene", "view", "my-yard", "--pan", "3", "-o", str(view)).code == 0
+    assert view.stat().st_size > 1000
+    assert scope("ask", "pan right 5 degrees", "--scene", "my-yard", "--fast").code == 0
+    asked = scope("ask", "how many balls are there?", "--scene", "my-yard", "--fast", "--json")
+    assert "captured from a camera and has no ground truth" in asked.out + asked.err
+    final = json.loads(asked.out.splitlines()[-1])
+    assert "I can see 0" not in json.dumps(final)
+    (served,) = make_devices(VirtualCameraOptions(scenes=("my-yard",)), [])
+    assert served.limits.max_pan_deg == 10.0
+    assert served.expose(320, 180).image.std() > 10
+    built = scope("bench", "build", "--scene", "my-yard", "--out", str(tmp_path / "tasks.jsonl"))
+    assert (built.code, "has no ground truth" in built.err) == (2, True)
+    assert not (tmp_path / "tasks.jsonl").exists()
+    again = scope("camera", "capture", CAMERA, "--to", str(folder), "--name", "my-yard", *SMALL)
+    assert (again.code, "already exists" in again.err) == (2, True)
+
+
+def test_the_camera_s_name_in_the_site_file_is_the_default(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    rules = "{keep_out: [{name: window, pan_deg: [0, 5], tilt_deg: [-12, -6]}]}"
+    (tmp_path / "scope.yaml").write_text(f"cameras: {{yard-gate: {{camera: '{CAMERA}', rules: {rules}}}}}")
+    done = scope("camera", "capture", "yard-gate", "--to", str(tmp_path / "scenes"), *SMALL, "--json")
+    assert done.code == 0, done.err
+    assert done.json["name"] == "yard-gate"
+    assert done.json["unseen_share"] > 0.005
+    assert Path(done.json["folder"]) == tmp_path / "scenes" / "yard-gate"

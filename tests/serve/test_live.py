@@ -1,0 +1,137 @@
+"""Live video: skipped frames, acknowledgements, state, and failures of clients and cameras."""
+
+from __future__ import annotations
+
+import json
+import re
+import time
+from typing import Any
+
+import anyio
+import cv2
+import httpx2
+import numpy as np
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+
+from scope_ptz.serve.site.live_picture import LivePicture
+from tests.serve.serving import CAMERA, Served
+
+
+def watch(served: Served) -> ClientConnection:
+    return connect(f"ws://127.0.0.1:{served.port}/api/v1/cameras/{CAMERA}/live?width=320", proxy=None, max_size=2**24)
+
+
+def frame_of(socket: ClientConnection) -> tuple[dict[str, Any], bytes]:
+    """Return the metadata and the JPEG of the next frame, without acknowledging it."""
+    while True:
+        message = socket.recv(timeout=30)
+        if isinstance(message, bytes):
+            length = int.from_bytes(message[:4], "big")
+            return json.loads(message[4 : 4 + length]), message[4 + length :]
+
+
+def state_of(socket: ClientConnection) -> dict[str, Any]:
+    while True:
+        message = socket.recv(timeout=30)
+        if isinstance(message, str):
+            state: dict[str, Any] = json.loads(message)["state"]
+            return state
+        socket.send("drawn")
+
+
+def test_frames_come_one_after_the_other_with_their_pose(client: httpx2.Client, served: Served) -> None:
+    with watch(served) as socket:
+        numbers = []
+        for _ in range(10):
+            facts, jpeg = frame_of(socket)
+            numbers.append(facts["number"])
+            picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+            assert picture is not None and picture.shape[1::-1] == (320, 180)
+            assert set(facts["pose"]) == {"pan_deg", "tilt_deg", "zoom"}
+            socket.send("drawn")
+    assert numbers == sorted(set(numbers))
+
+
+def test_a_slow_client_gets_the_newest_frame_and_no_queue(client: httpx2.Client, served: Served) -> None:
+    with watch(served) as socket:
+        first, _ = frame_of(socket)
+        time.sleep(1.0)
+        with pytest.raises(TimeoutError):
+            while isinstance(socket.recv(timeout=0.2), str):
+                pass
+        socket.send("drawn")
+        following, _ = frame_of(socket)
+        socket.send("drawn")
+        assert following["number"] >= first["number"] + 5
+        assert time.time() - following["taken"] < 1.0
+
+
+def test_the_state_comes_with_the_picture(client: httpx2.Client, served: Served) -> None:
+    with watch(served) as socket:
+        assert state_of(socket)["run"] is None
+        run = client.post("/runs", json={"camera": CAMERA, "instruction": "track the ball for 300 seconds"}).json()["id"]
+        while (state := state_of(socket))["run"] is None:
+            pass
+        assert state["run"] == run
+        client.post(f"/cameras/{CAMERA}/stop")
+        while (state := state_of(socket))["run"] is not None:
+            pass
+        assert state["can_undo"] is True
+
+
+def test_frames_are_taken_only_while_somebody_watches(
+    client: httpx2.Client, served: Served, caplog: pytest.LogCaptureFixture
+) -> None:
+    live = served.site.stations[CAMERA].live
+    with watch(served) as socket:
+        frame_of(socket)
+        assert live.watchers == 1
+    deadline = time.monotonic() + 20
+    while live.watchers:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    assert not [record for record in caplog.records if record.exc_info], "a client that leaves is no error"
+
+
+def test_an_unknown_camera_is_refused(served: Served) -> None:
+    with pytest.raises((ConnectionClosed, Exception), match="403"):
+        connect(f"ws://127.0.0.1:{served.port}/api/v1/cameras/nothing/live", proxy=None)
+
+
+def test_motion_jpeg_is_not_compressed_and_ends(client: httpx2.Client) -> None:
+    with client.stream("GET", f"/cameras/{CAMERA}/live.mjpeg", params={"frames": 3, "width": 160}) as response:
+        assert response.headers["content-encoding"] == "identity"
+        boundary = re.search(r"boundary=(\w+)", response.headers["content-type"])
+        content = b"".join(response.iter_raw())
+    assert boundary is not None
+    parts = content.split(b"--" + boundary.group(1).encode())[1:-1]
+    assert len(parts) == 3
+    for part in parts:
+        jpeg = part.partition(b"\r\n\r\n")[2]
+        picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+        assert picture is not None and picture.shape[1] == 160
+
+
+@pytest.mark.anyio
+async def test_a_camera_failure_is_reported_and_retried(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scope_ptz.serve.site.live_picture.RETRY_S", 0.01)
+    attempts, often = 0, anyio.Event()
+
+    async def broken() -> Any:
+        nonlocal attempts
+        attempts += 1
+        if attempts == 3:
+            often.set()
+        raise RuntimeError("the cable is cut")
+
+    live = LivePicture("yard", broken)
+    async with anyio.create_task_group() as group:
+        group.start_soon(live.run)
+        async with live.watch() as frames:
+            assert await anext(frames) is None
+            assert live.problem == "the cable is cut"
+            with anyio.fail_after(20):
+                await often.wait()
+        group.cancel_scope.cancel()

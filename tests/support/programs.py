@@ -1,0 +1,21 @@
+"""Programs that a test starts."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+
+@contextmanager
+def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[str]]:
+    """Start a program whose pipes carry text, and kill it at the end if it still runs.
+
+    ``subprocess.Popen`` as a context waits for its program, so a failed assertion inside it would wait for a server forever.
+    """
+    with subprocess.Popen(command, text=True, **options) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
