@@ -44,8 +44,7 @@ def watched(site: str, browser: Browser) -> Iterator[Watched]:
 
 
 @pytest.fixture
-def page(watched: Watched, api: httpx2.Client, scene: str) -> Page:
-    api.patch(f"/cameras/{scene}/time", json={"playing": True, "speed": 1}).raise_for_status()
+def page(watched: Watched) -> Page:
     return watched.open()
 
 
