@@ -71,27 +71,36 @@ def _sharpened_depth(
     viewpoint: Viewpoint, projection: Projection, part: Place, numbers: NDArray[np.uint16], needed: NDArray[np.bool_] | None
 ) -> NDArray[np.float32]:
     where = view_map(viewpoint, viewpoint.depth_atlas, projection, part)
+    # Both layers are read at the same positions, which are rounded to whole pixels once.
+    where, _ = cv2.convertMaps(where, None, cv2.CV_16SC2, nninterpolation=True)
     metres: NDArray[np.float32] = np.take(
         viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST)
     )
     viewpoint.owner_atlas.need(0)
     owners = cv2.remap(viewpoint.owner_atlas.sheet, where, None, cv2.INTER_NEAREST)
     same = owners == numbers
-    ys, xs = np.nonzero(~same if needed is None else needed & ~same)
+    wrong = ~same if needed is None else needed & ~same
+    pixels = np.flatnonzero(wrong)
+    if not len(pixels):
+        return metres
+    # Flat indices, because NumPy reads and writes them faster than pairs.
+    height, width = metres.shape
     texel_px = _texel_px(viewpoint, projection)
-    refined = metres.copy()
-    last_row, last_column = metres.shape[0] - 1, metres.shape[1] - 1
+    refined, found, owned = metres.copy().ravel(), same.ravel(), owners.ravel()
+    wanted, sources = numbers[wrong], metres.ravel()
+    ys, xs = np.divmod(pixels, width)
     for reach in SEARCH_RADII_TEXELS:
         for dx, dy in _NEIGHBOURS:
-            if not len(ys):
-                return refined
-            y = np.minimum(np.maximum(ys + round(dy * reach * texel_px), 0), last_row)
-            x = np.minimum(np.maximum(xs + round(dx * reach * texel_px), 0), last_column)
-            matches = same[y, x] & (owners[y, x] == numbers[ys, xs])
-            refined[ys[matches], xs[matches]] = metres[y[matches], x[matches]]
-            unmatched = ~matches
-            ys, xs = ys[unmatched], xs[unmatched]
-    return refined
+            y = np.minimum(np.maximum(ys + round(dy * reach * texel_px), 0), height - 1)
+            x = np.minimum(np.maximum(xs + round(dx * reach * texel_px), 0), width - 1)
+            near = y * width + x
+            matches = found[near] & (owned[near] == wanted)
+            refined[pixels[matches]] = sources[near[matches]]
+            others = np.flatnonzero(~matches)
+            if not len(others):
+                return refined.reshape(height, width)
+            pixels, ys, xs, wanted = pixels[others], ys[others], xs[others], wanted[others]
+    return refined.reshape(height, width)
 
 
 def _texel_px(viewpoint: Viewpoint, projection: Projection) -> float:
