@@ -158,6 +158,33 @@ def test_second_tab_joins_and_stops(page: Page, watched: Watched) -> None:
         expect(each.locator(".turn .outcome")).to_have_text("Cancelled")
 
 
+def test_an_instruction_sent_during_a_run_is_kept(page: Page) -> None:
+    text = page.get_by_label("Instruction", exact=True)
+    text.fill("keep panning right in 5 degree steps until you see a tram")
+    text.press("Enter")
+    expect(page.locator(".turn .step").first).to_be_visible()
+    text.fill("zoom in 2x")
+    text.press("Enter")
+    expect(page.locator(".notice")).to_contain_text("An instruction is in progress.")
+    expect(text).to_have_value("zoom in 2x")
+    page.get_by_role("button", name="Cancel the one in progress").click()
+    expect(page.locator(".turn .outcome")).to_have_text("Cancelled")
+    text.press("Enter")
+    expect(page.locator(".turn .said").last).to_have_text("zoom in 2x")
+    expect(page.locator(".turn .answer p").last).to_be_visible()
+
+
+def test_an_instruction_sent_early_waits_for_the_camera(watched: Watched) -> None:
+    with watched.context.new_page() as opened:
+        opened.route("**/api/v1/cameras/*", lambda route: (opened.wait_for_timeout(1000), route.continue_()))
+        opened.goto(watched.url)
+        text = opened.get_by_label("Instruction", exact=True)
+        text.fill("zoom in 2x")
+        text.press("Enter")
+        expect(opened.locator(".turn .said")).to_have_text("zoom in 2x")
+        expect(text).to_have_value("")
+
+
 def test_control_is_handed_over(page: Page, watched: Watched) -> None:
     other = watched.open()
     other.get_by_role("button", name="Ask for control").click()

@@ -23,6 +23,7 @@ export function makePanel() {
     h("div", { className: "row head" }, pair, health, h("span", { className: "space" }), fresh), thread, form);
   const shown = new Map(); // turns by the id of their run
   let conversation = null, restores = 0;
+  let ready = false, early = false; // whether the conversation is on the page; whether an instruction was sent before that
 
   text.addEventListener("keydown", (event) => {
     if (event.key === "Enter" && !event.shiftKey && !event.isComposing) { event.preventDefault(); submit(); }
@@ -58,7 +59,12 @@ export function makePanel() {
 
   async function submit() {
     const instruction = text.value.trim();
-    if (!instruction || shared.running) return;
+    if (!instruction) return;
+    if (!ready) { early = true; return; }
+    if (shared.running) {
+      notify("An instruction is in progress. Send this one when it has ended.", ["Cancel the one in progress", stop]);
+      return;
+    }
     text.value = "";
     await start(instruction, first.checked);
   }
@@ -129,6 +135,8 @@ export function makePanel() {
     }
     if (!thread.childNodes.length) thread.replaceChildren(suggestions());
     if (shared.running) attach(shared.running);
+    ready = true;
+    if (early) { early = false; submit(); }
   }
 
   async function showHealth() {
@@ -148,7 +156,7 @@ export function makePanel() {
   on("state", (state) => {
     if (described !== state.name) { described = state.name; first.checked = !state.simulated; restore(); }
   });
-  on("camera", () => { described = ""; busy(null); clear(); });
+  on("camera", () => { described = ""; ready = early = false; busy(null); clear(); });
   on("unavailable", () => {
     if (!described) thread.replaceChildren(h("p", { className: "empty" }, "Its conversation opens here when the camera answers."));
   });
