@@ -39,6 +39,31 @@ def test_without_a_folder_of_scenes_there_is_nowhere_to_write(scope: Scope, monk
     assert "--to" in done.err
 
 
+def test_a_dry_run_prints_the_plan_and_writes_nothing(scope: Scope, tmp_path: Path) -> None:
+    arguments = (
+        "camera",
+        "capture",
+        CAMERA,
+        "--to",
+        str(tmp_path / "scenes"),
+        "--name",
+        "my-yard",
+        *SMALL,
+        "--zoom",
+        "3",
+        "--dry-run",
+    )
+    done = scope(*arguments)
+    assert done.code == 0, done.err
+    assert "pan -10 to 10 and tilt -10 to -8 degrees" in done.out
+    assert "pictures at 3x" in done.out
+    assert "the camera did not move" in done.out
+    plan = scope(*arguments, "--json").json
+    assert [sweep["zoom"] for sweep in plan["sweeps"]] == [1.0, 3.0]
+    assert plan["sweeps"][1]["pictures"] > plan["sweeps"][0]["pictures"] >= 1
+    assert not (tmp_path / "scenes").exists()
+
+
 @pytest.mark.full
 def test_a_twin_works_as_a_scene(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "scenes"

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import httpx2
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.console.conftest import Watched
 
@@ -175,8 +175,12 @@ def test_an_instruction_sent_during_a_run_is_kept(page: Page) -> None:
 
 
 def test_an_instruction_sent_early_waits_for_the_camera(watched: Watched) -> None:
+    def delay(route: Route) -> None:
+        opened.wait_for_timeout(1000)
+        route.continue_()
+
     with watched.context.new_page() as opened:
-        opened.route("**/api/v1/cameras/*", lambda route: (opened.wait_for_timeout(1000), route.continue_()))
+        opened.route("**/api/v1/cameras/*", delay)
         opened.goto(watched.url)
         text = opened.get_by_label("Instruction", exact=True)
         text.fill("zoom in 2x")

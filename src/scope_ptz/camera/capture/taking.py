@@ -107,6 +107,33 @@ def limits_of(settings: CaptureSettings) -> Limits:
     )  # fmt: skip
 
 
+@dataclass(frozen=True, slots=True)
+class PlannedSweep:
+    """A sweep of a capture.
+
+    Attributes:
+        zoom: Its magnification.
+        pictures: Its number of pictures.
+    """
+
+    zoom: float
+    pictures: int
+
+
+def planned_sweeps(camera: Camera, settings: CaptureSettings) -> list[PlannedSweep]:
+    """Return the sweeps of a capture, in their order. Close-ups are not included, because they depend on the pictures."""
+    limits = limits_of(settings)
+    zooms = (limits.min_zoom, *settings.zooms)
+    return [PlannedSweep(zoom, len(plan_poses(camera.info, limits, zoom, settings.overlap))) for zoom in zooms]
+
+
+def close_up_zoom(settings: CaptureSettings) -> float | None:
+    """Return the magnification of close-ups; None if the capture has none."""
+    lowest, highest = settings.zoom_range
+    zoom = min(CLOSE_UP_ZOOM, highest)
+    return zoom if settings.close_ups and zoom >= 1.2 * lowest else None
+
+
 async def take_frames(
     camera: Camera, session: CaptureSession, progress: Progress, *, holder: str, presets: Sequence[str] | None = None
 ) -> None:
@@ -180,8 +207,8 @@ class _Taker:
     async def close_ups(self, limits: Limits) -> None:
         """Take close-ups where the wide pictures have the finest detail."""
         session, info = self._session, self._camera.info
-        zoom = min(CLOSE_UP_ZOOM, limits.max_zoom)
-        if not session.settings.close_ups or zoom < 1.2 * limits.min_zoom:
+        zoom = close_up_zoom(session.settings)
+        if zoom is None:
             return
         poses = session.close_ups()
         if poses is None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 CameraSpecArgument = Annotated[
     str, typer.Argument(metavar="CAMERA", help="Camera: a name in scope.yaml, axis://USER@HOST, onvif://USER@HOST, sim:SCENE, ...")
 ]
-DryRun = Annotated[bool, typer.Option("--dry-run", help="Print what the camera would do, without doing it.")]
+DryRunOption = Annotated[bool, typer.Option("--dry-run", help="Print what the camera would do, without doing it.")]
 
 
 def snapshot(
@@ -67,7 +67,7 @@ def move(
     preset: Annotated[str | None, typer.Option("--preset", help="Preset to go to.")] = None,
     home: Annotated[bool, typer.Option("--home", help="Go to the home position.")] = False,
     stop: Annotated[bool, typer.Option("--stop", help="Stop any motion.")] = False,
-    dry_run: DryRun = False,
+    dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Move the camera to a pose, by an angle, to a point of its picture, to a preset or home. Without options, print the pose."""
@@ -116,7 +116,7 @@ def presets(
     camera: CameraSpecArgument,
     save: Annotated[str | None, typer.Option("--save", metavar="NAME", help="Save the current pose.")] = None,
     remove: Annotated[str | None, typer.Option("--remove", metavar="NAME", help="Remove a preset.")] = None,
-    dry_run: DryRun = False,
+    dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """List the presets, save one or remove one."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.camera.by_hand import CameraSpecArgument
+from scope_ptz.cli.camera.by_hand import CameraSpecArgument, DryRunOption
 from scope_ptz.cli.exit import put, put_json, run_async
 from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import InputError
@@ -17,7 +17,8 @@ from scope_ptz.errors import InputError
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from scope_ptz.factory.cameras.captures import CapturedScene
+    from scope_ptz.camera.capture.taking import CaptureOptions
+    from scope_ptz.factory.cameras.captures import CapturedScene, CapturePlan
 
 
 def capture(
@@ -40,7 +41,8 @@ def capture(
     tilt: Annotated[
         str | None, typer.Option("--tilt", metavar="FROM:TO", help="Range of tilt in degrees (default: the whole range).")
     ] = None,
-    overlap: Annotated[float, typer.Option("--overlap", help="Share of a picture that the next one also shows.")] = 0.45,
+    overlap: Annotated[float, typer.Option("--overlap", help="Fraction of a picture that the next one also shows.")] = 0.45,
+    dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Capture a camera's surroundings as a scene: a twin of the site with pictures, but without ground truth.
@@ -59,6 +61,9 @@ def capture(
     target = scene_folder(camera, folder, name)
     ranges = Ranges(_range("--pan", pan), _range("--tilt", tilt))
     options = CaptureOptions(ranges, tuple(zoom or ()), close_ups, overlap)
+    if dry_run:
+        _print_plan(camera, options, target, as_json=as_json)
+        return
     scenes: list[CapturedScene] = []
     with _Bars(shown=not as_json) as bars:
 
@@ -71,6 +76,34 @@ def capture(
         return
     for line in _lines(scenes[0]):
         put(line)
+
+
+def _print_plan(camera: str, options: CaptureOptions, target: Path, *, as_json: bool) -> None:
+    from scope_ptz.factory.cameras.captures import plan_capture
+
+    plans: list[CapturePlan] = []
+
+    async def work() -> None:
+        plans.append(await plan_capture(camera, options))
+
+    run_async(work)
+    if as_json:
+        put_json({**asdict(plans[0]), "folder": str(target)})
+        return
+    for line in _plan_lines(plans[0], target):
+        put(line)
+
+
+def _plan_lines(plan: CapturePlan, target: Path) -> list[str]:
+    (left, right), (low, high) = plan.pan_range_deg, plan.tilt_range_deg
+    lines = [
+        f"A capture from {plan.camera} would cover pan {left:g} to {right:g} and tilt {low:g} to {high:g} degrees:",
+        f"- one picture at the home position, and one at each of {len(plan.presets)} presets",
+        *(f"- {sweep.pictures} pictures at {sweep.zoom:g}x" for sweep in plan.sweeps),
+    ]
+    if plan.close_up_zoom is not None:
+        lines.append(f"- up to {plan.close_ups} close-ups at {plan.close_up_zoom:g}x, where the pictures have fine detail")
+    return [*lines, f"It would write {target}. Dry run: the camera did not move, and nothing was written."]
 
 
 def _range(option: str, text: str | None) -> tuple[float, float] | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from scope_ptz.cli.camera.by_hand import CameraSpecArgument, DryRun, opened_camera
+from scope_ptz.cli.camera.by_hand import CameraSpecArgument, DryRunOption, opened_camera
 from scope_ptz.cli.exit import put, put_json, run_async
 from scope_ptz.cli.options import JsonOption
 
@@ -26,7 +26,7 @@ def focus(
         str | None, typer.Argument(help="auto, manual (hold), once (focus and hold), near, or far. Without it, print the focus.")
     ] = None,
     step: Step = 0.05,
-    dry_run: DryRun = False,
+    dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Set the focus, or print it."""
@@ -41,7 +41,7 @@ def iris(
     camera: CameraSpecArgument,
     action: Annotated[str | None, typer.Argument(help="auto, manual (hold), open, or close. Without it, print the iris.")] = None,
     step: Step = 0.05,
-    dry_run: DryRun = False,
+    dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Set the iris, or print it."""

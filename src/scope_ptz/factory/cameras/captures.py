@@ -16,7 +16,7 @@ from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:
     from scope_ptz.camera.capture.session import CaptureSession
-    from scope_ptz.camera.capture.taking import CaptureOptions, Progress
+    from scope_ptz.camera.capture.taking import CaptureOptions, PlannedSweep, Progress
 
 _KEBAB = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
@@ -54,6 +54,29 @@ class CapturedScene:
     presets: tuple[str, ...]
     left_out_presets: tuple[str, ...]
     refused: int
+
+
+@dataclass(frozen=True, slots=True)
+class CapturePlan:
+    """What a capture would do.
+
+    Attributes:
+        camera: The camera's name.
+        pan_range_deg: The captured range of pan.
+        tilt_range_deg: The captured range of tilt.
+        presets: The presets that would be visited, in addition to the home position.
+        sweeps: The sweeps over the range.
+        close_ups: Maximum number of close-ups.
+        close_up_zoom: Their magnification; None if there are none.
+    """
+
+    camera: str
+    pan_range_deg: tuple[float, float]
+    tilt_range_deg: tuple[float, float]
+    presets: tuple[str, ...]
+    sweeps: tuple[PlannedSweep, ...]
+    close_ups: int
+    close_up_zoom: float | None
 
 
 def scene_folder(camera: str, to: Path, name: str | None) -> Path:
@@ -114,6 +137,32 @@ async def capture_scene(camera: str, folder: Path, options: CaptureOptions, prog
         return await to_thread.run_sync(build_scene, session, folder, progress)
     finally:
         lock.release()
+
+
+async def plan_capture(camera: str, options: CaptureOptions) -> CapturePlan:
+    """Return what ``capture_scene`` would do with the same arguments. The camera does not move, and nothing is written.
+
+    Raises:
+        InputError: The spec or an option is invalid, or the camera's field of view is unknown.
+        CameraError: The camera fails.
+    """
+    from scope_ptz.camera.capture.taking import close_up_zoom, planned_sweeps, settings_of
+
+    async with await open_camera(camera, actor=_actor()) as opened:
+        settings = settings_of(opened.camera, options)
+        presets = _presets_in_reach(opened)
+        if presets is None:
+            presets = [preset.name for preset in await opened.camera.presets()]
+        zoom = close_up_zoom(settings)
+        return CapturePlan(
+            camera=settings.camera,
+            pan_range_deg=settings.pan_range_deg,
+            tilt_range_deg=settings.tilt_range_deg,
+            presets=tuple(presets),
+            sweeps=tuple(planned_sweeps(opened.camera, settings)),
+            close_ups=settings.close_ups if zoom is not None else 0,
+            close_up_zoom=zoom,
+        )
 
 
 async def _take(camera: str, work: Path, options: CaptureOptions, progress: Progress) -> CaptureSession:
