@@ -1,4 +1,4 @@
-"""Use a camera of your own: a pinhole camera inside a painted sphere. The conformance suite checks it first."""
+"""Use your own camera: a pinhole camera inside a painted sphere. The conformance suite checks it first."""
 
 import asyncio
 from contextlib import asynccontextmanager

@@ -1,4 +1,4 @@
-"""Use a perception backend of your own: it detects orange objects by their colour. The conformance suite checks it first."""
+"""Use your own perception backend, which detects orange objects by their colour. The conformance suite checks it first."""
 
 import asyncio
 from contextlib import asynccontextmanager

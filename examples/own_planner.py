@@ -1,11 +1,11 @@
-"""Use a planner of your own: a patrol that visits every preset, counts, and reports the busiest one."""
+"""Use your own planner: a patrol that visits every preset, counts, and reports the busiest one."""
 
 import scope_ptz
 from scope_ptz.contracts import CallTools, Decision, Finish, State, ToolCall
 
 
 class Patrol(scope_ptz.Planner):
-    """Visits all presets and counts what the instruction names. All earlier calls are in the history, so it keeps no state."""
+    """Visit all presets and count the objects that the instruction names. All earlier calls are in the history, so it keeps no state."""
 
     name = "patrol"
 
