@@ -3,8 +3,8 @@
     python benchmarks/bench_numbers.py [--split core --split unseen ...] [--perception truth --perception noisy ...]
 
 The tasks run in this process, with the agent loop, the real tools and the checks. With ``rapidocr``, only the tasks of the category
-ocr run: rapidocr reads texts, ground truth does the rest of perception, and images are rendered. Otherwise frames are blank. Time
-and memory are those of this process. ``scope bench run`` runs the same tasks through the evaluation engine.
+ocr run: rapidocr reads texts, ground truth provides the rest of perception, and images are rendered. Otherwise frames are blank.
+Time and memory are those of this process. ``scope bench run`` runs the same tasks through the evaluation engine.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Score:
 
     @property
     def micro(self) -> float:
-        """The share of correct runs."""
+        """The fraction of correct runs."""
         return self.correct.total() / max(1, self.total.total())
 
     @property

@@ -3,8 +3,8 @@
     python benchmarks/camera_reconnects.py [--times 1000] [--scene high-street] [--driver axis|onvif] [--rtsp]
 
 The camera runs in a separate process (``scope camera serve``), so that memory, threads and sockets here are those of the driver
-alone. Each time, the camera is opened, driven, asked for a frame of its live stream, and closed. With ``--rtsp``, streams are H.264
-over RTSP. The first tenth warms up and is not counted.
+alone. Each time, the camera is opened, moved continuously, asked for a frame of its live stream, and closed. With ``--rtsp``,
+streams are H.264 over RTSP. The first tenth of the connections is a warm-up and is not counted.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import Any
 
 import anyio
 
-PASSWORD = "only-for-this-run"  # noqa: S105 - of a camera that lives as long as this program
+PASSWORD = "only-for-this-run"  # noqa: S105 - the camera exists only while this program runs
 
 
 def main() -> int:
@@ -33,7 +33,7 @@ def main() -> int:
     parser.add_argument("--times", type=int, default=1000)
     parser.add_argument("--scene", default="high-street")
     parser.add_argument("--driver", choices=("axis", "onvif"))
-    parser.add_argument("--rtsp", action="store_true", help="stream H.264 by RTSP")
+    parser.add_argument("--rtsp", action="store_true", help="stream H.264 over RTSP")
     arguments = parser.parse_args()
     drivers = [arguments.driver] if arguments.driver else ["axis", "onvif"]
     ended_well = True
@@ -86,7 +86,7 @@ async def once(spec: str) -> None:
 def held() -> dict[str, float]:
     """Return the resources that this process holds."""
     gc.collect()
-    time.sleep(0.2)  # threads and processes that were told to end
+    time.sleep(0.2)  # time for threads and processes to end
     used = resource.getrusage(resource.RUSAGE_SELF)
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     workers = sum("AnyIO worker" in thread.name for thread in threading.enumerate())  # kept for later work, up to 40

@@ -1,16 +1,15 @@
-"""The same benchmark tasks through the simulated camera in process, the AXIS driver and the ONVIF driver.
+"""Run the same benchmark tasks with the simulated camera in process, the AXIS driver and the ONVIF driver, and compare them.
 
     python benchmarks/driver_parity.py [--tasks 120] [--split core] [--json FILE]
     python benchmarks/driver_parity.py --true-speed
 
-The drivers talk to a virtual camera in this process, over HTTP on the loopback interface. Each task starts at its preset, in its
-world and at its scene time, which is held. The built-in planner and ground-truth perception run it on each path; perception of the
-drivers is simulation-only. Printed are the shares of tasks with the same calls, the same answer and the same final pose as in
-process, and every deviation. The same pixels are behind each path, so this tests the drivers. It says nothing about pictures of
-real cameras.
+The drivers connect to a virtual camera in this process, over HTTP on the loopback interface. Each task starts at its preset, in its
+scene or variation, and at its scene time, which does not advance. The built-in planner and ground-truth perception run the task on
+each path; the drivers use the backend ``simulation-only-truth``. The program prints the numbers of tasks with the same calls, the
+same answer and the same final pose as in process, and every deviation. All paths use the same pixels, so this tests the drivers,
+but not how well SCOPE works with pictures of real cameras.
 
-Motors are 50 times faster than real ones unless --true-speed is given. Then ten tasks run at real speed, and the table shows where
-time is spent.
+Motors are 50 times faster than real ones. With --true-speed, ten tasks run at real speed, and a table shows the time by stage.
 """
 
 from __future__ import annotations
@@ -59,10 +58,10 @@ from scope_ptz.virtual_camera.onvif.app import OnvifApp
 
 IN_PROCESS, DRIVERS = "in process", ("axis", "onvif")
 TOLERANCE_DEG, ZOOM_SHARE = 0.3, 0.02
-"""How far the final pose of a driver may be from the one in process."""
+"""Tolerances for the difference between the final pose with a driver and the one in process."""
 
 ARGUMENT_TOLERANCE = 0.01
-"""How far numbers in the arguments of calls may differ. The planner calculates some of them from the reported pose."""
+"""Tolerance for numbers in the arguments of calls. The planner calculates some of them from the reported pose."""
 
 FAST = 50.0
 TRUE_SPEED_TASKS = 10
@@ -74,10 +73,10 @@ SEED = 1
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tasks", type=int, help="number of tasks (default: 120, or 10 with --true-speed)")
-    parser.add_argument("--split", choices=SPLITS, default="core", help="tasks of 'unseen' are in varied worlds (default: core)")
-    parser.add_argument("--task", action="append", default=[], metavar="ID", help="run this task only; repeat it for several")
+    parser.add_argument("--split", choices=SPLITS, default="core", help="tasks of 'unseen' are in scene variations (default: core)")
+    parser.add_argument("--task", action="append", default=[], metavar="ID", help="run only this task; repeatable")
     parser.add_argument("--time-scale", type=float, default=FAST, help="speed of the motors (default: %(default)g times real)")
-    parser.add_argument("--true-speed", action="store_true", help="motors at real speed; print latency by stage")
+    parser.add_argument("--true-speed", action="store_true", help="run motors at real speed, and print the latency by stage")
     parser.add_argument("--json", type=Path, help="also write the results to this file")
     arguments = parser.parse_args()
     everything = load_split(arguments.split)
@@ -103,7 +102,7 @@ def main() -> int:
 
 # Tasks ----------------------------------------------------------------------------------------------------------------------
 def one_viewpoint(tasks: Iterable[Task]) -> list[Task]:
-    """Return the tasks that one camera can do. The others go to another viewpoint, where a site has another camera."""
+    """Return the tasks that stay at one viewpoint. A physical camera cannot go to another one."""
     scenes, kept = Library(), list[Task]()
     for task in tasks:
         file = scenes(task.world).file
@@ -118,7 +117,7 @@ def one_viewpoint(tasks: Iterable[Task]) -> list[Task]:
 
 
 async def that_use_the_camera(tasks: Sequence[Task]) -> list[Task]:
-    """Return the tasks in which the planner makes a call. One that it ends with a question at once says nothing about a driver."""
+    """Return the tasks in which the planner makes a call. The other tasks do not involve a driver."""
     scenes = Library()
 
     async def uses_camera(task: Task) -> bool:
@@ -190,11 +189,11 @@ async def measure(
         async with drivers(device, scenes, settling_of(time_scale)) as paths:
             for task in group:
                 measured.append(Measured(task.id))
-                if time_scale == 1.0:  # reads what the task shows, so that no path pays for files
+                if time_scale == 1.0:  # reads the files of the task's views, so that no path spends time on it
                     await _in_process(scenes, viewpoint, task, real=False)
                 measured[-1].runs[IN_PROCESS] = await _in_process(scenes, viewpoint, task, real=time_scale == 1.0)
                 for name, (camera, perception) in paths.items():
-                    # A clock that nothing advances: the motors have a time of their own.
+                    # Nothing advances this clock; the motors keep their own time.
                     device.clock = SceneClock(task.time_s)
                     await camera.go_to_preset(task.preset)
                     measured[-1].runs[name] = await _run(camera, perception, task)
@@ -207,7 +206,8 @@ async def drivers(
     device: VirtualDevice, scenes: Callable[[str], Scene], settling: Settling
 ) -> AsyncIterator[dict[str, tuple[Camera, Perception]]]:
     """Serve a camera, and connect each driver to it, with perception that reads the served ground truth."""
-    await to_thread.run_sync(device.expose)  # the first look at a viewpoint reads its files; drivers wait for replies only so long
+    # The first frame of a viewpoint reads its files, which may take longer than a driver waits for a reply.
+    await to_thread.run_sync(device.expose)
     async with AsyncExitStack() as stack:
         (served,) = await stack.enter_async_context(
             serve([device], truth=True, onvif=lambda each: OnvifApp(each, rtsp_port=554))  # no stream is opened
@@ -225,7 +225,7 @@ async def drivers(
 
 
 def settling_of(time_scale: float) -> Settling:
-    """Return the waiting times of drivers for motors that are faster than real ones."""
+    """Return the settling parameters of the drivers for motors that are faster than real ones."""
     if time_scale == 1.0:
         return Settling()
     own = Settling()
@@ -237,7 +237,7 @@ def settling_of(time_scale: float) -> Settling:
 
 
 class StillScene(SceneClock):
-    """A clock whose scene time stands still while motors run in real time."""
+    """A clock whose scene time stands still while the motors run in real time."""
 
     def __init__(self, time_s: float) -> None:
         super().__init__(time_s, realtime=True)
@@ -248,7 +248,7 @@ class StillScene(SceneClock):
 
 
 class OneViewpoint(SimulatedCamera):
-    """A simulated camera with the presets of one viewpoint, and only their names: a device knows no others, and no descriptions."""
+    """A simulated camera that lists the presets of one viewpoint without descriptions, as a device does."""
 
     async def presets(self) -> list[PresetInfo]:
         local = {preset.name for preset in self._scene.file.presets if preset.viewpoint == self.viewpoint}
@@ -280,7 +280,7 @@ def _http(served: ServedCamera) -> DeviceHttp:
 
 # Comparison -----------------------------------------------------------------------------------------------------------------
 def without_source(answer: str) -> str:
-    """Return an answer without its last note, which names the perception backend."""
+    """Return an answer without the note at its end, which names the perception backend."""
     return answer.rpartition(" (Source: ")[0] or answer
 
 
@@ -338,7 +338,7 @@ def report(measured: Sequence[Measured]) -> list[str]:
 
 
 def latency_table(measured: Sequence[Measured]) -> list[str]:
-    """Return a table of seconds by stage: medians over tasks, and medians of each task's difference to the run in process."""
+    """Return a table of seconds by stage: medians over tasks, and median differences from the run of the same task in process."""
     lines = ["", "Seconds per task by stage, median (difference to in process in the same task, median)", ""]
     lines += [f"| path | {' | '.join(STAGES)} |", "|---|" + "---|" * len(STAGES)]
     for path in (IN_PROCESS, *DRIVERS):

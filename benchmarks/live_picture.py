@@ -56,7 +56,7 @@ def main() -> int:
     parser.add_argument("--cache-mb", type=int, default=96, help="size of the bounded tile cache for --memory (default: 96)")
     parser.add_argument("--tour", nargs=3, metavar=("SCENE", "VIEWPOINT", "CACHE_MB"), help="measure only one prefetched viewpoint")
     parser.add_argument("--threads", type=int, default=cv2.getNumThreads(), help="number of OpenCV threads")
-    parser.add_argument("--cpu", action="store_true", help="measure the processor time of all threads instead, for busy machines")
+    parser.add_argument("--cpu", action="store_true", help="measure the CPU time of all threads instead, for busy machines")
     arguments = parser.parse_args()
     cv2.setNumThreads(arguments.threads)
     if arguments.tour:

@@ -1,9 +1,10 @@
-"""Measure lists and filters over many runs.
+"""Measure how long it takes to list and filter many stored runs.
 
     python benchmarks/run_store.py [--runs N] [--folders M]
 
-Most runs are rows that are written to the database directly; M of them are run folders, which shows what indexing one costs. The
-benchmark prints the median and the longest of 20 repetitions of each list, as wall time and as a share of the target of 100 ms.
+Most runs are rows that are written to the database directly. M additional run folders are used to measure the time of indexing.
+The benchmark prints the median and the maximum of 20 repetitions of each query, as wall time and as a percentage of the target
+(100 ms).
 """
 
 from __future__ import annotations
@@ -100,7 +101,7 @@ def _step(run: int, position: int, noun: str) -> dict[str, object]:
 
 
 def measure(work: Callable[[], object], repetitions: int = 20) -> tuple[float, float]:
-    """Return the median and the longest wall time of some work in seconds."""
+    """Return the median and the maximum wall time of a call in seconds."""
     times = []
     for _ in range(repetitions):
         began = time.perf_counter()
@@ -110,7 +111,7 @@ def measure(work: Callable[[], object], repetitions: int = 20) -> tuple[float, f
 
 
 def main() -> None:
-    """Fill a store and print what lists cost."""
+    """Fill a store and print the times of the queries."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=100_000, help="number of runs (default: 100000)")
     parser.add_argument("--folders", type=int, default=200, help="number of run folders to index (default: 200)")
@@ -158,7 +159,7 @@ def main() -> None:
 
 
 def measure_indexing(root: Path, count: int) -> None:
-    """Print what it costs to index run folders, and to look at them again."""
+    """Print the time for indexing run folders, and for checking them again."""
     import shutil
 
     import scope_ptz

@@ -1,12 +1,13 @@
-"""How true a captured twin is: pose errors and structural similarity, against the pack behind a virtual camera.
+"""Measure the accuracy of a captured twin: its pose errors, and its structural similarity to the pack of a virtual camera.
 
     python benchmarks/twin_capture.py [--scene highway-works] [--driver axis|onvif] [--noise 0.1] [--pan=-60:60] [--out FOLDER]
 
-A virtual camera is served on this machine and captured over the network by a driver. Its picture drifts away from what its encoders
-report, and noise is added to every reported pose. The capture must find both from the pictures. Printed are the errors of the poses
-as reported and as adjusted, the similarity of views of the twin and of the pack, and how far those views are turned against each
-other. The limits that count are a mean SSIM of 0.9 at 1x, without the common turn of the whole twin that no picture tells, and a
-pose error of 0.2 degrees with it. The exit code is 1 if one is missed.
+A virtual camera is served on this machine and captured over the network by a driver. Its picture drifts away from the pose that
+its encoders report, and noise is added to every reported pose. The capture must correct both from the pictures. The program
+prints the errors of the reported and of the adjusted poses, the similarity between views of the twin and of the pack, and the
+angle between those views. The targets are a mean SSIM of 0.9 at 1x, after the common rotation of the whole twin has been removed,
+because it cannot be determined from pictures, and a pose error of 0.2 degrees, including that rotation. The exit code is 1 if a
+target is missed.
 """
 
 from __future__ import annotations
@@ -53,10 +54,10 @@ Floats = NDArray[np.float64]
 
 
 class InaccurateCamera(CameraWrapper):
-    """A deliberate fault: every reported pose has an error of its own, and from the first frame on the picture drifts.
+    """A camera with deliberate faults: every reported pose has a random error, and the picture drifts from the first frame on.
 
     Attributes:
-        truths: The true pan and tilt of each frame, by the reported ones.
+        truths: The true pan and tilt of each frame, keyed by the reported values.
     """
 
     def __init__(self, camera: Camera, device: VirtualDevice, noise_deg: float, drift_dps: float, seed: int) -> None:
@@ -89,7 +90,7 @@ class InaccurateCamera(CameraWrapper):
 
 
 async def captured(arguments: argparse.Namespace, scenes: Path, progress: Any) -> tuple[dict[str, Any], Floats, VirtualDevice]:
-    """Serve a camera, capture it, and return the figures of the capture."""
+    """Serve a camera, capture it, and return the measurements of the capture."""
     options = VirtualCameraOptions(
         scenes=(arguments.scene,), time_scale=arguments.time_scale, hold_time=not arguments.alive, discovery=False, prefetch=False,
     )  # fmt: skip
@@ -126,15 +127,16 @@ async def captured(arguments: argparse.Namespace, scenes: Path, progress: Any) -
 
 
 def common_turn(own: Floats, true: Floats) -> Floats:
-    """Return the rotation (3, 3) that turns directions (n, 3) onto others best (Kabsch)."""
+    """Return the rotation (3, 3) that best aligns directions (n, 3) with others (Kabsch)."""
     u, _, vt = np.linalg.svd(true.T @ own)
     return np.asarray(u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt)
 
 
 def compared(arguments: argparse.Namespace, device: VirtualDevice, turn: Floats, twin: Scene) -> dict[str, Any]:
-    """Return the similarity of views of the twin and of the pack behind the camera, and how far they are turned.
+    """Return the similarity between views of the twin and of the camera's pack, and the angle between them.
 
-    The similarity is given at the same pose, and without the common turn of the whole twin, which no picture tells.
+    The similarity is computed at the same pose, and again after removing the common rotation of the whole twin, which cannot be
+    determined from pictures.
     """
     random = np.random.default_rng(arguments.seed)
     limits, turned = twin.file.limits, list[float]()
@@ -185,13 +187,13 @@ def main() -> int:
     parser.add_argument("--pan", default="-60:60", help="range in degrees, or 'all'")
     parser.add_argument("--tilt", default="-30:15", help="range in degrees, or 'all'")
     parser.add_argument("--close-ups", type=int, default=8)
-    parser.add_argument("--noise", type=float, default=0.1, help="standard error of reported pan and tilt in degrees")
+    parser.add_argument("--noise", type=float, default=0.1, help="standard deviation of the pan and tilt errors in degrees")
     parser.add_argument("--drift", type=float, default=0.5, help="drift of pan in degrees per minute")
-    parser.add_argument("--alive", action="store_true", help="let actors move; the pack is compared at the end of the capture")
-    parser.add_argument("--time-scale", type=float, default=20.0, help="how many times faster than real the motors are")
-    parser.add_argument("--views", type=int, default=20, help="views that are compared at each zoom")
+    parser.add_argument("--alive", action="store_true", help="let actors move; the comparison uses the final scene time")
+    parser.add_argument("--time-scale", type=float, default=20.0, help="speed of the motors, as a multiple of the real speed")
+    parser.add_argument("--views", type=int, default=20, help="number of views to compare at each zoom")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, help="folder that keeps the twin")
+    parser.add_argument("--out", type=Path, help="folder in which to keep the twin")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:

@@ -15,8 +15,8 @@ ROWS = [line for line in PAGE.splitlines() if re.match(r"\| (?!-|fault|event)", 
 
 FAULTS = (
     "unreachable at the start", "unreachable during a move", "unreachable during a sweep", "slow", "wrong password", "rebooted",
-    "truncated", "frozen", "black", "another size", "the camera never reaches the position", "preset deleted during", "two controllers",
-    "clock skew", "network partition", "1,000",
+    "truncated", "frozen", "black", "another size", "the camera never reaches the position", "preset deleted during",
+    "two controllers", "clock skew", "network partition", "1,000",
 )  # fmt: skip
 """The faults that the drivers promise to survive."""
 
