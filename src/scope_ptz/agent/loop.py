@@ -119,7 +119,7 @@ class _Episode:
             self.watch,
             listener,
             snapshots=agent.snapshots,
-            sees=agent.planner.sees,
+            accepts_images=agent.planner.sees,
             tools=agent.tools,
             run_tool=agent.run_tool,
         )
@@ -210,7 +210,7 @@ class _Episode:
             failure = await self.calls.carry_out(self.steps, decision, self.history)
             if failure is not None:
                 return failure
-            if self.agent.guarded and self.calls.same_bad_call >= MAX_REPEATED_BAD_CALLS:
+            if self.agent.guarded and self.calls.bad_call_repeats >= MAX_REPEATED_BAD_CALLS:
                 return RunEnd("planner_error", f"The planner made the same wrong call {MAX_REPEATED_BAD_CALLS} times in a row.")
         return RunEnd("step_limit", f"No answer within {budgets.max_steps} steps.")
 

@@ -65,16 +65,16 @@ class CallRunner:
         emit: Listener,
         *,
         snapshots: bool,
-        sees: bool,
+        accepts_images: bool,
         tools: ToolRegistry = TOOLS,
         run_tool: RunTool | None = None,
     ) -> None:
         self._raw_camera, self._perception, self._images, self._watch, self._emit = camera, perception, images, watch, emit
-        self._snapshots, self._sees, self._tools, self._run_tool = snapshots, sees, tools, run_tool or tools.run
+        self._snapshots, self._accepts_images, self._tools, self._run_tool = snapshots, accepts_images, tools, run_tool or tools.run
         self.camera = TimedCamera(camera, watch)
         self.pose = Pose()
         self.bad_calls = self.perception_failures = 0
-        self.same_bad_call = 0  # consecutive steps with the same bad call
+        self.bad_call_repeats = 0  # consecutive steps with the same bad call
         self._last_bad_call: tuple[str, dict[str, Any]] | None = None
         self.events: Counter[str] = Counter()
 
@@ -107,7 +107,7 @@ class CallRunner:
 
     def _count_repetition(self, results: Iterable[_FinishedCall]) -> None:
         bad = next(((d.outcome.call.name, d.outcome.call.arguments) for d in results if d.fault == "bad_call"), None)
-        self.same_bad_call = 0 if bad is None else self.same_bad_call + 1 if bad == self._last_bad_call else 1
+        self.bad_call_repeats = 0 if bad is None else self.bad_call_repeats + 1 if bad == self._last_bad_call else 1
         self._last_bad_call = bad
 
     async def _batch(self, step: int, calls: Sequence[ToolCall], batch: Sequence[int], results: dict[int, _FinishedCall]) -> None:
@@ -142,7 +142,7 @@ class CallRunner:
             self.pose = await camera.pose()
             if self._snapshots and self.pose != pose and not getattr(result, "frames", ()):
                 frame = self._images.save_frame(await camera.frame())
-            last_picture = await images.last_picture() if self._sees else None
+            last_picture = await images.last_picture() if self._accepts_images else None
             outcome = ToolOutcome(call=call, result=result.model_dump(mode="json"), picture=last_picture)
         except (ToolCallError, UnknownNameError) as error:
             outcome, fault = ToolOutcome(call=call, error=str(error)), "bad_call"

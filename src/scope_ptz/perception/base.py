@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.failures import Attempt
 
-Unit = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+UnitInterval = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Skill = Literal["caption", "query", "detect", "point"]
 
 ALL_SKILLS: frozenset[Skill] = frozenset(("caption", "query", "detect", "point"))
@@ -29,7 +29,7 @@ class Agreement(BaseModel):
     """The second backend."""
     said: str
     """The second backend's answer, shortened; for boxes and points, their number."""
-    share: Unit
+    share: UnitInterval
     """How far the results agree, from 0 to 1."""
 
     @property
@@ -65,10 +65,10 @@ class Box(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    x_min: Unit
-    y_min: Unit
-    x_max: Unit
-    y_max: Unit
+    x_min: UnitInterval
+    y_min: UnitInterval
+    x_max: UnitInterval
+    y_max: UnitInterval
     label: str | None = None
     score: float | None = None
 
@@ -96,8 +96,8 @@ class Point(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    x: Unit
-    y: Unit
+    x: UnitInterval
+    y: UnitInterval
     label: str | None = None
 
 

@@ -40,8 +40,8 @@ the maximum is a different object.
 """
 
 LOST_DETECTIONS = 2
-LOST_ZOOM = 0.6
-"""After ``LOST_DETECTIONS`` detections without the target, each further one multiplies the zoom by ``LOST_ZOOM``."""
+LOST_ZOOM_FACTOR = 0.6
+"""After ``LOST_DETECTIONS`` detections without the target, each further one multiplies the zoom by ``LOST_ZOOM_FACTOR``."""
 
 
 class TrackObject(Arguments):
@@ -146,7 +146,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
             clamped |= set(await _correct(context, frame, seen, target))
         elif misses >= LOST_DETECTIONS:
             pose = await camera.pose()
-            clamped |= set(await _turn(context, target.at(frame.time_s + PERIOD_S), pose.zoom * LOST_ZOOM)) - {"zoom"}
+            clamped |= set(await _turn(context, target.at(frame.time_s + PERIOD_S), pose.zoom * LOST_ZOOM_FACTOR)) - {"zoom"}
         left_s = arguments.duration_s - (camera.clock.now_s() - started)
         if left_s <= 1e-6:
             break

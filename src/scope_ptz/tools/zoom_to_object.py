@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 MAX_DETECTIONS = 3
 """Maximum number of perception calls per tool call."""
 
-SMALL_SHARE = 0.05
+SMALL_FILL = 0.05
 """A target that fills less than this share of its limiting side is detected again at a closer zoom, for a more exact box."""
 
 CLOSER_FILL = 0.45
 """Share of its limiting side that a small target fills for the next detection."""
 
-CUT_ZOOM = 0.4
+CUT_OFF_ZOOM_FACTOR = 0.4
 """Factor on the zoom for the next detection of a target that the frame cuts off, so that the whole target fits."""
 
 SETTLED_OFFSET = 0.012
@@ -124,9 +124,9 @@ def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, detections: in
     if detections < MAX_DETECTIONS and touches_border(box):
         # A large target, or one that is cut off again, may need the widest view to fit.
         large = max(box.width, box.height) > 0.25
-        zoom = info.limits.min_zoom if detections > 1 or large else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
+        zoom = info.limits.min_zoom if detections > 1 or large else max(pose.zoom * CUT_OFF_ZOOM_FACTOR, info.limits.min_zoom)
         return aim_at_zoom(info, target, zoom)
-    small = detections < MAX_DETECTIONS and max(box.width, box.height) < SMALL_SHARE
+    small = detections < MAX_DETECTIONS and max(box.width, box.height) < SMALL_FILL
     return aim(info, pose, target, CLOSER_FILL if small else TARGET_FILL)
 
 

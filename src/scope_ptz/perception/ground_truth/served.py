@@ -28,10 +28,10 @@ from scope_ptz.simulator.truth import view_truth
 _Reply = TypeVar("_Reply", Caption, Answer, Detections, Points)
 
 TRUTH_PATH = "/virtual/truth"
-WITHIN_S = 1.0
+MAX_TIME_ERROR_S = 1.0
 """Maximum error of a driver's time of an exposure, in seconds. The error is usually some tens of milliseconds."""
 
-MAX_TURN_DEG, MAX_ZOOM_SHARE = 2.0, 0.1
+MAX_TURN_DEG, MAX_ZOOM_DIFFERENCE = 2.0, 0.1
 """Maximum differences in angle and zoom between the poses of a frame and of its exposure."""
 
 
@@ -103,7 +103,7 @@ class ServedTruth:
             PerceptionError: The camera offers no ground truth, or has stored no exposure of that time and pose.
         """
         taken_s = time() - self._clock.now_s() + frame.time_s
-        query = {"taken": repr(taken_s), "within": f"{WITHIN_S:g}"}
+        query = {"taken": repr(taken_s), "within": f"{MAX_TIME_ERROR_S:g}"}
         try:
             reply = await self._http.get(TRUTH_PATH, query, accept=(403, 404))
         except CameraReplyError:
@@ -188,7 +188,7 @@ def _is_near(pose: Pose, other: ServedPose) -> bool:
     return (
         abs(wrap_pan_deg(pose.pan_deg - other.pan_deg)) <= MAX_TURN_DEG
         and abs(pose.tilt_deg - other.tilt_deg) <= MAX_TURN_DEG
-        and abs(pose.zoom / other.zoom - 1) <= MAX_ZOOM_SHARE
+        and abs(pose.zoom / other.zoom - 1) <= MAX_ZOOM_DIFFERENCE
     )
 
 

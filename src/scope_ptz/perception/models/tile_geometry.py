@@ -66,7 +66,7 @@ def iou(a: Box, b: Box) -> float:
     return shared / union if union > 0 else 0.0
 
 
-def without_overlaps(boxes: Iterable[Box], threshold: float) -> list[Box]:
+def non_maximum_suppression(boxes: Iterable[Box], threshold: float) -> list[Box]:
     """Return boxes by score, best first, without boxes whose intersection over union with a better box exceeds ``threshold``."""
     result: list[Box] = []
     for box in sorted(boxes, key=lambda b: -(b.score or 0.0)):

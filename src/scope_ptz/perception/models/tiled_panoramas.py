@@ -16,7 +16,7 @@ from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.perception.models.tile_geometry import PanoramaTile, merge_boxes, merge_points, tiles, without_seam_duplicates
 
-MAX_CONCURRENT_PARTS = 4
+MAX_CONCURRENT_TILES = 4
 """Maximum number of parts that are processed at the same time."""
 
 SAME_POINT = 0.15
@@ -98,7 +98,7 @@ async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> 
     """
     results: dict[int, R] = {}
     errors: list[PerceptionError] = []
-    limiter = anyio.CapacityLimiter(MAX_CONCURRENT_PARTS)
+    limiter = anyio.CapacityLimiter(MAX_CONCURRENT_TILES)
 
     async def run(index: int, ask: Callable[[], Awaitable[R]]) -> None:
         async with limiter:

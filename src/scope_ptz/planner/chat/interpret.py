@@ -24,7 +24,7 @@ MAX_CALLS = 32
 MAX_CHARS = 20_000
 """Maximum characters of an answer, or of the text that accompanies calls. Longer texts are truncated and marked."""
 
-_FULL_SHARE = 0.98  # a context filled to this share counts as full
+_FULL_FRACTION = 0.98  # a context filled to this share counts as full
 _CONTROL_TOKENS = re.compile(r"<\|[\w ]{2,30}\|>|</s>|<(?:end|start)_of_turn>|<turn\|>")
 _KIND_PREFIX = re.compile(r"\A[\s*_#>\"']*(?P<kind>CLARIFY|REFUSE)[\s*_]*:[\s*_]*", re.IGNORECASE)
 _QUESTION = re.compile(r"\?[\s\"'*_)]*\Z")
@@ -126,7 +126,7 @@ def _ending(text: str, *, called: bool) -> tuple[str, str]:
 
 def _cut_off_error(reply: ChatReply, context_tokens: int | None) -> PlannerError:
     """Return the error for a reply that was cut off at the context's limit or, if that is not certain, at a token limit."""
-    if context_tokens is not None and reply.input_tokens + reply.output_tokens >= context_tokens * _FULL_SHARE:
+    if context_tokens is not None and reply.input_tokens + reply.output_tokens >= context_tokens * _FULL_FRACTION:
         message = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
         return PlannerError(message, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=_attempts_with_usage(reply))
     message = (

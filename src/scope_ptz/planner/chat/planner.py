@@ -139,7 +139,7 @@ class ChatPlanner(Planner):
             state,
             self.prompt,
             notation=self._dialect.notation,
-            sees=self.sees,
+            accepts_images=self.sees,
             switch=self._switch.words,
             shorten_oldest=shorten_oldest,
         )

@@ -204,22 +204,22 @@ _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTA
 
 def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
     """Return JSON or Python calls in code fences, or in a text that consists of calls, possibly after prose."""
-    fences = [(m, _calls_of_tools(m["body"], tools)) for m in _FENCE.finditer(text)]
+    fences = [(m, _calls_to_tools(m["body"], tools)) for m in _FENCE.finditer(text)]
     if any(calls for _, calls in fences):
         rest = text
         for match, calls in fences:
             rest = rest.replace(match[0], "") if calls else rest
         return FoundCalls(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
-    if calls := _calls_of_tools(text, tools):
+    if calls := _calls_to_tools(text, tools):
         return FoundCalls(tuple(calls), "", "bare")
     # Prose that is followed only by calls.
     for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MAX_START_LINES):
-        if calls := _calls_of_tools(text[match.start() :], tools):
+        if calls := _calls_to_tools(text[match.start() :], tools):
             return FoundCalls(tuple(calls), text[: match.start()].strip(), "bare")
     return FoundCalls((), text.strip(), "")
 
 
-def _calls_of_tools(body: str, tools: Signatures) -> list[WrittenCall]:
+def _calls_to_tools(body: str, tools: Signatures) -> list[WrittenCall]:
     """Return the calls in a text that consists only of calls of offered tools; an empty list for any other text."""
     body = body.strip()
     calls: list[WrittenCall] = []

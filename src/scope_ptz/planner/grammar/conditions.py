@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 Operator = Literal[">=", "<=", ">", "<", "=="]
-Sense = Literal["more", "fewer"]
+Comparison = Literal["more", "fewer"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Outnumbers:
 
     first: Thing
     second: Thing
-    sense: Sense = "more"
+    comparison: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ class PresetOutnumbers:
     thing: Thing
     first: PresetRef
     second: PresetRef
-    sense: Sense = "more"
+    comparison: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)

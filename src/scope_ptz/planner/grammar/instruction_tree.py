@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from scope_ptz.planner.grammar.conditions import Answered as Answered
+from scope_ptz.planner.grammar.conditions import Comparison as Comparison
 from scope_ptz.planner.grammar.conditions import Condition as Condition
 from scope_ptz.planner.grammar.conditions import Joined as Joined
 from scope_ptz.planner.grammar.conditions import Negated as Negated
@@ -16,7 +17,6 @@ from scope_ptz.planner.grammar.conditions import PresetRef as PresetRef
 from scope_ptz.planner.grammar.conditions import Quantity as Quantity
 from scope_ptz.planner.grammar.conditions import Readable as Readable
 from scope_ptz.planner.grammar.conditions import Seen as Seen
-from scope_ptz.planner.grammar.conditions import Sense as Sense
 from scope_ptz.planner.grammar.conditions import Statement as Statement
 from scope_ptz.planner.grammar.conditions import Thing as Thing
 
@@ -76,11 +76,11 @@ class Move:
     """A camera movement on one or more axes.
 
     Attributes:
-        verb: Whether the instruction has a verb for the move. "Left 5" has none, so it may belong to the previous move.
+        has_verb: Whether the instruction has a verb for the move. "Left 5" has none, so it may belong to the previous move.
     """
 
     parts: tuple[Part, ...]
-    verb: bool = True
+    has_verb: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class Home:
 
 
 @dataclass(frozen=True, slots=True)
-class GoPreset:
+class GoToPreset:
     """Go to a preset.
 
     Attributes:
@@ -261,7 +261,7 @@ class AtIntervals:
 
 
 @dataclass(frozen=True, slots=True)
-class ThanBefore:
+class CompareWithBefore:
     """Compare a count with the count before the last moves ("are there more than before?").
 
     Attributes:
@@ -269,7 +269,7 @@ class ThanBefore:
     """
 
     thing: Thing
-    sense: Sense = "more"
+    comparison: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -304,7 +304,7 @@ class WhichPreset:
     """
 
     thing: Thing
-    sense: Sense = "more"
+    comparison: Comparison = "more"
     places: tuple[PresetRef, ...] = ()
     go: bool = False
     any_of: bool = False
@@ -316,7 +316,7 @@ class Compare:
 
     first: Thing
     second: Thing
-    sense: Sense = "more"
+    comparison: Comparison = "more"
     view: View | None = None
 
 
@@ -326,7 +326,7 @@ class BeforeAfter:
 
     thing: Thing
     moves: tuple[Step, ...]
-    sense: Sense = "more"
+    comparison: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -375,9 +375,9 @@ class Unclear:
 
 
 Step = (
-    Move | Further | Back | Home | GoPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat | DoAgain
-    | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report | CameraState | Help
-    | WhatAbout | Between | AtIntervals | ThanBefore | Mention | Rescope | Unclear
+    Move | Further | Back | Home | GoToPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat
+    | DoAgain | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report
+    | CameraState | Help | WhatAbout | Between | AtIntervals | CompareWithBefore | Mention | Rescope | Unclear
 )  # fmt: skip
 
 

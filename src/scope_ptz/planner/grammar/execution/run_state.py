@@ -24,7 +24,7 @@ class Outcome(Protocol):
     def error(self) -> str | None: ...
 
 
-Run = Generator[CallRequest, Outcome, Any]
+CallGenerator = Generator[CallRequest, Outcome, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ class RunState:
     def _note(self, text: str) -> None:
         self.notes.append(text)
 
-    def _call(self, tool: str, **arguments: Any) -> Run:
+    def _call(self, tool: str, **arguments: Any) -> CallGenerator:
         """Make a tool call, and update the pose and the sources from its result."""
         outcome = yield tool, arguments
         result = outcome.result
@@ -83,14 +83,14 @@ class RunState:
             self.sources.append(source)
         return outcome
 
-    def _camera_call(self, tool: str, **arguments: Any) -> Run:
+    def _camera_call(self, tool: str, **arguments: Any) -> CallGenerator:
         """Make a camera call and return its result. A failure ends the run, because later steps depend on the pose."""
         outcome: Outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
             raise HaltedError(f"I stopped because the camera did not do {tool}: {outcome.error or 'no result'}")
         return outcome.result
 
-    def _perception_call(self, tool: str, **arguments: Any) -> Run:
+    def _perception_call(self, tool: str, **arguments: Any) -> CallGenerator:
         """Make a perception call and return its result. If it fails twice, add a note to the answer and return None."""
         outcome: Outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None:
@@ -100,7 +100,7 @@ class RunState:
             return None
         return outcome.result
 
-    def _required_perception_call(self, tool: str, **arguments: Any) -> Run:
+    def _required_perception_call(self, tool: str, **arguments: Any) -> CallGenerator:
         """Make a perception call that later steps depend on, and return its result. A failure ends the run."""
         result = yield from self._perception_call(tool, **arguments)
         if result is None:

@@ -52,7 +52,7 @@ class Node:
         return -1
 
 
-class RuleBuilder:
+class TreeVisitor:
     """Base class of the builders, with one method for each rule.
 
     Attributes:
@@ -86,7 +86,7 @@ class RuleBuilder:
         lexeme = self.lexemes[leaf.index]
         return self.source[lexeme.start : lexeme.end].lower()
 
-    def how_often(self, node: Node) -> int:
+    def repeat_count(self, node: Node) -> int:
         """Return 3 for "thrice" or "a few times", 2 for "twice"."""
         words = " ".join(self.words_of(leaf) for leaf in node.leaves("TWICE"))
         return 3 if "thrice" in words or "few" in words else 2
