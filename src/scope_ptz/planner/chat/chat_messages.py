@@ -19,7 +19,7 @@ from scope_ptz.planner.chat.schemas import plain_schemas
 
 Message = dict[str, Any]
 Notation = Literal["native", "text"]
-"""How tool calls are exchanged: in the server's own fields, or written into the text of messages."""
+"""How tool calls are exchanged: in the API's native fields, or written into the text of messages."""
 
 _TEXT_TOOLS = """
 

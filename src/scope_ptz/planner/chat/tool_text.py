@@ -52,7 +52,7 @@ def find_calls(text: str, tools: Signatures, *, tagged_only: bool = False) -> Fo
         tagged_only: Whether to ignore notations without tags.
 
     Returns:
-        The calls of the first notation in ``_TAGGED_NOTATIONS`` that occurs, otherwise those without tags.
+        The calls in the first notation of ``_TAGGED_NOTATIONS`` that occurs in the text, otherwise the calls without tags.
     """
     text = encodable(text)
     for notation, pattern, reader in _TAGGED_NOTATIONS:
@@ -63,7 +63,7 @@ def find_calls(text: str, tools: Signatures, *, tagged_only: bool = False) -> Fo
 
 
 def _json_or_xml_calls(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Parse the inside of ``<tool_call>``: JSON (Hermes), XML functions (Qwen3-Coder), or XML keys and values (GLM)."""
+    """Parse the content of a ``<tool_call>`` element: JSON (Hermes), XML functions (Qwen3-Coder), or XML keys and values (GLM)."""
     if "<function" in body:
         return _xml_calls(body, tools)
     if "<arg_key>" in body:
@@ -198,7 +198,7 @@ _TAGGED_NOTATIONS: tuple[tuple[str, re.Pattern[str], _CallParser], ...] = (
     ("llama", _between(r"<\|python_tag\|>", r"<\|eom_id\|>|<\|eot_id\|>"), _json_calls),
 )
 _MAX_START_LINES = 20
-"""Maximum number of lines that are tried as the start of calls. A text with more such lines is a table or a program."""
+"""Maximum number of lines to try as the start of calls. A text with more such lines is a table or a program."""
 _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
 
 
@@ -220,7 +220,7 @@ def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
 
 
 def _calls_to_tools(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Return the calls in a text that consists only of calls of offered tools; an empty list for any other text."""
+    """Return the calls in a text that consists only of calls to offered tools; an empty list for any other text."""
     body = body.strip()
     calls: list[WrittenCall] = []
     if body.startswith(("{", "[{")):

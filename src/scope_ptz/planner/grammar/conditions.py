@@ -20,7 +20,7 @@ class PresetRef:
     Attributes:
         name: The name as it appears in the instruction.
         number: The position in the list of presets, if the instruction gives one: 1 is the first, -1 the last.
-        explicit: Whether the words can only refer to a preset ("preset gate"); other words may also refer to an object.
+        explicit: Whether the wording can only refer to a preset ("preset gate"); other words may also refer to an object.
         has_article: Whether the name follows "the", "a" or "an".
     """
 

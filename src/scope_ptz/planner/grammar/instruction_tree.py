@@ -76,7 +76,7 @@ class Move:
     """A camera movement on one or more axes.
 
     Attributes:
-        has_verb: Whether the instruction has a verb for the move. "Left 5" has none, so it may belong to the previous move.
+        has_verb: Whether the instruction names the move with a verb. "Left 5" has none, so it may belong to the previous move.
     """
 
     parts: tuple[Part, ...]
@@ -108,8 +108,8 @@ class GoToPreset:
     """Go to a preset.
 
     Attributes:
-        how: The verb of the instruction, "bare" for none. After "go" the words must name a preset; otherwise they may name an
-            object.
+        how: The verb of the instruction, "bare" for none. After "go", the words must name a preset; after other verbs, they may
+            name an object.
     """
 
     ref: PresetRef
@@ -128,7 +128,7 @@ class ListPresets:
 
 @dataclass(frozen=True, slots=True)
 class Snap:
-    """Take pictures, of an object if one is given."""
+    """Take one or more pictures: of an object if one is given, otherwise of the current view."""
 
     times: int = 1
     of: Thing | None = None
@@ -211,7 +211,7 @@ class DoAgain:
     """Repeat the previous steps.
 
     Attributes:
-        times: How often the steps run in total or, if ``more`` is set, in addition; None for once more.
+        times: How many times the steps run: in total, or in addition if ``more`` is set. None means once more.
     """
 
     times: int | None = None
@@ -253,7 +253,7 @@ class Between:
 
 @dataclass(frozen=True, slots=True)
 class AtIntervals:
-    """Run steps at regular intervals of a turn: of ``move`` or, if it is None, of the previous step."""
+    """Run steps at regular angular intervals during ``move`` or, if that is None, during the previous step."""
 
     body: tuple[Step, ...]
     degrees: float
@@ -265,7 +265,7 @@ class CompareWithBefore:
     """Compare a count with the count before the last moves ("are there more than before?").
 
     Attributes:
-        thing: The objects to count; if its text is empty, the objects that were counted last.
+        thing: The objects to count; if its text is empty, the objects of the last count.
     """
 
     thing: Thing
@@ -296,11 +296,11 @@ class SameAt:
 
 @dataclass(frozen=True, slots=True)
 class WhichPreset:
-    """Count at each of several presets and report which one shows the most (or fewest).
+    """Count objects at each of several presets, and report which preset shows the most (or fewest).
 
     Attributes:
         go: Whether to go to that preset afterwards.
-        any_of: Whether to report instead which presets show any of the objects.
+        any_of: Whether to report which presets show any of the objects, instead of the preset with the most.
     """
 
     thing: Thing
@@ -334,7 +334,7 @@ class Sweep:
     """Look all around: the following questions are about the whole scene.
 
     Attributes:
-        turn: Whether the words may also ask for a full turn of the camera.
+        turn: Whether the wording could also mean a full turn of the camera.
     """
 
     turn: bool = False

@@ -111,7 +111,7 @@ class Resolver:
 
     Attributes:
         presets: The camera's presets; None if they are unknown, so that names are accepted as written.
-        conversation: The earlier turns, which pronouns may refer to.
+        conversation: The earlier turns, to which pronouns may refer.
         antecedent: The description that a pronoun refers to.
         preset: The preset that "there" refers to.
         compared: Whether an earlier step compares presets.
@@ -150,7 +150,7 @@ class Resolver:
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
-        """Give a step without a verb the verb of the previous step, as in "read the left sign and then the right one"."""
+        """Return a step without a verb as a step with the verb of the previous step, as in "read the left sign and then the right one"."""
         last = before[-1] if before else None
         bare = isinstance(step, ast.GoToPreset) and step.how == "bare" and step.ref.has_article
         if not bare or not isinstance(step, ast.GoToPreset) or (self.presets and self.find_place(step.ref)):

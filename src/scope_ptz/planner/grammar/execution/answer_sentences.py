@@ -1,4 +1,4 @@
-"""Words and sentences for the grammar planner's answers, which state only facts from tool results."""
+"""Phrase the answers of the grammar planner, which state only facts from tool results."""
 
 from __future__ import annotations
 

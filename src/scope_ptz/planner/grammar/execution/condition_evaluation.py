@@ -1,4 +1,4 @@
-"""Test the conditions of an instruction with perception calls."""
+"""Evaluate the conditions of an instruction with perception calls."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class ConditionEvaluation(RunState):
-    """The part of a run that tests conditions."""
+    """The part of a run that evaluates conditions."""
 
     def _test(self, condition: ast.Condition) -> CallGenerator:
         """Return whether a condition is met, and a sentence that states what was observed."""

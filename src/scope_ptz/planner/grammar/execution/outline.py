@@ -1,4 +1,4 @@
-"""Outline a program: its calls, grouped into repetitions, loops and conditional branches.
+"""Create the outline of a program: its calls, grouped into repetitions, loops and conditional branches.
 
 The program runs against assumed results. Each loop body and each branch runs once.
 """
@@ -77,7 +77,7 @@ class _OutlineProgram(Program):
 
     @contextmanager
     def _block_under(self, heading: str) -> Iterator[None]:
-        """Record the calls of the context in a block under a heading."""
+        """Record the calls made inside this context in a block under a heading."""
         outer, self._block = self._block, OutlineBlock(heading)
         try:
             yield

@@ -1,4 +1,4 @@
-"""Run bound steps, as a generator that yields tool calls, receives their outcomes and describes the results in words.
+"""Run bound steps. A program is a generator that yields tool calls, receives their outcomes and describes the results in words.
 
 The planner replays the generator against the recorded history at every step, so it depends only on its inputs.
 """
@@ -24,8 +24,8 @@ _CAPABILITIES = (
     "I can pan, tilt and zoom, go to presets and home, take pictures, count things, answer questions about the scene, read text, "
     "and zoom in on or follow things"
 )
-_DEFAULT_MAX_MOVES = 24  # limit of a loop if the instruction does not give one
-_MAX_REQUESTED_MOVES = 100  # highest limit that an instruction can give
+_DEFAULT_MAX_MOVES = 24  # maximum number of moves of a loop if the instruction gives none
+_MAX_REQUESTED_MOVES = 100  # maximum number of moves that an instruction can request
 
 
 class Program(ConditionEvaluation):
@@ -243,7 +243,7 @@ class Program(ConditionEvaluation):
         yield from self._run_steps(step.otherwise)
 
     def _move_limit(self, step: ast.Loop) -> int:
-        """Return the limit on a loop's moves: the one in the instruction, otherwise enough moves to cover the axis once."""
+        """Return the limit on a loop's moves: the limit in the instruction, otherwise enough moves to cover the axis once."""
         bound = step.bound or ast.Bound()
         if bound.moves is not None:
             return min(bound.moves, _MAX_REQUESTED_MOVES)

@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.camera_history import PositionHistory, VisitedPosition
 
 CallRequest = tuple[str, dict[str, Any]]
-"""The name and arguments of a tool call."""
+"""The name and arguments of a requested tool call."""
 
 
 class Outcome(Protocol):
@@ -46,7 +46,7 @@ class RunState:
     Attributes:
         pose: The camera's pose, updated after every call.
         positions: The camera's positions in earlier turns of the conversation.
-        assume_met: Whether every condition counts as met, for plans without a camera.
+        assume_met: Whether to treat every condition as met, for plans without a camera.
         notes: The sentences of the answer.
         sources: The sources of the perception results.
     """
@@ -60,10 +60,10 @@ class RunState:
     _missing: set[str] = field(default_factory=set)  # descriptions of objects that were not found
     _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
     _best_preset: str | None = None  # the preset that a comparison found
-    _moved_to_object: bool = False  # whether a perception tool has moved the camera since the last preset or home
+    _moved_to_object: bool = False  # whether a perception tool moved the camera after the last move to a preset or home
     _went_home: bool = False
     _last_count: int = -1
-    _last_was_yes: bool = False  # whether the last answer was yes, or the last count above zero
+    _last_was_yes: bool = False  # whether the last answer was yes, or the last count was above zero
 
     def answer(self) -> str:
         """Return the answer: all notes, and the note about the sources."""
@@ -74,7 +74,7 @@ class RunState:
         self.notes.append(text)
 
     def _call(self, tool: str, **arguments: Any) -> CallGenerator:
-        """Make a tool call, and update the pose and the sources from its result."""
+        """Make a tool call, update the pose and the sources from its result, and return its outcome."""
         outcome = yield tool, arguments
         result = outcome.result
         if outcome.error is None and result and isinstance(pose := result.get("pose"), dict):

@@ -131,7 +131,7 @@ def _covers_before(step: Repeat, last: Step) -> bool:
 
 
 def _verbless(step: Step) -> Move | None:
-    """Return the step if it is a move without a verb, which depends on the previous move; otherwise None."""
+    """Return the step if it is a move without a verb, which continues the previous move; otherwise None."""
     return step if isinstance(step, Move) and not step.has_verb else None
 
 
@@ -153,7 +153,7 @@ def _axis(part: Part) -> str:
 
 
 def _shared(part: Part, others: tuple[Part, ...]) -> Part:
-    """Return a part with the amount of the last part if it has none: in "up and left 20", 20 applies to both."""
+    """Return a part that has no amount with the amount of the last part: in "up and left 20", 20 applies to both."""
     last = others[-1]
     if isinstance(part, Turn) and part.amount is None and part.step is None and isinstance(last, Turn):
         return replace(part, amount=last.amount, step=last.step, steps=last.steps)
@@ -161,7 +161,7 @@ def _shared(part: Part, others: tuple[Part, ...]) -> Part:
 
 
 def _step_size(step: Step) -> Turn | None:
-    """Return the turn of a move that is made in steps; None if the move has none."""
+    """Return the turn that a move makes in steps; None if the move has no such turn."""
     if isinstance(step, Move):
         return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
     return None

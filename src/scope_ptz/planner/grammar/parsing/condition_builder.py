@@ -29,7 +29,7 @@ from scope_ptz.planner.grammar.parsing.tree_nodes import Node
 
 
 class ConditionBuilder(SceneBuilder):
-    """A builder of conditions, and of steps that compare counts."""
+    """Visitor that builds conditions, and steps that compare counts."""
 
     # Conditions --------------------------------------------------------------------------------------------------------
 

@@ -65,7 +65,7 @@ class StepSize:
 
 
 class MoveBuilder(TreeVisitor):
-    """A builder of moves and their amounts."""
+    """Visitor that builds moves and their amounts."""
 
     # Amounts -----------------------------------------------------------------------------------------------------------
     def degrees(self, node: Node) -> Amount:

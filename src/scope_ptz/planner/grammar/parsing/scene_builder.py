@@ -59,7 +59,7 @@ _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_s
 
 
 class SceneBuilder(TreeVisitor):
-    """A builder of references to presets and objects, and of the steps that use them."""
+    """Visitor that builds references to presets and objects, and the steps that use them."""
 
     # Descriptions ------------------------------------------------------------------------------------------------------
     def np(self, node: Node) -> Thing:

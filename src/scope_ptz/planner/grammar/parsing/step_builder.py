@@ -50,7 +50,7 @@ _LINK_OF_TERMINAL = {"AND": "and", "COMMA": ",", "THEN": "then"}
 
 
 class StepBuilder(MoveBuilder, ConditionBuilder):
-    """A builder of the steps of one instruction."""
+    """Visitor that builds all steps of one instruction."""
 
     def extend(self, tree: Branch, before: list[Step]) -> list[Step]:
         """Return the steps of a sentence combined with the steps before it."""
