@@ -24,17 +24,17 @@ MAX_DETECTIONS = 3
 """Maximum number of perception calls per tool call."""
 
 SMALL_FILL = 0.05
-"""A target that fills less than this share of its limiting side is detected again at a closer zoom, for a more exact box."""
+"""A target that fills less than this fraction of its limiting side is detected again at a closer zoom, for a more exact box."""
 
 CLOSER_FILL = 0.45
-"""Share of its limiting side that a small target fills for the next detection."""
+"""Fraction of its limiting side that a small target fills for the next detection."""
 
 CUT_OFF_ZOOM_FACTOR = 0.4
-"""Factor on the zoom for the next detection of a target that the frame cuts off, so that the whole target fits."""
+"""Factor by which the zoom changes for the next detection of a target that the frame cuts off, so that the whole target fits."""
 
 SETTLED_OFFSET = 0.012
 SETTLED_FILL = (0.64, 0.86)
-"""A target within this offset from the middle and in this range of fill needs no more moves."""
+"""A target within this offset from the middle, and with a fill in this range, needs no more moves."""
 
 
 class ZoomToObject(Arguments):
@@ -50,10 +50,10 @@ class ZoomResult(PerceptionResult):
         description: The description of the target.
         found: Whether anything in view matches the description.
         matches: Number of matches in the first frame.
-        chosen: Name of the match that the camera zoomed to.
-        fill: Share of its limiting side that the target fills after the move.
-        offset: Offset of the target's middle from the frame's middle, as shares of width and height.
-        limited_by: Limits that prevent the target from being centred or from reaching its size.
+        chosen: Name of the match on which the camera zoomed in.
+        fill: Fraction of its limiting side that the target fills after the move.
+        offset: Offset of the target's middle from the frame's middle, as fractions of width and height.
+        limited_by: Limits that prevent the target from being centred or from reaching the requested size.
         box: The target in the last frame.
     """
 
@@ -85,7 +85,7 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
     """Centre an object and make it fill ``TARGET_FILL`` of the frame.
 
     If several objects match, the first one that perception lists is used; the ground truth lists the largest first. After a move,
-    the match nearest to the expected place is taken to be the same object. The camera does not move if nothing is found.
+    the match nearest to the expected position is assumed to be the same object. The camera does not move if nothing is found.
     """
     start = await context.camera.pose()
     first = await _locate(context, arguments.description, None)

@@ -83,7 +83,7 @@ def _thing(detection: dict[str, Any]) -> RawThing:
 
 
 class PipelineDetector:
-    """The transformers pipeline, loaded on first use. It processes one picture at a time."""
+    """The transformers pipeline, loaded on first use. It processes one image at a time."""
 
     def __init__(self, model: str, options: ZeroShotOptions) -> None:
         self._model, self._options, self._pipeline, self._lock = model, options, None, threading.Lock()

@@ -208,7 +208,7 @@ def same_calls(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
 
 
 def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
-    """Return whether the first move is opposite to the expected one: right instead of left, up instead of down, or in instead of out."""
+    """Return whether the first move is opposite to the expected one: right for left, up for down, or in for out."""
     expected = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
     actual = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
     return expected is not None and actual is not None and any(e * a < 0 for e, a in zip(expected, actual, strict=True))

@@ -150,7 +150,7 @@ class Resolver:
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
-        """Return a step without a verb as a step with the verb of the previous step, as in "read the left sign and then the right one"."""
+        """Apply the verb of the previous step to a step without one, as in "read the left sign and then the right one"."""
         last = before[-1] if before else None
         bare = isinstance(step, ast.GoToPreset) and step.how == "bare" and step.ref.has_article
         if not bare or not isinstance(step, ast.GoToPreset) or (self.presets and self.find_place(step.ref)):
