@@ -18,7 +18,7 @@ from scope_ptz.geometry import Equirectangular, Pose
 from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.models.tile_geometry import OVERLAP, TILE_ASPECT, iou, tiles, without_overlaps
+from scope_ptz.perception.models.tile_geometry import OVERLAP, TILE_ASPECT, iou, non_maximum_suppression, tiles
 from scope_ptz.perception.models.tiled_panoramas import TiledPerception
 from tests.perception import pictures
 
@@ -159,4 +159,4 @@ def test_overlap_and_suppression() -> None:
     b = a.model_copy(update={"x_max": 0.45, "score": 0.9})
     c = Box(x_min=0.6, y_min=0.6, x_max=0.9, y_max=0.9, score=0.1)
     assert iou(a, b) == pytest.approx(0.9) and iou(a, c) == 0.0
-    assert without_overlaps([a, b, c], 0.5) == [b, c]
+    assert non_maximum_suppression([a, b, c], 0.5) == [b, c]

@@ -63,7 +63,7 @@ def test_messages_are_append_only(notation: Any, sees: bool) -> None:
     steps = exchanges(5)
     before: list[dict[str, Any]] = []
     for length in range(6):
-        now = build_messages(state(*steps[:length], conversation=(earlier,)), PROMPT, notation=notation, sees=sees)
+        now = build_messages(state(*steps[:length], conversation=(earlier,)), PROMPT, notation=notation, accepts_images=sees)
         assert json.dumps(now).startswith(json.dumps(before)[:-1])
         before = now
 
@@ -85,7 +85,7 @@ def test_only_the_newest_view_is_sent_and_comes_last() -> None:
     taken = outcome(
         "take_image", arguments={}, result={"message": "Saved.", "pose": POSE, "file": "pictures/001.png"}, picture=VIEW
     )
-    messages = build_messages(state(Exchange(outcomes=(taken,)), view=VIEW), PROMPT, sees=True)
+    messages = build_messages(state(Exchange(outcomes=(taken,)), view=VIEW), PROMPT, accepts_images=True)
     roles = [m["role"] for m in messages]
     assert roles == ["system", "user", "assistant", "tool", "user"]
     kinds = [part["type"] for part in messages[-1]["content"]]
@@ -96,7 +96,7 @@ def test_only_the_newest_view_is_sent_and_comes_last() -> None:
 
 
 def test_turns_alternate_for_planners_with_vision() -> None:
-    messages = build_messages(state(view=VIEW), PROMPT, sees=True)
+    messages = build_messages(state(view=VIEW), PROMPT, accepts_images=True)
     assert [m["role"] for m in messages] == ["system", "user"]
     assert [part["type"] for part in messages[1]["content"]] == ["text", "text", "image_url"]
 

@@ -1,1 +1,1 @@
-"""The agent: the loop that carries out an instruction, the trace that records it, replays and filmstrips."""
+"""The agent: the loop that carries out an instruction, the trace that records the run, replays and filmstrips."""

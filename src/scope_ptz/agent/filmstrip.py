@@ -35,7 +35,7 @@ MARGIN = 32
 GAP = 20
 CAPTION = 60
 MAX_PANELS = 12
-COMPRESSION = 2  # PNG compression level: takes a third of the time of level 6, and files are 7% larger
+COMPRESSION = 2  # PNG compression level: takes a third of the time of level 6, for files that are 7% larger
 MAX_NUMBERED_BOXES = 40  # with more boxes in a panel, the numbers would cover the picture
 
 _BOX_MARGIN = 2.0  # picture pixels between an object and its box, so that the box does not cover small objects
@@ -117,7 +117,7 @@ class _Tile:
 
 
 class _Banner:
-    """A labelled panel with up to three lines of text across the whole picture."""
+    """A labelled panel across the whole width of the filmstrip, with up to three lines of text."""
 
     def __init__(self, label: str, colour: str, text: str) -> None:
         self._label, self._colour = label, colour

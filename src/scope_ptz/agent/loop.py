@@ -37,9 +37,9 @@ from scope_ptz.tools.context import ImageStore
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.version import __version__
 
-STOP_TIMEOUT_S = 5.0  # limit for stopping the camera and reading its pose at the end of a run
-MAX_CALLS_PER_STEP = 32  # further calls in one decision are dropped, and the planner is notified
-MAX_REPEATED_BAD_CALLS = 5  # steps in a row with the same wrong call, after which the run ends as a planner error
+STOP_TIMEOUT_S = 5.0  # seconds allowed for stopping the camera and reading its pose at the end of a run
+MAX_CALLS_PER_STEP = 32  # further calls in one decision are dropped, and an error message tells the planner so
+MAX_REPEATED_BAD_CALLS = 5  # a run ends with a planner error after this many consecutive steps with the same wrong call
 
 
 class Agent:
@@ -62,15 +62,16 @@ class Agent:
         """Create an agent.
 
         Args:
-            planner: Decides on the next step.
+            planner: Makes the decision at each step.
             camera: Carries out the moves and takes the frames.
             perception: Answers questions about frames.
             images: Stores the pictures of the run.
-            budgets: Limits on steps, time and tokens; the defaults of ``Budgets`` when None.
-            labels: Facts about the run that are recorded in the trace but are unknown to the loop.
-            snapshots: Whether to store the first view and the view after each move. Frames that perception reads are always stored.
+            budgets: Limits on steps, time and tokens; None selects the defaults of ``Budgets``.
+            labels: Facts about the run that the trace records but the loop does not know.
+            snapshots: Whether to store the first view and the view after each move. Frames that perception receives are always
+                stored.
             tools: The tools that the planner can call.
-            run_tool: Runs the calls instead of ``tools.run``, for example a wrapper that observes them.
+            run_tool: A function that runs the calls instead of ``tools.run``, for example a wrapper that observes them.
             guarded: Whether to end the run of a planner that repeats the same wrong call, and to limit the calls of a step. False
                 for replays, because traces of older versions may contain such steps.
         """
@@ -119,7 +120,7 @@ class _Episode:
             self.watch,
             listener,
             snapshots=agent.snapshots,
-            sees=agent.planner.sees,
+            accepts_images=agent.planner.sees,
             tools=agent.tools,
             run_tool=agent.run_tool,
         )
@@ -210,7 +211,7 @@ class _Episode:
             failure = await self.calls.carry_out(self.steps, decision, self.history)
             if failure is not None:
                 return failure
-            if self.agent.guarded and self.calls.same_bad_call >= MAX_REPEATED_BAD_CALLS:
+            if self.agent.guarded and self.calls.bad_call_repeats >= MAX_REPEATED_BAD_CALLS:
                 return RunEnd("planner_error", f"The planner made the same wrong call {MAX_REPEATED_BAD_CALLS} times in a row.")
         return RunEnd("step_limit", f"No answer within {budgets.max_steps} steps.")
 

@@ -68,7 +68,7 @@ def _joined(move: Panel, call: Panel) -> str:
 
 
 def _with_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
-    """Return the panels, with the last earlier view in place of missing pictures, such as those of failed calls."""
+    """Return the panels. A panel without a picture, such as that of a failed call, gets the previous view."""
     shown, last = [], first
     for panel in panels:
         shown.append(panel if panel.file else replace(panel, file=last))

@@ -1,4 +1,4 @@
-"""Pictures for planners with vision, and the shared frame of calls that run at the same time."""
+"""Pictures for planners that accept images, and the shared frame of concurrent calls."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.perception.models.encoding import picture_of
 from scope_ptz.planner.base import Picture
 from scope_ptz.tools.context import ImageStore
 
-MAX_SIDE_PX = 1280  # larger pictures are scaled down, as vision models would do anyway
+MAX_SIDE_PX = 1280  # larger frames are scaled down, as vision models would do anyway
 
 
 async def picture(frame: Frame, caption: str) -> Picture:
@@ -52,7 +52,7 @@ class PictureStore:
 
 
 class SharedFrameCamera(TimedCamera):
-    """A camera for calls that run at the same time. The first request takes a frame, and every later request returns it."""
+    """A camera for concurrent calls. The first request takes a frame, and every later request returns the same frame."""
 
     def __init__(self, camera: Camera, watch: Stopwatch) -> None:
         super().__init__(camera, watch)

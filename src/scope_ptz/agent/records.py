@@ -13,7 +13,7 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import CallTools, Exchange, Finish, PastTurn, ToolOutcome, Usage
 
 FORMAT_VERSION = 1
-"""Version of the trace format. It increases when a change could make an older program misread traces."""
+"""Version of the trace format. It is raised when a change could make an older program misread traces."""
 
 Outcome = Literal["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error", "cancelled"]
 OUTCOMES: tuple[str, ...] = get_args(Outcome)
@@ -34,7 +34,7 @@ class _Record(BaseModel):
 
 
 class RecordedPose(_Record):
-    """A pose in full precision, so that a replay starts from exactly the same pose."""
+    """A pose at full precision, so that a replay starts from exactly the same pose."""
 
     pan_deg: float
     tilt_deg: float
@@ -111,7 +111,7 @@ class Started(_Record):
 
 
 class Decided(_Record):
-    """The planner's decision at a step. ``view`` names the picture that a planner with vision received."""
+    """The planner's decision at a step. ``view`` is the name of the picture that a planner with vision received."""
 
     event: Literal["decision"] = "decision"
     step: int
@@ -126,7 +126,7 @@ class Called(_Record):
     Attributes:
         scene_time_s: Scene time at the start of the call.
         pose: Pose of the camera after the call.
-        frame: Name of the picture of the view after the call, stored when the pose changed.
+        frame: Name of the picture of the view after the call; it is stored only if the pose changed.
     """
 
     event: Literal["call"] = "call"

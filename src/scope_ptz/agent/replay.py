@@ -1,6 +1,6 @@
 """Replay a run without models: the recorded decisions and perception replies drive a fresh simulated camera.
 
-A replay is equal when every call gives the same result (poses, counts, answers, clamped axes) or the same error.
+A replay is equal if every call gives the same result (poses, counts, answers, clamped axes) or the same error.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ REPEATABLE = ("answered", "clarification", "refused", "step_limit")
 """Outcomes that a replay must reach again. Other outcomes, such as an exhausted budget or a failure, have external causes."""
 
 _FILE_NAME_FIELDS = ("frames", "file")
-_TOLERANCE = 0.011  # results are rounded to hundredths or finer, so smaller differences are rounding errors
+_TOLERANCE = 0.011  # maximum rounding error, because results are rounded to hundredths or finer
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +60,11 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
         The differences between the recorded and the repeated calls.
 
     Raises:
-        TraceError: The run was made with a real camera and cannot be repeated.
+        TraceError: The run used a real camera and cannot be repeated.
     """
     if not trace.started.simulated:
         raise TraceError("This run was made with a real camera, so it cannot be repeated.")
-    # Calls that failed for a reason outside the scene would not fail again, so they are not repeated.
+    # Calls that failed for a reason outside the simulation would not fail again, so they are not repeated.
     calls = tuple(call for call in trace.calls if call.fault not in ("camera", "cancelled"))
     script = _Script(replace(trace, calls=calls), camera)
     agent = Agent(
@@ -89,7 +89,7 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
 
 
 class _Script:
-    """The recorded decisions, and the recorded perception replies that have not been used yet."""
+    """The recorded decisions, and the recorded perception replies that the replay has not used yet."""
 
     def __init__(self, trace: Trace, camera: Camera) -> None:
         self.decisions = _complete_decisions(trace)

@@ -1,4 +1,4 @@
-"""Image stores of runs: a folder, memory, or nothing.
+"""Image stores for runs: in a folder, in memory, or without storage.
 
 This module creates all file names. Text from users and models is never used as a path unchanged.
 """
@@ -40,7 +40,7 @@ class Numbering:
         self._frames = self._pictures = 0
 
     def frame(self, frame: Frame) -> str:
-        """Return the name for the next frame that perception reads."""
+        """Return the name for the next frame that perception receives."""
         self._frames += 1
         return f"frames/{self._frames:03d}-{'view' if isinstance(frame.projection, Perspective) else 'full'}.jpg"
 
@@ -70,7 +70,7 @@ class EncodedImages(ABC):
         self._names = Numbering()
 
     def save_frame(self, frame: Frame) -> str:
-        """Store a frame that perception reads and return its name. Raises ``OutputError``."""
+        """Store a frame that perception receives and return its name. Raises ``OutputError``."""
         return self._store(self._names.frame(frame), frame, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
 
     def save_picture(self, frame: Frame) -> str:
@@ -111,7 +111,7 @@ class RunFolder(EncodedImages):
 
     @classmethod
     def create(cls, root: Path, instruction: str) -> RunFolder:
-        """Create ``root/<UTC time>-<first words>-<random>``. Two runs never share a folder.
+        """Create the folder ``root/<UTC time>-<first words>-<random>``. Two runs never share a folder.
 
         Raises:
             OutputError: The folder cannot be created.

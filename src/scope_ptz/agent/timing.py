@@ -25,7 +25,7 @@ _PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Po
 
 
 class Timings(BaseModel):
-    """Wall-clock seconds by part of the system. Calls that overlap count once.
+    """Wall-clock seconds by part of the system. The time of overlapping calls counts once.
 
     Attributes:
         planner_s: Time of the planner's decisions.
@@ -33,7 +33,7 @@ class Timings(BaseModel):
         camera_s: Time of moves, and of frames of a real camera.
         render_s: Time of frames of a simulated camera.
         total_s: Time of the whole run, including the loop and the tools.
-        first_token_s: The part of ``planner_s`` before the first tokens arrived, if the planner's server streams.
+        first_token_s: The part of ``planner_s`` before the first token of each reply, if the planner's server streams.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -47,17 +47,17 @@ class Timings(BaseModel):
 
     @property
     def capture_s(self) -> float:
-        """Time of the camera: moves and frames, including simulated frames."""
+        """Seconds of camera calls: moves and frames, including simulated frames."""
         return self.camera_s + self.render_s
 
     @property
     def own_s(self) -> float:
-        """Time without the camera: planner, perception, and the work of the loop and the tools."""
+        """Seconds without camera calls: planner, perception, and the work of the loop and the tools."""
         return max(self.planner_s + self.perception_s, self.total_s - self.capture_s)
 
     @property
     def tools_s(self) -> float:
-        """Time of the loop and the tools themselves, such as stitching a panorama and writing pictures."""
+        """Seconds of the loop and the tools themselves, such as stitching a panorama and writing pictures."""
         return self.own_s - self.planner_s - self.perception_s
 
     def __sub__(self, earlier: Timings) -> Timings:
@@ -65,7 +65,7 @@ class Timings(BaseModel):
 
 
 class Stopwatch:
-    """A stopwatch that adds up wall-clock time by part of the system. Overlapping calls of one part count once."""
+    """A stopwatch that adds up wall-clock time by part of the system. The time of overlapping calls to one part counts once."""
 
     def __init__(self) -> None:
         self._began = perf_counter()
@@ -261,6 +261,6 @@ def failed_usage(attempts: Iterable[object]) -> Usage:
 
 
 def server_events(error: PerceptionError | PlannerError) -> dict[str, int]:
-    """Return the number of failed requests that led to an error, by failure kind. Unusable replies count as failures."""
+    """Return the number of failed requests that led to an error, by failure kind. An unusable reply counts as a failure."""
     events = count_failures(a for a in error.attempts if isinstance(a, Attempt))
     return events if error.kind is None or error.kind in events else {**events, str(error.kind): 1}

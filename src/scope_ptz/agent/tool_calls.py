@@ -1,4 +1,4 @@
-"""Run the tool calls of a step. Calls run in order; perception calls on the current view run at the same time."""
+"""Run the tool calls of a step. Calls run in order; consecutive perception calls on the current view run concurrently."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from scope_ptz.tools.context import ImageStore, ToolContext
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.tools.results import Result
 
-MAX_CONCURRENT_CALLS = 8  # perception calls at a time
+MAX_CONCURRENT_CALLS = 8  # maximum number of concurrent perception calls
 
 RunTool = Callable[[ToolContext, str, Any], Awaitable[Result]]
 """The function that runs a call: ``ToolRegistry.run`` or a wrapper around it."""
@@ -41,7 +41,7 @@ class RunEnd(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _FinishedCall:
-    """A finished or cancelled call. ``end`` is set if the call ends the run, ``raised`` if its error is raised to the caller."""
+    """A finished or cancelled call. ``end`` is set if the call ends the run; ``raised`` is an error to raise to the caller."""
 
     outcome: ToolOutcome
     fault: CallFault | None
@@ -65,23 +65,23 @@ class CallRunner:
         emit: Listener,
         *,
         snapshots: bool,
-        sees: bool,
+        accepts_images: bool,
         tools: ToolRegistry = TOOLS,
         run_tool: RunTool | None = None,
     ) -> None:
         self._raw_camera, self._perception, self._images, self._watch, self._emit = camera, perception, images, watch, emit
-        self._snapshots, self._sees, self._tools, self._run_tool = snapshots, sees, tools, run_tool or tools.run
+        self._snapshots, self._accepts_images, self._tools, self._run_tool = snapshots, accepts_images, tools, run_tool or tools.run
         self.camera = TimedCamera(camera, watch)
         self.pose = Pose()
         self.bad_calls = self.perception_failures = 0
-        self.same_bad_call = 0  # consecutive steps with the same bad call
+        self.bad_call_repeats = 0  # number of consecutive steps with the same bad call
         self._last_bad_call: tuple[str, dict[str, Any]] | None = None
         self.events: Counter[str] = Counter()
 
     async def carry_out(self, step: int, decision: CallTools, history: list[Exchange]) -> RunEnd | None:
         """Run the calls of a step in order and append them to the history.
 
-        After a failed call the remaining calls are skipped, because they were planned for another state.
+        After a failed call the remaining calls are skipped, because they were planned for a different state.
 
         Args:
             step: Number of the step, from 1.
@@ -107,7 +107,7 @@ class CallRunner:
 
     def _count_repetition(self, results: Iterable[_FinishedCall]) -> None:
         bad = next(((d.outcome.call.name, d.outcome.call.arguments) for d in results if d.fault == "bad_call"), None)
-        self.same_bad_call = 0 if bad is None else self.same_bad_call + 1 if bad == self._last_bad_call else 1
+        self.bad_call_repeats = 0 if bad is None else self.bad_call_repeats + 1 if bad == self._last_bad_call else 1
         self._last_bad_call = bad
 
     async def _batch(self, step: int, calls: Sequence[ToolCall], batch: Sequence[int], results: dict[int, _FinishedCall]) -> None:
@@ -142,7 +142,7 @@ class CallRunner:
             self.pose = await camera.pose()
             if self._snapshots and self.pose != pose and not getattr(result, "frames", ()):
                 frame = self._images.save_frame(await camera.frame())
-            last_picture = await images.last_picture() if self._sees else None
+            last_picture = await images.last_picture() if self._accepts_images else None
             outcome = ToolOutcome(call=call, result=result.model_dump(mode="json"), picture=last_picture)
         except (ToolCallError, UnknownNameError) as error:
             outcome, fault = ToolOutcome(call=call, error=str(error)), "bad_call"
@@ -195,7 +195,7 @@ class CallRunner:
 
 
 def batches(calls: Sequence[ToolCall], tools: ToolRegistry = TOOLS) -> Iterator[list[int]]:
-    """Yield the indices of the calls in batches; the calls of one batch can run at the same time.
+    """Yield the indices of the calls in batches. The calls of one batch can run concurrently.
 
     Consecutive calls that only read the current view share a batch. Every other call is a separate batch.
     """

@@ -1,4 +1,4 @@
-"""Trace files: one JSON record per line. Each line is flushed immediately, so that a crash loses no recorded line."""
+"""Read and write trace files: one JSON record per line. Each line is flushed immediately, so that a crash loses no record."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Trace:
 
 
 def picture_of(folder: Path, name: str) -> Path:
-    """Return the path of a picture that is named in a trace.
+    """Return the path of a picture that a trace names.
 
     Raises:
         TraceError: The name points outside the folder of the run.
@@ -74,7 +74,7 @@ def picture_of(folder: Path, name: str) -> Path:
 
 
 def picture_names(trace: Trace) -> dict[str, int | None]:
-    """Return the pictures that a trace names, in order, each with the position of the call that took it."""
+    """Return the pictures that a trace names, in order, each with the position of its call (None for the first view)."""
     found: dict[str, int | None] = {} if trace.started.frame is None else {trace.started.frame: None}
     for position, call in enumerate(trace.calls):
         result = call.outcome.result or {}

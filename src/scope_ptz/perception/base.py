@@ -1,6 +1,6 @@
 """The perception contract: the calls that a backend implements, and their typed results.
 
-Boxes and points are normalised to [0, 1] with the origin at the top left, regardless of what the model reports. A failure
+Boxes and points are normalised to [0, 1] with the origin at the top left, whatever convention the model uses. A failure
 raises ``PerceptionError``; it never becomes a count of zero, an empty list or an invented result.
 """
 
@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.failures import Attempt
 
-Unit = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+UnitInterval = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Skill = Literal["caption", "query", "detect", "point"]
 
 ALL_SKILLS: frozenset[Skill] = frozenset(("caption", "query", "detect", "point"))
@@ -26,15 +26,15 @@ class Agreement(BaseModel):
     model_config = ConfigDict(frozen=True)
 
     other: str
-    """The second backend."""
+    """The name of the second backend."""
     said: str
     """The second backend's answer, shortened; for boxes and points, their number."""
-    share: Unit
-    """How far the results agree, from 0 to 1."""
+    share: UnitInterval
+    """The agreement of the two results, from 0 to 1."""
 
     @property
     def agrees(self) -> bool:
-        """Whether the results agree by one half or more."""
+        """Whether the agreement is at least 0.5."""
         return self.share >= 0.5
 
 
@@ -45,8 +45,8 @@ class _Result(BaseModel):
         source: The backend that answered ("ground-truth", "moondream3").
         raw: The reply as received.
         latency_s: Wall-clock time in seconds.
-        notes: Corrections to the reply, omissions from it, and failures of backends that were asked before ``source``.
-        agreement: The comparison with a second backend, if one was asked.
+        notes: Corrections to the reply, omissions from it, and failures of backends that were called before ``source``.
+        agreement: The comparison with a second backend, if one was called.
         attempts: The requests that were sent to a model server.
     """
 
@@ -65,10 +65,10 @@ class Box(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    x_min: Unit
-    y_min: Unit
-    x_max: Unit
-    y_max: Unit
+    x_min: UnitInterval
+    y_min: UnitInterval
+    x_max: UnitInterval
+    y_max: UnitInterval
     label: str | None = None
     score: float | None = None
 
@@ -96,8 +96,8 @@ class Point(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    x: Unit
-    y: Unit
+    x: UnitInterval
+    y: UnitInterval
     label: str | None = None
 
 
@@ -138,7 +138,7 @@ class Perception(ABC):
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
     handles_panoramas: bool = False
-    """Whether the backend finds small objects in a whole panorama. Other backends receive it in parts (see
+    """Whether the backend finds small objects in a whole panorama. Other backends receive it as tiles (see
     ``models.tiled_panoramas``).
     """
 

@@ -1,4 +1,4 @@
-"""A placeholder for the perception backend of sessions that have none."""
+"""A placeholder for sessions without a perception backend."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class ToolOutcome(_Model):
     result: dict[str, Any] | None = None
     error: str | None = None
     picture: Picture | None = Field(
-        default=None, exclude=True, description="The picture of take_image, for planners that take images"
+        default=None, exclude=True, description="The picture of take_image, for planners that accept images"
     )
 
 
@@ -92,7 +92,7 @@ class State(_Model):
 
 
 class Usage(_Model):
-    """The tokens used by a step; zero for planners without a language model.
+    """The tokens that a step used; zero for planners without a language model.
 
     Attributes:
         cached_tokens: The input tokens that the server read from its prefix cache.
@@ -112,7 +112,7 @@ class Served(_Model):
     Attributes:
         model: The model's name as the server reports it.
         first_token_s: Seconds to the first token of a streamed reply.
-        calls_from: The place where the calls were found: "native" for the server's own field, otherwise the name of a text
+        calls_from: Where the calls were found: "native" for the ``tool_calls`` field of the reply, otherwise the name of a text
             notation.
         attempts: All requests, including failed ones.
     """
@@ -145,7 +145,7 @@ class CallTools(_Model):
 
 
 class Finish(_Model):
-    """The end of a run. ``text`` is the answer, the clarifying question or the reason for the refusal.
+    """The decision to end the run. ``text`` is the answer, the clarifying question or the reason for the refusal.
 
     Attributes:
         opened: See ``CallTools``.

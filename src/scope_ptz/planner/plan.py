@@ -65,10 +65,10 @@ def plan(
     """Return the plan for an instruction.
 
     Args:
-        instruction: The text that the user typed.
+        instruction: The text of the user.
         presets: The camera's presets; without any, preset names are accepted as written.
         pose: The camera's pose at the start.
-        preset_poses: Poses of the presets; a preset that is not listed is assumed to be at the home pose.
+        preset_poses: Poses of the presets. A preset that is not listed is assumed to have the home pose.
         limits: The camera's limits.
     """
     meaning = understand(instruction, tuple(presets) or None)
@@ -91,7 +91,7 @@ def plan(
 
 @dataclass(slots=True)
 class _AssumedWorld:
-    """A simulated camera and perception for plans. It tracks the pose, and finds every object."""
+    """An assumed camera and perception backend for plans. It tracks the pose and finds every object."""
 
     pose: Pose
     limits: Limits

@@ -1,4 +1,4 @@
-"""Load the model registry: the packaged entries and those of the user."""
+"""Load the model registry: the packaged entries and the user's entries."""
 
 from __future__ import annotations
 

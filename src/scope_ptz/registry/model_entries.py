@@ -11,7 +11,7 @@ Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[a-z0-9][a-z
 Role = Literal["planner", "perception"]
 Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
 Thinking = Literal["none", "optional", "default", "always"]
-"""Whether a model reasons: "none" (never), "optional" (on request), "default" (unless switched off) or "always". With "always",
+"""When a model reasons: "none" (never), "optional" (on request), "default" (unless switched off) or "always". With "always",
 only the length of the reasoning can be set.
 """
 BYTES_PER_PARAMETER: dict[Precision, float] = {
@@ -20,7 +20,7 @@ BYTES_PER_PARAMETER: dict[Precision, float] = {
 """Memory of the weights, in bytes per parameter. Four-bit formats store scales and some layers in more bits
 (Q4_K_M: 4.85 bits per weight)."""
 RUNTIME_GB = 1.5
-"""GB that a serving process needs besides weights and cache: kernels, activations and the workspace of the vision tower."""
+"""GB that a serving process needs in addition to weights and cache: kernels, activations and the workspace of the vision tower."""
 WINDOW = 16_384
 """Tokens of context assumed in memory figures and serve commands. A long agent run needs about half of them."""
 
@@ -57,8 +57,8 @@ class Model(_Entry):
     """A model for planning, for perception, or for both.
 
     Attributes:
-        size_b: Billions of parameters, as the model's makers state them.
-        active_b: Billions of active parameters, as the model's makers state them.
+        size_b: Billions of parameters, as stated by the model's authors.
+        active_b: Billions of active parameters, as stated by the model's authors.
         parameters_b: Billions of parameters in memory, including vision tower and embeddings; None if equal to ``size_b``.
         kv_kib: Size of the key-value cache per token of context, in KiB.
     """
@@ -101,7 +101,7 @@ class Model(_Entry):
     def memory_for(self, server: str | None = None) -> float:
         """Return the GB (10^9 bytes) needed to serve the model with a window of ``WINDOW`` tokens.
 
-        This is parameters x bytes + cache + ``RUNTIME_GB``. It is computed, not measured, unless ``memory_gb`` is given.
+        This is parameters x bytes per parameter + cache + ``RUNTIME_GB``. It is not measured, unless ``memory_gb`` is given.
         """
         serving = self.serve.get(server) if server else None
         precision = (serving.precision if serving else None) or self.precision

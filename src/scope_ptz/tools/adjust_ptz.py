@@ -14,7 +14,7 @@ from scope_ptz.tools.results import MoveResult, PoseData
 from scope_ptz.tools.tool import Tool
 
 MAX_REQUESTED_ZOOM = 1e6
-"""Limit on the requested magnification, so that a huge zoom factor cannot overflow. No camera reaches it."""
+"""Maximum requested magnification, so that a huge zoom factor cannot overflow. No camera reaches it."""
 
 
 class AdjustPtz(Arguments):

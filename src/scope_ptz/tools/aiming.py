@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 TARGET_FILL = 0.75
-"""Share of the frame that a framed target fills, along its limiting side. The paper requires 60 to 90%."""
+"""Fraction of the frame that a framed target fills, along its limiting side. The paper requires 60 to 90%."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Aim:
 
     Attributes:
         pose: The pose, within the camera's limits.
-        fill: The requested share of the limiting side; None for a pose at a given zoom.
+        fill: The fraction of the limiting side that the target should fill; None for a pose at a given zoom.
         limited_by: The limits that prevent the target from being centred or from reaching the requested size.
     """
 
@@ -82,7 +82,7 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
         target: Directions of shape ``(n, 3)`` along the target's outline.
 
     Returns:
-        The share of the limiting side that the target fills, and the offset of its middle as shares of width and height.
+        The fraction of the limiting side that the target fills, and the offset of its middle as fractions of width and height.
     """
     left, top, right, bottom = bounds(view(info, pose).points(target))
     if not math.isfinite(left):
@@ -93,7 +93,7 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
 def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL) -> Aim:
     """Return the pose within the limits that centres a target and makes it fill ``fill`` of its limiting side.
 
-    The calculation is iterative, because the bounding box of the target, and therefore its middle, changes with the view.
+    The calculation is iterative, because the bounding box of the target and its middle change with the view.
     """
     import numpy as np
 
@@ -127,7 +127,9 @@ def sorted_axes(axes: set[Axis]) -> tuple[Axis, ...]:
 
 
 def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> float:
-    """Return the magnification at which the target fills its share. In a centred view, sizes are proportional to the focal length.
+    """Return the magnification at which the target fills the requested fraction.
+
+    In a centred view, sizes are proportional to the focal length.
 
     A focal length outside the range of the lens gives a zoom outside the camera's limits, so that clamping reports the limit.
     """
@@ -149,7 +151,7 @@ def touches_border(box: Box, margin: float = 0.004) -> bool:
 
 
 def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floats) -> Box | None:
-    """Return the box nearest to the expected place of the target; None if there is none near enough to be the target."""
+    """Return the box nearest to the expected position of the target; None if no box is near enough to be the target."""
     left, top, right, bottom = bounds(frame.projection.points(target))
     if not boxes or not math.isfinite(left):
         return None

@@ -1,4 +1,4 @@
-"""The base class and the shared types of tool arguments. Planners see the JSON schemas that pydantic generates from them."""
+"""The base class and the shared types of tool arguments. Planners receive the JSON schemas that pydantic generates from them."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class ToolContext:
 
 
 def pose_text(arrival: Arrival) -> str:
-    """Describe the camera's pose and the limits that stopped it, as the end of a sentence."""
+    """Describe the camera's pose, and the limits that stopped it, in words that end a sentence."""
     pose = arrival.pose.as_dict()
     text = f"the camera is at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
     if arrival.limited_by:

@@ -9,7 +9,7 @@ from scope_ptz.tools.context import ToolContext
 
 
 async def view_frame(context: ToolContext, view: View) -> Frame:
-    """Return the current frame, or for the full view the panorama of a sweep."""
+    """Return the current frame or, for the full view, the panorama of a sweep."""
     if view == "full":
         from scope_ptz.tools.sweep import sweep  # only a sweep needs OpenCV
 
@@ -18,7 +18,7 @@ async def view_frame(context: ToolContext, view: View) -> Frame:
 
 
 def note_sentences(observation: Detections | Answer) -> str:
-    """Return sentences about corrections of an observation and about a second backend that disagrees, each after a space."""
+    """Return sentences about corrections to an observation and about a second backend that disagrees, each preceded by a space."""
     sentences = list(observation.notes)
     agreement = observation.agreement
     if agreement is not None and not agreement.agrees:

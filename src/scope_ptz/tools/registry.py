@@ -24,7 +24,7 @@ from scope_ptz.tools.zoom_to_object import ZOOM_TO_OBJECT
 
 
 class ToolRegistry(Mapping[str, Tool]):
-    """Tools by name, in the order in which planners see them.
+    """Tools by name, in the order in which planners receive them.
 
     Args:
         tools: The tools.
@@ -60,7 +60,7 @@ class ToolRegistry(Mapping[str, Tool]):
         """Validate a call, and return its tool and its arguments.
 
         Raises:
-            ToolCallError: The name or the arguments are invalid. The message tells a planner how to correct the call.
+            ToolCallError: The name or the arguments are invalid. The message states how to correct the call.
         """
         tool = self._tools.get(name)
         if tool is None:

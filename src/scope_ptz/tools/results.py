@@ -1,4 +1,4 @@
-"""The results of tools. Every result states the pose after the call and the axes that a limit stopped."""
+"""The results of tools. Every result contains the pose after the call and the axes that a limit stopped."""
 
 from __future__ import annotations
 

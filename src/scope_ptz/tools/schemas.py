@@ -1,7 +1,7 @@
-"""A stored copy of the tools' schemas, for commands that only print them.
+"""Read and write a stored copy of the tool schemas, for commands that only print them.
 
 The schemas belong to ``scope_ptz.tools.registry``, which generates them from pydantic models. Importing the models takes longer
-than reading ``data/tools.json``. A test compares both. After changing a tool, run ``write_stored_schemas()`` to rewrite
+than reading ``data/tools.json``. A test compares the two. After changing a tool, run ``write_stored_schemas()`` to rewrite
 the copy.
 """
 

@@ -1,4 +1,4 @@
-"""Sweeps: frames of the full scene at the widest zoom, stitched into one panorama.
+"""Sweep the camera: take frames of the full scene at the widest zoom, and stitch them into one panorama.
 
 A PTZ camera turns about its optical centre, so overlapping frames differ only by a re-projection. Each block of the panorama
 is copied from the frame whose middle is nearest. Frames are not blended, so that no object appears twice.
@@ -34,12 +34,12 @@ class Block:
 
 
 def plan_sweep(info: CameraInfo) -> list[Block]:
-    """Return the blocks of a sweep over all directions that the camera reaches, row by row from the top, left to right."""
+    """Return the blocks of a sweep over all directions that the camera can reach, row by row from the top, left to right."""
     limits, hfov = info.limits, info.optics.hfov_deg(info.limits.min_zoom)
     half_height = math.tan(math.radians(hfov) / 2) * info.frame_height / info.frame_width
     columns = math.ceil(_pan_span_deg(limits) / (hfov * 0.85))
     step = _pan_span_deg(limits) / columns
-    # Frames cover less height towards their sides. This is the reach at the edge of a column, less 1 degree for tilted frames.
+    # Frames cover less height towards their sides. This is half the height at a column's edge, less 1 degree for tilted frames.
     half_height_at_edge = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2)))) - 1.0
     top = min(limits.max_tilt_deg + half_height_at_edge, 30.0)
     low, high = limits.min_tilt_deg, min(limits.max_tilt_deg, top - half_height_at_edge)

@@ -29,12 +29,12 @@ class Tool:
 
     Attributes:
         name: The name in calls.
-        arguments: The model that validates a call's arguments. Its docstring is the description that planners see.
+        arguments: The model that validates a call's arguments. Its docstring is the description that planners receive.
         run: Carries out a call.
         moves: Whether the tool can move the camera.
         perceives: Whether the tool calls perception.
-        only_reads: Returns whether a call with given arguments only reads the current view. Consecutive calls of this kind run at
-            the same time and share one frame.
+        only_reads: Returns whether a call with the given arguments only reads the current view. Consecutive calls of this kind run
+            concurrently and share one frame.
     """
 
     name: str

@@ -22,26 +22,26 @@ if TYPE_CHECKING:
     from scope_ptz.tools.aiming import Floats
 
 PERIOD_S = 0.5
-"""Time between two detections. The paper's control loop runs at 2 Hz."""
+"""Time between two detections, in seconds. The paper's control loop runs at 2 Hz."""
 
 DEAD_ZONE = 0.06
-"""Offsets below this share of the frame are not corrected, to spare the motors."""
+"""Offsets below this fraction of the frame are not corrected, to spare the motors."""
 
 FILL_RANGE = (0.12, 0.5)
 TRACKING_FILL = 0.28
-"""If the target's share of the frame is outside ``FILL_RANGE``, the zoom is corrected to ``TRACKING_FILL``, which leaves room for
-motion and enough pixels to recognise the target.
+"""If the fraction of the frame that the target fills is outside ``FILL_RANGE``, the zoom is changed so that it fills
+``TRACKING_FILL``, which leaves room for motion and enough pixels to recognise the target.
 """
 
 MAX_RATE_UNKNOWN_MOTION_DEG_S = 25.0
 MAX_RATE_KNOWN_MOTION_DEG_S = 10.0
-"""Maximum speed at which the target may deviate from the expected direction, before and after its motion is known. A match beyond
-the maximum is a different object.
+"""Maximum speeds, in degrees per second, at which the target can deviate from the expected direction, before and after its motion
+is known. A match that deviates faster is a different object.
 """
 
 LOST_DETECTIONS = 2
-LOST_ZOOM = 0.6
-"""After ``LOST_DETECTIONS`` detections without the target, each further one multiplies the zoom by ``LOST_ZOOM``."""
+LOST_ZOOM_FACTOR = 0.6
+"""After ``LOST_DETECTIONS`` detections without the target, each further one multiplies the zoom by ``LOST_ZOOM_FACTOR``."""
 
 
 class TrackObject(Arguments):
@@ -68,7 +68,7 @@ class TrackResult(PerceptionResult):
         description: The description of the followed object.
         found: Whether anything in view matches the description.
         duration_s: The requested time.
-        held_share: Share of that time in which the target was in view.
+        held_share: Fraction of that time during which the target was in view.
         path: The poses of the camera while it followed the target.
     """
 
@@ -146,7 +146,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
             clamped |= set(await _correct(context, frame, seen, target))
         elif misses >= LOST_DETECTIONS:
             pose = await camera.pose()
-            clamped |= set(await _turn(context, target.at(frame.time_s + PERIOD_S), pose.zoom * LOST_ZOOM)) - {"zoom"}
+            clamped |= set(await _turn(context, target.at(frame.time_s + PERIOD_S), pose.zoom * LOST_ZOOM_FACTOR)) - {"zoom"}
         left_s = arguments.duration_s - (camera.clock.now_s() - started)
         if left_s <= 1e-6:
             break
@@ -208,7 +208,7 @@ def _report(
 
 
 def _held_share(path: list[TrackPoint]) -> float:
-    """Return the share of the time in which the target was in view. Each detection counts for the time since the previous one."""
+    """Return the fraction of the time with the target in view. Each detection counts for the time since the previous one."""
     visible_s = sum((current.time_s - previous.time_s) for previous, current in pairwise(path) if current.seen)
     span = max(path[-1].time_s, 1e-9)
     return min(visible_s / span, 1.0) if len(path) > 1 else 1.0

@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 MAX_DETECTIONS = 3
 """Maximum number of perception calls per tool call."""
 
-SMALL_SHARE = 0.05
-"""A target that fills less than this share of its limiting side is detected again at a closer zoom, for a more exact box."""
+SMALL_FILL = 0.05
+"""A target that fills less than this fraction of its limiting side is detected again at a closer zoom, for a more exact box."""
 
 CLOSER_FILL = 0.45
-"""Share of its limiting side that a small target fills for the next detection."""
+"""Fraction of its limiting side that a small target fills for the next detection."""
 
-CUT_ZOOM = 0.4
-"""Factor on the zoom for the next detection of a target that the frame cuts off, so that the whole target fits."""
+CUT_OFF_ZOOM_FACTOR = 0.4
+"""Factor by which the zoom changes for the next detection of a target that the frame cuts off, so that the whole target fits."""
 
 SETTLED_OFFSET = 0.012
 SETTLED_FILL = (0.64, 0.86)
-"""A target within this offset from the middle and in this range of fill needs no more moves."""
+"""A target within this offset from the middle, and with a fill in this range, needs no more moves."""
 
 
 class ZoomToObject(Arguments):
@@ -50,10 +50,10 @@ class ZoomResult(PerceptionResult):
         description: The description of the target.
         found: Whether anything in view matches the description.
         matches: Number of matches in the first frame.
-        chosen: Name of the match that the camera zoomed to.
-        fill: Share of its limiting side that the target fills after the move.
-        offset: Offset of the target's middle from the frame's middle, as shares of width and height.
-        limited_by: Limits that prevent the target from being centred or from reaching its size.
+        chosen: Name of the match on which the camera zoomed in.
+        fill: Fraction of its limiting side that the target fills after the move.
+        offset: Offset of the target's middle from the frame's middle, as fractions of width and height.
+        limited_by: Limits that prevent the target from being centred or from reaching the requested size.
         box: The target in the last frame.
     """
 
@@ -85,7 +85,7 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
     """Centre an object and make it fill ``TARGET_FILL`` of the frame.
 
     If several objects match, the first one that perception lists is used; the ground truth lists the largest first. After a move,
-    the match nearest to the expected place is taken to be the same object. The camera does not move if nothing is found.
+    the match nearest to the expected position is assumed to be the same object. The camera does not move if nothing is found.
     """
     start = await context.camera.pose()
     first = await _locate(context, arguments.description, None)
@@ -124,9 +124,9 @@ def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, detections: in
     if detections < MAX_DETECTIONS and touches_border(box):
         # A large target, or one that is cut off again, may need the widest view to fit.
         large = max(box.width, box.height) > 0.25
-        zoom = info.limits.min_zoom if detections > 1 or large else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
+        zoom = info.limits.min_zoom if detections > 1 or large else max(pose.zoom * CUT_OFF_ZOOM_FACTOR, info.limits.min_zoom)
         return aim_at_zoom(info, target, zoom)
-    small = detections < MAX_DETECTIONS and max(box.width, box.height) < SMALL_SHARE
+    small = detections < MAX_DETECTIONS and max(box.width, box.height) < SMALL_FILL
     return aim(info, pose, target, CLOSER_FILL if small else TARGET_FILL)
 
 

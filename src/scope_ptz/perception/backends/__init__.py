@@ -1,4 +1,4 @@
-"""Perception backends that read pixels, one file each.
+"""Perception backends that work on pixels, one module each.
 
 Every module in this package that defines ``make(spec: BackendSpec) -> Perception`` is a backend, named after the module. Other
 packages add backends with entry points of the group ``scope_ptz.perception`` that point to such a function. The module of a backend

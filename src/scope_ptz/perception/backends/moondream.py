@@ -25,10 +25,10 @@ class MoondreamOptions(Options):
     """Options of the backend.
 
     Attributes:
-        max_pixels: Frames with more pixels are scaled down to this number. The model itself processes only a few crops of 378
-            pixels.
-        max_objects: Maximum number of objects to request; None leaves the limit to the server.
-        reasoning: Whether Moondream 3 reasons before it answers a question; None leaves the choice to the server.
+        max_pixels: Frames with more pixels are scaled down to this number. The model itself processes only a few crops of
+            378 x 378 pixels.
+        max_objects: Maximum number of objects to request; None selects the server's limit.
+        reasoning: Whether Moondream 3 reasons before it answers a question; None selects the server's default.
         caption_length: "short", "normal" or "long".
     """
 
@@ -39,7 +39,7 @@ class MoondreamOptions(Options):
 
 
 class MoondreamPerception(Perception):
-    """Perception through Moondream's own HTTP protocol. Its coordinates are in [0, 1], and it returns no scores and no labels."""
+    """Perception through Moondream's own HTTP protocol. Its coordinates are in [0, 1], and it returns neither scores nor labels."""
 
     def __init__(self, client: JsonClient, options: MoondreamOptions | None = None, name: str = "moondream") -> None:
         self.name, self._client, self._options = name, client, options or MoondreamOptions()
@@ -101,7 +101,7 @@ class MoondreamPerception(Perception):
 
 
 def _body(data_url: str, fields: dict[str, Any]) -> bytes:
-    """Encode a request body as JSON. The picture bypasses the JSON encoder: base64 is long and needs no escaping."""
+    """Encode a request body as JSON. The image bypasses the JSON encoder, because base64 text is long and needs no escaping."""
     rest = json.dumps(fields, separators=(",", ":"), ensure_ascii=False)[1:]
     return f'{{"image_url":"{data_url}",{rest}'.encode()
 

@@ -1,4 +1,4 @@
-"""Text recognition with rapidocr, in this process and without a server. It works for simulated and real cameras."""
+"""Text recognition with rapidocr. It runs in this process, without a server, on frames of simulated and real cameras."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ class OcrOptions(Options):
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line of text in the picture. The label of ``box`` is the text."""
+    """A line of text in an image. The label of ``box`` is the text."""
 
     text: str
     box: Box
 
 
 class OcrPerception(Perception):
-    """Perception of text only. ``detect`` and ``point`` find a text by its wording.
+    """Perception of text only. ``detect`` and ``point`` find text by its wording.
 
-    Other descriptions, and questions that text alone does not answer, raise ``PerceptionError``: a picture without the text "car"
-    may still show a car. The lines of each frame are cached for later questions.
+    Other descriptions, and questions that text alone does not answer, raise ``PerceptionError``, because an image without the text
+    "car" may still show a car. The lines of each frame are cached for later questions.
     """
 
     handles_panoramas = True
@@ -92,7 +92,7 @@ class OcrPerception(Perception):
 
 
 def quoted(lines: Iterable[Line]) -> str:
-    """Return lines in quotes, so that a planner does not take text in the picture for an instruction."""
+    """Return the lines in quotes, so that a planner does not mistake text in the image for an instruction."""
     return ", ".join('"' + line.text.replace('"', "'") + '"' for line in lines)
 
 
@@ -101,7 +101,7 @@ def _raw(lines: Iterable[Line]) -> str:
 
 
 def in_reading_order(lines: list[Line]) -> list[Line]:
-    """Return lines row by row. A line belongs to a row if its vertical centre lies within the row's first line."""
+    """Return the lines sorted row by row. A line belongs to a row if its vertical centre lies within the row's first line."""
     rows: list[list[Line]] = []
     for line in sorted(lines, key=lambda x: x.box.centre[1]):
         if rows and abs(line.box.centre[1] - rows[-1][0].box.centre[1]) < rows[-1][0].box.height / 2:
@@ -112,7 +112,7 @@ def in_reading_order(lines: list[Line]) -> list[Line]:
 
 
 def read_tiles(reader: Reader, image: Image) -> list[Line]:
-    """Return all lines of text in a picture. A panorama is read in overlapping parts at full resolution."""
+    """Return all lines of text in an image. A panorama is read in overlapping tiles at full resolution."""
     width, height = image.shape[1], image.shape[0]
     parts: list[tuple[PanoramaTile, list[Box]]] = []
     for tile in tiles(width, height):
@@ -124,7 +124,7 @@ def read_tiles(reader: Reader, image: Image) -> list[Line]:
 
 
 class RapidOcr:
-    """The rapidocr engine, loaded on first use. It keeps state while it reads, so only one thread reads at a time."""
+    """The rapidocr engine, loaded on first use. The engine keeps state during a call, so only one thread uses it at a time."""
 
     def __init__(self, min_score: float = 0.5) -> None:
         self._min_score, self._engine, self._lock = min_score, None, threading.Lock()
@@ -155,7 +155,7 @@ class RapidOcr:
 
 
 def _line(corners: np.ndarray[Any, np.dtype[np.float64]], text: str, score: float, image: Image) -> Line | None:
-    """Convert four corners in pixels (4, 2) to a line; None if they enclose no area within the picture."""
+    """Convert four corners in pixels (4, 2) to a line; None if they enclose no area within the image."""
     if not np.isfinite(corners).all():
         return None
     low = np.clip(corners.min(axis=0) / (image.shape[1], image.shape[0]), 0, 1)

@@ -27,7 +27,7 @@ from scope_ptz.perception.models.vision_prompts import (
 from scope_ptz.perception.models.vision_reply import VisionReply, server_errors
 
 NO_COORDINATES = "none"
-"""The value of ``coordinates`` for models that return no boxes and no points, such as Moondream 3 behind vLLM."""
+"""The value of ``coordinates`` for models that return neither boxes nor points, such as Moondream 3 served by vLLM."""
 
 
 class VisionOptions(Options):
@@ -36,7 +36,7 @@ class VisionOptions(Options):
     Attributes:
         max_pixels: Frames with more pixels are scaled down to this number.
         max_tokens: Maximum number of tokens in a reply.
-        temperature: The sampling temperature; None leaves it to the server.
+        temperature: The sampling temperature; None selects the server's default.
         structured: Whether to request boxes and points with a JSON schema (``response_format``).
         extra: Further request fields that the server or the model family needs, such as ``{"chat_template_kwargs":
             {"enable_thinking": false}}``.
@@ -105,7 +105,7 @@ class OpenAIVisionPerception(Perception):
     async def _ask(
         self, picture: EncodedPicture, prompt: str, schema: dict[str, Any] | None = None
     ) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """Send a request, and repeat it without the fields that the server rejects. Return the reply and the attempts before it.
+        """Send a request, and repeat it without the fields that the server rejects. Return the reply and the earlier attempts.
 
         Rejected fields are omitted from later requests, too.
         """
@@ -145,7 +145,7 @@ _FIELD_ALIASES = {"response_format": ("response_format", "json_schema", "json sc
 
 
 def rejected_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
-    """Return the request fields that an error message rejects. If the message names none, assume that it means the JSON schema."""
+    """Return the request fields that an error message names as rejected. If it names none, assume that it means the JSON schema."""
     if error.kind not in (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR):
         return set()
     words = str(error).lower()

@@ -16,7 +16,7 @@ class RouterOptions(Options):
         reader: The backend that reads text.
         detector: The backend that locates objects.
         answerer: The backend that answers questions.
-        compare: Whether to call two backends at the same time where possible, and record how far their results agree.
+        compare: Whether to call two backends concurrently where possible, and record how well their results agree.
     """
 
     reader: BackendSpec | None = None

@@ -16,7 +16,7 @@ class BackendSpec(BaseModel):
 
     Attributes:
         name: The name of the backend. Results report it as their source.
-        backend: The kind of backend: a module name in this package, or the name of a plug-in.
+        backend: The backend type: the name of a module in this package, or of a plug-in.
         model: The model's name on its server or on Hugging Face.
         endpoint: The model server; None for backends that run in this process.
         coordinates: The name of a convention in ``perception.models.coordinates``.
@@ -33,7 +33,7 @@ class BackendSpec(BaseModel):
     options: dict[str, Any] = Field(default_factory=dict)
 
     def needed_endpoint(self) -> Endpoint:
-        """Return the endpoint. Backends that use a server call this.
+        """Return the endpoint. For backends that require a server.
 
         Raises:
             ConfigError: The spec has no endpoint.
@@ -43,7 +43,7 @@ class BackendSpec(BaseModel):
         return self.endpoint
 
     def needed_model(self) -> str:
-        """Return the model's name. Backends that load a model call this.
+        """Return the model's name. For backends that load a model.
 
         Raises:
             ConfigError: The spec has no model.

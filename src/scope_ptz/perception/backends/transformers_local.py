@@ -61,13 +61,13 @@ class LocalOptions(Options):
 
 
 class ChatModel(Protocol):
-    """A chat model. It returns its reply to a picture and a prompt, and whether the reply was cut off at the token limit."""
+    """A chat model. It takes an image and a prompt, and returns the reply and whether the reply was cut off at the token limit."""
 
     def __call__(self, image: Image, prompt: str) -> tuple[str, bool]: ...
 
 
 class LocalChatPerception(Perception):
-    """Perception by a local chat model, prompted in its coordinate convention. Frames are processed one at a time in a thread."""
+    """Perception by a local chat model, prompted in its coordinate convention. A worker thread processes one frame at a time."""
 
     def __init__(self, model: ChatModel, style: Convention, options: LocalOptions | None = None, name: str = "local") -> None:
         self.name, self._model, self._style, self._options = name, model, style, options or LocalOptions()

@@ -17,7 +17,7 @@ from scope_ptz.perception.backends.spec import BackendSpec, Options, require_pac
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.models.coordinates import RawThing, convention, places_in_frame
 from scope_ptz.perception.models.frame_memo import Image
-from scope_ptz.perception.models.tile_geometry import without_overlaps
+from scope_ptz.perception.models.tile_geometry import non_maximum_suppression
 
 RawDetections = list[dict[str, Any]]
 Detector = Callable[[Image, str], RawDetections]
@@ -73,7 +73,7 @@ class ZeroShotPerception(Perception):
             raise PerceptionError(f"{self.name} failed on a frame of {width}x{height}: {error}") from error
         things = [t for t in map(_thing, raw) if t.score is not None and t.score >= self._options.threshold]
         places = places_in_frame(things, convention("pixels"), (width, height))
-        return tuple(without_overlaps(places.boxes, self._options.overlap)), json.dumps(raw, default=str), places.notes
+        return tuple(non_maximum_suppression(places.boxes, self._options.overlap)), json.dumps(raw, default=str), places.notes
 
 
 def _thing(detection: dict[str, Any]) -> RawThing:
@@ -83,7 +83,7 @@ def _thing(detection: dict[str, Any]) -> RawThing:
 
 
 class PipelineDetector:
-    """The transformers pipeline, loaded on first use. It processes one picture at a time."""
+    """The transformers pipeline, loaded on first use. It processes one image at a time."""
 
     def __init__(self, model: str, options: ZeroShotOptions) -> None:
         self._model, self._options, self._pipeline, self._lock = model, options, None, threading.Lock()

@@ -24,7 +24,7 @@ TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
 
 
 class GroundTruthPerception(Perception):
-    """Answers from the ground truth of simulated frames. Frames of real cameras have none and raise ``PerceptionError``.
+    """Perception from the ground truth of simulated frames. Frames of real cameras have none and raise ``PerceptionError``.
 
     Visibility and legibility follow the simulator's definitions. Boxes are sorted by size, largest first, unless the description
     orders them ("the nearest car"). Their label is the name of the thing, and they have no score. The parsers of questions and
@@ -91,7 +91,7 @@ class GroundTruthPerception(Perception):
         return read_view(self.perceived(truth, frame, request), scene.file, origin.time_s)
 
     def perceived(self, truth: ViewTruth, frame: Frame, request: str) -> ViewTruth:  # noqa: ARG002
-        """Return the part of the truth that the backend perceives. This one perceives everything; subclasses add errors."""
+        """Return the ground truth as the backend perceives it. This backend perceives everything; subclasses add errors."""
         return truth
 
     def _describe(self, frame: Frame) -> AnswerText:

@@ -1,6 +1,6 @@
 """Ground truth with simulated perception errors, for robustness tests.
 
-The same seed, frame and question always give the same errors.
+The errors depend only on the seed, the frame and the question or description.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Noise:
         miss_scale_px: See ``miss``.
         duplicate: The probability that a thing is reported twice.
         misread: The probability that a character of a barely legible text is misread; larger text is misread less often.
-        jitter: Each side of a box moves by up to this share of the box's width or height.
+        jitter: Each side of a box moves by up to this fraction of the box's width or height.
     """
 
     miss: float = 0.35
@@ -66,8 +66,8 @@ class NoisyPerception(GroundTruthPerception):
 
     def _shifted(self, sighting: Sighting, rng: random.Random) -> Sighting:
         x0, y0, x1, y1 = sighting.box
-        share = self._noise.jitter
-        dx, dy = ((rng.uniform(-share, share) * size for _ in range(2)) for size in (x1 - x0, y1 - y0))
+        fraction = self._noise.jitter
+        dx, dy = ((rng.uniform(-fraction, fraction) * size for _ in range(2)) for size in (x1 - x0, y1 - y0))
         sides = [min(max(v + d, 0.0), 1.0) for v, d in zip((x0, x1, y0, y1), (*dx, *dy), strict=True)]
         return replace(sighting, box=(min(sides[:2]), min(sides[2:]), max(sides[:2]), max(sides[2:])))
 

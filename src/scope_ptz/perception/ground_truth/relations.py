@@ -25,23 +25,23 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 BACKDROP = frozenset({"surface", "sky"})
 """Concepts of the background, which do not count as objects."""
 
-NEAR_M = 4.0  # things at most this far apart are next to each other
-ON_SLACK_M = 0.3  # tolerance of the test whether one thing stands on another
+NEAR_M = 4.0  # maximum gap between things that are next to each other
+ON_SLACK_M = 0.3  # tolerance when testing whether one thing stands on another
 FLAT_M = 0.5  # lower things are flat, such as a road
-DEPTH_STEP_M = 0.5  # minimum difference in distance between two things, one of which is behind the other
-SIDE_BAND = 0.4  # share of the frame that counts as a side
-SIDE_SLACK = 0.05  # tolerance of horizontal overlap, as a share of the frame
+DEPTH_STEP_M = 0.5  # minimum difference in distance at which one thing is behind another
+SIDE_BAND = 0.4  # fraction of the frame that counts as a side
+SIDE_SLACK = 0.05  # tolerance of horizontal overlap, as a fraction of the frame
 
 
 def in_region(view: View, thing: Thing, region: tree.Region) -> bool:
     """Return whether a thing lies in a part of the frame."""
     x, y = thing.box.centre
-    side_share = 0.5 if region.half else SIDE_BAND
+    side_fraction = 0.5 if region.half else SIDE_BAND
     checks: dict[str, Callable[[], bool]] = {
-        "left": lambda: x < side_share,
-        "right": lambda: x > 1 - side_share,
-        "top": lambda: y < side_share,
-        "bottom": lambda: y > 1 - side_share,
+        "left": lambda: x < side_fraction,
+        "right": lambda: x > 1 - side_fraction,
+        "top": lambda: y < side_fraction,
+        "bottom": lambda: y > 1 - side_fraction,
         "middle": lambda: abs(x - 0.5) <= SIDE_BAND / 2 and (len(region.sides) > 1 or abs(y - 0.5) <= SIDE_BAND),
         "near": lambda: thing.distance_m <= _depth(view, 1 / 3),
         "far": lambda: thing.distance_m >= _depth(view, 2 / 3),
@@ -49,11 +49,11 @@ def in_region(view: View, thing: Thing, region: tree.Region) -> bool:
     return all(checks[side]() for side in region.sides)
 
 
-def _depth(view: View, share: float) -> float:
-    """Return the distance at a share of the way from the nearest to the furthest thing in view, on a logarithmic scale."""
+def _depth(view: View, fraction: float) -> float:
+    """Return the distance at a fraction of the way from the nearest to the furthest thing in view, on a logarithmic scale."""
     distances = [t.distance_m for t in view.top_level() if not t.concepts & BACKDROP]
     near, far = min(distances), max(distances)
-    return float(near * (far / near) ** share)
+    return float(near * (far / near) ** fraction)
 
 
 def relation_holds(view: View, a: Thing, kind: tree.RelationKind, b: Thing) -> bool:
@@ -99,7 +99,7 @@ def _volume_m3(thing: Thing) -> float:
 
 
 def distance_to_corner(thing: Thing, sides: Sequence[str]) -> float:
-    """Return the distance from a thing to a corner, a side or the centre of the frame, as a share of the frame."""
+    """Return the distance from a thing to a corner, a side or the centre of the frame, as a fraction of the frame size."""
     x, y = thing.box.centre
     to_x = 0.0 if "left" in sides else 1.0 if "right" in sides else 0.5
     to_y = 0.0 if "top" in sides else 1.0 if "bottom" in sides else 0.5

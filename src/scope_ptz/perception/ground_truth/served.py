@@ -28,15 +28,15 @@ from scope_ptz.simulator.truth import view_truth
 _Reply = TypeVar("_Reply", Caption, Answer, Detections, Points)
 
 TRUTH_PATH = "/virtual/truth"
-WITHIN_S = 1.0
-"""Maximum error of a driver's time of an exposure, in seconds. The error is usually some tens of milliseconds."""
+MAX_TIME_ERROR_S = 1.0
+"""Maximum error of the exposure time that a driver reports, in seconds. The error is usually some tens of milliseconds."""
 
-MAX_TURN_DEG, MAX_ZOOM_SHARE = 2.0, 0.1
-"""Maximum differences in angle and zoom between the poses of a frame and of its exposure."""
+MAX_TURN_DEG, MAX_ZOOM_DIFFERENCE = 2.0, 0.1
+"""Maximum difference in angle, in degrees, and relative difference in zoom between the poses of a frame and its exposure."""
 
 
 class ServedPose(BaseModel):
-    """The pose in a reply."""
+    """A pose in a reply of a virtual camera."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -51,7 +51,7 @@ class ServedOrigin(BaseModel):
     Attributes:
         scene: Name of the scene or variation.
         viewpoint: Name of the viewpoint.
-        pose: The pose that the encoders reported at exposure.
+        pose: The pose that the camera's encoders reported at the exposure.
         hfov_deg: Horizontal field of view in degrees.
         time_s: Scene time of the exposure.
     """
@@ -78,11 +78,11 @@ class TruthSource(Protocol):
 
 
 class ServedTruth:
-    """Requests the origin of frames from a virtual camera on this machine.
+    """A source that requests the origin of frames from a virtual camera on this machine.
 
     Args:
         http: The camera. It is closed with this object.
-        clock: The clock of the driver, to which the times of frames refer. It follows the wall clock.
+        clock: The clock of the driver, which frame times refer to. It follows the wall clock.
 
     Raises:
         InputError: The camera is not on this machine.
@@ -100,10 +100,10 @@ class ServedTruth:
         """Return the origin of a frame.
 
         Raises:
-            PerceptionError: The camera offers no ground truth, or has stored no exposure of that time and pose.
+            PerceptionError: The camera offers no ground truth, or has stored no exposure at that time and pose.
         """
         taken_s = time() - self._clock.now_s() + frame.time_s
-        query = {"taken": repr(taken_s), "within": f"{WITHIN_S:g}"}
+        query = {"taken": repr(taken_s), "within": f"{MAX_TIME_ERROR_S:g}"}
         try:
             reply = await self._http.get(TRUTH_PATH, query, accept=(403, 404))
         except CameraReplyError:
@@ -188,7 +188,7 @@ def _is_near(pose: Pose, other: ServedPose) -> bool:
     return (
         abs(wrap_pan_deg(pose.pan_deg - other.pan_deg)) <= MAX_TURN_DEG
         and abs(pose.tilt_deg - other.tilt_deg) <= MAX_TURN_DEG
-        and abs(pose.zoom / other.zoom - 1) <= MAX_ZOOM_SHARE
+        and abs(pose.zoom / other.zoom - 1) <= MAX_ZOOM_DIFFERENCE
     )
 
 

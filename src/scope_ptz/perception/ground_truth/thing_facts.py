@@ -89,7 +89,7 @@ IGNORABLE = frozenset(
         "moving",
     ]
 )
-"""Words that are ignored in a description if the scene has no fact about them."""
+"""Words of a description that are ignored if the scene states no fact about them."""
 FILLERS = frozenset(
     [
         "the",
@@ -121,7 +121,7 @@ FILLERS = frozenset(
     ]
 )
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
-"""Attributes that repeat the text on a thing. They are never used, because only legible text may be reported."""
+"""Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
 COLOUR_KEYS = ("colour", "color")
 ABSENT_VALUES = frozenset({"", "none", "no", "false", "nothing", "without"})
 """Attribute values in lower case that mean that a thing lacks the attribute."""

@@ -3,7 +3,7 @@
 - Facts that the scene states ("in the left lane", "in an orange vest") take precedence over the spatial relations of ``relations``.
 - *between*: the centre lies horizontally between the centres of the two, and not clearly in front of or behind both.
 - Matches are sorted by visible pixels, largest first, unless a superlative or an ordinal orders them. Ordinals without a side
-count from the left. Superlatives keep only the best ("the two nearest" keeps two).
+count from the left. A superlative keeps only the best match ("the two nearest" keeps two).
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def find(view: View, description: tree.Description) -> list[Thing]:
 
 
 def things_named(view: View, description: tree.Description) -> list[Thing]:
-    """Return the things that match a description, without things that people wear."""
+    """Return the things that match a description. Things that people wear are not included."""
     matches = _two_coloured(view, description)
     if matches:
         return matches

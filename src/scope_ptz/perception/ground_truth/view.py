@@ -88,11 +88,11 @@ class View:
     instances: Mapping[str, SceneInstance | SceneActor]
     """Instances by id, for the whole scene."""
     values: Mapping[str, frozenset[str]]
-    """The words in the values of each attribute, from the whole scene."""
+    """The words that occur in the values of each attribute, for the whole scene."""
     nouns: frozenset[str] = field(default=frozenset())
     """Nouns of the scene in addition to those of the lexicon."""
     hosts: tuple[Thing, ...] = ()
-    """Things that are cut off too much to count as visible but have a legible text, such as a sign larger than the frame."""
+    """Things that bear a legible text but are cut off too much to count as visible, such as a sign larger than the frame."""
 
     @cached_property
     def by_id(self) -> dict[str, Thing]:
@@ -144,7 +144,7 @@ _MAX_SCENES = 32
 
 
 def scene_facts(scene: SceneFile) -> SceneFacts:
-    """Return the facts of a scene. They are read once for each scene file in memory."""
+    """Return the facts of a scene. They are computed once for each scene file in memory."""
     cached = _SCENES.get(id(scene))
     if cached is None or cached.file is not scene:
         if len(_SCENES) >= _MAX_SCENES:

@@ -1,6 +1,6 @@
-"""Conversion of coordinates in model replies to boxes and points in [0, 1].
+"""Convert the coordinates in model replies to boxes and points in [0, 1].
 
-Models use pixels of the picture as they resized it (Qwen2.5-VL), thousandths (Qwen3-VL, Qwen3.5, and Gemini with y first),
+Models use pixels of the image as they resized it (Qwen2.5-VL), thousandths (Qwen3-VL, Qwen3.5, and Gemini with y first),
 percent (Molmo) or fractions (Moondream). Invalid boxes and points are dropped with a note, and boxes that exceed the frame are
 clipped.
 """
@@ -31,7 +31,7 @@ class Convention:
 
     Attributes:
         space: The unit of the coordinates. "guess" infers it from the largest number in a reply.
-        factor: The model resizes pictures to multiples of this many pixels. Pictures are resized before they are sent, so that
+        factor: The model resizes images to multiples of this many pixels. Frames are resized before they are sent, so that
             the model does not resize them again. None sends frames unchanged.
         y_first: Whether boxes are ``[y, x, y, x]`` and points ``[y, x]``.
         box_key: The JSON key of a box.
@@ -74,10 +74,10 @@ def convention(name: str) -> Convention:
 
 
 def smart_resize(width: int, height: int, *, factor: int, min_pixels: int, max_pixels: int) -> tuple[int, int]:
-    """Return the size (width, height) to which Qwen-VL processors resize a picture.
+    """Return the size (width, height) to which Qwen-VL processors resize an image.
 
     Width and height are multiples of ``factor``, and their product is within the limits. The arithmetic is that of ``smart_resize``
-    in the Qwen-VL image processors. A picture of the returned size is not resized again.
+    in the Qwen-VL image processors. An image of the returned size is not resized again.
 
     Raises:
         PerceptionError: The processors reject the aspect ratio.
@@ -98,7 +98,7 @@ def smart_resize(width: int, height: int, *, factor: int, min_pixels: int, max_p
 
 
 def fit(width: int, height: int, max_pixels: int) -> tuple[int, int]:
-    """Return the size (width, height) with the same aspect ratio and at most ``max_pixels`` pixels. It is never enlarged."""
+    """Return the size (width, height) scaled down to at most ``max_pixels`` pixels, with the same aspect ratio."""
     shrink = math.sqrt(width * height / max_pixels)
     return (width, height) if shrink <= 1 else (max(1, math.floor(width / shrink)), max(1, math.floor(height / shrink)))
 
@@ -143,7 +143,7 @@ def places_in_frame(
     Args:
         things: The objects in the reply.
         convention: The model's coordinate convention.
-        sent: Width and height of the picture that the model received.
+        sent: Width and height of the image that the model received.
         limit: Maximum number of boxes or points to keep.
 
     Raises:
@@ -173,7 +173,7 @@ def places_in_frame(
 
 
 _WITHOUT_PLACE = ("not finite", "no place")
-"""Entries that have no usable coordinates. With any of them, the list is incomplete."""
+"""Kinds of entries without usable coordinates. If there are any, the list is incomplete."""
 
 
 def _limited(boxes: list[Box], points: list[Point], counts: Counter[str], limit: int) -> ReplyPlaces:
@@ -202,7 +202,7 @@ def _scale(things: Sequence[RawThing], space: Space, sent: tuple[int, int]) -> t
 def _guess(things: Sequence[RawThing], sent: tuple[int, int]) -> Space:
     """Infer the unit of all coordinates in a reply from the largest one.
 
-    Up to 1 means fractions, up to 1000 thousandths (as requested), and up to the size of the picture pixels.
+    Up to 1 means fractions, up to 1000 means thousandths (as requested), and up to the image size means pixels.
     """
     finite = [abs(v) for t in things for v in t.numbers if math.isfinite(v)]
     largest = max(finite, default=0.0)
@@ -243,7 +243,7 @@ def _box(unit: list[float], thing: RawThing, counts: Counter[str]) -> Box | None
 
 
 BORDER_SLACK = 0.02
-"""Distance outside the frame, as a share of its size, up to which a point counts as on the border."""
+"""Distance outside the frame, as a fraction of its size, up to which a point counts as on the border."""
 
 
 def _point(unit: list[float], thing: RawThing, counts: Counter[str]) -> Point | None:

@@ -1,4 +1,4 @@
-"""Encoding of frames for models. A frame is encoded once per size, even if several backends use it."""
+"""Encode frames for models. A frame is encoded once per size, even if several backends use it."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def resized(image: Image, size: Size | None) -> Image:
 def _interpolation(old: Size, new: Size) -> int:
     """Return the fastest interpolation with good results.
 
-    Averaging is needed only for strong reduction. If the size changes by less than 2%, a few repeated or missing rows and columns
-    are invisible.
+    Averaging is needed only when the image becomes much smaller. If the size changes by less than 2%, a few repeated or missing
+    rows and columns are invisible.
     """
     if new[0] * new[1] < 0.6 * old[0] * old[1]:
         return cv2.INTER_AREA

@@ -1,4 +1,4 @@
-"""A cache of results that are computed from pictures. A result is deleted with its picture."""
+"""A cache of results that are computed from images. A result is deleted with its image."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The parser of model replies: boxes and points from JSON in many forms, even cut off, and plain answers.
+"""Parse model replies: boxes and points from many forms of JSON, even if it is cut off, and plain answers.
 
 A reply means "nothing found" only if it contains an empty list or a short sentence that states this. Any other reply that cannot
 be parsed raises ``PerceptionError`` of kind "malformed".
@@ -132,7 +132,7 @@ def _documents(body: str) -> tuple[list[Any], bool]:
 
 
 _MAX_NESTING = 64
-"""Maximum nesting of a JSON document. Deeper ones are degenerate output without boxes."""
+"""Maximum nesting depth of a JSON document. Deeper documents are degenerate output without boxes."""
 
 
 def _repair(text: str) -> tuple[Any, bool, int]:
@@ -206,7 +206,7 @@ def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
             return
         things_by_item = [list(_collect(inner, depth + 1)) for inner in value]
         for inner, things in zip(value, things_by_item, strict=True):
-            # Among objects with coordinates, one without any is malformed; ``located`` counts it.
+            # Among objects with coordinates, one without any is malformed; ``places_in_frame`` counts it.
             malformed = [RawThing(())] if not things and isinstance(inner, dict) and any(things_by_item) else []
             yield from things or malformed
 
@@ -261,7 +261,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _number(value: Any) -> float:
-    """Return a value as a float. Anything but a number becomes NaN, which ``located`` counts."""
+    """Return a value as a float. Anything else becomes NaN, which ``places_in_frame`` counts."""
     try:
         return float(value) if _is_number(value) else math.nan
     except OverflowError:

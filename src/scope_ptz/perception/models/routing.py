@@ -1,7 +1,7 @@
 """A router that combines perception backends: a reader for text, a detector for boxes and points, and an answerer for questions.
 
-Each call has an order of backends, and the first usable result is returned. With ``compare``, the first two backends are called at
-the same time, and their agreement is recorded. Without it, a backend is called only if the backends before it give no usable
+Each call has an order of backends, and the first usable result is returned. With ``compare``, the first two backends are called
+concurrently, and their agreement is recorded. Without it, a backend is called only if the backends before it give no usable
 result.
 """
 
@@ -28,11 +28,11 @@ SAME_BOX_IOU = 0.4
 """Boxes of two backends with at least this intersection over union count as the same."""
 
 SAME_POINT = 0.05
-"""Points of two backends within this share of the frame's width and height count as the same."""
+"""Points of two backends within this fraction of the frame's width and height count as the same."""
 
 R = TypeVar("R", Caption, Answer, Detections, Points)
 PerceptionCall = Callable[[Perception], Awaitable[R]]
-Share = Callable[[R, R], float]
+AgreementMeasure = Callable[[R, R], float]
 
 
 @dataclass
@@ -128,7 +128,7 @@ class RouterPerception(Perception):
         return all_texts.model_copy(update={"text": text, "attempts": attempts, "latency_s": perf_counter() - began})
 
     async def _first_usable(
-        self, order: Sequence[Perception], call: PerceptionCall[R], share: Share[R], *, compare: bool = True
+        self, order: Sequence[Perception], call: PerceptionCall[R], agreement: AgreementMeasure[R], *, compare: bool = True
     ) -> R:
         if not order:
             raise PerceptionError(f"None of the backends of {self.name} supports this call.")
@@ -142,9 +142,9 @@ class RouterPerception(Perception):
             if any(o.usable for o in outcomes):
                 break
             await _ask(outcome, call)
-        return self._conclude(outcomes, share, perf_counter() - began)
+        return self._conclude(outcomes, agreement, perf_counter() - began)
 
-    def _conclude(self, outcomes: Sequence[_CallOutcome[R]], share: Share[R], latency_s: float) -> R:
+    def _conclude(self, outcomes: Sequence[_CallOutcome[R]], agreement: AgreementMeasure[R], latency_s: float) -> R:
         """Return the first usable result, compared with the second one. If all backends failed, raise an error with all reasons."""
         attempts = tuple(a for o in outcomes for a in _attempts(o))
         failed = [(o.backend.name, o.error) for o in outcomes if o.error is not None]
@@ -157,7 +157,7 @@ class RouterPerception(Perception):
         failures = tuple(f"{name} failed: {error}" for name, error in failed)
         update: dict[str, Any] = {"notes": best.notes + failures, "attempts": attempts, "latency_s": latency_s}
         if other := next((r for r in results if r is not best), None):
-            update["agreement"] = Agreement(other=other.source, said=_summary(other), share=share(best, other))
+            update["agreement"] = Agreement(other=other.source, said=_summary(other), share=agreement(best, other))
         return best.model_copy(update=update)
 
 
@@ -171,7 +171,7 @@ async def _ask(outcome: _CallOutcome[R], call: PerceptionCall[R]) -> None:
 async def _await_both(
     one: Awaitable[Answer], other: Awaitable[Detections]
 ) -> tuple[Answer | PerceptionError, Detections | PerceptionError]:
-    """Run two perception calls at the same time. Errors are returned, not raised."""
+    """Run two perception calls concurrently. Errors are returned, not raised."""
     results: dict[int, Any] = {}
 
     async def run(index: int, call: Awaitable[Any]) -> None:
@@ -204,7 +204,7 @@ def _contains_centre(box: Box, line: Box) -> bool:
 
 
 def _shared_words(a: Caption | Answer, b: Caption | Answer) -> float:
-    """Return the share of the words of the shorter text that also occur in the other text, without stop words."""
+    """Return the fraction of the words in the shorter text that also occur in the other text. Stop words are ignored."""
     one, other = (set(re.findall(r"\w+", x.text.casefold())) - _STOP_WORDS for x in (a, b))
     if not one or not other:
         return float(one == other)
@@ -226,7 +226,7 @@ _Place = TypeVar("_Place")
 
 
 def _paired(ones: Sequence[_Place], others: Sequence[_Place], same: Callable[[_Place, _Place], bool]) -> float:
-    """Return the share of all boxes or points that can be paired, each used once. Two empty results agree fully."""
+    """Return the fraction of all boxes or points that can be paired one to one. Two empty results agree fully."""
     left, pairs = list(others), 0
     for one in ones:
         partner = next((i for i, other in enumerate(left) if same(one, other)), None)

@@ -1,4 +1,4 @@
-"""Heuristics for requests about text: does a question ask to read text, on which object, and which text does a description name?"""
+"""Heuristics for requests about text: whether a question asks to read text, on which object, and which text a description names."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def requested_texts(description: str) -> tuple[str, ...] | None:
 
 
 SAME_TEXT = 0.8
-"""Minimum similarity of two texts that count as the same. It allows for one misread character in five."""
+"""Minimum similarity at which two texts count as the same. It tolerates about one misread character in five."""
 
 
 def plain(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Overlapping tiles of wide pictures. Models scale a whole panorama down so far that small objects disappear."""
+"""Split wide images into overlapping tiles. Models would scale a whole panorama down so far that small objects disappear."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from scope_ptz.perception.base import Box, Point
 from scope_ptz.perception.models.frame_memo import Image
 
 MAX_WHOLE_ASPECT = 2.4
-"""Pictures up to this ratio of width to height are not split; ordinary frames are 16:9."""
+"""Images up to this ratio of width to height are not split; ordinary frames are 16:9."""
 
 TILE_ASPECT = 1.6  # width / height of a tile
 OVERLAP = 0.15
-"""Share of a tile that the next tile also covers. Any narrower object is complete in one of the two tiles."""
+"""Fraction of a tile's width that the next tile also covers. Any narrower object is complete in one of the two tiles."""
 
 SAME_BOX = 0.5
-"""Minimum overlap of boxes of neighbouring tiles that show the same object: the intersection over the area of the smaller box, or
-the vertical overlap if the borders of their tiles cut both boxes.
+"""Minimum overlap at which boxes from neighbouring tiles count as the same object: the intersection over the area of the smaller
+box, or the vertical overlap if the borders of their tiles cut both boxes.
 """
 
 PANORAMA_SEAM = 0.002
-"""A box within this share of the width from the end of a 360-degree panorama may continue at the other end."""
+"""A box within this fraction of the width from the end of a 360-degree panorama may continue at the other end."""
 
 TILE_BORDER = 0.01
-"""A box within this share of the tile's width from the border of its tile may continue beyond it."""
+"""A box within this fraction of the tile's width from the border of its tile may continue beyond it."""
 
 
 @dataclass(frozen=True, slots=True)
 class PanoramaTile:
-    """A part of a picture over its full height: its columns ``left`` to ``right`` (exclusive), in pixels."""
+    """A full-height strip of an image: the columns ``left`` to ``right`` (exclusive), in pixels."""
 
     left: int
     right: int
@@ -40,17 +40,17 @@ class PanoramaTile:
         return image[:, self.left : self.right]
 
     def place(self, box: Box, width: int) -> Box:
-        """Return a box of the tile as a box of the whole picture, which is ``width`` pixels wide."""
-        share, start = (self.right - self.left) / width, self.left / width
-        return box.model_copy(update={"x_min": start + box.x_min * share, "x_max": min(1.0, start + box.x_max * share)})
+        """Return a box of the tile as a box of the whole image, which is ``width`` pixels wide."""
+        scale, start = (self.right - self.left) / width, self.left / width
+        return box.model_copy(update={"x_min": start + box.x_min * scale, "x_max": min(1.0, start + box.x_max * scale)})
 
     def place_point(self, point: Point, width: int) -> Point:
-        """Return a point of the tile as a point of the whole picture."""
+        """Return a point of the tile as a point of the whole image."""
         return point.model_copy(update={"x": min(1.0, (self.left + point.x * (self.right - self.left)) / width)})
 
 
 def tiles(width: int, height: int) -> tuple[PanoramaTile, ...]:
-    """Return overlapping tiles that cover a picture. A picture that is not wide has one tile."""
+    """Return overlapping tiles that cover an image. An image that is not wide has one tile."""
     if width <= MAX_WHOLE_ASPECT * height:
         return (PanoramaTile(0, width),)
     wide = TILE_ASPECT * height
@@ -66,8 +66,8 @@ def iou(a: Box, b: Box) -> float:
     return shared / union if union > 0 else 0.0
 
 
-def without_overlaps(boxes: Iterable[Box], threshold: float) -> list[Box]:
-    """Return boxes by score, best first, without boxes whose intersection over union with a better box exceeds ``threshold``."""
+def non_maximum_suppression(boxes: Iterable[Box], threshold: float) -> list[Box]:
+    """Return the boxes that non-maximum suppression keeps, best score first. ``threshold`` is the maximum IoU of two boxes."""
     result: list[Box] = []
     for box in sorted(boxes, key=lambda b: -(b.score or 0.0)):
         if all(iou(box, other) <= threshold for other in result):
@@ -77,7 +77,7 @@ def without_overlaps(boxes: Iterable[Box], threshold: float) -> list[Box]:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A box in coordinates of the whole picture, its tile, and whether the tile's borders cut the box."""
+    """A box in coordinates of the whole image, its tile, and whether the tile's borders cut the box."""
 
     tile: PanoramaTile
     box: Box
@@ -103,7 +103,7 @@ def merge_boxes(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int)
 
 
 def merge_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
-    """Merge the points of all tiles. Points of different tiles become one if they are within ``near``, a share of the width."""
+    """Merge the points of all tiles. Points of different tiles become one if they are within ``near``, a fraction of the width."""
     result: list[tuple[PanoramaTile, Point]] = []
     for tile, points in parts:
         for point in (tile.place_point(p, width) for p in points):

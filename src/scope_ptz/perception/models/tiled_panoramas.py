@@ -1,4 +1,4 @@
-"""Detection in panoramas, for backends that would scale a panorama down: part by part, at the resolution of ordinary frames."""
+"""Detection in panoramas, tile by tile at the resolution of ordinary frames, for backends that would scale a panorama down."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.perception.models.tile_geometry import PanoramaTile, merge_boxes, merge_points, tiles, without_seam_duplicates
 
-MAX_CONCURRENT_PARTS = 4
-"""Maximum number of parts that are processed at the same time."""
+MAX_CONCURRENT_TILES = 4
+"""Maximum number of tiles that are processed concurrently."""
 
 SAME_POINT = 0.15
-"""Points in two parts that are within this share of the panorama's height mark the same object."""
+"""Points in two tiles that are within this fraction of the panorama's height mark the same object."""
 
 FULL_TURN_DEG = 359.5  # a panorama at least this wide wraps around
 
@@ -28,10 +28,10 @@ R = TypeVar("R", Detections, Points)
 
 
 class TiledPerception(Perception):
-    """A wrapper that passes stitched panoramas to a backend's ``detect`` and ``point`` in overlapping parts.
+    """A wrapper that passes stitched panoramas to a backend's ``detect`` and ``point`` as overlapping tiles.
 
-    If one part fails, the whole call fails, because a count without it would be too low. Ordinary frames, questions and captions
-    are passed on unchanged.
+    If one tile fails, the whole call fails, because a count without that tile would be too low. Ordinary frames, questions and
+    captions are passed on unchanged.
     """
 
     handles_panoramas = True
@@ -73,7 +73,7 @@ class TiledPerception(Perception):
 
 
 def _parts(frame: Frame) -> list[tuple[PanoramaTile, Frame]]:
-    """Return the frame itself, or the overlapping parts of a panorama as frames."""
+    """Return the frame itself, or the overlapping tiles of a panorama as frames."""
     panorama = frame.projection
     panorama_tiles = tiles(frame.width, frame.height)
     if len(panorama_tiles) == 1 or not isinstance(panorama, Equirectangular):
@@ -98,7 +98,7 @@ async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> 
     """
     results: dict[int, R] = {}
     errors: list[PerceptionError] = []
-    limiter = anyio.CapacityLimiter(MAX_CONCURRENT_PARTS)
+    limiter = anyio.CapacityLimiter(MAX_CONCURRENT_TILES)
 
     async def run(index: int, ask: Callable[[], Awaitable[R]]) -> None:
         async with limiter:
@@ -120,7 +120,7 @@ async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> 
 
 
 def _combined(parts: list[R], began: float) -> R:
-    """Combine the results of all parts into one, except for their boxes or points."""
+    """Combine the results of all tiles into one, except for their boxes or points."""
     update = {
         "raw": "\n".join(part.raw for part in parts),
         "notes": tuple(dict.fromkeys(note for part in parts for note in part.notes)),

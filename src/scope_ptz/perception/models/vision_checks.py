@@ -1,4 +1,4 @@
-"""Checks of a perception backend and its server, on one frame."""
+"""Check a perception backend and its server on one frame."""
 
 from __future__ import annotations
 

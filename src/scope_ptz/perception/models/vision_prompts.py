@@ -9,7 +9,7 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.models.coordinates import Convention, fit, smart_resize
 from scope_ptz.perception.models.encoding import Size
 
-MIN_PIXELS = 56 * 56  # pictures with fewer pixels are enlarged for models that answer in pixels
+MIN_PIXELS = 56 * 56  # images with fewer pixels are enlarged for models that answer in pixels
 
 CAPTION_PROMPT = "Describe this picture in one or two sentences. Name what can be seen and where."
 
@@ -26,7 +26,7 @@ def sent_size(frame: Frame, convention: Convention, max_pixels: int) -> Size:
     """Return the width and height at which a frame is sent to a model.
 
     A model that answers in pixels receives the frame at its own input size, because its coordinates refer to that size. For other
-    models only the aspect ratio matters.
+    models, only the aspect ratio matters.
     """
     if convention.factor is None or convention.space != "pixels":
         return fit(frame.width, frame.height, max_pixels)

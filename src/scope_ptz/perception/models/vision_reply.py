@@ -1,4 +1,4 @@
-"""Conversion of the replies of vision-language models, served or local, to perception results."""
+"""Convert the replies of vision-language models, served or local, to perception results."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class VisionReply:
 
 @contextmanager
 def reply_errors(source: str, attempts: tuple[Attempt, ...]) -> Iterator[None]:
-    """Prefix errors about a reply with the source, and record them as failures of the last attempt."""
+    """Prefix errors about a reply with the name of the source, and record them as failures of the last attempt."""
     try:
         yield
     except PerceptionError as error:

@@ -19,7 +19,7 @@ from scope_ptz.planner.chat.schemas import plain_schemas
 
 Message = dict[str, Any]
 Notation = Literal["native", "text"]
-"""How tool calls are exchanged: in the server's own fields, or written into the text of messages."""
+"""How tool calls are exchanged: in the API's native fields, or written into the text of messages."""
 
 _TEXT_TOOLS = """
 
@@ -33,7 +33,13 @@ The results come back in <tool_response> elements. These are the tools, as JSON 
 
 
 def build_messages(
-    state: State, prompt: Prompt, *, notation: Notation = "native", sees: bool = False, switch: str = "", shorten_oldest: int = 0
+    state: State,
+    prompt: Prompt,
+    *,
+    notation: Notation = "native",
+    accepts_images: bool = False,
+    switch: str = "",
+    shorten_oldest: int = 0,
 ) -> list[Message]:
     """Return the messages for a state.
 
@@ -41,15 +47,15 @@ def build_messages(
         state: The state of the run.
         prompt: The system prompt.
         notation: How tool calls are exchanged.
-        sees: Whether the model accepts images.
+        accepts_images: Whether the model accepts images.
         switch: Text appended to the user messages to switch the model's reasoning on or off.
         shorten_oldest: The number of oldest exchanges to shorten.
     """
-    writer = _Writer(notation, shorten_oldest, in_parts=sees)
+    writer = _Writer(notation, shorten_oldest, in_parts=accepts_images)
     briefing = state.briefing
     start_poses = [turn.start for turn in state.conversation] + [briefing.pose]
     first = start_poses[0] or briefing.pose
-    system = prompt.fill(briefing.presets, briefing.limits, first, sees=sees)
+    system = prompt.fill(briefing.presets, briefing.limits, first, accepts_images=accepts_images)
     if notation == "text":
         system += _TEXT_TOOLS + "\n".join(json.dumps(tool["function"], ensure_ascii=False) for tool in plain_schemas(state.tools))
     writer.add({"role": "system", "content": system})
@@ -61,7 +67,7 @@ def build_messages(
     writer.user(_instruction(state.instruction, start_poses[-1] if state.conversation else None, switch))
     for exchange in state.history:
         writer.exchange(exchange)
-    if sees and state.view is not None:
+    if accepts_images and state.view is not None:
         writer.pictures([state.view])
     return writer.messages
 
@@ -118,7 +124,7 @@ class _Writer:
     def _as_native_calls(self, exchange: Exchange, brief: bool) -> None:
         ids = [self._unique_id(outcome.call.id) for outcome in exchange.outcomes]
         calls = [
-            {"id": i, "type": "function", "function": {"name": callable_name(o.call.name), "arguments": _arguments(o.call)}}
+            {"id": i, "type": "function", "function": {"name": valid_tool_name(o.call.name), "arguments": _arguments(o.call)}}
             for i, o in zip(ids, exchange.outcomes, strict=True)
         ]
         self.add({"role": "assistant", "content": exchange.thought, "tool_calls": calls})
@@ -139,7 +145,7 @@ class _Writer:
         return call_id
 
 
-def callable_name(name: str) -> str:
+def valid_tool_name(name: str) -> str:
     """Replace characters that the OpenAI API does not allow in tool names with underscores. Models may invent any name."""
     return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:64] or "unreadable"
 

@@ -37,7 +37,7 @@ def _template(key: str, value: bool) -> Switch:
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """A model family, recognised by a regular expression for model names. The first match is used.
+    """A model family. ``pattern`` is a regular expression for model names; the first family that matches is used.
 
     Attributes:
         thinks: Whether its models reason by default.

@@ -1,6 +1,7 @@
 """Convert a server's reply to a decision by fixed rules.
 
-- Calls are taken from the server's own field. When that is empty, they are taken from the text, in any notation of ``tool_text``.
+- Calls are taken from the ``tool_calls`` field of the reply. If it is empty, they are parsed from the text, in any notation that
+``tool_text`` supports.
 - A reply without calls ends the run. It is a clarification when it begins with ``CLARIFY:``, or when it ends with a question before
 any tool was called; a refusal when it begins with ``REFUSE:``; otherwise it is the answer.
 - A reply that was cut off at the token limit is a planner error, unless it contains calls.
@@ -19,12 +20,12 @@ from scope_ptz.planner.chat.tool_text import FoundCalls, find_calls
 from scope_ptz.planner.chat.written_calls import Signatures, WrittenCall, plain_name, read_arguments
 
 MAX_CALLS = 32
-"""Maximum number of calls in one step. Further calls are not executed, and the planner is informed."""
+"""Maximum number of calls in one step. Further calls are not executed, and an error message tells the planner so."""
 
 MAX_CHARS = 20_000
 """Maximum characters of an answer, or of the text that accompanies calls. Longer texts are truncated and marked."""
 
-_FULL_SHARE = 0.98  # a context filled to this share counts as full
+_FULL_FRACTION = 0.98  # a context filled to at least this fraction counts as full
 _CONTROL_TOKENS = re.compile(r"<\|[\w ]{2,30}\|>|</s>|<(?:end|start)_of_turn>|<turn\|>")
 _KIND_PREFIX = re.compile(r"\A[\s*_#>\"']*(?P<kind>CLARIFY|REFUSE)[\s*_]*:[\s*_]*", re.IGNORECASE)
 _QUESTION = re.compile(r"\?[\s\"'*_)]*\Z")
@@ -36,7 +37,7 @@ def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None)
     Args:
         reply: The server's reply.
         state: The state that was sent.
-        context_tokens: The size of the model's context; None if it is unknown.
+        context_tokens: The size of the model's context in tokens; None if it is unknown.
 
     Raises:
         PlannerError: The reply contains no decision; ``kind`` gives the reason.
@@ -126,7 +127,7 @@ def _ending(text: str, *, called: bool) -> tuple[str, str]:
 
 def _cut_off_error(reply: ChatReply, context_tokens: int | None) -> PlannerError:
     """Return the error for a reply that was cut off at the context's limit or, if that is not certain, at a token limit."""
-    if context_tokens is not None and reply.input_tokens + reply.output_tokens >= context_tokens * _FULL_SHARE:
+    if context_tokens is not None and reply.input_tokens + reply.output_tokens >= context_tokens * _FULL_FRACTION:
         message = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
         return PlannerError(message, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=_attempts_with_usage(reply))
     message = (

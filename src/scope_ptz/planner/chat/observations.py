@@ -13,7 +13,7 @@ from scope_ptz.planner.base import ToolOutcome
 
 MAX_BOXES = 12  # boxes listed; the others are only counted
 MAX_CHARS = 4000
-"""Longer texts from perception are truncated. They come from models that did not stop generating."""
+"""Longer texts from perception are truncated. They are usually produced by models that did not stop generating."""
 
 BRIEF_CHARS = 120  # longer texts are truncated in shortened outcomes
 
@@ -26,7 +26,7 @@ _REPLACED_BRACKETS = str.maketrans({"<": "‹", ">": "›", "＜": "‹", "＞":
 
 
 def observation(outcome: ToolOutcome, *, brief: bool = False) -> str:
-    """Return the outcome as one line of JSON. ``brief`` keeps only what later steps may need, for a context that is nearly full."""
+    """Return the outcome as one line of JSON. ``brief`` keeps only what later steps may need, to save context."""
     if outcome.error is not None or outcome.result is None:
         error = as_data(outcome.error or "The tool gave no result.", mark=False)
         return _line({"error": error[:BRIEF_CHARS] if brief else error})

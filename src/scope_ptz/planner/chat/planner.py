@@ -23,14 +23,14 @@ from scope_ptz.planner.chat.window import fits, shortenings
 
 _OVERFLOW, _CUT_OFF = FailureKind.CONTEXT_OVERFLOW, FailureKind.CUT_OFF
 _MAX_ADAPTATIONS = 6
-"""The number of rejected features that are omitted before a rejection becomes an error."""
+"""Maximum number of rejected features to omit. A further rejection is an error."""
 
 
 class ChatOptions(BaseModel):
     """Options for planning with a chat model.
 
     Attributes:
-        tools: How tool calls are exchanged: in the server's own fields ("native"), in the text of messages ("text"), or
+        tools: How tool calls are exchanged: in the API's native fields ("native"), in the text of messages ("text"), or
             natively until the server rejects tools ("auto").
         sees: Whether the model accepts images.
         summarise: Whether to shorten old observations, instead of ending the run, when the context is full. Never used in
@@ -38,7 +38,7 @@ class ChatOptions(BaseModel):
         context_tokens: The size of the model's context; None if it is unknown.
         max_tokens: The maximum length of a reply; None selects the server's default.
         temperature: The sampling temperature; None selects the default of the model's family.
-        server: The program that serves the model; None to guess it from the address.
+        server: The server program; None to infer it from the address.
         family: The model name that determines the family, if the server uses a different name for the model.
     """
 
@@ -61,7 +61,7 @@ class ChatOptions(BaseModel):
 class ChatPlanner(Planner):
     """A planner that asks a chat model at each step.
 
-    Between steps it keeps the connection and the list of rejected features, but no state of the run.
+    Between steps, it keeps the connection and the features that the server rejected, but no state of the run.
     """
 
     def __init__(
@@ -127,7 +127,7 @@ class ChatPlanner(Planner):
         await self.client.close()
 
     def _levels(self, state: State) -> Iterator[int]:
-        """Yield the numbers of oldest exchanges to shorten, in the order in which to try them."""
+        """Yield how many of the oldest exchanges to shorten, in the order in which to try these numbers."""
         levels = [0, *shortenings(state)] if self.options.summarise else [0]
         for level in levels:
             window = self.options.context_tokens
@@ -139,7 +139,7 @@ class ChatPlanner(Planner):
             state,
             self.prompt,
             notation=self._dialect.notation,
-            sees=self.sees,
+            accepts_images=self.sees,
             switch=self._switch.words,
             shorten_oldest=shorten_oldest,
         )

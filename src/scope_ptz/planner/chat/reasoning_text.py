@@ -1,4 +1,4 @@
-"""Separate a reply's reasoning from its answer. Reasoning is kept in traces; it is never shown or used as an answer.
+"""Separate a reply's reasoning from its answer. Traces keep the reasoning, but it is never part of the answer.
 
 Servers that support the model return its reasoning in a separate field. Others leave it in the text, between tags that differ by
 model family.

@@ -1,7 +1,7 @@
-"""Tool schemas in a form that all servers accept.
+"""Simplify tool schemas to a form that all servers accept.
 
 Some servers compile a schema into a grammar and reject keywords that they cannot compile, such as a pattern without anchors;
-others do not support unions. Calls are validated before they run, so these schemas only have to inform the model.
+others do not support unions. Calls are validated before they run, so the simplified schemas do not have to enforce any constraint.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _DROPPED_KEYWORDS = (
 
 
 def plain_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the tools with one plain type for each parameter. Parameters that may be null keep only their other type."""
+    """Return the tools with a single type for each parameter. A parameter that may be null keeps only its other type."""
     return [{**tool, "function": {**tool["function"], "parameters": _parameters(tool["function"]["parameters"])}} for tool in tools]
 
 

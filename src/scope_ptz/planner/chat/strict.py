@@ -1,4 +1,4 @@
-"""Strict JSON for tool calls: only finite numbers, and only characters that UTF-8 can encode."""
+"""Parse strict JSON for tool calls: only finite numbers, and only characters that UTF-8 can encode."""
 
 from __future__ import annotations
 

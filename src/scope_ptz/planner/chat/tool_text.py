@@ -52,7 +52,7 @@ def find_calls(text: str, tools: Signatures, *, tagged_only: bool = False) -> Fo
         tagged_only: Whether to ignore notations without tags.
 
     Returns:
-        The calls of the first notation in ``_TAGGED_NOTATIONS`` that occurs, otherwise those without tags.
+        The calls in the first notation of ``_TAGGED_NOTATIONS`` that occurs in the text, otherwise the calls without tags.
     """
     text = encodable(text)
     for notation, pattern, reader in _TAGGED_NOTATIONS:
@@ -63,7 +63,7 @@ def find_calls(text: str, tools: Signatures, *, tagged_only: bool = False) -> Fo
 
 
 def _json_or_xml_calls(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Parse the inside of ``<tool_call>``: JSON (Hermes), XML functions (Qwen3-Coder), or XML keys and values (GLM)."""
+    """Parse the content of a ``<tool_call>`` element: JSON (Hermes), XML functions (Qwen3-Coder), or XML keys and values (GLM)."""
     if "<function" in body:
         return _xml_calls(body, tools)
     if "<arg_key>" in body:
@@ -198,29 +198,29 @@ _TAGGED_NOTATIONS: tuple[tuple[str, re.Pattern[str], _CallParser], ...] = (
     ("llama", _between(r"<\|python_tag\|>", r"<\|eom_id\|>|<\|eot_id\|>"), _json_calls),
 )
 _MAX_START_LINES = 20
-"""Maximum number of lines that are tried as the start of calls. A text with more such lines is a table or a program."""
+"""Maximum number of lines to try as the start of calls. A text with more such lines is a table or a program."""
 _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
 
 
 def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
     """Return JSON or Python calls in code fences, or in a text that consists of calls, possibly after prose."""
-    fences = [(m, _calls_of_tools(m["body"], tools)) for m in _FENCE.finditer(text)]
+    fences = [(m, _calls_to_tools(m["body"], tools)) for m in _FENCE.finditer(text)]
     if any(calls for _, calls in fences):
         rest = text
         for match, calls in fences:
             rest = rest.replace(match[0], "") if calls else rest
         return FoundCalls(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
-    if calls := _calls_of_tools(text, tools):
+    if calls := _calls_to_tools(text, tools):
         return FoundCalls(tuple(calls), "", "bare")
     # Prose that is followed only by calls.
     for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MAX_START_LINES):
-        if calls := _calls_of_tools(text[match.start() :], tools):
+        if calls := _calls_to_tools(text[match.start() :], tools):
             return FoundCalls(tuple(calls), text[: match.start()].strip(), "bare")
     return FoundCalls((), text.strip(), "")
 
 
-def _calls_of_tools(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Return the calls in a text that consists only of calls of offered tools; an empty list for any other text."""
+def _calls_to_tools(body: str, tools: Signatures) -> list[WrittenCall]:
+    """Return the calls in a text that consists only of calls to offered tools; an empty list for any other text."""
     body = body.strip()
     calls: list[WrittenCall] = []
     if body.startswith(("{", "[{")):

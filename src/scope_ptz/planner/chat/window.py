@@ -1,4 +1,4 @@
-"""Handle conversations that exceed the model's context.
+"""Estimate the tokens of a conversation, and shorten conversations that exceed the model's context.
 
 By default the run ends with a context overflow. With ``ChatOptions.summarise``, old observations are shortened instead: all calls
 are kept, and their results keep only counts, answers, poses and other short fields.
@@ -21,7 +21,7 @@ PICTURE_TOKENS = 1300
 NEVER_SHORTENED = 2
 """The number of newest exchanges that are never shortened, because the planner is about to act on them."""
 
-_FILL = 0.9  # usable share of the context, because the token count is an estimate
+_USABLE_FRACTION = 0.9  # usable fraction of the context, because the token count is an estimate
 _REPLY_TOKENS = 512  # reserved for the reply
 
 
@@ -39,7 +39,7 @@ def estimated_tokens(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapp
 
 def fits(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapping[str, Any]], context_tokens: int) -> bool:
     """Return whether messages and tools probably leave room for a reply in the context."""
-    return estimated_tokens(messages, tools) + min(_REPLY_TOKENS, context_tokens // 4) <= context_tokens * _FILL
+    return estimated_tokens(messages, tools) + min(_REPLY_TOKENS, context_tokens // 4) <= context_tokens * _USABLE_FRACTION
 
 
 def shortenings(state: State) -> Iterator[int]:

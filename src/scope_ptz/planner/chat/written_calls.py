@@ -1,4 +1,4 @@
-"""Tool calls written as text, and the parsing of their arguments."""
+"""Represent tool calls that a model wrote as text, and parse their arguments."""
 
 from __future__ import annotations
 

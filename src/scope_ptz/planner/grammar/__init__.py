@@ -1,4 +1,4 @@
-"""The built-in planner: a grammar of camera operation and an interpreter, without a model.
+"""The built-in planner: a grammar for camera instructions and an interpreter. It needs no model.
 
 ``lexing`` splits text into lexemes, ``parsing`` builds the steps of ``instruction_tree`` from them, ``binding`` resolves the names
 in the steps, and ``execution`` runs the steps against the history.

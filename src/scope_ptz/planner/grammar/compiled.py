@@ -1,4 +1,4 @@
-"""Compiled files, which are stored next to their sources because compiling would delay every command.
+"""Read compiled files. They are stored next to their sources, because compiling would delay every command.
 
 The first line of a compiled file contains the hash of its source. If the hash does not match, the compiled file is ignored, so that
 changes to the source take effect immediately.

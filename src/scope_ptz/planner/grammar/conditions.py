@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 Operator = Literal[">=", "<=", ">", "<", "=="]
-Sense = Literal["more", "fewer"]
+Comparison = Literal["more", "fewer"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class PresetRef:
     Attributes:
         name: The name as it appears in the instruction.
         number: The position in the list of presets, if the instruction gives one: 1 is the first, -1 the last.
-        explicit: Whether the words can only refer to a preset ("preset gate"); other words may also refer to an object.
+        explicit: Whether the wording can only refer to a preset ("preset gate"); other words may also refer to an object.
         has_article: Whether the name follows "the", "a" or "an".
     """
 
@@ -99,7 +99,7 @@ class Outnumbers:
 
     first: Thing
     second: Thing
-    sense: Sense = "more"
+    comparison: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ class PresetOutnumbers:
     thing: Thing
     first: PresetRef
     second: PresetRef
-    sense: Sense = "more"
+    comparison: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)

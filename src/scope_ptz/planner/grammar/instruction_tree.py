@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from scope_ptz.planner.grammar.conditions import Answered as Answered
+from scope_ptz.planner.grammar.conditions import Comparison as Comparison
 from scope_ptz.planner.grammar.conditions import Condition as Condition
 from scope_ptz.planner.grammar.conditions import Joined as Joined
 from scope_ptz.planner.grammar.conditions import Negated as Negated
@@ -16,7 +17,6 @@ from scope_ptz.planner.grammar.conditions import PresetRef as PresetRef
 from scope_ptz.planner.grammar.conditions import Quantity as Quantity
 from scope_ptz.planner.grammar.conditions import Readable as Readable
 from scope_ptz.planner.grammar.conditions import Seen as Seen
-from scope_ptz.planner.grammar.conditions import Sense as Sense
 from scope_ptz.planner.grammar.conditions import Statement as Statement
 from scope_ptz.planner.grammar.conditions import Thing as Thing
 
@@ -76,11 +76,11 @@ class Move:
     """A camera movement on one or more axes.
 
     Attributes:
-        verb: Whether the instruction has a verb for the move. "Left 5" has none, so it may belong to the previous move.
+        has_verb: Whether the instruction names the move with a verb. "Left 5" has none, so it may belong to the previous move.
     """
 
     parts: tuple[Part, ...]
-    verb: bool = True
+    has_verb: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,12 +104,12 @@ class Home:
 
 
 @dataclass(frozen=True, slots=True)
-class GoPreset:
+class GoToPreset:
     """Go to a preset.
 
     Attributes:
-        how: The verb of the instruction, "bare" for none. After "go" the words must name a preset; otherwise they may name an
-            object.
+        how: The verb of the instruction, "bare" for none. After "go", the words must name a preset; after other verbs, they may
+            name an object.
     """
 
     ref: PresetRef
@@ -128,7 +128,7 @@ class ListPresets:
 
 @dataclass(frozen=True, slots=True)
 class Snap:
-    """Take pictures, of an object if one is given."""
+    """Take one or more pictures: of an object if one is given, otherwise of the current view."""
 
     times: int = 1
     of: Thing | None = None
@@ -211,7 +211,7 @@ class DoAgain:
     """Repeat the previous steps.
 
     Attributes:
-        times: How often the steps run in total or, if ``more`` is set, in addition; None for once more.
+        times: How many times the steps run: in total, or in addition if ``more`` is set. None means once more.
     """
 
     times: int | None = None
@@ -253,7 +253,7 @@ class Between:
 
 @dataclass(frozen=True, slots=True)
 class AtIntervals:
-    """Run steps at regular intervals of a turn: of ``move`` or, if it is None, of the previous step."""
+    """Run steps at regular angular intervals during ``move`` or, if that is None, during the previous step."""
 
     body: tuple[Step, ...]
     degrees: float
@@ -261,15 +261,15 @@ class AtIntervals:
 
 
 @dataclass(frozen=True, slots=True)
-class ThanBefore:
+class CompareWithBefore:
     """Compare a count with the count before the last moves ("are there more than before?").
 
     Attributes:
-        thing: The objects to count; if its text is empty, the objects that were counted last.
+        thing: The objects to count; if its text is empty, the objects of the last count.
     """
 
     thing: Thing
-    sense: Sense = "more"
+    comparison: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,15 +296,15 @@ class SameAt:
 
 @dataclass(frozen=True, slots=True)
 class WhichPreset:
-    """Count at each of several presets and report which one shows the most (or fewest).
+    """Count objects at each of several presets, and report which preset shows the most (or fewest).
 
     Attributes:
         go: Whether to go to that preset afterwards.
-        any_of: Whether to report instead which presets show any of the objects.
+        any_of: Whether to report which presets show any of the objects, instead of the preset with the most.
     """
 
     thing: Thing
-    sense: Sense = "more"
+    comparison: Comparison = "more"
     places: tuple[PresetRef, ...] = ()
     go: bool = False
     any_of: bool = False
@@ -316,7 +316,7 @@ class Compare:
 
     first: Thing
     second: Thing
-    sense: Sense = "more"
+    comparison: Comparison = "more"
     view: View | None = None
 
 
@@ -326,7 +326,7 @@ class BeforeAfter:
 
     thing: Thing
     moves: tuple[Step, ...]
-    sense: Sense = "more"
+    comparison: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -334,7 +334,7 @@ class Sweep:
     """Look all around: the following questions are about the whole scene.
 
     Attributes:
-        turn: Whether the words may also ask for a full turn of the camera.
+        turn: Whether the wording could also mean a full turn of the camera.
     """
 
     turn: bool = False
@@ -375,9 +375,9 @@ class Unclear:
 
 
 Step = (
-    Move | Further | Back | Home | GoPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat | DoAgain
-    | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report | CameraState | Help
-    | WhatAbout | Between | AtIntervals | ThanBefore | Mention | Rescope | Unclear
+    Move | Further | Back | Home | GoToPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat
+    | DoAgain | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report
+    | CameraState | Help | WhatAbout | Between | AtIntervals | CompareWithBefore | Mention | Rescope | Unclear
 )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Small edits that do not change the meaning of an instruction or prompt. All edits are deterministic."""
+"""Define small, deterministic edits that do not change the meaning of an instruction or prompt."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from scope_ptz.tools.adjust_ptz import AdjustPtz
 from scope_ptz.tools.registry import parse_call, schemas
 
 PRESETS = ("gate", "highway")  # the camera's presets in the planner's briefing
-_TOLERANCE = 0.01  # numbers that differ by at most this are equal
+_TOLERANCE = 0.01  # numbers that differ by at most this count as equal
 
 
 class _Model(BaseModel):
@@ -37,7 +37,7 @@ class FirstCall(_Model):
 
 
 class InstructionRow(_Model):
-    """An instruction with its expected calls. ``alternatives`` are other acceptable tools for the first call."""
+    """An instruction with its expected calls. ``alternatives`` lists other tools that are acceptable as the first call."""
 
     instruction: str
     kind: str
@@ -55,7 +55,7 @@ class PlannerTrial(_Model):
         invalid: The number of invalid calls.
         failure: The kind of failure; None if the planner did not fail.
         right: Whether the first call is the expected one.
-        inverted: Whether the first move turns or zooms in the opposite direction.
+        inverted: Whether the first move turns or zooms opposite to the expected direction.
     """
 
     row: InstructionRow
@@ -215,7 +215,7 @@ def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
 
 
 def _directions(call: FirstCall) -> tuple[float, float, float]:
-    """Return the signs of pan, tilt and zoom of a move, all zero for an invalid call."""
+    """Return the pan, tilt and zoom of a move, whose signs are its directions. All are zero for an invalid call."""
     try:
         move = AdjustPtz.model_validate(call.arguments)
     except ValidationError:

@@ -36,7 +36,7 @@ class PerceptionSpeed(BaseModel):
 
     @property
     def slowest_median_s(self) -> float | None:
-        """The median of the slowest skill; None if a skill has no successful call, because its speed is unknown."""
+        """The median time of the slowest skill; None if any skill had no successful call, because its speed is unknown."""
         if self.never_worked:
             return None
         return max((spread.median for spread in self.by_skill.values()), default=None)
@@ -51,7 +51,7 @@ async def measure_perception(
 
     Args:
         perception: The perception backend to measure.
-        frames: Frames, all different, so that no reply comes from a cache.
+        frames: The frames. They must all differ, so that no reply comes from a cache.
         on_call: Called after each call outside the warm-up round.
     """
     skills: dict[str, Callable[[Frame], Awaitable[object]]] = {

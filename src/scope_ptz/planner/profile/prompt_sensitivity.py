@@ -26,7 +26,7 @@ class _Model(BaseModel):
 
 
 class Rate(_Model):
-    """A count out of a total with Wilson's 95% interval; share and interval are None for a total of zero."""
+    """A count out of a total, as a fraction with its 95% Wilson interval. Fraction and interval are None for a total of zero."""
 
     count: int
     of: int
@@ -36,7 +36,7 @@ class Rate(_Model):
 
     @classmethod
     def over(cls, hits: Iterable[bool]) -> Rate:
-        """Return the rate of the true values."""
+        """Return the rate of true values among ``hits``."""
         values = list(hits)
         count, of = sum(values), len(values)
         if not of:
@@ -231,4 +231,4 @@ def _moves(trial: PlannerTrial) -> bool:
 
 def _example(trial: PlannerTrial) -> str:
     calls = "; ".join(f"{c.name}({', '.join(f'{k}={v!r}' for k, v in c.arguments.items())})" for c in trial.calls)
-    return f"{trial.asked!r} ({trial.edit or 'as it is'}): {calls or trial.failure or 'no call'}"
+    return f"{trial.asked!r} ({trial.edit or 'unedited'}): {calls or trial.failure or 'no call'}"

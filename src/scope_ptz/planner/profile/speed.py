@@ -1,4 +1,4 @@
-"""Measure a planner's speed and its share of valid calls on single instructions."""
+"""Measure a planner's speed and its rate of valid calls on individual instructions."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.errors import ConfigError
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import CallTools, Decision, Planner
-from scope_ptz.planner.chat.chat_messages import callable_name
+from scope_ptz.planner.chat.chat_messages import valid_tool_name
 
 __all__ = ["PROVIDER", "Model", "ScopeModel", "engine_model", "output_of", "scope_ptz"]
 
@@ -175,7 +175,7 @@ def output_of(decision: Decision, model: str, step: int) -> ModelOutput:
     if isinstance(decision, CallTools):
         stop = "tool_calls"
         calls = [
-            ToolCall(id=call_id(step, index), function=callable_name(c.name), arguments=c.arguments, parse_error=c.problem)
+            ToolCall(id=call_id(step, index), function=valid_tool_name(c.name), arguments=c.arguments, parse_error=c.problem)
             for index, c in enumerate(decision.calls)
         ]
     message = ChatMessageAssistant(

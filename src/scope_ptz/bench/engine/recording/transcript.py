@@ -30,7 +30,7 @@ from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Exchange, Picture, State, ToolCall, ToolOutcome
-from scope_ptz.planner.chat.chat_messages import callable_name
+from scope_ptz.planner.chat.chat_messages import valid_tool_name
 from scope_ptz.planner.chat.observations import observation
 from scope_ptz.planner.chat.prompts import Prompt
 from scope_ptz.planner.chat.schemas import plain_schemas
@@ -49,7 +49,7 @@ def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[Cha
     briefing = state.briefing
     system = ChatMessageSystem(
         id="briefing",
-        content=prompt.fill(briefing.presets, briefing.limits, briefing.pose, sees=sees),
+        content=prompt.fill(briefing.presets, briefing.limits, briefing.pose, accepts_images=sees),
         metadata={"briefing": _BRIEFING.dump_python(briefing, mode="json")},
     )
     messages: list[ChatMessage] = [system, ChatMessageUser(id="instruction", content=state.instruction)]
@@ -62,7 +62,7 @@ def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[Cha
 
 def _exchange(exchange: Exchange, step: int) -> list[ChatMessage]:
     calls = [
-        EngineCall(id=call_id(step, index), function=callable_name(o.call.name), arguments=o.call.arguments)
+        EngineCall(id=call_id(step, index), function=valid_tool_name(o.call.name), arguments=o.call.arguments)
         for index, o in enumerate(exchange.outcomes)
     ]
     assistant = ChatMessageAssistant(id=f"step-{step}", content=exchange.thought, tool_calls=calls)
@@ -82,7 +82,7 @@ def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool
     return ChatMessageTool(
         id=f"result-{step}-{index}",
         tool_call_id=call_id(step, index),
-        function=callable_name(outcome.call.name),
+        function=valid_tool_name(outcome.call.name),
         content=content if outcome.picture is not None else observation(outcome),
         error=ToolCallError("unknown", outcome.error) if outcome.error is not None else None,
         metadata={"outcome": outcome.model_dump(mode="json")},
@@ -109,7 +109,7 @@ def conversation_of(records: Sequence[Record], pictures: Mapping[str, str]) -> l
                 )
             case Decided(decision=CallTools() as decision):
                 calls = [
-                    EngineCall(id=call_id(record.step, index), function=callable_name(c.name), arguments=c.arguments)
+                    EngineCall(id=call_id(record.step, index), function=valid_tool_name(c.name), arguments=c.arguments)
                     for index, c in enumerate(decision.calls)
                 ]
                 thought = [ContentReasoning(reasoning=decision.reasoning)] if decision.reasoning else []

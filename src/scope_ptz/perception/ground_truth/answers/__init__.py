@@ -1,4 +1,4 @@
-"""Answers to parsed questions about a view: one short English sentence, and whether the answer is known."""
+"""Answer parsed questions about a view. An answer is a short English sentence, with a flag for whether the answer is known."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from scope_ptz.perception.ground_truth.thing_search import find, find_phrase
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 _EQUALITY_TOLERANCE = 0.02
-"""Values whose relative difference is at most this are reported as equal."""
+"""Maximum relative difference between values that are reported as equal."""
 
 
 def which(view: View, question: tree.Which) -> AnswerText:

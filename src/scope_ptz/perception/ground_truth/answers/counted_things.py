@@ -13,7 +13,7 @@ from scope_ptz.perception.ground_truth.thing_search import find, things_named
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_LISTED = 3
-"""Maximum number of things that are listed one by one. For more things, only the number is given."""
+"""Maximum number of things to list individually. For more things, only their number is given."""
 
 
 def with_tests(description: tree.Description, tests: tuple[tree.Test, ...]) -> tree.Description:

@@ -1,4 +1,4 @@
-"""Answers about text. Only legible text is reported; for other text the answer states why it cannot be read."""
+"""Answers about text. Only legible text is reported; for illegible text, the answer states why it cannot be read."""
 
 from __future__ import annotations
 

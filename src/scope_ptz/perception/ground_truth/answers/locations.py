@@ -25,7 +25,7 @@ from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_PLACED = 3
-"""Maximum number of things that are located one by one. More things are counted by region of the frame."""
+"""Maximum number of things to locate individually. More things are counted by region of the frame."""
 _BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
 
 

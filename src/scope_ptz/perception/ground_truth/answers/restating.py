@@ -1,4 +1,4 @@
-"""Turn parsed descriptions and conditions back into words, so that an answer shows how the question was understood."""
+"""Convert parsed descriptions and tests back to words, so that an answer shows how the question was understood."""
 
 from __future__ import annotations
 

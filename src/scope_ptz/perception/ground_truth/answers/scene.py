@@ -20,7 +20,7 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 MAX_GROUPS = 10
 """Maximum number of groups of things in a description of the view."""
 MAX_TEXTS = 3
-"""Maximum number of texts in a description of the view, and maximum number of things that are described one by one."""
+"""Maximum number of texts in a description of the view, and maximum number of things to describe individually."""
 STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing", "full", "empty", "stationary", "fallen"})
 """States that are not activities."""
 
@@ -52,7 +52,7 @@ def _load_of(view: View, tests: tuple[tree.Test, ...]) -> AnswerText | None:
 
 
 def _describe_things(view: View, what: tree.Description, tests: tuple[tree.Test, ...]) -> AnswerText:
-    """Describe things with all facts that the scene states about them."""
+    """Describe individual things with all facts that the scene states about them."""
     matches = find(view, with_tests(what, tests))
     if not matches:
         return reply(none_of(view, what))
@@ -91,7 +91,7 @@ def _groups(things: Iterable[Thing]) -> list[str]:
 
 
 def happening(view: View) -> AnswerText:
-    """Answer which things move or work; if none does, describe the view."""
+    """Answer which things are moving or active; if there are none, describe the view."""
     activities = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
     if not activities:
         return AnswerText(f"Nothing is moving. {describe(view, tree.Describe()).text}")

@@ -1,4 +1,4 @@
-"""Answers about colours, states, clothes and other facts of things."""
+"""Answers about colours, states, clothes and other facts about things."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def _clothes(thing: Thing) -> str | None:
 
 
 def _answer_about_part(view: View, question: tree.Ask) -> AnswerText | None:
-    """Answer about a part that the scene states as a fact of the owner: "the colour of the worker's helmet"."""
+    """Answer about a part that the scene states as a fact about its owner ("the worker's helmet colour")."""
     if question.what is None:
         return None
     matches = part_values(view, question.what)
@@ -155,7 +155,7 @@ def _answer_about_part(view: View, question: tree.Ask) -> AnswerText | None:
 
 
 def part_values(view: View, what: tree.Description) -> list[tuple[Thing, str]]:
-    """Return owners and values of a part that the scene states as a fact of its owner: "helmet of the worker", "cabin door"."""
+    """Return owners and values of a part that is stated as a fact about its owner: "helmet of the worker", "cabin door"."""
     phrase = what.phrases[0]
     owners = [t.other for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on"]
     part = phrase.words
@@ -176,7 +176,7 @@ def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
 
 
 def fact_in_view(view: View, attribute: Sequence[str]) -> AnswerText:
-    """Answer with a fact of any thing ("which lane is closed?"), or else with the text on a sign ("what is the speed limit?")."""
+    """Answer with a fact about a thing in view ("which lane is closed?"), or the text on a sign ("what is the speed limit?")."""
     if tuple(attribute) == ("thing",) or set(attribute) & UNSEEN:
         return unknown("I cannot tell that from the picture")
     stated = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _states(t, attribute)]

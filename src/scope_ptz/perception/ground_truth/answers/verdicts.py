@@ -66,7 +66,7 @@ def _as_text(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]
 
 
 def _answer_about_part(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> AnswerText | None:
-    """Answer "is the cabin door open?" if the scene states the door as a fact of the cabin."""
+    """Answer "is the cabin door open?" if the scene states the door as a fact about the cabin."""
     values = part_values(view, subject)
     if not values or len(tests) != 1 or not isinstance(tests[0], tree.Is):
         return None

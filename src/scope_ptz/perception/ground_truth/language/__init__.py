@@ -1,4 +1,4 @@
-"""English about pictures: noun phrases ("the second red car from the left") and questions, parsed to plain data."""
+"""Parse English noun phrases ("the second red car from the left") and questions about a picture to plain data."""
 
 from scope_ptz.perception.ground_truth.language.question_parser import parse_description, parse_question
 

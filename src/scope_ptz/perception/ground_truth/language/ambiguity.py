@@ -13,7 +13,7 @@ _SPECIFIC: tuple[type[Any], ...] = (
     tree.CompareCount, tree.Compare, tree.Which, tree.HowFar, tree.MostCommon, tree.TextExists, tree.Read, tree.IsA, tree.Where,
     tree.Count, tree.CountKinds, tree.Happening,
 )  # fmt: skip
-"""Question types that are preferred to the general ones."""
+"""Specific question types, which are preferred to the general ones."""
 
 _TEXT_AND_PROPERTY_NOUNS = frozenset(
     [

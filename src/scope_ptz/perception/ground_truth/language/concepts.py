@@ -10,7 +10,7 @@ from importlib.resources import files
 from scope_ptz import english
 
 CACHE_SIZE = 8192
-"""Number of cached results per function. Questions and scenes repeat the same few thousand phrases."""
+"""Number of cached results per function, enough because questions and scenes repeat the same few thousand phrases."""
 
 
 @dataclass(frozen=True, eq=False)

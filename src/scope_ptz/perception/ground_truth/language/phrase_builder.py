@@ -81,7 +81,7 @@ class NounPhrases:
         return cast(tree.Description, children[0])
 
     def anywhere(self, children: Children) -> tree.Description:
-        """Build a place such as "behind the barrier", which means everything at that place."""
+        """Build the description of everything at a place such as "behind the barrier"."""
         return tree.Description((tree.Phrase(("thing",), tests_of(children)),))
 
     def np_to(self, children: Children) -> tree.Phrase:
@@ -92,7 +92,7 @@ class NounPhrases:
         return replace(phrase, order=tree.Order(key, tree.Description((other,))))
 
     def nps(self, children: Children) -> tree.Description:
-        """Build a list. The last noun ("red or blue cars") and its modifiers ("cars and vans on the left") apply to all parts."""
+        """Build a list. The last noun ("red or blue cars") and its modifiers ("cars and vans on the left") apply to all items."""
         phrases: list[tree.Phrase] = of_kind(children, tree.Phrase)
         last = phrases[-1]
         spans = nouns_in(last.words)

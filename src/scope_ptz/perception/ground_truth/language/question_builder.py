@@ -28,7 +28,7 @@ _THE_VIEW = frozenset(
 
 
 def _text_owner(what: tree.Description) -> tree.Description | None:
-    """Return the thing that a text is on ("the words on the van": the van); None if the question names only "the text"."""
+    """Return the thing that bears a text ("the words on the van": the van); None if the question names only "the text"."""
     phrase = what.phrases[0]
     if phrase.words[-1] not in _TEXT_NOUNS:
         return what

@@ -1,4 +1,4 @@
-"""Splitting a description or question into words."""
+"""Split a description or question into words."""
 
 from __future__ import annotations
 

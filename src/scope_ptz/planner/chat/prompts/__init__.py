@@ -37,14 +37,14 @@ class Prompt:
         """A short hash that identifies the exact text in a trace."""
         return sha256(self.text.encode()).hexdigest()[:12]
 
-    def fill(self, presets: tuple[str, ...], limits: Limits, start: Pose, *, sees: bool = False) -> str:
+    def fill(self, presets: tuple[str, ...], limits: Limits, start: Pose, *, accepts_images: bool = False) -> str:
         """Return the text of the prompt for a camera.
 
         Args:
             presets: The camera's presets.
             limits: The camera's limits.
             start: The camera's pose when the conversation starts.
-            sees: Whether the planner accepts images.
+            accepts_images: Whether the planner accepts images.
 
         Raises:
             ConfigError: The prompt has an unknown or malformed placeholder.
@@ -64,7 +64,7 @@ class Prompt:
         if limits.pan_endless:
             values["max_pan"] += " (endless)"
         values["presets"] = ", ".join(" ".join(name.split()) for name in presets) if presets else "none"
-        values["sight"] = _WITH_PICTURES if sees else _WITHOUT_PICTURES
+        values["sight"] = _WITH_PICTURES if accepts_images else _WITHOUT_PICTURES
         try:
             return Template(self.text).substitute(values)
         except (KeyError, ValueError) as error:

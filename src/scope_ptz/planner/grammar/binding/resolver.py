@@ -111,7 +111,7 @@ class Resolver:
 
     Attributes:
         presets: The camera's presets; None if they are unknown, so that names are accepted as written.
-        conversation: The earlier turns, which pronouns may refer to.
+        conversation: The earlier turns, to which pronouns may refer.
         antecedent: The description that a pronoun refers to.
         preset: The preset that "there" refers to.
         compared: Whether an earlier step compares presets.
@@ -150,10 +150,10 @@ class Resolver:
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
-        """Give a step without a verb the verb of the previous step, as in "read the left sign and then the right one"."""
+        """Apply the verb of the previous step to a step without one, as in "read the left sign and then the right one"."""
         last = before[-1] if before else None
-        bare = isinstance(step, ast.GoPreset) and step.how == "bare" and step.ref.has_article
-        if not bare or not isinstance(step, ast.GoPreset) or (self.presets and self.find_place(step.ref)):
+        bare = isinstance(step, ast.GoToPreset) and step.how == "bare" and step.ref.has_article
+        if not bare or not isinstance(step, ast.GoToPreset) or (self.presets and self.find_place(step.ref)):
             return step
         thing = ast.Thing(re.sub(r"^(the|an?) ", "", step.ref.name), definite=True)
         if isinstance(last, ast.Read):
@@ -224,12 +224,12 @@ class Resolver:
         if isinstance(step, ast.Sweep):
             self.whole_scene = True
             return [step]
-        if isinstance(step, ast.Move | ast.Home | ast.GoPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset):
+        if isinstance(step, ast.Move | ast.Home | ast.GoToPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset):
             self.whole_scene = False
         method = getattr(self, f"_{type(step).__name__.lower()}", None)
         return method(step) if method else [step]
 
-    def _gopreset(self, step: ast.GoPreset) -> Sequence[ast.Step]:
+    def _gotopreset(self, step: ast.GoToPreset) -> Sequence[ast.Step]:
         ref = step.ref
         preset = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.explicit else None
         if step.how == "look" and not ref.explicit:
@@ -240,20 +240,20 @@ class Resolver:
             return self._whatabout(ast.WhatAbout(ast.Thing(re.sub(r"^(the|an?) ", "", ref.name))))
         if step.how == "bare" and preset is None and not ref.explicit:
             raise UnresolvedError(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
-        return [ast.GoPreset(self.place(ref))]
+        return [ast.GoToPreset(self.place(ref))]
 
     def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
         if self.compared:
             return [step]
         if not self.preset:
             raise UnresolvedError("Where is 'there'? Please name a preset.")
-        return [ast.GoPreset(ast.PresetRef(self.preset, explicit=True))]
+        return [ast.GoToPreset(ast.PresetRef(self.preset, explicit=True))]
 
     def _snap(self, step: ast.Snap) -> Sequence[ast.Step]:
         if step.of is None:
             return [step]
         if step.of.text and self.presets and match_preset(step.of.text, self.presets):
-            return [ast.GoPreset(self.place(ast.PresetRef(step.of.text))), replace(step, of=None)]
+            return [ast.GoToPreset(self.place(ast.PresetRef(step.of.text))), replace(step, of=None)]
         return [replace(step, of=self.thing(step.of))]
 
     def _count(self, step: ast.Count) -> Sequence[ast.Step]:
@@ -287,7 +287,7 @@ class Resolver:
         if not match or not name:
             return question, []
         self.preset, self.whole_scene = name, False
-        return f"{match[1]}?", [ast.GoPreset(ast.PresetRef(name, explicit=True))]
+        return f"{match[1]}?", [ast.GoToPreset(ast.PresetRef(name, explicit=True))]
 
     def _mention(self, step: ast.Mention) -> Sequence[ast.Step]:
         self.thing(step.thing)
@@ -309,7 +309,7 @@ class Resolver:
     def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
         thing = self.thing(step.thing)
         if self.presets and (name := match_preset(thing.text, self.presets)):
-            return [ast.GoPreset(ast.PresetRef(name, explicit=True)), *self._last_question()]
+            return [ast.GoToPreset(ast.PresetRef(name, explicit=True)), *self._last_question()]
         if not self.conversation:
             return self._count(ast.Count((thing,)))
         return [ast.Count((thing,), self._view(None))]
@@ -369,7 +369,7 @@ class Resolver:
         out: list[ast.Step] = []
         for place in places:
             self.preset = place.name
-            out += [ast.GoPreset(place), *self.bind(step.body)]
+            out += [ast.GoToPreset(place), *self.bind(step.body)]
         return out
 
     def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
@@ -380,7 +380,7 @@ class Resolver:
         first, second = self.thing(step.first), self.thing(step.second)
         places = [match_preset(t.text, self.presets) if self.presets else None for t in (first, second)]
         if all(places):
-            return self._whichpreset(ast.WhichPreset(ast.Thing(), step.sense, tuple(ast.PresetRef(p or "") for p in places)))
+            return self._whichpreset(ast.WhichPreset(ast.Thing(), step.comparison, tuple(ast.PresetRef(p or "") for p in places)))
         return [replace(step, first=first, second=second, view=self._view(step.view))]
 
     def _beforeafter(self, step: ast.BeforeAfter) -> Sequence[ast.Step]:

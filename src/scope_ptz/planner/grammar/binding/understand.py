@@ -27,10 +27,10 @@ class Understanding:
 
 
 def understand(instruction: str, presets: Sequence[str] | None, conversation: Sequence[PastTurn] = ()) -> Understanding:
-    """Return the steps of an instruction, or a clarifying question or refusal. It does not raise errors for any text.
+    """Return the steps of an instruction, or a clarifying question or refusal. Never raises, whatever the text.
 
     Args:
-        instruction: The text that the user typed.
+        instruction: The text of the user.
         presets: The camera's presets; None accepts preset names as written.
         conversation: The earlier turns.
     """

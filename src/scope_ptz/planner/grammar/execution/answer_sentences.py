@@ -1,4 +1,4 @@
-"""Words and sentences for the grammar planner's answers, which state only facts from tool results."""
+"""Phrase the answers of the grammar planner, which state only facts from tool results."""
 
 from __future__ import annotations
 
@@ -142,9 +142,9 @@ def condition_text(condition: Condition) -> str:
     if isinstance(condition, Statement):
         return f"saw that the {condition.subject.text} is {'' if condition.expected else 'not '}{condition.predicate}"
     if isinstance(condition, PresetOutnumbers):
-        return f"saw {condition.sense} {condition.thing.text} at {condition.first.name} than at {condition.second.name}"
+        return f"saw {condition.comparison} {condition.thing.text} at {condition.first.name} than at {condition.second.name}"
     if isinstance(condition, Outnumbers):
-        return f"saw {condition.sense} {condition.first.text} than {condition.second.text}"
+        return f"saw {condition.comparison} {condition.first.text} than {condition.second.text}"
     if isinstance(condition, Negated):
         return f"reached a view where it does not hold that I {condition_text(condition.part)}"
     if isinstance(condition, Joined):

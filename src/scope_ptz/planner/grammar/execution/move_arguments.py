@@ -32,7 +32,7 @@ def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) 
     return {
         key: without_rounding_noise(value)
         for key, value in arguments.items()
-        if isinstance(value, str) or not _is_no_motion(key, value)
+        if isinstance(value, str) or not _has_no_effect(key, value)
     }
 
 
@@ -44,10 +44,10 @@ def return_arguments(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
         "tilt_deg": to.tilt_deg - pose.tilt_deg,
         "zoom_factor": to.zoom / pose.zoom,
     }
-    return {key: without_rounding_noise(value) for key, value in arguments.items() if not _is_no_motion(key, value)}
+    return {key: without_rounding_noise(value) for key, value in arguments.items() if not _has_no_effect(key, value)}
 
 
-def _is_no_motion(key: str, value: float) -> bool:
+def _has_no_effect(key: str, value: float) -> bool:
     """Return whether an argument's value has no effect: a zoom factor of 1, or 0 for other arguments."""
     return abs(value - (1.0 if key == "zoom_factor" else 0.0)) < _TOLERANCE
 

@@ -1,4 +1,4 @@
-"""Outline a program: its calls, grouped into repetitions, loops and conditional branches.
+"""Create the outline of a program: its calls, grouped into repetitions, loops and conditional branches.
 
 The program runs against assumed results. Each loop body and each branch runs once.
 """
@@ -16,7 +16,7 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.move_arguments import arguments_of
 from scope_ptz.planner.grammar.execution.program import Program
-from scope_ptz.planner.grammar.execution.run_state import AssumedOutcome, Run
+from scope_ptz.planner.grammar.execution.run_state import AssumedOutcome, CallGenerator
 
 MAX_LINES = 200  # further lines are omitted
 AssumedResult = Callable[[str, Mapping[str, Any]], dict[str, Any]]
@@ -63,7 +63,7 @@ class _OutlineProgram(Program):
         self.outermost = self._block = OutlineBlock()
         self._lines = 0
 
-    def _call(self, tool: str, **arguments: Any) -> Run:
+    def _call(self, tool: str, **arguments: Any) -> CallGenerator:
         yield from ()
         self._add(OutlineCall(tool, arguments))
         result = self._assumed_result(tool, arguments)
@@ -77,7 +77,7 @@ class _OutlineProgram(Program):
 
     @contextmanager
     def _block_under(self, heading: str) -> Iterator[None]:
-        """Record the calls of the context in a block under a heading."""
+        """Record the calls made inside this context in a block under a heading."""
         outer, self._block = self._block, OutlineBlock(heading)
         try:
             yield
@@ -85,14 +85,14 @@ class _OutlineProgram(Program):
             inner, self._block = self._block, outer
             self._add(inner)
 
-    def _repeat(self, step: ast.Repeat) -> Run:
+    def _repeat(self, step: ast.Repeat) -> CallGenerator:
         if step.times == 1:
             yield from self._run_steps(step.body)
             return
         with self._block_under(f"{step.times} times:"):
             yield from self._run_steps(step.body)
 
-    def _if(self, step: ast.If) -> Run:
+    def _if(self, step: ast.If) -> CallGenerator:
         yield from self._test(step.condition)
         pose = self.pose
         with self._block_under(f"if {condition_text(step.condition)}:"):
@@ -103,7 +103,7 @@ class _OutlineProgram(Program):
                 yield from self._run_steps(step.otherwise)
             self.pose = after
 
-    def _loop(self, step: ast.Loop) -> Run:
+    def _loop(self, step: ast.Loop) -> CallGenerator:
         limit = self._move_limit(step)
         with self._block_under(f"repeat until {condition_text(step.until)}, at most {limit} {'time' if limit == 1 else 'times'}:"):
             yield from self._test(step.until)
@@ -115,7 +115,7 @@ class _OutlineProgram(Program):
         with self._block_under("if that never happens:" if step.otherwise else "if that never happens: stop and report it"):
             yield from self._run_steps(step.otherwise)
 
-    def _joined(self, condition: ast.Joined) -> Run:
+    def _joined(self, condition: ast.Joined) -> CallGenerator:
         for part in condition.parts:
             yield from self._test(part)
         return True, ""
@@ -133,10 +133,10 @@ def condition_text(condition: ast.Condition) -> str:
             if question:
                 return f"the answer to “{question}” is {'yes' if expected else 'no'}"
             return f"{'the ' if subject.definite else ''}{subject.text} is {'' if expected else 'not '}{predicate}"
-        case ast.Outnumbers(first=first, second=second, sense=sense):
-            return f"{sense} {first.text} than {second.text} are visible"
-        case ast.PresetOutnumbers(thing=thing, first=first, second=second, sense=sense):
-            return f"{sense} {thing.text} are visible at {first.name} than at {second.name}"
+        case ast.Outnumbers(first=first, second=second, comparison=comparison):
+            return f"{comparison} {first.text} than {second.text} are visible"
+        case ast.PresetOutnumbers(thing=thing, first=first, second=second, comparison=comparison):
+            return f"{comparison} {thing.text} are visible at {first.name} than at {second.name}"
         case ast.Negated(part=ast.Answered()):
             return "the answer was no, or nothing was found"
         case ast.Negated(part=ast.Seen(thing=thing, quantity=quantity)) if quantity == ast.Quantity():

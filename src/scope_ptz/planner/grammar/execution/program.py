@@ -1,4 +1,4 @@
-"""Run bound steps, as a generator that yields tool calls, receives their outcomes and describes the results in words.
+"""Run bound steps. A program is a generator that yields tool calls, receives their outcomes and describes the results in words.
 
 The planner replays the generator against the recorded history at every step, so it depends only on its inputs.
 """
@@ -16,22 +16,22 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition
-from scope_ptz.planner.grammar.execution.condition_tests import ConditionTests, reading_question
+from scope_ptz.planner.grammar.execution.condition_evaluation import ConditionEvaluation, reading_question
 from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, return_arguments
-from scope_ptz.planner.grammar.execution.run_state import HaltedError, Run
+from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError
 
-_ABILITIES = (
+_CAPABILITIES = (
     "I can pan, tilt and zoom, go to presets and home, take pictures, count things, answer questions about the scene, read text, "
     "and zoom in on or follow things"
 )
-_DEFAULT_MAX_MOVES = 24  # limit of a loop if the instruction does not give one
-_MAX_REQUESTED_MOVES = 100  # highest limit that an instruction can give
+_DEFAULT_MAX_MOVES = 24  # maximum number of moves of a loop if the instruction gives none
+_MAX_REQUESTED_MOVES = 100  # maximum number of moves that an instruction can request
 
 
-class Program(ConditionTests):
+class Program(ConditionEvaluation):
     """One run of the steps of an instruction, with one method for each step type."""
 
-    def run(self, steps: Sequence[ast.Step]) -> Run:
+    def run(self, steps: Sequence[ast.Step]) -> CallGenerator:
         """Run all steps. After that, ``answer()`` returns the answer."""
         start = VisitedPosition(self.pose, self.positions.preset, home=self.positions.before is None and self.pose == Pose())
         self._visited = [self.positions.before, start] if self.positions.before else [start]
@@ -40,12 +40,12 @@ class Program(ConditionTests):
         except HaltedError as halt:
             self._note(str(halt))
 
-    def _run_steps(self, steps: Sequence[ast.Step]) -> Run:
+    def _run_steps(self, steps: Sequence[ast.Step]) -> CallGenerator:
         for step in steps:
             yield from getattr(self, f"_{type(step).__name__.lower()}")(step)
 
     # Motion ------------------------------------------------------------------------------------------------------------
-    def _move(self, step: ast.Move) -> Run:
+    def _move(self, step: ast.Move) -> CallGenerator:
         arguments = arguments_of(step, self.pose, self.limits)
         if not arguments:
             self._note(f"The camera is already there: {phrases.pose_text(self.pose.as_dict())}")
@@ -54,7 +54,7 @@ class Program(ConditionTests):
         text = f"{phrases.move_text(arguments)}; the camera is at {phrases.pose_text(result['pose'])}"
         self._note(phrases.sentence(text) + phrases.clamped_text(result.get("clamped", ())))
 
-    def _back(self, step: ast.Back) -> Run:
+    def _back(self, step: ast.Back) -> CallGenerator:
         place = self._visited[-1]
         if step.zoom_only:
             yield from self._zoom_back(place)
@@ -70,21 +70,21 @@ class Program(ConditionTests):
         else:
             self._note("The camera is still where it was")
 
-    def _zoom_back(self, place: VisitedPosition) -> Run:
+    def _zoom_back(self, place: VisitedPosition) -> CallGenerator:
         zoomed = Pose(self.pose.pan_deg, self.pose.tilt_deg, place.pose.zoom)
         if self._moved_to_object or not return_arguments(zoomed, self.pose, self.limits):
             yield from self._move(ast.Move((ast.Zoom("out"),)))
         else:
             yield from self._return(zoomed)
 
-    def _return(self, pose: Pose) -> Run:
+    def _return(self, pose: Pose) -> CallGenerator:
         arguments = return_arguments(pose, self.pose, self.limits)
         result = yield from self._camera_call("adjust_ptz", **arguments)
         self._note(f"{phrases.move_text(arguments)} to go back; the camera is at {phrases.pose_text(result['pose'])}")
 
-    def _go_to(self, place: VisitedPosition) -> Run:
+    def _go_to(self, place: VisitedPosition) -> CallGenerator:
         if place.preset:
-            yield from self._gopreset(ast.GoPreset(ast.PresetRef(place.preset)))
+            yield from self._gotopreset(ast.GoToPreset(ast.PresetRef(place.preset)))
         elif place.home:
             yield from self._home(ast.Home())
         else:
@@ -94,30 +94,30 @@ class Program(ConditionTests):
         self._visited.append(VisitedPosition(self.pose, preset, home))
         self._moved_to_object = False
 
-    def _home(self, step: ast.Home) -> Run:
+    def _home(self, step: ast.Home) -> CallGenerator:
         yield from self._camera_call("go_home")
         self._went_home = True
         self._record_position(None, home=True)
         self._note("I went to the home view")
 
-    def _gopreset(self, step: ast.GoPreset) -> Run:
+    def _gotopreset(self, step: ast.GoToPreset) -> CallGenerator:
         yield from self._camera_call("go_to_preset", name=step.ref.name)
         self._record_position(step.ref.name)
         self._note(f"I went to preset {step.ref.name}")
 
-    def _gothere(self, step: ast.GoThere) -> Run:
+    def _gothere(self, step: ast.GoThere) -> CallGenerator:
         if self._best_preset:
-            yield from self._gopreset(ast.GoPreset(ast.PresetRef(self._best_preset)))
+            yield from self._gotopreset(ast.GoToPreset(ast.PresetRef(self._best_preset)))
         else:
             self._note("There is no clear winner to go to")
 
     # Things ------------------------------------------------------------------------------------------------------------
-    def _listpresets(self, step: ast.ListPresets) -> Run:
+    def _listpresets(self, step: ast.ListPresets) -> CallGenerator:
         result = yield from self._camera_call("get_presets")
         names = list(result.get("presets", ()))
         self._note(f"The presets are {english.listing(names)}" if names else "This camera has no presets")
 
-    def _snap(self, step: ast.Snap) -> Run:
+    def _snap(self, step: ast.Snap) -> CallGenerator:
         if step.of is not None:
             yield from self._zoomto(ast.ZoomTo(step.of))
             if step.of.text in self._missing:
@@ -126,7 +126,7 @@ class Program(ConditionTests):
             result = yield from self._camera_call("take_image")
             self._note(f"I saved a picture as {result['file']}" if result.get("file") else "I saved a picture")
 
-    def _zoomto(self, step: ast.ZoomTo) -> Run:
+    def _zoomto(self, step: ast.ZoomTo) -> CallGenerator:
         text = step.thing.text
         if text in self._missing:
             return
@@ -141,7 +141,7 @@ class Program(ConditionTests):
         limits = f", as far as the {english.listing(list(result['limited_by']))} limit allows" if result.get("limited_by") else ""
         self._note(f"I zoomed in on {_the(step.thing)}{many}{limits}")
 
-    def _track(self, step: ast.Track) -> Run:
+    def _track(self, step: ast.Track) -> CallGenerator:
         text = step.thing.text
         if text in self._missing:
             return
@@ -157,7 +157,7 @@ class Program(ConditionTests):
         seconds = phrases.number(result.get("duration_s", step.seconds))
         self._note(f"I followed {_the(step.thing)} for {seconds} seconds and had it in view {share}% of the time")
 
-    def _count(self, step: ast.Count) -> Run:
+    def _count(self, step: ast.Count) -> CallGenerator:
         view = step.view or "current"
         for thing in step.things:
             result = yield from self._perception_call("count_objects", description=thing.text, view=view)
@@ -166,38 +166,38 @@ class Program(ConditionTests):
                 counts_text = phrases.counted(thing.text, result["count"], complete=result.get("complete", True))
                 self._note(f"I can see {counts_text} {phrases.where(view)}")
 
-    def _ask(self, step: ast.Ask) -> Run:
+    def _ask(self, step: ast.Ask) -> CallGenerator:
         result = yield from self._perception_call("query_answer", question=step.question, view=step.view or "current")
         if result is not None:
             self._last_was_yes = bool(result.get("known", True)) and result["answer"].strip().lower().startswith("yes")
             is_stated = result.get("known", True) or result["answer"].lower().startswith("i cannot tell")
             self._note(result["answer"] if is_stated else f"I cannot tell: {result['answer']}")
 
-    def _read(self, step: ast.Read) -> Run:
+    def _read(self, step: ast.Read) -> CallGenerator:
         if step.thing.text in self._missing:
             self._note("There was nothing to read")
             return
         yield from self._ask(ast.Ask(reading_question(step.thing.text), step.view))
 
-    def _camerastate(self, step: ast.CameraState) -> Run:
+    def _camerastate(self, step: ast.CameraState) -> CallGenerator:
         yield from ()
         self._note(f"The camera is at {phrases.pose_text(self.pose.as_dict())}")
 
-    def _help(self, step: ast.Help) -> Run:
+    def _help(self, step: ast.Help) -> CallGenerator:
         yield from ()
-        self._note(_ABILITIES)
+        self._note(_CAPABILITIES)
 
-    def _do_nothing(self, step: ast.Step) -> Run:
+    def _do_nothing(self, step: ast.Step) -> CallGenerator:
         yield from ()
 
     _sweep = _forbid = _report = _do_nothing
 
     # Control -----------------------------------------------------------------------------------------------------------
-    def _repeat(self, step: ast.Repeat) -> Run:
+    def _repeat(self, step: ast.Repeat) -> CallGenerator:
         for _ in range(step.times):
             yield from self._run_steps(step.body)
 
-    def _if(self, step: ast.If) -> Run:
+    def _if(self, step: ast.If) -> CallGenerator:
         met, reason = yield from self._test(step.condition)
         self._note(reason)
         if met:
@@ -207,7 +207,7 @@ class Program(ConditionTests):
         else:
             self._note("So I did nothing further for that")
 
-    def _loop(self, step: ast.Loop) -> Run:
+    def _loop(self, step: ast.Loop) -> CallGenerator:
         limit, moves, best = self._move_limit(step), 0, -1
         last: dict[str, Any] = {}
         while True:
@@ -234,7 +234,7 @@ class Program(ConditionTests):
                 return
         yield from self._end_unmet_loop(step, best, f", and stopped after {phrases.moves_text(last, moves)}")
 
-    def _end_unmet_loop(self, step: ast.Loop, best: int, how: str) -> Run:
+    def _end_unmet_loop(self, step: ast.Loop, best: int, how: str) -> CallGenerator:
         """End a loop whose condition was never met: run the alternative steps, or stop the run if there are none."""
         reason = f"I never {phrases.condition_text(step.until)}{_highest_count_text(best)}{how}"
         if not step.otherwise:
@@ -243,7 +243,7 @@ class Program(ConditionTests):
         yield from self._run_steps(step.otherwise)
 
     def _move_limit(self, step: ast.Loop) -> int:
-        """Return the limit on a loop's moves: the one in the instruction, otherwise enough moves to cover the axis once."""
+        """Return the limit on a loop's moves: the limit in the instruction, otherwise enough moves to cover the axis once."""
         bound = step.bound or ast.Bound()
         if bound.moves is not None:
             return min(bound.moves, _MAX_REQUESTED_MOVES)
@@ -256,7 +256,7 @@ class Program(ConditionTests):
         return max(1, min(full_range_moves, _DEFAULT_MAX_MOVES))
 
     # Comparison --------------------------------------------------------------------------------------------------------
-    def _compare(self, step: ast.Compare) -> Run:
+    def _compare(self, step: ast.Compare) -> CallGenerator:
         view = step.view or "current"
         first = yield from self._visible_count(step.first.text, view)
         second = yield from self._visible_count(step.second.text, view)
@@ -269,7 +269,7 @@ class Program(ConditionTests):
             else f"There are more {phrases.noun(more, 2)} than {phrases.noun(less, 2)}"
         )
 
-    def _beforeafter(self, step: ast.BeforeAfter) -> Run:
+    def _beforeafter(self, step: ast.BeforeAfter) -> CallGenerator:
         text = step.thing.text
         before = yield from self._visible_count(text, "current")
         yield from self._run_steps(step.moves)
@@ -278,10 +278,10 @@ class Program(ConditionTests):
         if before == after:
             self._note("The number is the same before and after")
         else:
-            when = "before" if (before > after) == (step.sense == "more") else "after"
-            self._note(f"There are {step.sense} {phrases.noun(text, 2)} {when} the move")
+            when = "before" if (before > after) == (step.comparison == "more") else "after"
+            self._note(f"There are {step.comparison} {phrases.noun(text, 2)} {when} the move")
 
-    def _whichpreset(self, step: ast.WhichPreset) -> Run:
+    def _whichpreset(self, step: ast.WhichPreset) -> CallGenerator:
         text, counts = step.thing.text, dict[str, int]()
         for place in step.places:
             yield from self._camera_call("go_to_preset", name=place.name)
@@ -297,13 +297,13 @@ class Program(ConditionTests):
             )
             self._best_preset = matching_presets[0] if matching_presets else None
             return
-        best = (max if step.sense == "more" else min)(counts.values())
+        best = (max if step.comparison == "more" else min)(counts.values())
         best_presets = [name for name, count in counts.items() if count == best]
         self._best_preset = best_presets[0] if len(best_presets) == 1 or self.assume_met else None
         superlative = (
-            ("more" if step.sense == "more" else "fewer")
+            ("more" if step.comparison == "more" else "fewer")
             if len(counts) == 2
-            else ("the most" if step.sense == "more" else "the fewest")
+            else ("the most" if step.comparison == "more" else "the fewest")
         )
         verb = f"shows {superlative} {phrases.noun(text, 2)}"
         self._note(

@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.camera_history import PositionHistory, VisitedPosition
 
 CallRequest = tuple[str, dict[str, Any]]
-"""The name and arguments of a tool call."""
+"""The name and arguments of a requested tool call."""
 
 
 class Outcome(Protocol):
@@ -24,7 +24,7 @@ class Outcome(Protocol):
     def error(self) -> str | None: ...
 
 
-Run = Generator[CallRequest, Outcome, Any]
+CallGenerator = Generator[CallRequest, Outcome, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class RunState:
     Attributes:
         pose: The camera's pose, updated after every call.
         positions: The camera's positions in earlier turns of the conversation.
-        assume_met: Whether every condition counts as met, for plans without a camera.
+        assume_met: Whether to treat every condition as met, for plans without a camera.
         notes: The sentences of the answer.
         sources: The sources of the perception results.
     """
@@ -60,10 +60,10 @@ class RunState:
     _missing: set[str] = field(default_factory=set)  # descriptions of objects that were not found
     _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
     _best_preset: str | None = None  # the preset that a comparison found
-    _moved_to_object: bool = False  # whether a perception tool has moved the camera since the last preset or home
+    _moved_to_object: bool = False  # whether a perception tool moved the camera after the last move to a preset or home
     _went_home: bool = False
     _last_count: int = -1
-    _last_was_yes: bool = False  # whether the last answer was yes, or the last count above zero
+    _last_was_yes: bool = False  # whether the last answer was yes, or the last count was above zero
 
     def answer(self) -> str:
         """Return the answer: all notes, and the note about the sources."""
@@ -73,8 +73,8 @@ class RunState:
     def _note(self, text: str) -> None:
         self.notes.append(text)
 
-    def _call(self, tool: str, **arguments: Any) -> Run:
-        """Make a tool call, and update the pose and the sources from its result."""
+    def _call(self, tool: str, **arguments: Any) -> CallGenerator:
+        """Make a tool call, update the pose and the sources from its result, and return its outcome."""
         outcome = yield tool, arguments
         result = outcome.result
         if outcome.error is None and result and isinstance(pose := result.get("pose"), dict):
@@ -83,14 +83,14 @@ class RunState:
             self.sources.append(source)
         return outcome
 
-    def _camera_call(self, tool: str, **arguments: Any) -> Run:
+    def _camera_call(self, tool: str, **arguments: Any) -> CallGenerator:
         """Make a camera call and return its result. A failure ends the run, because later steps depend on the pose."""
         outcome: Outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
             raise HaltedError(f"I stopped because the camera did not do {tool}: {outcome.error or 'no result'}")
         return outcome.result
 
-    def _perception_call(self, tool: str, **arguments: Any) -> Run:
+    def _perception_call(self, tool: str, **arguments: Any) -> CallGenerator:
         """Make a perception call and return its result. If it fails twice, add a note to the answer and return None."""
         outcome: Outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None:
@@ -100,7 +100,7 @@ class RunState:
             return None
         return outcome.result
 
-    def _required_perception_call(self, tool: str, **arguments: Any) -> Run:
+    def _required_perception_call(self, tool: str, **arguments: Any) -> CallGenerator:
         """Make a perception call that later steps depend on, and return its result. A failure ends the run."""
         result = yield from self._perception_call(tool, **arguments)
         if result is None:

@@ -1,6 +1,6 @@
 """Split a text into lexemes: known phrases, numbers and free text.
 
-A lexeme may match several terminals ("left" is a direction or a verb); the grammar decides between them. Lexemes keep their
+A lexeme can match several terminals ("left" is a direction or a verb); the grammar decides between them. Lexemes keep their
 position in the original text, so descriptions and questions are passed on as the user typed them.
 """
 
@@ -32,7 +32,7 @@ _MAX_PHRASE_WORDS = 9
 _DIRECTION_LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
 _MOTION = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})  # after them, "up to" and "down to" are directions
 _NEVER_GERUND = frozenset({*SEPARATORS, "DET", "ONEOF", "PREP", "SAYS", "BY", "SHOWS", "VISIBLE", "FILLS"})
-"""Terminals whose words that end in "ing" are not gerunds of a command."""
+"""Terminals for which a word that ends in "ing" is not the gerund of a command."""
 
 _HEDGES = frozenset({"FILLER", "BY"})  # words such as "about" that are dropped at the start of a clause
 _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
@@ -43,7 +43,7 @@ class Lexeme:
     """A phrase, a number, a separator or free words.
 
     Attributes:
-        kinds: The terminals that it may be.
+        kinds: The terminals that it can match.
         start: The index of its first character in the original text.
         end: The index after its last character.
         value: The value of a number.
@@ -112,7 +112,7 @@ def _without_list_numbers(words: list[_Word]) -> list[_Word]:
 
 
 def within_one_edit(a: str, b: str) -> bool:
-    """Return whether two words are equal or one insertion, deletion, substitution or swap of neighbouring letters apart."""
+    """Return whether two words are equal, or differ by one insertion, deletion, substitution or swap of neighbouring letters."""
     if abs(len(a) - len(b)) > 1 or a == b:
         return a == b
     head = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))

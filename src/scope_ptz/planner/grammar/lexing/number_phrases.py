@@ -27,7 +27,7 @@ class NumberPhrase:
 
     @property
     def kinds(self) -> frozenset[str]:
-        """The terminals that the number may be: "third" is an ordinal or a fraction."""
+        """The terminals that the number can match: "third" is an ordinal or a fraction."""
         return frozenset({self.kind, "FRACTION"} if self.kind == "ORDINAL" and self.value > 2 else {self.kind})
 
 

@@ -1,4 +1,4 @@
-"""The phrases of ``vocabulary.txt``, expanded ahead of time.
+"""Load the phrases of ``vocabulary.txt``, which are expanded ahead of time.
 
 Expanding the patterns takes a tenth of a second, so the phrases are stored in ``vocabulary.phrases``: a line with the sets of
 terminals that occur, then a line for each first word with the remaining words of its phrases. If the vocabulary was edited, the

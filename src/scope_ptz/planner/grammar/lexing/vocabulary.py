@@ -1,4 +1,4 @@
-"""The vocabulary of camera operation: the phrases of each terminal of ``language.lark``, number words and misspellings."""
+"""Read the vocabulary for camera instructions: the phrases of each terminal of ``language.lark``, number words and misspellings."""
 
 from __future__ import annotations
 

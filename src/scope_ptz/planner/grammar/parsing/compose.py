@@ -15,11 +15,12 @@ from scope_ptz.planner.grammar.instruction_tree import (
     BeforeAfter,
     Between,
     Bound,
+    CompareWithBefore,
     Count,
     DoAgain,
     EachTime,
     Further,
-    GoPreset,
+    GoToPreset,
     Home,
     If,
     Linked,
@@ -31,7 +32,6 @@ from scope_ptz.planner.grammar.instruction_tree import (
     SameAt,
     Snap,
     Step,
-    ThanBefore,
     Turn,
     Unclear,
 )
@@ -58,7 +58,7 @@ def _add(out: list[Step], link: str, step: Step) -> None:
         out[-1:] = joined
     elif isinstance(step, Loop | Repeat):
         out.append(_stepped_loop(step))
-    elif isinstance(step, GoPreset) and step.how == "bare" and link == "and" and isinstance(last, Ask):
+    elif isinstance(step, GoToPreset) and step.how == "bare" and link == "and" and isinstance(last, Ask):
         out.append(Unclear("I can look at one place after the other, but not answer that about both. What shall I look for?"))
     else:
         out.append(_stepped(step))
@@ -76,8 +76,8 @@ def _add_modifier(out: list[Step], step: Step) -> bool:
             _add_at_intervals(out, step)
         case Rescope():
             out.append(replace(last, view=step.view) if isinstance(last, Count | Ask) else Unclear("What shall I look for there?"))
-        case ThanBefore():
-            _add_than_before(out, step)
+        case CompareWithBefore():
+            _compare_with_before(out, step)
         case DoAgain() if out:
             _add_again(out, step)
         case Further():
@@ -119,7 +119,7 @@ def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | Non
     """Add a step to the steps that run at each of several presets."""
     if not last.body and (link == "and" or not last.places):
         return [replace(last, body=(step,))]
-    if last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):
+    if last.body and link == "and" and not isinstance(step, GoToPreset | Home | AtPlaces):
         return [replace(last, body=tuple(compose([Linked("and", step)], last.body)))]
     return None
 
@@ -127,22 +127,22 @@ def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | Non
 def _covers_before(step: Repeat, last: Step) -> bool:
     """Return whether "three times" also covers the previous step: after a comma, or for a picture after a move."""
     is_picture_after_move = isinstance(step.body[-1], Snap) and isinstance(last, Move)
-    return (step.group or is_picture_after_move) and not isinstance(last, GoPreset | Home | Repeat | Loop)
+    return (step.group or is_picture_after_move) and not isinstance(last, GoToPreset | Home | Repeat | Loop)
 
 
 def _verbless(step: Step) -> Move | None:
-    """Return the step if it is a move without a verb, which depends on the previous move; otherwise None."""
-    return step if isinstance(step, Move) and not step.verb else None
+    """Return the step if it is a move without a verb, which continues the previous move; otherwise None."""
+    return step if isinstance(step, Move) and not step.has_verb else None
 
 
 def _joined(first: Move, second: Move) -> list[Step]:
     """Join two moves with "and" between them, into one move if their axes differ."""
     axes = [_axis(p) for p in (*first.parts, *second.parts)]
     if len(set(axes)) == len(axes):
-        parts = first.parts if second.verb else tuple(_shared(p, second.parts) for p in first.parts)
-        return [_stepped(Move((*parts, *second.parts), first.verb))]
+        parts = first.parts if second.has_verb else tuple(_shared(p, second.parts) for p in first.parts)
+        return [_stepped(Move((*parts, *second.parts), first.has_verb))]
     one, other = first.parts[-1], second.parts[0]
-    unspecified = isinstance(one, Turn) and one.amount is None and not second.verb
+    unspecified = isinstance(one, Turn) and one.amount is None and not second.has_verb
     if unspecified and isinstance(one, Turn) and isinstance(other, Turn) and one.axis == other.axis and one.sign != other.sign:
         return [Unclear(_CONTRADICTION)]
     return [_stepped(first), _stepped(second)]
@@ -153,7 +153,7 @@ def _axis(part: Part) -> str:
 
 
 def _shared(part: Part, others: tuple[Part, ...]) -> Part:
-    """Return a part with the amount of the last part if it has none: in "up and left 20", 20 applies to both."""
+    """Return a part that has no amount with the amount of the last part: in "up and left 20", 20 applies to both."""
     last = others[-1]
     if isinstance(part, Turn) and part.amount is None and part.step is None and isinstance(last, Turn):
         return replace(part, amount=last.amount, step=last.step, steps=last.steps)
@@ -161,7 +161,7 @@ def _shared(part: Part, others: tuple[Part, ...]) -> Part:
 
 
 def _step_size(step: Step) -> Turn | None:
-    """Return the turn of a move that is made in steps; None if the move has none."""
+    """Return the turn that a move makes in steps; None if the move has no such turn."""
     if isinstance(step, Move):
         return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
     return None
@@ -174,7 +174,7 @@ def _stepped(step: Step) -> Step:
         return step
     single = Move(
         tuple(replace(p, amount=p.step, step=None, steps=None) if isinstance(p, Turn) and p.step else p for p in step.parts),
-        step.verb,
+        step.has_verb,
     )
     total = 0.0
     if turn.amount and turn.amount.kind == "degrees":
@@ -205,9 +205,9 @@ def _add_each_time(out: list[Step], step: EachTime) -> None:
         if isinstance(target, Repeat | Loop | AtPlaces):
             out[i] = replace(target, body=(*target.body, *step.body))
             return
-        if isinstance(target, GoPreset):
+        if isinstance(target, GoToPreset):
             first = i
-            while first and isinstance(out[first - 1], GoPreset):
+            while first and isinstance(out[first - 1], GoToPreset):
                 first -= 1
             out[first:] = [s for place in out[first:] for s in (place, *step.body)]
             return
@@ -218,15 +218,15 @@ def _done_at_place(out: list[Step]) -> tuple[Step, ...]:
     """Return the steps that follow the last move to a preset or home."""
     if out and isinstance(out[-1], AtPlaces):
         return out[-1].body
-    return tuple(out[max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0) :])
+    return tuple(out[max((i + 1 for i, s in enumerate(out) if isinstance(s, GoToPreset | Home)), default=0) :])
 
 
 def _add_again(out: list[Step], step: DoAgain) -> None:
     """Repeat the steps that follow the last move to a preset or home."""
-    if isinstance(out[-1], GoPreset) and len(out) > 1:
+    if isinstance(out[-1], GoToPreset) and len(out) > 1:
         out.extend(_done_at_place(out[:-1]))
         return
-    first = max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0)
+    first = max((i + 1 for i, s in enumerate(out) if isinstance(s, GoToPreset | Home)), default=0)
     first = first if first < len(out) else 0
     body = tuple(out[first:])
     if any(isinstance(s, If | Unclear) for s in body) and step.times is None:
@@ -265,7 +265,7 @@ def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
     out.append(Repeat((Move((step_turn,)), single, *step.body[1:]), max(1, min(times, 24))))
 
 
-def _add_than_before(out: list[Step], step: ThanBefore) -> None:
+def _compare_with_before(out: list[Step], step: CompareWithBefore) -> None:
     """Count again to compare with the last count; without one, compare the counts before and after the last moves."""
     counts = [s for s in out if isinstance(s, Count)]
     first = next((i + 1 for i in range(len(out) - 1, -1, -1) if not isinstance(out[i], Move | Repeat)), 0)
@@ -273,7 +273,7 @@ def _add_than_before(out: list[Step], step: ThanBefore) -> None:
     if counts:
         out.append(replace(counts[-1], things=(step.thing,)) if step.thing.text else counts[-1])
     elif moves and step.thing.text:
-        out[first:] = [BeforeAfter(step.thing, moves, step.sense)]
+        out[first:] = [BeforeAfter(step.thing, moves, step.comparison)]
     else:
         out.append(Unclear("More of what, and than when?"))
 

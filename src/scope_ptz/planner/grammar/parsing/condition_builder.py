@@ -9,6 +9,7 @@ from typing import Any
 from scope_ptz.planner.grammar.instruction_tree import (
     BeforeAfter,
     Compare,
+    CompareWithBefore,
     Condition,
     Joined,
     Negated,
@@ -19,7 +20,6 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Seen,
     Statement,
     Step,
-    ThanBefore,
     Thing,
     Unclear,
     WhichPreset,
@@ -29,7 +29,7 @@ from scope_ptz.planner.grammar.parsing.tree_nodes import Node
 
 
 class ConditionBuilder(SceneBuilder):
-    """A builder of conditions, and of steps that compare counts."""
+    """Visitor that builds conditions, and steps that compare counts."""
 
     # Conditions --------------------------------------------------------------------------------------------------------
 
@@ -86,11 +86,11 @@ class ConditionBuilder(SceneBuilder):
 
     def preset_wins(self, node: Node) -> Condition:
         first, second = (self.visit(b) for b in node.branches("named", "numbered", "marked"))
-        return PresetOutnumbers(self._thing(node), first, second, self._sense(node))
+        return PresetOutnumbers(self._thing(node), first, second, self._comparison(node))
 
     def outnumbers(self, node: Node) -> Condition:
         first, second = self._things(node)[:2]
-        return Outnumbers(first, second, self._sense(node))
+        return Outnumbers(first, second, self._comparison(node))
 
     def all_of(self, node: Node) -> Condition:
         return Joined(tuple(self.visit(b) for b in node.branches()), "all")
@@ -124,7 +124,7 @@ class ConditionBuilder(SceneBuilder):
 
     # Comparison --------------------------------------------------------------------------------------------------------
     def which_preset(self, node: Node) -> Step:
-        return WhichPreset(self._thing(node), self._sense(node), self._places(node))
+        return WhichPreset(self._thing(node), self._comparison(node), self._places(node))
 
     def preset_with(self, node: Node) -> Step:
         return WhichPreset(self._thing(node), "more", self._places(node), any_of=True)
@@ -135,11 +135,11 @@ class ConditionBuilder(SceneBuilder):
         return Unclear("What shall I count to tell which is busier: vehicles or people?")
 
     def than_before(self, node: Node) -> Step:
-        return ThanBefore(self._thing(node), self._sense(node))
+        return CompareWithBefore(self._thing(node), self._comparison(node))
 
     def compare_things(self, node: Node) -> Step:
         first, second = self._things(node)[:2]
-        return Compare(first, second, self._sense(node), self._view(node))
+        return Compare(first, second, self._comparison(node), self._view(node))
 
     def compare_where(self, node: Node) -> Step:
         thing = self.visit(node.branches("np")[0]).text
@@ -148,10 +148,10 @@ class ConditionBuilder(SceneBuilder):
         second = self.text(side.all_leaves())
         if not side.branches("near_words"):
             second = f"{first.split(' ')[0]} {second}"
-        return Compare(Thing(f"{thing} {first}"), Thing(f"{thing} {second}"), self._sense(node), self._view(node))
+        return Compare(Thing(f"{thing} {first}"), Thing(f"{thing} {second}"), self._comparison(node), self._view(node))
 
     def before_after(self, node: Node) -> Step:
         moves = self.visit(node.branches("move")[0])
-        return moves if isinstance(moves, Unclear) else BeforeAfter(self._thing(node), (moves,), self._sense(node))
+        return moves if isinstance(moves, Unclear) else BeforeAfter(self._thing(node), (moves,), self._comparison(node))
 
     reveals = before_after

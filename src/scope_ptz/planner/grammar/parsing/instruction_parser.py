@@ -50,9 +50,9 @@ def parser(presets_known: bool) -> ChartParser:
 
 @lru_cache(maxsize=512)
 def roles(kinds: frozenset[str]) -> frozenset[str]:
-    """Return the terminals that a lexeme may be, including its role in a description.
+    """Return the terminals that a lexeme can match, including its role in a description.
 
-    The role is WORD (costs nothing), SOFT or HARD (with a cost). Lexemes that structure a sentence have no role.
+    The role is WORD (costs nothing), SOFT or HARD (with a cost). A lexeme that structures the sentence has no role.
     """
     if kinds & _FREE_WORDS:
         return kinds | {"WORD"}
@@ -63,7 +63,7 @@ def roles(kinds: frozenset[str]) -> frozenset[str]:
 
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
-    """Return the steps of an instruction. It does not raise errors for any text."""
+    """Return the steps of an instruction. Never raises, whatever the text."""
     from scope_ptz.planner.grammar.parsing.step_builder import StepBuilder
 
     lexemes = Lexer(presets).lexemes(text[:MAX_CHARS])

@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Back, Move, Part, Turn, Unclear, Zoom
-from scope_ptz.planner.grammar.parsing.tree_nodes import Node, RuleBuilder
+from scope_ptz.planner.grammar.parsing.tree_nodes import Node, TreeVisitor
 
 _DIRECTIONS: dict[str, tuple[tuple[str, int], ...]] = {
     "left": (("pan", -1),),
@@ -64,8 +64,8 @@ class StepSize:
         self.size, self.count, self.divides_move = size, count, divides_move
 
 
-class MoveBuilder(RuleBuilder):
-    """A builder of moves and their amounts."""
+class MoveBuilder(TreeVisitor):
+    """Visitor that builds moves and their amounts."""
 
     # Amounts -----------------------------------------------------------------------------------------------------------
     def degrees(self, node: Node) -> Amount:
@@ -140,7 +140,7 @@ class MoveBuilder(RuleBuilder):
             ):
                 return Unclear("The camera tilts up and down and pans left and right. Which of the two shall I do?")
         kinds = {leaf.kind for leaf in node.branches()[0].all_leaves()}
-        return Move(tuple(parts), verb=bool(kinds & {*_VERBS, "ZOOM", "LOOKAT", "SET", "CLOSER", "WIDER", "LEVEL"}))
+        return Move(tuple(parts), has_verb=bool(kinds & {*_VERBS, "ZOOM", "LOOKAT", "SET", "CLOSER", "WIDER", "LEVEL"}))
 
     def _turns(self, node: Node, directions: list[tuple[str, int]]) -> tuple[Part, ...]:
         """Return turns in the given directions, with the amount and step size of the node."""

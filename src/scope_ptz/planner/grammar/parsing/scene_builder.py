@@ -11,8 +11,8 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     CameraState,
     Count,
-    GoPreset,
     GoThere,
+    GoToPreset,
     Help,
     Home,
     ListPresets,
@@ -30,7 +30,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     WhichPreset,
     ZoomTo,
 )
-from scope_ptz.planner.grammar.parsing.tree_nodes import Node, RuleBuilder
+from scope_ptz.planner.grammar.parsing.tree_nodes import Node, TreeVisitor
 
 SCOPES = {"now", "full", "scene"}
 _ALL_AROUND = re.compile(r"\b(whole|entire|full) (scene|area|site|panorama|place|surroundings)\b", re.IGNORECASE)
@@ -58,8 +58,8 @@ _ARTICLE_IN_PHRASE = re.compile(r"^(?:the|this|that) (?=\w+ ?\w)", re.IGNORECASE
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
 
 
-class SceneBuilder(RuleBuilder):
-    """A builder of references to presets and objects, and of the steps that use them."""
+class SceneBuilder(TreeVisitor):
+    """Visitor that builds references to presets and objects, and the steps that use them."""
 
     # Descriptions ------------------------------------------------------------------------------------------------------
     def np(self, node: Node) -> Thing:
@@ -102,7 +102,7 @@ class SceneBuilder(RuleBuilder):
     def also(self, node: Node) -> Step:
         """Build "zoom in on the bench, then on the bin": the second part takes the verb of the first."""
         leaves = node.branches("free_name")[0].all_leaves()
-        return GoPreset(PresetRef(self._free_name(node), has_article=leaves[0].kind == "DET"), "bare")
+        return GoToPreset(PresetRef(self._free_name(node), has_article=leaves[0].kind == "DET"), "bare")
 
     def track(self, node: Node) -> Step:
         durations = [self.visit(b) for b in node.branches() if b.name in _DURATIONS]
@@ -141,7 +141,7 @@ class SceneBuilder(RuleBuilder):
 
     # Places ------------------------------------------------------------------------------------------------------------
     def _preset(self, node: Node, how: Any) -> Step:
-        return GoPreset(self.visit(node.branches()[-1]), how)
+        return GoToPreset(self.visit(node.branches()[-1]), how)
 
     def go_preset(self, node: Node) -> Step:
         return self._preset(node, "go")
@@ -189,9 +189,9 @@ class SceneBuilder(RuleBuilder):
 
     def go_winner(self, node: Node) -> Step:
         winner = node.branches()[0]
-        return WhichPreset(self._thing(winner), self._sense(winner), self._places(winner), go=True)
+        return WhichPreset(self._thing(winner), self._comparison(winner), self._places(winner), go=True)
 
-    def _sense(self, node: Node) -> Any:
+    def _comparison(self, node: Node) -> Any:
         return next((b.name for b in node.branches("more", "fewer")), "fewer" if node.has("LESSER", "FEWERTHAN") else "more")
 
     def _places(self, node: Node) -> tuple[PresetRef, ...]:

@@ -24,7 +24,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     EachTime,
     Forbid,
     Further,
-    GoPreset,
+    GoToPreset,
     If,
     Linked,
     Loop,
@@ -50,7 +50,7 @@ _LINK_OF_TERMINAL = {"AND": "and", "COMMA": ",", "THEN": "then"}
 
 
 class StepBuilder(MoveBuilder, ConditionBuilder):
-    """A builder of the steps of one instruction."""
+    """Visitor that builds all steps of one instruction."""
 
     def extend(self, tree: Branch, before: list[Step]) -> list[Step]:
         """Return the steps of a sentence combined with the steps before it."""
@@ -195,7 +195,7 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
         if not isinstance(move, Move):
             return move  # type: ignore[no-any-return]
         return Move(
-            tuple(replace(p, step=size.size, steps=size.count) if isinstance(p, Turn) else p for p in move.parts), move.verb
+            tuple(replace(p, step=size.size, steps=size.count) if isinstance(p, Turn) else p for p in move.parts), move.has_verb
         )
 
     def do_each(self, node: Node) -> Step:
@@ -239,7 +239,7 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
     def visit_places(self, node: Node) -> Any:
         places = self.visit(node.branches()[-1])
         if len(places) == 1:
-            return GoPreset(places[0])
+            return GoToPreset(places[0])
         return AtPlaces(places, ())
 
     def roam(self, node: Node) -> Step:
@@ -274,7 +274,7 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
         return max(1, min(round(self.number(node)), 50))
 
     def twice(self, node: Node) -> int:
-        return self.how_often(node)
+        return self.repeat_count(node)
 
     def once(self, node: Node) -> int:
         return 1
@@ -282,7 +282,7 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
     def at_most(self, node: Node) -> Bound:
         if node.has("NUM"):
             return Bound(moves=max(1, round(self.number(node))))
-        return Bound(moves=1 if node.has("ONCE") else self.how_often(node))
+        return Bound(moves=1 if node.has("ONCE") else self.repeat_count(node))
 
     def at_most_degrees(self, node: Node) -> Bound:
         return Bound(degrees=abs(self.number(node)))

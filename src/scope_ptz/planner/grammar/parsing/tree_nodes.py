@@ -1,4 +1,4 @@
-"""Nodes of the parse tree, and the base class of the builders."""
+"""Nodes of the parse tree, and the base class of its visitors."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.planner.grammar.parsing.chart import Branch, Leaf
 
 
 class Node:
-    """A branch of the parse tree, with the methods that builders need."""
+    """A branch of the parse tree, with the methods that visitors need."""
 
     __slots__ = ("branch",)
 
@@ -45,20 +45,20 @@ class Node:
         return out
 
     def position(self, name: str) -> int:
-        """Return the index of the first child with a name among all children; -1 if there is none."""
+        """Return the index, among all children, of the first child with the given name; -1 if there is none."""
         for i, child in enumerate(self.branch.children):
             if (child.name if isinstance(child, Branch) else child.kind) == name:
                 return i
         return -1
 
 
-class RuleBuilder:
-    """Base class of the builders, with one method for each rule.
+class TreeVisitor:
+    """Base class of the visitors that build results from a parse tree. A subclass has one method for each rule.
 
     Attributes:
         source: The text of the instruction.
         lexemes: The lexemes of the sentence.
-        upper_case: Whether the text is in upper case, so that descriptions are converted to lower case.
+        upper_case: Whether the text is all upper case. If so, descriptions are converted to lower case.
     """
 
     def __init__(self, text: str, lexemes: Sequence[Lexeme]) -> None:
@@ -67,7 +67,7 @@ class RuleBuilder:
         self.upper_case = text.isupper()
 
     def visit(self, node: Node) -> Any:
-        """Build the result for a node with the method for its rule."""
+        """Return the result for a node, built by the method for its rule."""
         name = {"visit": "visit_places", "raise": "raise_it", "if": "if_"}.get(node.name, node.name)
         return getattr(self, name)(node)
 
@@ -86,8 +86,8 @@ class RuleBuilder:
         lexeme = self.lexemes[leaf.index]
         return self.source[lexeme.start : lexeme.end].lower()
 
-    def how_often(self, node: Node) -> int:
-        """Return 3 for "thrice" or "a few times", 2 for "twice"."""
+    def repeat_count(self, node: Node) -> int:
+        """Return the number of repetitions that a word stands for: 3 for "thrice" or "a few times", otherwise 2."""
         words = " ".join(self.words_of(leaf) for leaf in node.leaves("TWICE"))
         return 3 if "thrice" in words or "few" in words else 2
 

@@ -1,4 +1,4 @@
-"""Test the conditions of an instruction with perception calls."""
+"""Evaluate the conditions of an instruction with perception calls."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
-from scope_ptz.planner.grammar.execution.run_state import Run, RunState
+from scope_ptz.planner.grammar.execution.run_state import CallGenerator, RunState
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 
-class ConditionTests(RunState):
-    """The part of a run that tests conditions."""
+class ConditionEvaluation(RunState):
+    """The part of a run that evaluates conditions."""
 
-    def _test(self, condition: ast.Condition) -> Run:
+    def _test(self, condition: ast.Condition) -> CallGenerator:
         """Return whether a condition is met, and a sentence that states what was observed."""
         met, reason = yield from self._evaluate(condition)
         return (met or self.assume_met), reason
 
-    def _evaluate(self, condition: ast.Condition) -> Run:
+    def _evaluate(self, condition: ast.Condition) -> CallGenerator:
         if isinstance(condition, ast.Answered):
             return self._last_was_yes, ""
         if isinstance(condition, ast.Negated):
@@ -35,7 +35,7 @@ class ConditionTests(RunState):
         if isinstance(condition, ast.Outnumbers):
             first = yield from self._visible_count(condition.first.text, "current")
             second = yield from self._visible_count(condition.second.text, "current")
-            met = first > second if condition.sense == "more" else first < second
+            met = first > second if condition.comparison == "more" else first < second
             seen = f"{phrases.counted(condition.first.text, first)} and {phrases.counted(condition.second.text, second)}"
             return met, f"I can see {seen}"
         if isinstance(condition, ast.Readable):
@@ -49,7 +49,7 @@ class ConditionTests(RunState):
                 yield from self._camera_call("go_to_preset", name=place.name)
                 counts.append((yield from self._visible_count(condition.thing.text, "current")))
             first, second = (f"{phrases.counted(condition.thing.text, n)}" for n in counts)
-            met = counts[0] > counts[1] if condition.sense == "more" else counts[0] < counts[1]
+            met = counts[0] > counts[1] if condition.comparison == "more" else counts[0] < counts[1]
             return met, f"I can see {first} at {condition.first.name} and {second} at {condition.second.name}"
         subject = f"the {condition.subject.text}" if condition.subject.definite else condition.subject.text
         result = yield from self._required_perception_call(
@@ -60,7 +60,7 @@ class ConditionTests(RunState):
             return False, f"I cannot tell whether {subject} is {condition.predicate}: {result['answer']}"
         return answer.startswith("yes") == condition.expected, result["answer"]
 
-    def _joined(self, condition: ast.Joined) -> Run:
+    def _joined(self, condition: ast.Joined) -> CallGenerator:
         reasons = []
         for part in condition.parts:
             met, reason = yield from self._test(part)
@@ -69,7 +69,7 @@ class ConditionTests(RunState):
                 return met, ", ".join(reasons)
         return condition.mode == "all", ", ".join(reasons)
 
-    def _visible_count(self, description: str, view: View | None) -> Run:
+    def _visible_count(self, description: str, view: View | None) -> CallGenerator:
         result = yield from self._required_perception_call("count_objects", description=description, view=view or "current")
         return int(result["count"])
 
