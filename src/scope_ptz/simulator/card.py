@@ -14,11 +14,11 @@ from scope_ptz.simulator.pack import Scene
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """A section of a card: a title and its lines. Each line is a pair of a name, which may be empty, and a text.
+    """A section of a card.
 
     Attributes:
         title: The heading.
-        lines: The pairs of name and text.
+        lines: Pairs of a name, which may be empty, and a text.
     """
 
     title: str

@@ -60,8 +60,8 @@ def distances_m(viewpoint: Viewpoint, directions: NDArray[np.float64]) -> tuple[
     Returns:
         (n,) metres, infinite for the sky, and (n,) instance numbers.
     """
-    viewpoint.owner_atlas.need(0)
-    slot, band = viewpoint.depth_atlas.need(0), viewpoint.manifest.band
+    viewpoint.owner_atlas.ensure(0)
+    slot, band = viewpoint.depth_atlas.ensure(0), viewpoint.manifest.band
     pan_deg, tilt_deg = pan_tilt_deg(directions)
     down = (band.top_tilt_deg - tilt_deg) / (band.top_tilt_deg - band.bottom_tilt_deg)
     columns = slot.x + np.floor((pan_deg + 180.0) / 360.0 * slot.width).astype(int) % slot.width

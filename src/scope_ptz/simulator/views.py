@@ -18,7 +18,7 @@ RENDERING_VERSION = 2
 """Version of the rendering, which traces record. It increases when the same pack, pose and time give different pixels.
 
 - 1: tiles end in hard edges; actors are shown by the sprite nearest on their path.
-- 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, which are warped and faded.
+- 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, which are warped and blended.
 
 The ground truth of a view is the same in both.
 """
@@ -29,7 +29,7 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
     opened = scene.viewpoint(viewpoint)
     actors = composited_actors(scene, opened, time_s)
     atlas, still = opened.colour_atlas, opened.still_views
-    if not (opened.id_atlas.in_use and atlas.in_use) or still.keeps(projection):
+    if not (opened.id_atlas.in_use and atlas.in_use) or still.is_cached(projection):
         # Render actors first: decoding instance numbers needs the most memory, and the colour is then not in memory yet.
         patches = [actor_patch(opened, projection, actor) for actor in actors]
         image = still.get(projection, lambda: colour_view(opened, projection))

@@ -17,7 +17,7 @@ from scope_ptz.simulator.mapping.tiles import Place
 MAX_MAP_ERROR_PX = 0.04
 """Maximum permitted error of an interpolated map, in pixels of the view."""
 
-MAX_STEP_PX = 32
+MAX_STEP_PX = 32  # maximum distance between grid nodes
 
 Floats = NDArray[np.float64]
 
@@ -89,7 +89,11 @@ class Grid:
 
 
 def step_px(projection: Projection) -> int:
-    """Return the largest power of two that keeps ``step ** 2 / 8 * curvature`` within ``MAX_MAP_ERROR_PX``."""
+    """Return the distance between grid nodes in pixels.
+
+    It is the largest power of two for which the interpolation error, ``step ** 2 / 8 * curvature``, is within
+    ``MAX_MAP_ERROR_PX``.
+    """
     return _step_px(cast(Hashable, projection))
 
 

@@ -55,7 +55,7 @@ class TileInView(NamedTuple):
 
 
 class Tiles:
-    """Perspective pictures around one optical centre, sorted from the sharpest. Equally sharp pictures keep their order."""
+    """Perspective pictures around one optical centre, the sharpest first. Equally sharp pictures keep their order."""
 
     def __init__(self, views: Sequence[Perspective]) -> None:
         self.views = list(views)
@@ -151,7 +151,7 @@ def bounds(projection: Projection, points: Floats) -> list[Place]:
     size = np.array([projection.width, projection.height])
     unclear = np.isnan(points).any(axis=(1, 2))
     if isinstance(projection, Equirectangular):
-        unclear |= np.ptp(points[..., 0], axis=1) > 0.5  # it crosses the seam
+        unclear |= np.ptp(points[..., 0], axis=1) > 0.5  # the outline crosses the seam
     points = np.minimum(np.maximum(np.where(np.isnan(points), 0.0, points), -1.0), 2.0)
     low = np.floor(points.min(axis=1) * size).astype(int) - 1
     high = np.ceil(points.max(axis=1) * size).astype(int) + 1
