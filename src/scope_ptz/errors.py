@@ -1,4 +1,4 @@
-"""The errors of SCOPE.
+"""The exceptions that SCOPE raises.
 
 ScopeError
 ├── InputError              an instruction, option or setting is wrong (exit code 2)
@@ -48,7 +48,7 @@ class RequestRecord(Protocol):
 
 
 class ScopeError(Exception):
-    """Base class of all errors of SCOPE. The message states what is wrong and what to do."""
+    """Base class of all SCOPE errors. The message states what is wrong and what to do."""
 
 
 class InputError(ScopeError):

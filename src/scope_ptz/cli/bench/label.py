@@ -40,7 +40,9 @@ def label(
     sample: Annotated[int | None, typer.Option(min=1, help="Label only N runs, sampled at random.")] = None,
     seed: Annotated[int, typer.Option(help="Seed for the order in which runs are shown.")] = 1,
     pictures: Annotated[Path | None, typer.Option(help="Folder for the pictures of runs (default: a temporary one).")] = None,
-    compare: Annotated[bool, typer.Option("--compare", help="Only print how far the labels agree with checks and judges.")] = False,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="Only print the agreement of the labels with the checks and judges.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Label runs by hand: correct, incorrect with an error mode, or unclear. Labels are saved next to the log.

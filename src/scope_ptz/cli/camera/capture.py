@@ -41,7 +41,7 @@ def capture(
     tilt: Annotated[
         str | None, typer.Option("--tilt", metavar="FROM:TO", help="Range of tilt in degrees (default: the whole range).")
     ] = None,
-    overlap: Annotated[float, typer.Option("--overlap", help="Fraction of a picture that the next one also shows.")] = 0.45,
+    overlap: Annotated[float, typer.Option("--overlap", help="Fraction of a picture that overlaps with the next one.")] = 0.45,
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
