@@ -93,7 +93,7 @@ def _preset(scene: Scene, preset: ScenePreset) -> tuple[str, str]:
 
 def capture_summary(captured: CapturedFrom) -> str:
     """Return in one sentence where a captured scene comes from."""
-    unseen = f"{captured.unseen_share:.1%} of what the camera reaches was not seen" if captured.unseen_share else "all was seen"
+    unseen = f"{captured.unseen_share:.1%} of the camera's range was not captured" if captured.unseen_share else "fully captured"
     return f"from {captured.camera} at {captured.captured_at}; {unseen}; no ground truth"
 
 

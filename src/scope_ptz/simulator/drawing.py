@@ -1,4 +1,4 @@
-"""Draw moving actors into a picture. Layers of the static world are read only where an actor may be visible."""
+"""Draw moving actors into an image. Layers of the static world are read only where an actor may be visible."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ _BEHIND = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class ActorPatch:
-    """An actor's contribution to a part of a picture: (h, w, 4) premultiplied colour."""
+    """An actor's contribution to a part of an image: (h, w, 4) premultiplied colour."""
 
     place: Place
     colour: NDArray[np.uint8]
 
-    def draw(self, picture: NDArray[np.uint8]) -> None:
-        """Blend the patch over an (H, W, 3) picture, in place."""
-        part = picture[self.place]
+    def draw(self, image: NDArray[np.uint8]) -> None:
+        """Blend the patch over an (H, W, 3) image, in place."""
+        part = image[self.place]
         through = cv2.cvtColor(cv2.bitwise_not(cv2.extractChannel(self.colour, 3)), cv2.COLOR_GRAY2RGB)
         cv2.multiply(part, through, dst=through, scale=1 / 255)
         cv2.add(through, cv2.cvtColor(self.colour, cv2.COLOR_RGBA2RGB), dst=through)

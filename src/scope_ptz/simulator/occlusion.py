@@ -86,20 +86,20 @@ def _sharpened_depth(
     # Flat indices, because NumPy reads and writes them faster than pairs.
     height, width = metres.shape
     texel_px = _texel_px(viewpoint, projection)
-    refined, found, owned = metres.copy().ravel(), same.ravel(), owners.ravel()
-    wanted, sources = numbers[wrong], metres.ravel()
+    refined, found, owner = metres.copy().ravel(), same.ravel(), owners.ravel()
+    expected, sources = numbers[wrong], metres.ravel()
     ys, xs = np.divmod(pixels, width)
     for reach in SEARCH_RADII_TEXELS:
         for dx, dy in _NEIGHBOURS:
             y = np.minimum(np.maximum(ys + round(dy * reach * texel_px), 0), height - 1)
             x = np.minimum(np.maximum(xs + round(dx * reach * texel_px), 0), width - 1)
             near = y * width + x
-            matches = found[near] & (owned[near] == wanted)
+            matches = found[near] & (owner[near] == expected)
             refined[pixels[matches]] = sources[near[matches]]
             others = np.flatnonzero(~matches)
             if not len(others):
                 return refined.reshape(height, width)
-            pixels, ys, xs, wanted = pixels[others], ys[others], xs[others], wanted[others]
+            pixels, ys, xs, expected = pixels[others], ys[others], xs[others], expected[others]
     return refined.reshape(height, width)
 
 

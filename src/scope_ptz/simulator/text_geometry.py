@@ -52,7 +52,7 @@ class TextGeometry:
         self._owners = np.zeros((number, CELLS), dtype=np.uint16)
 
     def may_show(self, projection: Projection) -> Ints:
-        """Return the indices of the texts whose corners do not all lie beyond one edge of a picture."""
+        """Return the indices of the texts whose corners do not all lie beyond one edge of an image."""
         points = projection.points(self._corners)
         with np.errstate(invalid="ignore"):
             beyond = np.any(np.all(points < 0, axis=1) | np.all(points > 1, axis=1), axis=-1)

@@ -111,7 +111,7 @@ class ViewTruth:
 
 
 def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
-    """Return the ground truth of a picture taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
+    """Return the ground truth of an image taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
     opened = scene.viewpoint(viewpoint)
     numbers = instance_numbers(scene, viewpoint, projection, time_s)
     actors = {a.actor.number: a for a in composited(scene, opened, time_s)}

@@ -134,7 +134,7 @@ def _lines(scene: CapturedScene) -> list[str]:
         lines.append(f"Presets outside the captured range were skipped: {', '.join(scene.left_out_presets)}.")
     if scene.unseen_share:
         lines.append(
-            f"{scene.unseen_share:.1%} of the directions in reach of the camera were not captured. They are grey in the scene."
+            f"{scene.unseen_share:.1%} of the directions within the camera's range were not captured. They are grey in the scene."
         )
     lines.append("The scene has no ground truth. Choose a vision model or a text reader with --perception.")
     lines.append(
