@@ -12,7 +12,7 @@ ScopeError
 ├── ServerFailure           a model server gives no usable reply (endpoints.failures); converted to one of the two errors above
 ├── ToolCallError           a tool call has an unknown name or invalid arguments
 ├── TraceError              a trace cannot be read or replayed
-├── StoreError              the store of runs is locked, damaged, or made by a newer version
+├── StoreError              the run store is locked, damaged, or was created by a newer version
 └── BlenderError            the Blender worker is missing or fails
 """
 
@@ -112,7 +112,7 @@ class TraceError(ScopeError):
 
 
 class StoreError(ScopeError):
-    """The store of runs is locked by another program, damaged, or made by a newer version."""
+    """The run store is locked by another program, damaged, or was created by a newer version."""
 
 
 class BlenderError(ScopeError):

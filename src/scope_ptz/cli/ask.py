@@ -99,7 +99,7 @@ class Session:
 def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json: bool, next_steps: bool) -> int:
     """Carry out one instruction, show the run, and return the exit code."""
     if not instruction.strip():
-        raise InputError("The instruction is empty. Say what the camera should do.")
+        raise InputError("The instruction is empty. Describe what the camera should do.")
     folder: RunFolder | None = None
     planned: list[str] = []
 

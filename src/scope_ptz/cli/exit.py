@@ -156,7 +156,7 @@ def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Ite
 
 @contextmanager
 def guarded_streams() -> Iterator[None]:
-    """Make standard streams safe even if they are closed, not writable, a broken pipe, or not in UTF-8.
+    """Make standard streams safe even if they are closed, cannot be written, are broken pipes, or do not use UTF-8.
 
     A closed stream is replaced by the null device. Output to a broken pipe (``scope tools | head``) is dropped silently and does
     not change the exit code. If output cannot be written for another reason, such as a full disk, the exit code is 1.

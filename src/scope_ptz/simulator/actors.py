@@ -107,14 +107,14 @@ def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appea
     return _appearances_of(viewpoint, ((actor, time_s) for actor in scene.file.actors))
 
 
-def composited(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
+def composited_appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
     """Return everything that is composited over the static world: actors, and the held objects of a scene variation."""
     moving = ((actor, time_s) for actor in scene.file.actors)
     return _appearances_of(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
 
 def composited_actors(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[ActorInView]:
-    """Return the actors of ``composited``, farthest first, without selecting sprites."""
+    """Return the actors of ``composited_appearances``, farthest first, without selecting sprites."""
     moving = ((actor, time_s) for actor in scene.file.actors)
     return _actors_in_view(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
@@ -157,7 +157,7 @@ def _appearance(viewpoint: Viewpoint, actor_in_view: ActorInView) -> Appearance:
     return Appearance(actor, sheet, sprite, Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height), offset_m, scale)
 
 
-def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
+def actor_extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     """Return the actor's current silhouette, including hidden parts."""
     silhouette = viewpoint.sprites.distances(appearance.sheet, appearance.sprite) > 0
     measures = measure(silhouette.astype(np.uint16), appearance.view)

@@ -17,7 +17,7 @@ from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.mapping.tiles import OUTLINE, Place, bounds
 from scope_ptz.simulator.models import ActorSheet, Sprite
 from scope_ptz.simulator.occlusion import outlined_depth_part
-from scope_ptz.simulator.sprites.choice import Aspect, Weighted, warp_matrix
+from scope_ptz.simulator.sprites.choice import Aspect, WeightedSprite, warp_matrix
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 LARGE_PX = 120_000
@@ -142,7 +142,7 @@ class _Layer:
     box: tuple[int, int, int, int]
 
     @classmethod
-    def of(cls, viewpoint: Viewpoint, actor: ActorInView, weighted: Weighted, now: Aspect) -> _Layer:
+    def of(cls, viewpoint: Viewpoint, actor: ActorInView, weighted: WeightedSprite, now: Aspect) -> _Layer:
         sprite, then_m, now_m = weighted.sprite, weighted.aspect.offset_m, actor.offset_m
         scale = float(np.linalg.norm(then_m) / np.linalg.norm(now_m))
         focal_px = sprite.width / 2 / math.tan(math.radians(sprite.hfov_deg / 2))

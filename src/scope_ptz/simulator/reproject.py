@@ -22,10 +22,10 @@ def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint
     """Return the static world in a view as (H, W, 3) RGB."""
     atlas = viewpoint.colour_atlas
     with atlas.reading():
-        return sampled(atlas, view_map(viewpoint, atlas, projection))
+        return sample_colours(atlas, view_map(viewpoint, atlas, projection))
 
 
-def sampled(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
+def sample_colours(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
     """Return the (H, W, 3) colours at (H, W, 2) positions on an atlas's sheet."""
     return np.asarray(cv2.remap(atlas.sheet, positions, None, cv2.INTER_LINEAR))
 

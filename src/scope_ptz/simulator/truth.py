@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.errors import PackError
 from scope_ptz.geometry import Equirectangular, Projection, direction, pan_tilt_deg
-from scope_ptz.simulator.actors import Appearance, composited, extent
+from scope_ptz.simulator.actors import Appearance, actor_extent, composited_appearances
 from scope_ptz.simulator.models import Extent, SceneActor, SceneInstance, SceneText
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.runs import measure
@@ -114,7 +114,7 @@ def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: flo
     """Return the ground truth of an image taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
     opened = scene.viewpoint(viewpoint)
     numbers = instance_numbers(scene, viewpoint, projection, time_s)
-    actors = {a.actor.number: a for a in composited(scene, opened, time_s)}
+    actors = {a.actor.number: a for a in composited_appearances(scene, opened, time_s)}
     return ViewTruth(_sightings(scene, opened, actors, projection, numbers), _texts(scene, opened, projection, numbers))
 
 
@@ -130,23 +130,23 @@ def _sightings(
                 f"A pixel of scene '{scene.name}' shows instance {number}, which scene.json does not contain. Bake the scene again."
             )
         if number in actors:
-            extents[k] = extent(viewpoint, actors[number])
+            extents[k] = actor_extent(viewpoint, actors[number])
         # An instance without an extent covers less than one pixel of the bake, so it is never visible.
         elif number in viewpoint.extents:
             extents[k] = viewpoint.extents[number]
     found = []
-    for (k, extent_), inside in zip(extents.items(), _fractions_inside(list(extents.values()), projection), strict=True):
-        visible_fraction = min(1.0, float(seen.solid_angle_sr[k]) / max(extent_.solid_angle_sr, 1e-12))
+    for (k, extent), inside in zip(extents.items(), _fractions_inside(list(extents.values()), projection), strict=True):
+        visible_fraction = min(1.0, float(seen.solid_angle_sr[k]) / max(extent.solid_angle_sr, 1e-12))
         found.append(
             Sighting(
-                instance=scene.by_number[extent_.number],
+                instance=scene.by_number[extent.number],
                 box=_box(seen.box[k]),
                 point=(float(seen.point[k, 0]), float(seen.point[k, 1])),
                 pixels=int(seen.pixels[k]),
                 visible_fraction=visible_fraction,
                 pan_deg=float(pan[k]),
                 tilt_deg=float(tilt[k]),
-                distance_m=extent_.distance_m,
+                distance_m=extent.distance_m,
                 cut=inside < 1.0,
                 occluded=visible_fraction < UNOCCLUDED_FRACTION * inside,
             )

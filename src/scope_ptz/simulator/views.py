@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.actors import composited, composited_actors, draw_numbers, place_of
+from scope_ptz.simulator.actors import composited_actors, composited_appearances, draw_numbers, place_of
 from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import colour_view, id_view, sampled, view_map
+from scope_ptz.simulator.reproject import colour_view, id_view, sample_colours, view_map
 
 RENDERING_VERSION = 2
 """Version of the rendering, which traces record. It increases when the same pack, pose and time give different pixels.
@@ -36,7 +36,7 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
     else:
         # Another thread samples the static world while this one renders the actors. OpenCV releases the GIL.
         with atlas.reading(), ThreadPoolExecutor(1) as pool:
-            static = pool.submit(sampled, atlas, view_map(opened, atlas, projection))
+            static = pool.submit(sample_colours, atlas, view_map(opened, atlas, projection))
             patches = [actor_patch(opened, projection, actor) for actor in actors]
             image = still.get(projection, static.result)
     for patch in patches:
@@ -49,7 +49,7 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     """Return the (H, W) numbers of the instances and actors that the pixels of ``picture`` show; 0 for none."""
     opened = scene.viewpoint(viewpoint)
     numbers = id_view(opened, projection)
-    places = [(actor, place_of(actor, projection)) for actor in composited(scene, opened, time_s)]
+    places = [(actor, place_of(actor, projection)) for actor in composited_appearances(scene, opened, time_s)]
     # Read the distances for all actors first, because drawing changes the instance numbers that determine them.
     depths = [(actor, outlined_depth_view(opened, projection, numbers, place)) for actor, place in places if place is not None]
     for actor, depth_m in depths:

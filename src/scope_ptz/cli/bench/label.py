@@ -58,7 +58,7 @@ def label(
 
     if not by.strip():
         raise InputError("Give your name or initials with --by NAME.")
-    trials = sampled(read_evaluation(log), sample, seed)
+    trials = sample_trials(read_evaluation(log), sample, seed)
     if pictures is not None:
         _Labelling(log, by.strip(), trials, pictures).run()
         return
@@ -66,7 +66,7 @@ def label(
         _Labelling(log, by.strip(), trials, Path(folder)).run()
 
 
-def sampled(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial]:
+def sample_trials(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial]:
     """Return the runs to label, in random order.
 
     Runs that never started are left out. So are runs that failed for infrastructure reasons, because resuming the evaluation

@@ -80,7 +80,7 @@ def sweep(
 
 
 def pair_names(text: str | None, *, paper: bool) -> list[str]:
-    """Return the pairs to run, each once. Raises ``InputError`` for unknown pairs before any pair runs."""
+    """Return the pairs to run, without duplicates. Raises ``InputError`` for unknown pairs before any pair runs."""
     from scope_ptz.factory.model_resolver import read_pair
     from scope_ptz.registry import load_registry
     from scope_ptz.settings import load_settings

@@ -45,7 +45,7 @@ class Aspect(NamedTuple):
     heading: Floats
 
 
-class Weighted(NamedTuple):
+class WeightedSprite(NamedTuple):
     """A sprite, the aspect of the actor in it, and its weight in the picture, 0 to 1."""
 
     sprite: Sprite
@@ -92,7 +92,7 @@ class SpriteChoice:
         """Return the largest angle between the actor's ground point, which lies at ``offset_m``, and any of its pixels."""
         return math.degrees(math.atan2(MAX_STRETCH * self._reach_m, float(np.linalg.norm(offset_m))))
 
-    def choose(self, now: Aspect, phase: float) -> list[Weighted]:
+    def choose(self, now: Aspect, phase: float) -> list[WeightedSprite]:
         """Return the one or two sprites that show the actor best, with weights that add up to 1.
 
         Args:
@@ -117,9 +117,9 @@ class SpriteChoice:
         wrong_heading = self._headings @ now.heading < math.cos(math.radians(SAME_HEADING_DEG))
         return np.where(wrong_heading & ~wrong_heading.all(), np.inf, value)
 
-    def _weighted(self, place: int, phase: float, weight: float) -> Weighted:
+    def _weighted(self, place: int, phase: float, weight: float) -> WeightedSprite:
         sprite = min(self._places[place], key=lambda s: min(abs(s.phase - phase), 1.0 - abs(s.phase - phase)))
-        return Weighted(sprite, Aspect(self._offsets[place], self._headings[place]), weight)
+        return WeightedSprite(sprite, Aspect(self._offsets[place], self._headings[place]), weight)
 
     def _path_error_m(self, sprite: Sprite) -> float:
         """Return the distance between the actor's position at a sprite's time and the position stored in the sprite."""
