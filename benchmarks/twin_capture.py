@@ -92,7 +92,8 @@ class InaccurateCamera(CameraWrapper):
 async def captured(arguments: argparse.Namespace, scenes: Path, progress: Any) -> tuple[dict[str, Any], Floats, VirtualDevice]:
     """Serve a camera, capture it, and return the measurements of the capture."""
     options = VirtualCameraOptions(
-        scenes=(arguments.scene,), time_scale=arguments.time_scale, hold_time=not arguments.alive, discovery=False, prefetch=False,
+        scenes=(arguments.scene,), time_scale=arguments.time_scale, freeze_time=not arguments.alive, discovery=False,
+        prefetch=False,
     )  # fmt: skip
     accounts = make_accounts(["operator"], ScopeSettings(virtual_camera_password=None))
     (device,) = make_devices(options, accounts)

@@ -1,6 +1,6 @@
 """Find and load plug-ins, which installed packages declare as entry points.
 
-A plug-in that is broken in any way raises ``ConfigError``.
+Loading or calling a broken plug-in raises ``ConfigError``, whatever is wrong with it.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def expect_product(entry: InstalledEntry, contract: type[_Product], product: obj
     if not isinstance(product, contract):
         raise ConfigError(
             f"The plug-in '{entry.name}' ({entry.package}) returned an object of type {type(product).__name__}; "
-            f"it must be a {contract.__name__} of {contract.__module__}."
+            f"it must be an instance of {contract.__module__}.{contract.__name__}."
         )
     return product
 

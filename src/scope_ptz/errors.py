@@ -1,4 +1,4 @@
-"""The errors of SCOPE.
+"""The exceptions that SCOPE raises.
 
 ScopeError
 ├── InputError              an instruction, option or setting is wrong (exit code 2)
@@ -12,7 +12,7 @@ ScopeError
 ├── ServerFailure           a model server gives no usable reply (endpoints.failures); converted to one of the two errors above
 ├── ToolCallError           a tool call has an unknown name or invalid arguments
 ├── TraceError              a trace cannot be read or replayed
-├── StoreError              the store of runs is locked, damaged, or made by a newer version
+├── StoreError              the run store is locked, damaged, or was created by a newer version
 └── BlenderError            the Blender worker is missing or fails
 """
 
@@ -48,7 +48,7 @@ class RequestRecord(Protocol):
 
 
 class ScopeError(Exception):
-    """Base class of all errors of SCOPE. The message states what is wrong and what to do."""
+    """Base class of all SCOPE errors. The message states what is wrong and what to do."""
 
 
 class InputError(ScopeError):
@@ -112,7 +112,7 @@ class TraceError(ScopeError):
 
 
 class StoreError(ScopeError):
-    """The store of runs is locked by another program, damaged, or made by a newer version."""
+    """The run store is locked by another program, damaged, or was created by a newer version."""
 
 
 class BlenderError(ScopeError):

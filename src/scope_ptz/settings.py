@@ -48,11 +48,11 @@ class ScopeSettings(BaseModel):
     tokens: Path = Field(
         default_factory=lambda: user_config_path("scope-ptz") / "tokens.json", description="File with the tokens of `scope serve`."
     )
-    token: SecretStr | None = Field(default=None, description="Token for a camera that `scope serve` serves elsewhere.")
+    token: SecretStr | None = Field(default=None, description="Token for cameras on another `scope serve` server.")
     config: Path | None = Field(default=None, description="File with the cameras of a site (default: scope.yaml).")
 
     def tile_bytes(self) -> int | None:
-        """Return the limit on the memory of a viewpoint's tiles in bytes."""
+        """Return the memory limit for a viewpoint's tiles in bytes; None if there is no limit."""
         return None if self.tile_cache_mb is None else self.tile_cache_mb * 1_000_000
 
     def pictures_folder(self) -> Path:

@@ -81,7 +81,7 @@ def test_each_account_gets_a_password_of_its_own_unless_one_is_configured() -> N
 
 def test_held_time_stands_still_and_motors_do_not(scenes: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SCOPE_SCENES_DIR", str(scenes))
-    (held,) = make_devices(VirtualCameraOptions(scenes=(SCENE,), hold_time=True, time_scale=50.0), [])
+    (held,) = make_devices(VirtualCameraOptions(scenes=(SCENE,), freeze_time=True, time_scale=50.0), [])
     (running,) = make_devices(VirtualCameraOptions(scenes=(SCENE,)), [])
     assert held.clock.now_s() == held.clock.now_s() == held.scene.file.start_s
     assert held.time_scale == 50.0

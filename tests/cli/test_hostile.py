@@ -96,7 +96,7 @@ def test_ctrl_c_at_any_time_leaves_no_incomplete_run_folder(
 def test_a_full_disk_behind_stdout_is_one_line_and_exit_code_1(environment: dict[str, str], command: str) -> None:
     done = shell(environment, f"$SCOPE {command} > /dev/full")
     assert done.returncode == 1
-    assert done.stderr == "scope: the output cannot be written: No space left on device.\n"
+    assert done.stderr == "scope: the output could not be written: No space left on device.\n"
 
 
 @pytest.mark.parametrize(

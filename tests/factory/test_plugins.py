@@ -173,7 +173,7 @@ BROKEN = {
     "no factory": ("make = 3", "but that is not callable: it is of type int"),
     "wrong product": (
         "def make(spec):\n    return 'camera'",
-        "returned an object of type str; it must be a Camera of scope_ptz.camera.base",
+        "returned an object of type str; it must be an instance of scope_ptz.camera.base.Camera",
     ),
     "crash": ("def make(spec):\n    raise RuntimeError('no\\nlight')", "failed: RuntimeError: no light"),
 }
@@ -207,7 +207,7 @@ def test_doctor_reports_broken_plugins(scope: Scope, tmp_path: Path) -> None:
         "missing"
     }
     assert "ModuleNotFoundError" in found["camera odd"]["detail"]
-    assert "it must be a Planner of scope_ptz.planner.base" in found["planner strange"]["detail"]
+    assert "it must be an instance of scope_ptz.planner.base.Planner" in found["planner strange"]["detail"]
     assert "its name is that of a built-in planner, which is used instead" in found["planner grammar"]["detail"]
     assert all("\n" not in finding["detail"] for finding in found.values())
 

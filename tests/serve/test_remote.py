@@ -111,7 +111,7 @@ def test_only_one_of_two_sessions_controls_the_camera(address: str) -> None:
 
 def test_options_of_the_server_are_refused(address: str) -> None:
     for options in ({"planner": "grammar"}, {"seed": 3}, {"runs_dir": "runs"}, {"perception_url": "http://x/v1"}, {"max_steps": 3}):
-        with pytest.raises(InputError, match="The server of this camera decides on"):
+        with pytest.raises(InputError, match="The server of this camera determines"):
             scope_ptz.open(address, **options)
     with pytest.raises(UnknownNameError, match="has no pair"):
         scope_ptz.open(address, pair="qwen3-4b+moondream3")

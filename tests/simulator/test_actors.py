@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scope_ptz.geometry import AXIS_M5075_G, Perspective
-from scope_ptz.simulator.actors import appearances, extent, path_position
+from scope_ptz.simulator.actors import actor_extent, appearances, path_position
 from scope_ptz.simulator.models import ActorSheet, SceneActor
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import view_truth
@@ -62,7 +62,7 @@ def test_extent_is_the_whole_silhouette(analytic_scene: Scene) -> None:
         ball = actor_ball(time_s)
         assert ball is not None
         distance = float(np.linalg.norm(np.array(ball.centre) - np.array(VIEWPOINTS["mast"][0])))
-        whole = extent(viewpoint, appearance)
+        whole = actor_extent(viewpoint, appearance)
         assert whole.solid_angle_sr == pytest.approx(2 * np.pi * (1 - np.sqrt(1 - (ACTOR_RADIUS_M / distance) ** 2)), rel=0.03)
         assert whole.distance_m == pytest.approx(distance - ACTOR_RADIUS_M, rel=0.02)
 

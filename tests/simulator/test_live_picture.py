@@ -119,10 +119,10 @@ def test_tiles_hidden_by_sharper_ones_change_nothing(analytic_scene: Scene, pan:
         return
     whole = slice(0, view.height), slice(0, view.width)
     grid = Grid(view, step_px(view))
-    slot = atlas.need(0, suitable_scale(atlas, panorama_density(atlas), view.density))
+    slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), view.density))
     expected = panorama_map(viewpoint.manifest.band, slot, grid, whole).copy()
     for showing in reversed(tiles.in_view(view)):
-        slot = atlas.need(1 + showing.tile, suitable_scale(atlas, tiles.views[showing.tile].focal_px, view.density))
+        slot = atlas.ensure(1 + showing.tile, suitable_scale(atlas, tiles.views[showing.tile].focal_px, view.density))
         part = Grid(view, step_px(view), showing.place)
         nodes = tiles.points(showing, view, part.x, part.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
         mask = showing.mask()
@@ -146,7 +146,7 @@ def test_a_camera_that_stands_still_shows_the_same_pictures(analytic_scene: Scen
 def test_a_tile_ends_without_an_edge(analytic_scene: Scene) -> None:
     viewpoint = analytic_scene.viewpoint("mast")
     for index, view in enumerate(viewpoint.tiles.views):
-        slot = viewpoint.colour_atlas.need(1 + index)
+        slot = viewpoint.colour_atlas.ensure(1 + index)
         border = viewpoint.colour_atlas.sheet[slot.y, slot.x : slot.x + slot.width].astype(int)
         panorama = Perspective(view.pan_deg, view.tilt_deg, view.hfov_deg, view.width, view.height)
         around = [s for s in viewpoint.tiles.in_view(panorama) if s.tile != index]

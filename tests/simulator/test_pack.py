@@ -146,7 +146,7 @@ def test_a_link_out_of_the_folder(copy: Path) -> None:
         (lambda s: s["presets"][0].update(viewpoint="cellar"), "preset 'yard' names the viewpoint 'cellar'"),
         (lambda s: s["texts"][0].update(parent="ghost"), "text 'board-text' names the instance 'ghost'"),
         (lambda s: s["instances"][0].update(parent="ghost"), "instance 'ball-01' names the parent 'ghost'"),
-        (lambda s: s["instances"][0].update(number=2), "assigns an id or a number twice"),
+        (lambda s: s["instances"][0].update(number=2), "uses an id or a number more than once"),
         (lambda s: s["presets"][0].update(pan_deg=float("nan")), "presets.0.pan_deg"),
     ],
 )

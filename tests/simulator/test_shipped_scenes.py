@@ -107,7 +107,7 @@ def test_partial_occlusions(viewed: Scene) -> None:
     shares = []
     for preset in viewed.file.presets:
         view = Perspective(preset.pan_deg, preset.tilt_deg, AXIS_M5075_G.hfov_deg(preset.zoom), 1280, 720)
-        shares += [s.share for s in view_truth(viewed, preset.viewpoint, view, 0.0).visible if s.occluded and not s.cut]
+        shares += [s.visible_fraction for s in view_truth(viewed, preset.viewpoint, view, 0.0).visible if s.occluded and not s.cut]
     assert any(share < 0.6 for share in shares)
     assert any(0.6 <= share < 0.9 for share in shares)
 

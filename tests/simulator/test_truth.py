@@ -53,7 +53,7 @@ def test_distances_and_directions(analytic_scene: Scene) -> None:
 def test_unobstructed_objects_are_fully_visible(analytic_scene: Scene) -> None:
     seen = _seen(analytic_scene, _view(0.0, -8.0, 1.0))
     for number in (1, 2, 3, 7):
-        assert seen[number].share == pytest.approx(1.0, abs=0.02)
+        assert seen[number].visible_fraction == pytest.approx(1.0, abs=0.02)
         assert seen[number].visible
         assert not seen[number].cut
         assert not seen[number].occluded
@@ -66,8 +66,8 @@ def test_objects_cut_off_by_the_frame_are_not_occluded(analytic_scene: Scene) ->
     ball = _seen(analytic_scene, view)[1]
     perfect = measure(perfect_view("mast", view, coloured=False)[1], view)
     whole = analytic_scene.viewpoint("mast").extents[1].solid_angle_sr
-    assert ball.share == pytest.approx(perfect.solid_angle_sr[perfect.numbers == 1][0] / whole, abs=0.02)
-    assert 0.4 < ball.share < 0.7
+    assert ball.visible_fraction == pytest.approx(perfect.solid_angle_sr[perfect.numbers == 1][0] / whole, abs=0.02)
+    assert 0.4 < ball.visible_fraction < 0.7
     assert ball.cut
     assert not ball.occluded
 
@@ -78,7 +78,7 @@ def test_the_actor_hides_what_is_behind_it(analytic_scene: Scene) -> None:
     _, perfect, _ = perfect_view("mast", view, time_s, coloured=False)
     _, without, _ = perfect_view("mast", view, coloured=False)
     block = _seen(analytic_scene, view, time_s=time_s)[3]
-    assert block.share == pytest.approx((perfect == 3).sum() / (without == 3).sum(), abs=0.03)
+    assert block.visible_fraction == pytest.approx((perfect == 3).sum() / (without == 3).sum(), abs=0.03)
     assert block.occluded
     assert not block.cut
 
@@ -86,7 +86,7 @@ def test_the_actor_hides_what_is_behind_it(analytic_scene: Scene) -> None:
 def test_small_objects_are_sightings_but_not_visible(analytic_scene: Scene) -> None:
     far = _seen(analytic_scene, _view(18.5, -3.0, 1.0))[8]
     assert 0 < far.pixels < MIN_VISIBLE_PX
-    assert far.share > 0.9
+    assert far.visible_fraction > 0.9
     assert not far.visible
     assert _seen(analytic_scene, _view(18.5, -3.0, 5.0))[8].visible
 
@@ -97,7 +97,7 @@ def test_a_full_turn_sees_everything_once(analytic_scene: Scene) -> None:
     assert set(seen) == {1, 2, 3, 4, 5, 6, 7, 8}
     for sighting in seen.values():
         # Block 4 and the balls stand free of each other from the mast.
-        assert sighting.share > 0.9
+        assert sighting.visible_fraction > 0.9
         assert not sighting.cut
 
 
@@ -107,7 +107,7 @@ def test_at_the_seam_of_a_panorama_the_larger_part_defines_the_box(analytic_scen
     open_ = _seen(analytic_scene, Equirectangular(0.0, 360.0, 35.0, -75.0, 2400, 733))[5]
     assert closed.pixels == pytest.approx(open_.pixels, rel=0.01)
     assert closed.box[2] - closed.box[0] <= open_.box[2] - open_.box[0]
-    assert closed.share == pytest.approx(open_.share, abs=0.01)
+    assert closed.visible_fraction == pytest.approx(open_.visible_fraction, abs=0.01)
 
 
 def test_solid_angles_add_up_to_the_frame(analytic_scene: Scene) -> None:
@@ -145,7 +145,7 @@ def test_text_is_legible_when_large_enough(analytic_scene: Scene) -> None:
 def test_text_cut_by_the_frame_is_not_legible(analytic_scene: Scene) -> None:
     (sighting,) = view_truth(analytic_scene, "mast", _view(-9.5, -3.0, 4.5), OUT_OF_SCENE_S).texts
     assert sighting.cap_height_px > 14
-    assert sighting.unhidden_share < 0.9
+    assert sighting.unhidden_fraction < 0.9
     assert not sighting.legible
 
 
@@ -164,7 +164,7 @@ def test_a_text_hidden_by_its_own_object_is_not_legible(analytic_scene: Scene) -
     scene = Scene(analytic_scene.folder)
     scene.file = scene.file.model_copy(update={"texts": [behind]})
     (sighting,) = view_truth(scene, "mast", _view(-16.5, -3.0, 3.0), OUT_OF_SCENE_S).texts
-    assert sighting.unhidden_share < 0.1
+    assert sighting.unhidden_fraction < 0.1
     assert not sighting.legible
 
 

@@ -66,7 +66,7 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
         time_s: scene time at the start, in seconds; the scene's own start time by default.
         seed: seed for every random choice.
         realtime: whether moves take as long as those of a real camera, and scene time follows the wall clock.
-        dry_run: plan and report moves, but make none: every frame shows the view at the start, and results of moves say so.
+        dry_run: plan and report moves, but make none: every frame shows the view at the start, and the results of moves state this.
         runs_dir: folder in which each run creates a folder with its trace and pictures; by default, runs stay in memory.
         max_steps: planner steps after which a run ends.
         time_budget_s: seconds of wall-clock time after which a run ends; no limit by default.

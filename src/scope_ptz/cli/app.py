@@ -31,11 +31,11 @@ app = typer.Typer(
     add_completion=False,
     context_settings=_HELP,
 )
-scene_app = typer.Typer(cls=LeanGroup, help="Scenes: list, show, view, build, bake and verify them.", no_args_is_help=True)
+scene_app = typer.Typer(cls=LeanGroup, help="List, show, view, build, bake and verify scenes.", no_args_is_help=True)
 models_app = typer.Typer(
-    cls=LeanGroup, help="Models: list them, show one, print how to serve it, list pairs.", invoke_without_command=True
+    cls=LeanGroup, help="List models, pairs and plug-ins, and print how to serve a model.", invoke_without_command=True
 )
-token_app = typer.Typer(cls=LeanGroup, help="Tokens for `scope serve`: add, list and remove them.", no_args_is_help=True)
+token_app = typer.Typer(cls=LeanGroup, help="Add, list and remove tokens for `scope serve`.", no_args_is_help=True)
 app.add_typer(scene_app, name="scene", rich_help_panel="Set up")
 app.add_typer(models_app, name="models", rich_help_panel="Set up")
 app.add_typer(token_app, name="token", rich_help_panel="Set up")
@@ -199,7 +199,7 @@ def console(
 @command
 def token_add(
     name: Annotated[str, typer.Argument(help="Name of the person or program that uses the token.")],
-    role: Annotated[str, typer.Option("--role", help="viewer (watch) or operator (command).")] = "viewer",
+    role: Annotated[str, typer.Option("--role", help="Role: viewer (can watch) or operator (can also send commands).")] = "viewer",
     tokens: TokensFile = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -223,7 +223,7 @@ def token_list(tokens: TokensFile = None, as_json: JsonOption = False) -> None:
 def token_remove(
     name: Annotated[str, typer.Argument(help="Name of the person or program that uses the token.")], tokens: TokensFile = None
 ) -> None:
-    """Remove a token. A running server refuses it from the next request on."""
+    """Remove a token. A running server rejects it from the next request onwards."""
     from scope_ptz.cli.serve import remove_token
 
     remove_token(name, tokens)
@@ -250,11 +250,11 @@ def profile(
     as_json: JsonOption = False,
 ) -> int:
     """Measure a pair on your own servers: speed, well-formed calls, perception latency, and the paper's real-time criterion."""
-    from scope_ptz.cli.profile import Extent
+    from scope_ptz.cli.profile import Workload
     from scope_ptz.cli.profile import profile as run
 
-    extent = Extent(instructions=instructions, limit=limit, frames=frames, scene=scene, prompts=prompts)
-    return run(models.options(pair), extent, as_json=as_json)
+    workload = Workload(instructions=instructions, limit=limit, frames=frames, scene=scene, prompts=prompts)
+    return run(models.options(pair), workload, as_json=as_json)
 
 
 @app.command(rich_help_panel="Set up")
@@ -417,7 +417,7 @@ def scene_verify(
     ] = 8,
     keep: Annotated[Path | None, typer.Option("--keep", help="Folder in which to save the live renders.")] = None,
 ) -> int:
-    """Compare a scene's packs with live Blender renders of the same poses."""
+    """Compare views from a scene's packs with live Blender renders of the same poses."""
     from scope_ptz.cli.bake import verify_scene
 
     return verify_scene(name, seed, wide, zoomed, keep)

@@ -1,4 +1,4 @@
-"""``scope ask``, and the session that it shares with ``scope chat``."""
+"""``scope ask``, and the session class that ``scope chat`` also uses."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Session:
 def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json: bool, next_steps: bool) -> int:
     """Carry out one instruction, show the run, and return the exit code."""
     if not instruction.strip():
-        raise InputError("The instruction is empty. Say what the camera should do.")
+        raise InputError("The instruction is empty. Describe what the camera should do.")
     folder: RunFolder | None = None
     planned: list[str] = []
 
@@ -184,7 +184,7 @@ def summary(calls: tuple[Called, ...], ended: Ended, folder: Path) -> dict[str, 
 
 
 def _no_perception() -> Perception:
-    """Return a placeholder for a camera without ground truth and without a model: the camera moves, and looking is an error."""
+    """Return a placeholder for a camera without ground truth or a vision model. Every perception call is an error."""
     from scope_ptz.perception.no_perception import NoPerception
 
     return NoPerception("Name a vision model with --perception; `scope models --role perception` lists them.")

@@ -105,11 +105,11 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
 
 
 def show_planned(console: Console, planned: list[str]) -> None:
-    """Print the commands that a dry run held back. A long list, as of a sweep, is shortened to the first commands and the last one.
+    """Print the commands that a dry run did not execute. A long list is shortened to its first commands and the last one.
 
     Args:
         console: Where to print.
-        planned: A sentence for each command.
+        planned: A sentence about each command.
     """
     console.print()
     console.print(Text("Dry run: the camera has not moved." + (" Planned commands:" if planned else ""), style="yellow"))

@@ -1,4 +1,4 @@
-"""``scope doctor``: report what is installed and what is missing, or check whether a model server does what SCOPE needs."""
+"""``scope doctor``: report what is installed and what is missing, or check that a model server meets the requirements of SCOPE."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Finding:
 
 
 def check_installation(*, as_json: bool) -> int:
-    """Print all findings, and return 1 if something needed is missing."""
+    """Print all findings, and return 1 if a required part is missing."""
     findings = list(examine(load_settings()))
     if as_json:
         put_json([asdict(finding) for finding in findings])

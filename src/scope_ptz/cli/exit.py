@@ -26,7 +26,7 @@ from typing import Any, TextIO, cast
 from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, TraceError
 
 FAILED, BAD_INPUT, UNCLEAR, REFUSED, CANCELLED = 1, 2, 3, 4, 130
-_ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+_TERMINATION_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 """Signals that ask a program to end. Windows has no HUP."""
 
 _FORCE_EXIT_PRESSES = 3  # this many presses of Ctrl-C end the program without clean-up
@@ -140,10 +140,10 @@ def run_async(work: Callable[[], Awaitable[None]]) -> None:
 def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
     """Replace the handlers of Ctrl-C and of the signals TERM and HUP within the block.
 
-    A signal that is ignored stays so, as HUP under ``nohup``. Outside the main thread nothing changes.
+    A signal that is already ignored, such as HUP under ``nohup``, stays ignored. Outside the main thread, no handler changes.
     """
     main = threading.current_thread() is threading.main_thread()
-    found = {number: signal.getsignal(number) for number in _ENDING if main}
+    found = {number: signal.getsignal(number) for number in _TERMINATION_SIGNALS if main}
     before = {number: current for number, current in found.items() if current not in (signal.SIG_IGN, None)}
     try:
         for number in before:
@@ -156,7 +156,7 @@ def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Ite
 
 @contextmanager
 def guarded_streams() -> Iterator[None]:
-    """Make standard streams safe even if they are closed, not writable, a broken pipe, or not in UTF-8.
+    """Make standard streams safe even if they are closed, cannot be written, are broken pipes, or do not use UTF-8.
 
     A closed stream is replaced by the null device. Output to a broken pipe (``scope tools | head``) is dropped silently and does
     not change the exit code. If output cannot be written for another reason, such as a full disk, the exit code is 1.
@@ -176,7 +176,7 @@ def guarded_streams() -> Iterator[None]:
     finally:
         stdout.flush()
         if stdout.failure is not None:
-            print_error(f"the output cannot be written: {stdout.failure.strerror or stdout.failure}.")
+            print_error(f"the output could not be written: {stdout.failure.strerror or stdout.failure}.")
         stderr.flush()
         sys.stdin, sys.stdout, sys.stderr = previous
         if stdout.failure is not None and sys.exc_info()[0] in (None, SystemExit):
@@ -184,7 +184,7 @@ def guarded_streams() -> Iterator[None]:
 
 
 def has_input() -> bool:
-    """Return whether the program was started with a standard input."""
+    """Return whether the program has a standard input; False if it was closed at the start."""
     return getattr(sys.stdin, "name", None) != os.devnull
 
 
@@ -267,5 +267,5 @@ def _has_surrogates(text: str) -> bool:
 
 def _ignore_interrupts() -> None:
     """Ignore Ctrl-C from now on. The program is about to end, and another Ctrl-C would only show a traceback."""
-    with suppress(ValueError):  # signal handlers can be set in the main thread only
+    with suppress(ValueError):  # signal handlers can only be set in the main thread
         signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -12,7 +12,7 @@ from scope_ptz.errors import InputError
 
 
 class InstructionLine(BaseModel):
-    """One line of a file of instructions. Other fields are ignored, so that a task file works, too."""
+    """One line of a file of instructions. Other fields are ignored, so that a task file can also be used."""
 
     model_config = ConfigDict(strict=True)
 

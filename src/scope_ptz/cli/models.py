@@ -17,7 +17,7 @@ from scope_ptz.settings import load_settings
 
 MEMORY_NOTE = (
     f"Memory in GB, computed, not measured: parameters x bytes + cache for {WINDOW} tokens + {RUNTIME_GB:g} GB. "
-    "'from': the memory with the smallest weights that a server offers, mostly 4-bit."
+    "'from': the memory that the smallest available weights need, usually 4-bit."
 )
 _WIDE, _PIPE = 120, 180  # minimum terminal width for the wide table, and the width for a file or a pipe
 _THINKING = {"none": "no", "optional": "when asked", "default": "unless switched off", "always": "always"}
@@ -115,7 +115,7 @@ def show_model(name: str, *, as_json: bool) -> None:
     facts = [
         ("repository", model.repo + (f" at {model.revision}" if model.revision else "")),
         ("role", " and ".join(model.roles) + (", accepts pictures in the chat" if model.sees else "")),
-        ("from", {"paper": "the paper", "current": "added to the paper's", "yours": "your models file"}[model.origin]),
+        ("from", {"paper": "the paper", "current": "added by SCOPE", "yours": "your models file"}[model.origin]),
         ("size", f"{model.size_b:g}B parameters, {model.active_b:g}B active"),
         ("precision", model.precision),
         ("context", f"{model.context:,} tokens" if model.context else "-"),

@@ -74,7 +74,7 @@ class StartFlags:
 
         Args:
             realtime: Whether moves take as long as with a real camera.
-            dry_run: If given, commands are not executed; it is called with a sentence for each of them.
+            dry_run: If given, commands are not executed. Instead, this function is called with a sentence about each.
         """
         from scope_ptz.builtin_names import DEFAULT_SCENE
         from scope_ptz.factory.cameras import open_camera
@@ -225,7 +225,10 @@ class ModelFlags:
     timeout: Annotated[
         float | None,
         typer.Option(
-            "--timeout", min=0.1, help="Seconds for one request to a model server, retries included.", rich_help_panel=MODEL_PANEL
+            "--timeout",
+            min=0.1,
+            help="Timeout of one request to a model server in seconds, including retries.",
+            rich_help_panel=MODEL_PANEL,
         ),
     ] = None
 
@@ -302,7 +305,9 @@ class JudgeFlags:
     ] = None
     judge_timeout: Annotated[
         float,
-        typer.Option("--judge-timeout", min=0.1, help="Seconds for one judgement, retries included.", rich_help_panel=JUDGE_PANEL),
+        typer.Option(
+            "--judge-timeout", min=0.1, help="Timeout of one judgement in seconds, including retries.", rich_help_panel=JUDGE_PANEL
+        ),
     ] = 300.0
     judge_option: Annotated[
         list[str] | None,

@@ -49,7 +49,7 @@ def _plan_file(source: Path, *, as_json: bool) -> int:
 
 def _planned(instruction: str, presets: list[str]) -> Plan:
     if not instruction.strip():
-        raise InputError("The instruction is empty. Say what the camera should do.")
+        raise InputError("The instruction is empty. Describe what the camera should do.")
     if len(instruction) > MAX_INSTRUCTION_CHARS:
         raise InputError(f"The instruction is longer than {MAX_INSTRUCTION_CHARS} characters.")
     return make_plan(instruction, presets)

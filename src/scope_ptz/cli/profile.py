@@ -40,7 +40,7 @@ _EXTRA_PAN_DEG = 7.0  # difference in pan between frames of the same preset, if 
 
 
 @dataclass(frozen=True, slots=True)
-class Extent:
+class Workload:
     """The instructions and frames with which a pair is measured.
 
     Attributes:
@@ -58,7 +58,7 @@ class Extent:
     prompts: bool = False
 
 
-class Side(BaseModel):
+class RoleMeasurements(BaseModel):
     """The measurements of a planner or a perception backend.
 
     ``meets_real_time`` is None if all requests, or all requests of one skill, failed.
@@ -78,27 +78,27 @@ class Side(BaseModel):
     serving: dict[str, str] = {}
 
 
-def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
+def profile(options: ModelOptions, workload: Workload, *, as_json: bool) -> int:
     """Measure a pair and print the report.
 
     Returns:
         0 whether or not the criterion is met; 1 if it cannot be evaluated because requests failed.
     """
     report: dict[str, Any] = {}
-    rows = _rows(extent)
+    rows = _rows(workload)
 
     async def work() -> None:
         choice = await resolve_models(options)
         if choice.planner.endpoint is None and choice.perception.spec is None:
             raise InputError("There is nothing to profile. Give a pair, or a planner or perception with the address of its server.")
-        sides = {}
+        by_role = {}
         if choice.planner.endpoint is not None:
-            sides["planner"] = await _planner_side(choice.planner, rows)
+            by_role["planner"] = await _measure_planner(choice.planner, rows)
         if choice.perception.spec is not None:
-            sides["perception"] = await _perception_side(choice.perception, extent)
-        report.update({role: side.model_dump() for role, side in sides.items()})
-        report["real_time"] = _verdict([side.meets_real_time for side in sides.values()])
-        if extent.prompts and "planner" in sides and sides["planner"].meets_real_time is not None:
+            by_role["perception"] = await _measure_perception_backend(choice.perception, workload)
+        report.update({role: measured.model_dump() for role, measured in by_role.items()})
+        report["real_time"] = _verdict([measured.meets_real_time for measured in by_role.values()])
+        if workload.prompts and "planner" in by_role and by_role["planner"].meets_real_time is not None:
             report["prompts"] = (await _sensitivity(choice.planner, rows)).model_dump()
 
     run_async(work)
@@ -109,15 +109,15 @@ def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
     return FAILED if report["real_time"] == "unknown" else 0
 
 
-def _rows(extent: Extent) -> tuple[InstructionRow, ...]:
-    rows = load_rows() if extent.instructions is None else read_rows(extent.instructions)
-    if extent.limit is not None and extent.limit < len(rows):
-        rows = tuple(rows[i * len(rows) // extent.limit] for i in range(extent.limit))
+def _rows(workload: Workload) -> tuple[InstructionRow, ...]:
+    rows = load_rows() if workload.instructions is None else read_rows(workload.instructions)
+    if workload.limit is not None and workload.limit < len(rows):
+        rows = tuple(rows[i * len(rows) // workload.limit] for i in range(workload.limit))
     return rows
 
 
 # Measuring -------------------------------------------------------------------------------------------------------------
-async def _planner_side(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Side:
+async def _measure_planner(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> RoleMeasurements:
     assert choice.endpoint is not None  # noqa: S101 - called only with a server
     planner, trials = make_planner(choice), []
     try:
@@ -129,7 +129,7 @@ async def _planner_side(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...
     finally:
         await planner.close()
     speed, facts = speed_of(trials, first), await serving_facts(choice.endpoint)
-    return Side(
+    return RoleMeasurements(
         name=choice.name,
         served_as=choice.endpoint.model,
         url=choice.endpoint.url,
@@ -141,9 +141,9 @@ async def _planner_side(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...
     )
 
 
-async def _perception_side(choice: ResolvedPerception, extent: Extent) -> Side:
+async def _measure_perception_backend(choice: ResolvedPerception, workload: Workload) -> RoleMeasurements:
     assert choice.spec is not None  # noqa: S101 - called only with a backend
-    frames = await _frames(extent.scene, extent.frames)
+    frames = await _frames(workload.scene, workload.frames)
     perception = make_perception(choice, None, 0)
     try:
         with _bar("perception", len(frames) * len(perception.skills)) as advance:
@@ -151,7 +151,7 @@ async def _perception_side(choice: ResolvedPerception, extent: Extent) -> Side:
     finally:
         await perception.close()
     facts = await serving_facts(choice.spec.endpoint) if choice.spec.endpoint else {}
-    return Side(
+    return RoleMeasurements(
         name=choice.name,
         served_as=choice.spec.model,
         url=choice.spec.endpoint.url if choice.spec.endpoint else "",
@@ -196,10 +196,10 @@ async def _sensitivity(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]
     return await measure_sensitivity(planner_with, load_prompt(options.prompt), rows=rows)
 
 
-def _verdict(sides: list[bool | None]) -> str:
-    if None in sides:
+def _verdict(meets_real_time: list[bool | None]) -> str:
+    if None in meets_real_time:
         return "unknown"
-    return "met" if all(sides) else "missed"
+    return "met" if all(meets_real_time) else "missed"
 
 
 @contextmanager
@@ -223,24 +223,26 @@ _VERDICTS = {
 def _show(console: Console, report: dict[str, Any]) -> None:
     for role in ("planner", "perception"):
         if role in report:
-            _show_side(console, role, Side.model_validate(report[role]))
+            _show_role(console, role, RoleMeasurements.model_validate(report[role]))
     console.print(Text.assemble("Real-time criterion of the paper (2 Hz, 500 ms per inference): ", _VERDICTS[report["real_time"]]))
     if "prompts" in report:
         _show_prompts(console, Sensitivity.model_validate(report["prompts"]))
 
 
-def _show_side(console: Console, role: str, side: Side) -> None:
-    served = f", served as {side.served_as}" if side.served_as not in ("", side.name) else ""
-    address = f" at {side.url}" if side.url else ""
-    console.print(Text.assemble((f"{role} {side.name}", "bold"), f"{served}{address}"), soft_wrap=True)
-    if side.planner is not None:
-        _show_planner(console, side.planner)
-    if side.perception is not None:
-        _show_perception(console, side.perception)
-    reported = f"{side.memory_gb:g} GB, reported by the server" if side.memory_gb is not None else "not reported by the server"
-    computed = f"; computed: {side.computed_memory_gb:g} GB" if side.computed_memory_gb is not None else ""
+def _show_role(console: Console, role: str, measured: RoleMeasurements) -> None:
+    served = f", served as {measured.served_as}" if measured.served_as not in ("", measured.name) else ""
+    address = f" at {measured.url}" if measured.url else ""
+    console.print(Text.assemble((f"{role} {measured.name}", "bold"), f"{served}{address}"), soft_wrap=True)
+    if measured.planner is not None:
+        _show_planner(console, measured.planner)
+    if measured.perception is not None:
+        _show_perception(console, measured.perception)
+    reported = (
+        f"{measured.memory_gb:g} GB, reported by the server" if measured.memory_gb is not None else "not reported by the server"
+    )
+    computed = f"; computed: {measured.computed_memory_gb:g} GB" if measured.computed_memory_gb is not None else ""
     console.print(f"  {'memory':16}{reported}{computed}")
-    for name, value in side.serving.items():
+    for name, value in measured.serving.items():
         console.print(Text(plain(f"  {name}: {value}"), style="dim"), soft_wrap=True)
 
 

@@ -64,7 +64,7 @@ async def _repeat(trace: Trace) -> Replay:
 
 
 def _ignore(report: str) -> None:
-    """Ignore a command that the dry run reports: the results of calls show it."""
+    """Ignore a report of the dry run, because the results of the calls contain the same information."""
 
 
 async def _move_to_start(camera: SimulatedCamera, started: Started) -> None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from scope_ptz.serve.security.tokens import TokenFile
 
 SWITCH_INTERVAL_S = 0.001
-"""Seconds that a thread may run Python before others get a turn. The default of 5 ms lets rendering delay a ``stop``."""
+"""Seconds for which a thread may run before others get a turn. With the default of 5 ms, rendering would delay a ``stop``."""
 
 
 def run_server(
@@ -29,7 +29,7 @@ def run_server(
     page: bool = False,
     as_json: bool,
 ) -> None:
-    """Serve cameras until Ctrl-C, and the operator's page too if ``page`` is set."""
+    """Serve cameras until Ctrl-C. If ``page`` is set, serve the operator's page as well."""
     from scope_ptz.cli.exit import put, put_json, run_async
     from scope_ptz.settings import load_settings
     from scope_ptz.virtual_camera.heap import use_one_heap
@@ -118,7 +118,7 @@ def list_tokens(tokens: Path | None, *, as_json: bool) -> None:
 
 
 def remove_token(name: str, tokens: Path | None) -> None:
-    """Remove a token. A running server refuses it from the next request on."""
+    """Remove a token. A running server rejects it from the next request onwards."""
     _file(tokens).remove(name)
 
 

@@ -170,7 +170,7 @@ async def _open_judge(request: ModelRequest) -> JudgeServer:
 
 
 async def _count(truth: GroundTruthPerception, scene: str, observation: Observation) -> int | None:
-    """Return the true count for a perception call; None if ground truth cannot count objects by its description."""
+    """Return the true count for a perception call; None if ground truth cannot count the objects that the call describes."""
     from scope_ptz.factory.validation_perception import is_plain_noun
 
     if observation.viewpoint is None:

@@ -246,21 +246,21 @@ class _CircuitBreaker(Watcher):
 
 @contextmanager
 def reduced_garbage_collection() -> Iterator[None]:
-    """Run the garbage collector less often inside the block, and exclude the objects that already exist.
+    """Run the garbage collector less often inside the block, and exclude existing objects from it.
 
     Scenes and tasks consist of many small objects. Scanning them repeatedly would take a tenth of an evaluation's time.
-    If the program has already excluded objects itself, they stay excluded: one cannot include only a part again.
+    If the program has already excluded objects, no further ones are excluded, because ``gc.unfreeze`` would include all of them.
     """
-    thresholds, excludes = gc.get_threshold(), gc.get_freeze_count() == 0
+    thresholds, freezes = gc.get_threshold(), gc.get_freeze_count() == 0
     gc.collect()
-    if excludes:
+    if freezes:
         gc.freeze()
     gc.set_threshold(*GC_THRESHOLDS)
     try:
         yield
     finally:
         gc.set_threshold(*thresholds)
-        if excludes:
+        if freezes:
             gc.unfreeze()
 
 
@@ -300,7 +300,7 @@ def _is_built_in(pair: ResolvedPair) -> bool:
 
 
 def _served_models(pair: ResolvedPair) -> list[str]:
-    """Return the names of the served models, which identify an evaluation. Addresses may change before it is resumed."""
+    """Return the names of the served models, which are part of an evaluation's identity. Addresses are not, as they may change."""
     spec = pair.perception.spec
     perception = spec.endpoint.model if spec is not None and spec.endpoint is not None else ""
     return [pair.planner.endpoint.model if pair.planner.endpoint else "", perception]

@@ -31,7 +31,7 @@ MAX_NOTES = 20
 class ProgressFiles(EvaluationProgress):
     """Writes ``progress.json`` (the state, replaced as a whole) and ``trials.jsonl`` (one finished run per line) to a folder.
 
-    The file ``progress.lock`` is locked until ``close``, or until the process ends, however it ends.
+    The file ``progress.lock`` is locked until ``close``, or until the process ends for any reason.
 
     Args:
         folder: The folder. It is created if needed.
@@ -92,7 +92,7 @@ class ProgressFiles(EvaluationProgress):
         self._write()
 
     def finish(self, result: EvaluationResult) -> None:
-        """Store the result as the log has it. The evaluation has ended by itself."""
+        """Store the final result, as read from the log. Call this when the evaluation has ended without an error."""
         evaluation = result.evaluation
         self._state = self._state.model_copy(update={"runs": evaluation.wanted, "log": Path(evaluation.log).name, "finished": True})
         self._replace_trials({trial.sample: trial for trial in evaluation.trials})
@@ -129,7 +129,7 @@ class ProgressFiles(EvaluationProgress):
         new.replace(self._folder / name)
 
     def _try(self, write: Callable[[], None]) -> None:
-        """Write a file. A full disk must not stop the evaluation, whose log is elsewhere."""
+        """Write a file. Report a failure only as a note, because a full disk here must not stop the evaluation."""
         try:
             write()
         except OSError as error:
@@ -139,7 +139,7 @@ class ProgressFiles(EvaluationProgress):
 
 
 class ProgressGroup(EvaluationProgress):
-    """Passes everything on to several receivers."""
+    """Forwards all progress to several receivers."""
 
     def __init__(self, *receivers: EvaluationProgress) -> None:
         self._receivers = receivers

@@ -47,7 +47,7 @@ def export_runs(store: RunStore, runs: Iterable[str], out: Path, kind: ExportFor
 
 
 def run_drafts(store: RunStore, runs: Iterable[str]) -> Iterator[RunDraft]:
-    """Yield the draft of each run with good feedback, or the reason why the run makes none. Other runs are skipped."""
+    """Yield the draft of each run with good feedback, or the reason why the run cannot be converted. Other runs are skipped."""
     from scope_ptz.taskgen.generating.draft_places import DraftRejectedError
     from scope_ptz.taskgen.generating.run_draft_file import RunDraft
     from scope_ptz.taskgen.generating.run_drafts import run_draft

@@ -31,7 +31,7 @@ def open_scene(name: str, *, cache_pictures: bool = False) -> Scene:
 
     Args:
         name: Name of the scene or variation.
-        cache_pictures: Whether decoded pictures are cached on disk, so that the next program shows its first view sooner.
+        cache_pictures: Whether decoded pictures are cached on disk, so that later processes render their first view sooner.
 
     Raises:
         UnknownNameError: There is no such scene.

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 def validate_tasks(
     tasks: Sequence[Task], seed: int, progress: Callable[[int, int], None] | None = None, dataset: Sequence[Task] = ()
 ) -> ValidationReport:
-    """Run the reference programs and adversarial attempts of tasks, and report those with the wrong result.
+    """Run each task's reference program and the adversarial attempts at it.
+
+    The report lists every run that passes or fails when it should not.
 
     Args:
         tasks: The tasks to validate.

@@ -15,7 +15,7 @@ from scope_ptz.perception.ground_truth.answers import answer
 from scope_ptz.perception.ground_truth.language import parse_description, parse_question
 from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 from scope_ptz.perception.ground_truth.view import View, read_view
-from scope_ptz.simulator.actors import appearances, shows
+from scope_ptz.simulator.actors import appearances, may_be_visible
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import ViewTruth, view_truth
 from scope_ptz.taskgen.authoring.drafts import TaskDraft
@@ -53,7 +53,7 @@ class CachedTruth:
 
     def read(self, scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
         """Return the ground truth of a view, from the cache if possible."""
-        moving = any(shows(a, projection) for a in appearances(scene, scene.viewpoint(viewpoint), time_s))
+        moving = any(may_be_visible(a, projection) for a in appearances(scene, scene.viewpoint(viewpoint), time_s))
         key = (scene.name, viewpoint, projection, round(time_s, 3) if moving else None)
         if key not in self._cache:
             if len(self._cache) >= self._limit:

@@ -28,8 +28,8 @@ def scenes_named(names: list[str] | None) -> dict[str, Scene]:
     captured = [name for name, scene in scenes.items() if scene.file.captured is not None]
     if names and captured:
         raise InputError(
-            f"The scene '{captured[0]}' was captured from a camera and has no ground truth, so no task can be made or scored in "
-            "it. Name a scene that was built with Blender."
+            f"The scene '{captured[0]}' was captured from a camera and has no ground truth, so tasks cannot be made or scored "
+            "in it. Name a scene that was built with Blender."
         )
     return {name: scene for name, scene in scenes.items() if name not in captured}
 

@@ -23,8 +23,11 @@ from scope_ptz.simulator.runs import measure
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 TOLERANCE_M = 0.15
-TOLERANCE_SHARE = 0.01
-"""An actor is hidden where the static world is nearer by more than this: metres, plus a fraction of the actor's distance."""
+TOLERANCE_FRACTION = 0.01
+"""Tolerance of the occlusion test: an actor is hidden where the static world is nearer by more than this.
+
+It is the sum of a distance in metres and a fraction of the static world's distance.
+"""
 
 Floats = NDArray[np.float64]
 
@@ -56,7 +59,15 @@ class Appearance:
 
 @dataclass(frozen=True, slots=True)
 class ActorInView:
-    """An actor at one instant: its sprites, its ground point (3,) relative to the optical centre, path time, and stride phase."""
+    """An actor at one instant.
+
+    Attributes:
+        actor: The actor.
+        sheet: The sheet that contains its sprites.
+        offset_m: The actor's ground point (3,) relative to the optical centre, in camera coordinates.
+        path_s: The actor's path time in seconds.
+        phase: The phase of a walker's stride, 0 to 1.
+    """
 
     actor: SceneActor
     sheet: ActorSheet
@@ -67,7 +78,13 @@ class ActorInView:
 
 @dataclass(frozen=True, slots=True)
 class PathPosition:
-    """The position of an actor on its path: path time, metres walked since its start, ground point (3,) in world coordinates."""
+    """The position of an actor on its path.
+
+    Attributes:
+        path_s: Path time in seconds.
+        walked_m: Distance from the start of the path, along the path.
+        position_m: Ground point (3,) in world coordinates.
+    """
 
     path_s: float
     walked_m: float
@@ -90,14 +107,14 @@ def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appea
     return _appearances_of(viewpoint, ((actor, time_s) for actor in scene.file.actors))
 
 
-def composited(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
+def composited_appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
     """Return everything that is composited over the static world: actors, and the held objects of a scene variation."""
     moving = ((actor, time_s) for actor in scene.file.actors)
     return _appearances_of(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
 
 def composited_actors(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[ActorInView]:
-    """Return the actors of ``composited``, farthest first, without selecting sprites."""
+    """Return the actors of ``composited_appearances``, farthest first, without selecting sprites."""
     moving = ((actor, time_s) for actor in scene.file.actors)
     return _actors_in_view(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
@@ -140,7 +157,7 @@ def _appearance(viewpoint: Viewpoint, actor_in_view: ActorInView) -> Appearance:
     return Appearance(actor, sheet, sprite, Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height), offset_m, scale)
 
 
-def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
+def actor_extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     """Return the actor's current silhouette, including hidden parts."""
     silhouette = viewpoint.sprites.distances(appearance.sheet, appearance.sprite) > 0
     measures = measure(silhouette.astype(np.uint16), appearance.view)
@@ -157,8 +174,8 @@ def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     )
 
 
-def shows(appearance: Appearance, projection: Projection) -> bool:
-    """Return whether an actor may be visible in a view, judged only by directions. Occlusion is ignored."""
+def may_be_visible(appearance: Appearance, projection: Projection) -> bool:
+    """Return whether an actor lies at least partly in the directions that a view covers. Occlusion is ignored."""
     return place_of(appearance, projection) is not None
 
 
@@ -193,11 +210,11 @@ def draw_numbers(
     uv = sprite.points(showing, projection, grid.x, grid.y)
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
-    static_m = depth_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M
+    static_m = depth_m * (1 + TOLERANCE_FRACTION) + TOLERANCE_M
     numbers[place][(distance_m > 0) & (distance_m <= static_m)] = appearance.actor.number
 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:
-    """Return the (h, w) current distances of the sprite's pixels in metres, 0 where the actor does not cover the sprite."""
+    """Return the (h, w) current distances of the sprite's pixels in metres; 0 where the sprite does not show the actor."""
     codes = viewpoint.sprites.distances(appearance.sheet, appearance.sprite)
     return np.where(codes > 0, viewpoint.depth_metres[codes] / np.float32(appearance.scale), np.float32(0.0))

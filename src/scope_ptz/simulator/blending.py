@@ -1,7 +1,8 @@
 """Blend the borders of tiles into the pictures around them, and match the tone of tiles to the panorama.
 
-A tile is a sharp picture inside a soft one. Its border would be visible as a hard edge, so the tile fades over some pixels into the
-picture below it: the panorama, or a less sharp tile. Tiles are blended once, when they are read, so views cost no extra time.
+A tile is a sharp picture inside a less sharp one. Its border would be visible as a hard edge, so the tile fades over some pixels
+into the picture below it: the panorama, or a less sharp tile. Tiles are blended once, when they are read, so views cost no extra
+time.
 """
 
 from __future__ import annotations
@@ -22,31 +23,31 @@ from scope_ptz.simulator.mapping.tiles import POLYGON_SHIFT, Tiles
 from scope_ptz.simulator.models import Band
 from scope_ptz.simulator.sheets.atlas import Atlas
 
-FADE_PX, MAX_FADE_SHARE = 90.0, 0.2
+FADE_PX, MAX_FADE_FRACTION = 90.0, 0.2
 """A tile fades over this many of its pixels, but over no more than this fraction of its shorter side."""
 
 HIDDEN_PX = 4.0
-"""Width of the outermost part of a tile that is fully transparent, because views cut tiles off slightly inside their border."""
+"""Width of the fully transparent edge of a tile, which is needed because views clip tiles slightly inside their border."""
 
 JOINT_PX = 12.0
 """Adjoining tiles fade into each other over this many pixels. They overlap by about 28 pixels."""
 
-SHARP_SHARE = 0.7
+SHARP_FRACTION = 0.7
 """A tile adjoins another without a soft border if its sharpness is at least this fraction of the other's."""
 
-COARSE_PX = 4  # size of the cells in which the distance from soft areas is computed
+COARSE_PX = 4  # side of the cells in which the distance from less sharp areas is computed
 
 DETAIL_FADE_PX = 28.0
 """Texts and small objects near the border stay sharp. The tile fades over this many pixels around them."""
 
 SMALL_PX = 160.0
-"""Objects larger than this in a tile may fade."""
+"""Only objects up to this size in a tile stay sharp near its border. Larger ones may fade."""
 
 TONE_CELL_PX = 32
 """Size of the cells whose mean tones are matched. Details smaller than a cell are preserved."""
 
 MAX_TONE_SHIFT = 24.0
-"""Maximum change of tone, in steps of 0 to 255. Larger differences are caused by different content."""
+"""Maximum change of tone, on a scale of 0 to 255. A larger difference means that the content differs."""
 
 MAX_CACHED_TILES = 4  # tiles with matched tone that stay in memory, because neighbouring tiles need them soon
 
@@ -122,11 +123,11 @@ class TileBlender:
         self._toned.clear()
 
     def _panorama(self, atlas: Atlas, view: Perspective) -> NDArray[np.uint8]:
-        where = panorama_map(self._band, atlas.need(0, 0), Grid(view, step_px(view)))
+        where = panorama_map(self._band, atlas.ensure(0, 0), Grid(view, step_px(view)))
         return np.asarray(cv2.remap(atlas.sheet, where, None, cv2.INTER_LINEAR))
 
     def _toned_tile(self, atlas: Atlas, index: int, panorama: NDArray[np.uint8] | None = None) -> NDArray[np.uint8]:
-        """Return a tile in the tone of the panorama as (H, W, 4). The fourth channel is its opacity."""
+        """Return a tile as (H, W, 4), with its tone matched to the panorama. The fourth channel is its opacity."""
         if index not in self._toned:
             view = self._tiles.views[index]
             around = self._panorama(atlas, view) if panorama is None else panorama
@@ -166,7 +167,7 @@ def _opacity(tiles: Tiles, index: int, outlines: Outlines) -> Floats:
     view = tiles.views[index]
     columns, rows = (np.minimum(np.arange(n) + 0.5, n - np.arange(n) - 0.5) for n in (view.width, view.height))
     inside = np.minimum(rows[:, None], columns[None, :]).astype(np.float32) - np.float32(HIDDEN_PX)
-    fade_px = min(FADE_PX, MAX_FADE_SHARE * min(view.width, view.height))
+    fade_px = min(FADE_PX, MAX_FADE_FRACTION * min(view.width, view.height))
     opacity = np.minimum(_smooth(inside / JOINT_PX), _smooth((_distance_to_soft_px(tiles, index, fade_px) - HIDDEN_PX) / fade_px))
     details = outlines.small_in(view)
     if details.any():
@@ -184,7 +185,7 @@ def _distance_to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
     around = Perspective(view.pan_deg, view.tilt_deg, hfov_deg, width, height)
     sharp = np.zeros((-(-height // COARSE_PX), -(-width // COARSE_PX)), np.uint8)
     for showing in tiles.in_view(around):
-        if showing.polygon is not None and tiles.views[showing.tile].focal_px >= SHARP_SHARE * view.focal_px:
+        if showing.polygon is not None and tiles.views[showing.tile].focal_px >= SHARP_FRACTION * view.focal_px:
             cv2.fillConvexPoly(sharp, showing.polygon // COARSE_PX, 255, shift=POLYGON_SHIFT)
     # If the whole neighbourhood is sharp, the distance transform returns a very large distance, hence the limit.
     away = np.minimum(cv2.distanceTransform(sharp, cv2.DIST_L2, 5), pad) * np.float32(COARSE_PX)

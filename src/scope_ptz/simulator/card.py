@@ -14,11 +14,11 @@ from scope_ptz.simulator.pack import Scene
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """A section of a card: a title and its lines. Each line is a pair of a name, which may be empty, and a text.
+    """A section of a card.
 
     Attributes:
         title: The heading.
-        lines: The pairs of name and text.
+        lines: Pairs of a name, which may be empty, and a text.
     """
 
     title: str
@@ -93,7 +93,7 @@ def _preset(scene: Scene, preset: ScenePreset) -> tuple[str, str]:
 
 def capture_summary(captured: CapturedFrom) -> str:
     """Return in one sentence where a captured scene comes from."""
-    unseen = f"{captured.unseen_share:.1%} of what the camera reaches was not seen" if captured.unseen_share else "all was seen"
+    unseen = f"{captured.unseen_share:.1%} of the camera's range was not captured" if captured.unseen_share else "fully captured"
     return f"from {captured.camera} at {captured.captured_at}; {unseen}; no ground truth"
 
 

@@ -1,4 +1,4 @@
-"""The scene clock. Its time follows the wall clock in real-time mode and advances only by sleeping otherwise."""
+"""The scene clock. It follows the wall clock in real-time mode; otherwise it advances only when ``sleep`` is called."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MIN_SPEED, MAX_SPEED = 0.1, 10.0
 """Minimum and maximum speed of scene time, relative to the time of the motors."""
 
 MAX_TIME_S = 86_400.0
-"""The latest scene time to seek to, in seconds (one day)."""
+"""The latest scene time to which a clock can be set, in seconds (one day)."""
 
 
 def check_time(time_s: float) -> None:
@@ -114,7 +114,7 @@ class SceneClock:
             self._stop()
 
     def seek(self, time_s: float) -> None:
-        """Go to a scene time, earlier or later.
+        """Set the scene time, which may be earlier or later than the current one.
 
         Raises:
             InputError: The time is not between 0 s and one day.

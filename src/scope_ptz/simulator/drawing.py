@@ -1,4 +1,4 @@
-"""Draw moving actors into a picture. Layers of the static world are read only where an actor may be visible."""
+"""Draw moving actors into an image. Layers of the static world are read only where an actor may be visible."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Perspective, Projection, angle_between_deg, pan_tilt_deg
 from scope_ptz.geometry.sphere import camera_axes
-from scope_ptz.simulator.actors import TOLERANCE_M, TOLERANCE_SHARE, ActorInView
+from scope_ptz.simulator.actors import TOLERANCE_FRACTION, TOLERANCE_M, ActorInView
 from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.mapping.tiles import OUTLINE, Place, bounds
 from scope_ptz.simulator.models import ActorSheet, Sprite
 from scope_ptz.simulator.occlusion import outlined_depth_part
-from scope_ptz.simulator.sprites.choice import Aspect, Weighted, warp_matrix
+from scope_ptz.simulator.sprites.choice import Aspect, WeightedSprite, warp_matrix
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 LARGE_PX = 120_000
-"""For actors that cover more pixels than this, occlusion is computed at half the resolution."""
+"""For actors that cover more pixels than this, occlusion is computed at half resolution."""
 
 MIN_SHRINK = 0.75
 """A sprite is shrunk before sampling, to prevent aliasing, if the view's pixel density is below this fraction of the sprite's."""
@@ -34,14 +34,14 @@ _BEHIND = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class ActorPatch:
-    """An actor's contribution to a part of a picture: (h, w, 4) premultiplied colour."""
+    """An actor's contribution to a part of an image: (h, w, 4) premultiplied colour."""
 
     place: Place
     colour: NDArray[np.uint8]
 
-    def draw(self, picture: NDArray[np.uint8]) -> None:
-        """Blend the patch over an (H, W, 3) picture, in place."""
-        part = picture[self.place]
+    def draw(self, image: NDArray[np.uint8]) -> None:
+        """Blend the patch over an (H, W, 3) image, in place."""
+        part = image[self.place]
         through = cv2.cvtColor(cv2.bitwise_not(cv2.extractChannel(self.colour, 3)), cv2.COLOR_GRAY2RGB)
         cv2.multiply(part, through, dst=through, scale=1 / 255)
         cv2.add(through, cv2.cvtColor(self.colour, cv2.COLOR_RGBA2RGB), dst=through)
@@ -84,7 +84,7 @@ def _visible_masks(
 ) -> list[Mask]:
     """Return, for each layer, a mask of the pixels in a part of a view where the actor or its shadow is not hidden.
 
-    Large parts are computed at half the resolution, so occlusion edges on an actor that fills the view are accurate to two pixels.
+    Large parts are computed at half resolution, so occlusion edges on an actor that fills the view are accurate to two pixels.
     """
     height, width = alpha.shape
     if isinstance(projection, Perspective) and height * width > LARGE_PX and not (projection.width % 2 or projection.height % 2):
@@ -101,7 +101,7 @@ def _visible_masks(
     grid = Grid(projection, step_px(projection), part)
     rays = grid.directions()
     static_m = outlined_depth_part(viewpoint, projection, part, alpha)
-    cv2.addWeighted(static_m, 1 + TOLERANCE_SHARE, static_m, 0, TOLERANCE_M, dst=static_m)
+    cv2.addWeighted(static_m, 1 + TOLERANCE_FRACTION, static_m, 0, TOLERANCE_M, dst=static_m)
     on_ground = _visible_ground(grid.to_pixels(rays[..., 2]), float(actor.offset_m[2]), static_m)
     return [layer.visible_mask(viewpoint, grid.to_pixels(layer.positions(rays)), static_m, on_ground) for layer in layers]
 
@@ -110,7 +110,7 @@ def _visible_ground(drop: NDArray[np.float32], height_m: float, static_m: NDArra
     """Return a mask of the pixels where the static world is not nearer than the ground on which the actor's shadow falls.
 
     Args:
-        drop: (h, w) vertical parts of the unit vectors through the pixels.
+        drop: (h, w) vertical components of the unit vectors through the pixels.
         height_m: Height of the ground relative to the optical centre.
         static_m: (h, w) distances of the static world.
     """
@@ -128,7 +128,7 @@ class _Layer:
         sprite: The sprite.
         weight: Its weight in the blend of sprites, 0 to 1.
         scale: How many times larger the actor appears than in the sprite.
-        density: The sprite's pixels per radian as it is drawn.
+        density: The sprite's pixels per radian at the size at which it is drawn.
         to_sprite: (3, 3) homography from directions to pixels of the sprite.
         box: Rectangle (left, top, width, height) of the sprite's pixels that are not empty.
     """
@@ -142,7 +142,7 @@ class _Layer:
     box: tuple[int, int, int, int]
 
     @classmethod
-    def of(cls, viewpoint: Viewpoint, actor: ActorInView, weighted: Weighted, now: Aspect) -> _Layer:
+    def of(cls, viewpoint: Viewpoint, actor: ActorInView, weighted: WeightedSprite, now: Aspect) -> _Layer:
         sprite, then_m, now_m = weighted.sprite, weighted.aspect.offset_m, actor.offset_m
         scale = float(np.linalg.norm(then_m) / np.linalg.norm(now_m))
         focal_px = sprite.width / 2 / math.tan(math.radians(sprite.hfov_deg / 2))

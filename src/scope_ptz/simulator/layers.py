@@ -1,6 +1,6 @@
 """Read and write the picture files of a pack: lossy colour, exact instance numbers and distances.
 
-The file suffix determines the coding.
+The file suffix determines the encoding.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def decode_numbers(coded: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.
 
 
 def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:
-    """Write (H, W) numbers exactly, as 16-bit PNG or as lossless WebP with the high byte in red and the low one in green."""
+    """Write (H, W) numbers exactly, as 16-bit PNG, or as lossless WebP with the high byte in red and the low byte in green."""
     match path.suffix:
         case ".png":
             Image.fromarray(numbers).save(path, "PNG", optimize=True)

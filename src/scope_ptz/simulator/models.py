@@ -107,15 +107,15 @@ class CapturedFrom(Model):
 
     Attributes:
         camera: Name of the camera.
-        captured_at: When the sweep began, as an ISO 8601 time in UTC.
-        pan_range_deg: Limits of pan of the part that was captured.
-        tilt_range_deg: Limits of tilt of the part that was captured.
+        captured_at: The time at which the capture began (ISO 8601, UTC).
+        pan_range_deg: Pan limits of the captured part.
+        tilt_range_deg: Tilt limits of the captured part.
         zoom_range: Limits of the magnification.
         pan_endless: Whether pan has no stops.
         zoom_table: Rows of magnification and horizontal field of view in degrees, widest first.
         frame_width: Width of the camera's frames in pixels.
         frame_height: Height of the camera's frames in pixels.
-        unseen_share: Share of the reachable part of the sphere that no frame showed, or that rules hide.
+        unseen_share: Fraction of the reachable part of the sphere that no frame shows, or that the rules of the site hide.
     """
 
     camera: str
@@ -202,7 +202,7 @@ class Depth(Layer):
 
 
 MIN_RELATIVE_DENSITY = 0.9
-"""A tile suits a view if its pixel density is at least this fraction of the view's."""
+"""A tile is sharp enough for a view if its pixel density is at least this fraction of the view's."""
 
 
 class Tile(Model):

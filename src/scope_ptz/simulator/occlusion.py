@@ -14,7 +14,7 @@ from scope_ptz.simulator.reproject import id_view, view_map
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 SEARCH_RADII_TEXELS = (1.0, 2.0)
-"""Search radii around a pixel for a distance measured on the correct instance, in texels of the depth layer."""
+"""Radii around a pixel, in texels of the depth layer, at which a distance measured on the correct instance is searched for."""
 
 _NEIGHBOURS = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
 """The eight neighbouring pixels, in the order in which they are tried."""
@@ -76,7 +76,7 @@ def _sharpened_depth(
     metres: NDArray[np.float32] = np.take(
         viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST)
     )
-    viewpoint.owner_atlas.need(0)
+    viewpoint.owner_atlas.ensure(0)
     owners = cv2.remap(viewpoint.owner_atlas.sheet, where, None, cv2.INTER_NEAREST)
     same = owners == numbers
     wrong = ~same if needed is None else needed & ~same
@@ -86,20 +86,20 @@ def _sharpened_depth(
     # Flat indices, because NumPy reads and writes them faster than pairs.
     height, width = metres.shape
     texel_px = _texel_px(viewpoint, projection)
-    refined, found, owned = metres.copy().ravel(), same.ravel(), owners.ravel()
-    wanted, sources = numbers[wrong], metres.ravel()
+    refined, found, owner = metres.copy().ravel(), same.ravel(), owners.ravel()
+    expected, sources = numbers[wrong], metres.ravel()
     ys, xs = np.divmod(pixels, width)
     for reach in SEARCH_RADII_TEXELS:
         for dx, dy in _NEIGHBOURS:
             y = np.minimum(np.maximum(ys + round(dy * reach * texel_px), 0), height - 1)
             x = np.minimum(np.maximum(xs + round(dx * reach * texel_px), 0), width - 1)
             near = y * width + x
-            matches = found[near] & (owned[near] == wanted)
+            matches = found[near] & (owner[near] == expected)
             refined[pixels[matches]] = sources[near[matches]]
             others = np.flatnonzero(~matches)
             if not len(others):
                 return refined.reshape(height, width)
-            pixels, ys, xs, wanted = pixels[others], ys[others], xs[others], wanted[others]
+            pixels, ys, xs, expected = pixels[others], ys[others], xs[others], expected[others]
     return refined.reshape(height, width)
 
 

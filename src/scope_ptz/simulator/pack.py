@@ -95,7 +95,7 @@ class Scene:
 
     Attributes:
         variation: Number of the variation, None for the scene itself.
-        held: Objects that move in the scene but do not move in this variation.
+        held: Objects that move in the scene but stand still in this variation.
 
     Args:
         folder: The scene folder.
@@ -215,4 +215,4 @@ def _check_references(file: SceneFile, folder: Path) -> None:
     if faults:
         raise PackError(f"{folder / 'scene.json'}: {faults[0]}, which does not exist. Restore the pack or build the scene again.")
     if len(ids) != len(objects) or len(numbers) != len(objects):
-        raise PackError(f"{folder / 'scene.json'} assigns an id or a number twice. Restore it or build the scene again.")
+        raise PackError(f"{folder / 'scene.json'} uses an id or a number more than once. Restore it or build the scene again.")

@@ -63,7 +63,7 @@ class Prefetch:
         return self.done
 
     def cancel(self) -> None:
-        """Stop after the picture that is being read."""
+        """Stop as soon as the picture that is being read is finished."""
         self._cancelled.set()
 
     def _stop_and_wait(self) -> None:
@@ -88,7 +88,7 @@ class Prefetch:
 
     def _panorama(self) -> None:
         atlas = self._viewpoint.colour_atlas
-        atlas.need_scales(0, sorted({suitable_scale(atlas, panorama_density(atlas), d) for d in self._densities}))
+        atlas.ensure_scales(0, sorted({suitable_scale(atlas, panorama_density(atlas), d) for d in self._densities}))
 
     def _occlusion(self) -> None:
         """Read the layers that determine occlusion, and the instance numbers of the tiles around the actors' paths."""
@@ -96,7 +96,7 @@ class Prefetch:
         if not viewpoint.manifest.actors:
             return
         for atlas in (viewpoint.id_atlas, viewpoint.depth_atlas, viewpoint.owner_atlas):
-            atlas.need(0)
+            atlas.ensure(0)
         sprites = {
             (s.pan_deg, s.tilt_deg): Perspective(
                 s.pan_deg,
@@ -110,7 +110,7 @@ class Prefetch:
         }.values()
         for index in sorted({showing.tile for sprite in sprites for showing in viewpoint.tiles.in_view(sprite)}):
             if not self._cancelled.is_set():
-                viewpoint.id_atlas.need(1 + index)
+                viewpoint.id_atlas.ensure(1 + index)
                 time.sleep(PAUSE_S)
 
     def _sprites(self) -> None:
@@ -125,5 +125,5 @@ class Prefetch:
         for index in sorted(range(len(views)), key=lambda i: views[i].pan_deg):
             if self._cancelled.is_set():
                 return
-            atlas.need_scales(1 + index, sorted({suitable_scale(atlas, views[index].focal_px, d) for d in needed}))
+            atlas.ensure_scales(1 + index, sorted({suitable_scale(atlas, views[index].focal_px, d) for d in needed}))
             time.sleep(PAUSE_S)

@@ -22,10 +22,10 @@ def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint
     """Return the static world in a view as (H, W, 3) RGB."""
     atlas = viewpoint.colour_atlas
     with atlas.reading():
-        return sampled(atlas, view_map(viewpoint, atlas, projection))
+        return sample_colours(atlas, view_map(viewpoint, atlas, projection))
 
 
-def sampled(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
+def sample_colours(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
     """Return the (H, W, 3) colours at (H, W, 2) positions on an atlas's sheet."""
     return np.asarray(cv2.remap(atlas.sheet, positions, None, cv2.INTER_LINEAR))
 
@@ -60,8 +60,8 @@ def distances_m(viewpoint: Viewpoint, directions: NDArray[np.float64]) -> tuple[
     Returns:
         (n,) metres, infinite for the sky, and (n,) instance numbers.
     """
-    viewpoint.owner_atlas.need(0)
-    slot, band = viewpoint.depth_atlas.need(0), viewpoint.manifest.band
+    viewpoint.owner_atlas.ensure(0)
+    slot, band = viewpoint.depth_atlas.ensure(0), viewpoint.manifest.band
     pan_deg, tilt_deg = pan_tilt_deg(directions)
     down = (band.top_tilt_deg - tilt_deg) / (band.top_tilt_deg - band.bottom_tilt_deg)
     columns = slot.x + np.floor((pan_deg + 180.0) / 360.0 * slot.width).astype(int) % slot.width

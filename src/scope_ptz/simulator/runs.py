@@ -1,4 +1,4 @@
-"""Measurements of instances in a picture, computed from runs: consecutive pixels of a row with the same instance number."""
+"""Measurements of instances in an image, computed from runs: consecutive pixels of a row with the same instance number."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Measures:
-    """Measurements of every instance in a picture, in ascending order of instance number.
+    """Measurements of every instance in an image, in ascending order of instance number.
 
     ``pixels`` and ``solid_angle_sr`` are (n,). ``box`` (n, 4), ``middle`` (n, 2) and ``point`` (n, 2) are normalised. ``middle``
     is the centroid, which may lie on another object; ``point`` lies on the instance itself.
@@ -31,7 +31,7 @@ class Measures:
 
 
 def measure(numbers: NDArray[np.uint16], projection: Projection) -> Measures:
-    """Measure every instance in an (H, W) picture of instance numbers."""
+    """Measure every instance in an (H, W) image of instance numbers."""
     runs = _Runs(numbers)
     height, width = numbers.shape
     is_full_circle = isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0 - 1e-9

@@ -43,7 +43,7 @@ class StillViews:
                 return picture
         return picture.copy()
 
-    def keeps(self, projection: Projection) -> bool:
+    def is_cached(self, projection: Projection) -> bool:
         """Return whether the picture of a view is cached."""
         return self._find(projection) is not None
 

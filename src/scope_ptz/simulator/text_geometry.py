@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection, angle_between_deg
-from scope_ptz.simulator.actors import TOLERANCE_M, TOLERANCE_SHARE
+from scope_ptz.simulator.actors import TOLERANCE_FRACTION, TOLERANCE_M
 from scope_ptz.simulator.models import SceneText
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import distances_m
@@ -52,7 +52,7 @@ class TextGeometry:
         self._owners = np.zeros((number, CELLS), dtype=np.uint16)
 
     def may_show(self, projection: Projection) -> Ints:
-        """Return the indices of the texts whose corners do not all lie beyond one edge of a picture."""
+        """Return the indices of the texts whose corners do not all lie beyond one edge of an image."""
         points = projection.points(self._corners)
         with np.errstate(invalid="ignore"):
             beyond = np.any(np.all(points < 0, axis=1) | np.all(points > 1, axis=1), axis=-1)
@@ -60,7 +60,7 @@ class TextGeometry:
         return np.flatnonzero(~beyond & ~behind)
 
     def unhidden(self, viewpoint: Viewpoint, texts: Ints, cells: Ints, shown: NDArray[np.uint16]) -> Flags:
-        """Return which cells are not hidden.
+        """Return a mask of the cells that are not hidden.
 
         Instance numbers show whether another object hides a text. Distances show whether a part of the same object hides it, such
         as a shop's awning in front of the name on its door.
@@ -82,7 +82,7 @@ class TextGeometry:
             return
         rays = self.rays[new].reshape(-1, 3)
         static_m, owners = distances_m(viewpoint, rays)
-        nearer = static_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M < np.linalg.norm(rays, axis=-1)
+        nearer = static_m * (1 + TOLERANCE_FRACTION) + TOLERANCE_M < np.linalg.norm(rays, axis=-1)
         self._nearer[new], self._owners[new] = nearer.reshape(-1, CELLS), owners.reshape(-1, CELLS)
         self._measured[new] = True
 

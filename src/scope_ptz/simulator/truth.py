@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.errors import PackError
 from scope_ptz.geometry import Equirectangular, Projection, direction, pan_tilt_deg
-from scope_ptz.simulator.actors import Appearance, composited, extent
+from scope_ptz.simulator.actors import Appearance, actor_extent, composited_appearances
 from scope_ptz.simulator.models import Extent, SceneActor, SceneInstance, SceneText
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.runs import measure
@@ -22,7 +22,7 @@ from scope_ptz.simulator.views import instance_numbers
 MIN_VISIBLE_PX = 100
 """A visible instance covers at least this many pixels of the frame. A person can name an object of about 10 x 10 pixels."""
 
-MIN_VISIBLE_SHARE = 0.3
+MIN_VISIBLE_FRACTION = 0.3
 """At least this fraction of a visible instance's silhouette is neither hidden nor cut off by the frame."""
 
 MIN_CAP_HEIGHT_PX = 14.0
@@ -31,10 +31,10 @@ MIN_CAP_HEIGHT_PX = 14.0
 MAX_READING_ANGLE_DEG = 55.0
 """The line of sight to a legible text is at most this many degrees from the normal of the text."""
 
-MIN_UNHIDDEN_SHARE = 0.9
+MIN_UNHIDDEN_FRACTION = 0.9
 """At least this fraction of a legible text is inside the frame and not hidden."""
 
-UNOCCLUDED_SHARE = 0.95
+UNOCCLUDED_FRACTION = 0.95
 """An instance is not occluded if at least this fraction of its silhouette inside the frame is visible.
 
 The tolerance is needed because boundaries are not measured exactly.
@@ -51,19 +51,19 @@ class Sighting:
     Attributes:
         box: Encloses the instance's own pixels.
         point: A point on one of these pixels, near their centre.
-        share: Visible solid angle divided by the solid angle of the whole silhouette.
+        visible_fraction: Visible solid angle divided by the solid angle of the whole silhouette.
         pan_deg: Pan of the centre of the visible part.
         tilt_deg: Tilt of the centre of the visible part.
         distance_m: Distance to the nearest point.
-        cut: The instance reaches beyond the frame.
-        occluded: Something hides part of the instance.
+        cut: Whether the instance extends beyond the frame.
+        occluded: Whether another object hides part of the instance.
     """
 
     instance: SceneInstance | SceneActor
     box: BoxTuple
     point: tuple[float, float]
     pixels: int
-    share: float
+    visible_fraction: float
     pan_deg: float
     tilt_deg: float
     distance_m: float
@@ -72,7 +72,7 @@ class Sighting:
 
     @property
     def visible(self) -> bool:
-        return self.pixels >= MIN_VISIBLE_PX and self.share >= MIN_VISIBLE_SHARE
+        return self.pixels >= MIN_VISIBLE_PX and self.visible_fraction >= MIN_VISIBLE_FRACTION
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,14 +83,14 @@ class TextSighting:
     box: BoxTuple
     cap_height_px: float
     angle_deg: float
-    unhidden_share: float
+    unhidden_fraction: float
 
     @property
     def legible(self) -> bool:
         return (
             self.cap_height_px >= MIN_CAP_HEIGHT_PX
             and self.angle_deg <= MAX_READING_ANGLE_DEG
-            and self.unhidden_share >= MIN_UNHIDDEN_SHARE
+            and self.unhidden_fraction >= MIN_UNHIDDEN_FRACTION
         )
 
 
@@ -111,10 +111,10 @@ class ViewTruth:
 
 
 def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
-    """Return the ground truth of a picture taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
+    """Return the ground truth of an image taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
     opened = scene.viewpoint(viewpoint)
     numbers = instance_numbers(scene, viewpoint, projection, time_s)
-    actors = {a.actor.number: a for a in composited(scene, opened, time_s)}
+    actors = {a.actor.number: a for a in composited_appearances(scene, opened, time_s)}
     return ViewTruth(_sightings(scene, opened, actors, projection, numbers), _texts(scene, opened, projection, numbers))
 
 
@@ -130,43 +130,42 @@ def _sightings(
                 f"A pixel of scene '{scene.name}' shows instance {number}, which scene.json does not contain. Bake the scene again."
             )
         if number in actors:
-            extents[k] = extent(viewpoint, actors[number])
-        elif (
-            number in viewpoint.extents
-        ):  # an instance without an extent covers less than one pixel of the bake and is never visible
+            extents[k] = actor_extent(viewpoint, actors[number])
+        # An instance without an extent covers less than one pixel of the bake, so it is never visible.
+        elif number in viewpoint.extents:
             extents[k] = viewpoint.extents[number]
     found = []
-    for (k, extent_), inside in zip(extents.items(), _shares_inside(list(extents.values()), projection), strict=True):
-        share = min(1.0, float(seen.solid_angle_sr[k]) / max(extent_.solid_angle_sr, 1e-12))
+    for (k, extent), inside in zip(extents.items(), _fractions_inside(list(extents.values()), projection), strict=True):
+        visible_fraction = min(1.0, float(seen.solid_angle_sr[k]) / max(extent.solid_angle_sr, 1e-12))
         found.append(
             Sighting(
-                instance=scene.by_number[extent_.number],
+                instance=scene.by_number[extent.number],
                 box=_box(seen.box[k]),
                 point=(float(seen.point[k, 0]), float(seen.point[k, 1])),
                 pixels=int(seen.pixels[k]),
-                share=share,
+                visible_fraction=visible_fraction,
                 pan_deg=float(pan[k]),
                 tilt_deg=float(tilt[k]),
-                distance_m=extent_.distance_m,
+                distance_m=extent.distance_m,
                 cut=inside < 1.0,
-                occluded=share < UNOCCLUDED_SHARE * inside,
+                occluded=visible_fraction < UNOCCLUDED_FRACTION * inside,
             )
         )
     return tuple(sorted(found, key=lambda s: (s.distance_m, s.instance.number)))
 
 
-def _shares_inside(extents: Sequence[Extent], projection: Projection) -> list[float]:
-    """Return the fraction of each outline's area that lies inside the frame, 1 if nothing is cut off."""
+def _fractions_inside(extents: Sequence[Extent], projection: Projection) -> list[float]:
+    """Return the fraction of each outline's area that lies inside the frame: 1 if nothing is cut off."""
     hulls = [np.array(extent.hull, dtype=np.float64).reshape(-1, 2) for extent in extents]
     if not hulls:
         return []
     corners = np.concatenate(hulls)
     points = projection.points(direction(corners[:, 0], corners[:, 1]))
     ends = np.cumsum([len(hull) for hull in hulls])[:-1]
-    return [_share_inside(outline, projection) for outline in np.split(points, ends)]
+    return [_fraction_inside(outline, projection) for outline in np.split(points, ends)]
 
 
-def _share_inside(points: NDArray[np.float64], projection: Projection) -> float:
+def _fraction_inside(points: NDArray[np.float64], projection: Projection) -> float:
     if isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0:
         # A full panorama cuts off nothing at its left and right edges.
         return float(np.mean((points[:, 1] >= 0) & (points[:, 1] <= 1))) if len(points) else 1.0
@@ -176,8 +175,8 @@ def _share_inside(points: NDArray[np.float64], projection: Projection) -> float:
     outline = cv2.convexHull(points.astype(np.float32))
     frame = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32)
     whole = abs(float(cv2.contourArea(outline)))
-    shared, _ = cv2.intersectConvexConvex(outline, frame)
-    return min(1.0 - 1e-9, float(shared) / whole) if whole > 0 else 1.0 - 1e-9
+    area_inside, _ = cv2.intersectConvexConvex(outline, frame)
+    return min(1.0 - 1e-9, float(area_inside) / whole) if whole > 0 else 1.0 - 1e-9
 
 
 def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> tuple[TextSighting, ...]:
@@ -210,7 +209,7 @@ def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: 
                 box=_box(boxes[k]),
                 cap_height_px=0.0 if np.isnan(cap_height_px) else cap_height_px,
                 angle_deg=geometry.angle_deg[text],
-                unhidden_share=float(count[k] / CELLS),
+                unhidden_fraction=float(count[k] / CELLS),
             )
         )
     return tuple(found)

@@ -18,17 +18,17 @@ import numpy as np
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction
 from scope_ptz.simulator.models import Attribute, Extent, SceneActor, SceneFile, SceneInstance, ScenePreset, SceneViewpoint
 
-MAX_START_S = 120.0
+MAX_START_S = 120.0  # latest scene time at which a variation starts, in seconds
 CLEARANCE_M = 3.0
 """Minimum distance in metres between a held object and the path of a moving one."""
 
-_MOMENTS = 16
-_LONGER = (1.0, 1.5, 2.0)
+_HOLD_ATTEMPTS = 16  # random positions that are tried until a held object is clear of all paths
+_PERIOD_FACTORS = (1.0, 1.5, 2.0)
 _ZOOMS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.6)
-_CLOSE_ZOOM, _FAR_TILT_DEG, _LOW_TILT_DEG = 2.0, -7.5, -17.5
-_POSES = 14
+_CLOSE_ZOOM, _FAR_TILT_DEG, _LOW_TILT_DEG = 2.0, -7.5, -17.5  # thresholds for the names of presets
+_POSES = 14  # random poses from which each new preset is chosen
 _WIDTH, _HEIGHT = 1280, 720
-_CLEAR_PX = 900.0
+_MIN_OBJECT_PX = 900.0  # minimum area in pixels of an object that counts for a preset
 _DIRECTIONS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
 
 
@@ -82,13 +82,13 @@ def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
 
 
 def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[HeldObject]]:
-    """Decide for every group whether it is delayed, held at a point on its path, or removed."""
+    """Delay each group of companions, hold it at a point on its path, or remove it, at random."""
     moving, held = list[SceneActor](), list[HeldObject]()
     for group in companions(actors):
         treatment = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
         if treatment == "held":
             others = [a for a in actors if a not in group]
-            placements = (_hold(group, rng) for _ in range(_MOMENTS))
+            placements = (_hold(group, rng) for _ in range(_HOLD_ATTEMPTS))
             accepted = next((s for s in placements if all(_clear(h, others) for h in s)), None)
             if accepted is not None:
                 held += accepted
@@ -103,7 +103,7 @@ def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list
 def _period(actor: SceneActor, rng: random.Random) -> float:
     """Return a period at least as long as the original one. The period of actors on a closed circuit is unchanged."""
     rests_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
-    longer = rng.choice(_LONGER)
+    longer = rng.choice(_PERIOD_FACTORS)
     return actor.period_s if rests_s < 0.1 else round(actor.period_s * longer, 3)
 
 
@@ -124,7 +124,7 @@ def _place(held: HeldObject) -> tuple[float, float, float, float]:
 
 
 def _clear(held: HeldObject, others: Sequence[SceneActor]) -> bool:
-    """Return whether the paths of all moving objects are far enough from a held object."""
+    """Return whether a held object is far enough from the paths of all other objects."""
     x, y, _, _ = _place(held)
     reach = CLEARANCE_M + max(held.actor.size_m[:2]) / 2
     return all(_distance(x, y, one, two) > reach for other in others for one, two in pairwise(other.waypoints))
@@ -139,7 +139,7 @@ def _distance(x: float, y: float, one: Sequence[float], two: Sequence[float]) ->
 
 
 def _as_instance(held: HeldObject) -> SceneInstance:
-    """Return a held object as an instance of the scene. Its ``state`` is left out, because its sprite still shows it in motion."""
+    """Return a held object as an instance of the scene, without its ``state``, because its sprite still shows it in motion."""
     actor, (x, y, z, heading) = held.actor, _place(held)
     width, length, height = actor.size_m
     c, s = abs(math.cos(heading)), abs(math.sin(heading))
@@ -188,7 +188,7 @@ def _is_apart(one: ScenePreset, two: ScenePreset) -> bool:
 def _objects_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
     """Count the sufficiently large outlines whose centre is well inside the view. Occlusion is ignored."""
     view = Perspective(preset.pan_deg, preset.tilt_deg, AXIS_M5075_G.hfov_deg(preset.zoom), _WIDTH, _HEIGHT)
-    large = [e for e in extents if e.hull and e.solid_angle_sr * view.focal_px**2 > _CLEAR_PX]
+    large = [e for e in extents if e.hull and e.solid_angle_sr * view.focal_px**2 > _MIN_OBJECT_PX]
     if not large:
         return 0
     middles = np.array([np.mean(direction(*np.array(e.hull, dtype=np.float64).T), axis=0) for e in large])

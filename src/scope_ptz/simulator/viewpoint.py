@@ -203,7 +203,7 @@ def _detail_outlines(scene: SceneFile, manifest: Manifest) -> list[NDArray[np.fl
 
 def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
     """Return, for each texel of the depth layer, the instance on which its distance was measured."""
-    slot = ids.need(0)
+    slot = ids.ensure(0)
     rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
     columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
     return np.ascontiguousarray(ids.sheet[rows[:, None], columns])

@@ -8,17 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.actors import composited, composited_actors, draw_numbers, place_of
+from scope_ptz.simulator.actors import composited_actors, composited_appearances, draw_numbers, place_of
 from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import colour_view, id_view, sampled, view_map
+from scope_ptz.simulator.reproject import colour_view, id_view, sample_colours, view_map
 
 RENDERING_VERSION = 2
 """Version of the rendering, which traces record. It increases when the same pack, pose and time give different pixels.
 
 - 1: tiles end in hard edges; actors are shown by the sprite nearest on their path.
-- 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, which are warped and faded.
+- 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, which are warped and blended.
 
 The ground truth of a view is the same in both.
 """
@@ -29,14 +29,14 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
     opened = scene.viewpoint(viewpoint)
     actors = composited_actors(scene, opened, time_s)
     atlas, still = opened.colour_atlas, opened.still_views
-    if not (opened.id_atlas.in_use and atlas.in_use) or still.keeps(projection):
+    if not (opened.id_atlas.in_use and atlas.in_use) or still.is_cached(projection):
         # Render actors first: decoding instance numbers needs the most memory, and the colour is then not in memory yet.
         patches = [actor_patch(opened, projection, actor) for actor in actors]
         image = still.get(projection, lambda: colour_view(opened, projection))
     else:
         # Another thread samples the static world while this one renders the actors. OpenCV releases the GIL.
         with atlas.reading(), ThreadPoolExecutor(1) as pool:
-            static = pool.submit(sampled, atlas, view_map(opened, atlas, projection))
+            static = pool.submit(sample_colours, atlas, view_map(opened, atlas, projection))
             patches = [actor_patch(opened, projection, actor) for actor in actors]
             image = still.get(projection, static.result)
     for patch in patches:
@@ -49,7 +49,7 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     """Return the (H, W) numbers of the instances and actors that the pixels of ``picture`` show; 0 for none."""
     opened = scene.viewpoint(viewpoint)
     numbers = id_view(opened, projection)
-    places = [(actor, place_of(actor, projection)) for actor in composited(scene, opened, time_s)]
+    places = [(actor, place_of(actor, projection)) for actor in composited_appearances(scene, opened, time_s)]
     # Read the distances for all actors first, because drawing changes the instance numbers that determine them.
     depths = [(actor, outlined_depth_view(opened, projection, numbers, place)) for actor, place in places if place is not None]
     for actor, depth_m in depths:

@@ -21,7 +21,7 @@ from scope_ptz.bench.judging.human_labels import add_label, labels_file, read_la
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement, Label
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.cli.bench.label import sampled
+from scope_ptz.cli.bench.label import sample_trials
 from scope_ptz.errors import InputError
 from tests.bench.engine.making import many
 from tests.cli.conftest import Scope
@@ -196,7 +196,10 @@ def test_labels_are_kept_with_reused_runs(scope: Scope, tmp_path: Path) -> None:
         broken = next(trial for trial in first.trials if trial.headline == "infrastructure")
         kept = next(trial for trial in first.trials if trial.headline == "correct")
         # What infrastructure broke is made again: it is shown to nobody, and a label of it is of another run.
-        assert broken.sample not in {trial.sample for trial in sampled(first, None, 1)} and len(sampled(first, None, 1)) == 10
+        assert (
+            broken.sample not in {trial.sample for trial in sample_trials(first, None, 1)}
+            and len(sample_trials(first, None, 1)) == 10
+        )
         for sample, verdict in ((kept.sample, "correct"), (kept.sample, "unclear"), (broken.sample, "incorrect")):
             mode = "scope" if verdict == "incorrect" else None
             add_label(labels_file(old), Label.model_validate({"by": "ann", "verdict": verdict, "error_mode": mode}), sample)

@@ -79,7 +79,7 @@ def test_a_sweep_reports_unavailable_servers(scope: Scope, tmp_path: Path) -> No
         AWAY,
     )
     single = scope("bench", "run", "--pair", "qwen3-4b+moondream2", *where)
-    assert single.code == 1 and "1 run was broken by infrastructure; running the same command again repeats it." in single.err
+    assert single.code == 1 and "1 run failed because of infrastructure; running the same command again repeats it." in single.err
     done = scope("bench", "sweep", "--pairs", "qwen3-4b+moondream2", *where)
     assert done.code == 1
     assert "1 of 1 run broken: the planner's server failed" in done.err and AWAY in done.err

@@ -64,17 +64,17 @@ class RemoteCamera(Camera):
 
     async def move(self, pose: Pose) -> Arrival:
         body = {"pan_deg": float(pose.pan_deg), "tilt_deg": float(pose.tilt_deg), "zoom": float(pose.zoom)}
-        return _arrival(await self._connection.ask("POST", "~/move", body, long=True))
+        return _arrival(await self._connection.ask("POST", "~/move", body, no_timeout=True))
 
     async def presets(self) -> list[PresetInfo]:
         presets = await self._connection.ask("GET", "~/presets")
         return [PresetInfo(each["name"], each["description"]) for each in presets]
 
     async def go_to_preset(self, name: str) -> Arrival:
-        return _arrival(await self._connection.ask("POST", f"~/presets/{quote(name, safe='')}/go", long=True))
+        return _arrival(await self._connection.ask("POST", f"~/presets/{quote(name, safe='')}/go", no_timeout=True))
 
     async def go_home(self) -> Arrival:
-        return _arrival(await self._connection.ask("POST", "~/home", long=True))
+        return _arrival(await self._connection.ask("POST", "~/home", no_timeout=True))
 
     async def frame(self) -> Frame:
         data, facts = await self._connection.picture("~/frame?format=png")

@@ -25,10 +25,10 @@ from scope_ptz.errors import (
 from scope_ptz.settings import load_settings
 
 TIMEOUT = httpx2.Timeout(30.0, connect=10.0)
-LONG_TIMEOUT = httpx2.Timeout(None, connect=10.0)
-"""No timeout, for instructions and tools of any duration."""
+NO_TIMEOUT = httpx2.Timeout(None, connect=10.0)
+"""Timeouts of requests that carry out instructions and tools, which may take any time."""
 
-MAX_REPLY_BYTES = 64_000_000
+MAX_REPLY_BYTES = 64_000_000  # longer replies are rejected
 
 _ERRORS: Mapping[str, type[ScopeError]] = {
     "not_possible": InputError,
@@ -51,7 +51,7 @@ class RemoteNameError(UnknownNameError):
 
 
 class Connection:
-    """Requests about one camera of one server. It follows no redirects and uses no proxy.
+    """Sends requests about one camera to its server. It follows no redirects and uses no proxy.
 
     Args:
         address: The address of the camera, such as ``http://host:8000/yard-gate``.
@@ -87,20 +87,20 @@ class Connection:
         """Close the connections."""
         await self._client.aclose()
 
-    async def ask(self, method: str, path: str, body: Mapping[str, Any] | None = None, *, long: bool = False) -> Any:
+    async def ask(self, method: str, path: str, body: Mapping[str, Any] | None = None, *, no_timeout: bool = False) -> Any:
         """Send a request and return the JSON of its reply; None for an empty one.
 
         Args:
             method: The HTTP method.
             path: The path below ``/api/v1``. A leading ``~`` stands for the path of the camera.
             body: The body, which is sent as JSON.
-            long: Whether to wait for the reply without a timeout.
+            no_timeout: Whether to wait for the reply indefinitely.
 
         Raises:
             ScopeError: The server replied with an error. Its class is that of the same error in a local session.
             CameraError: The server cannot be reached, or its reply is invalid.
         """
-        response = await self._send(method, path, body, long=long)
+        response = await self._send(method, path, body, no_timeout=no_timeout)
         if not response.content:
             return None
         try:
@@ -129,7 +129,7 @@ class Connection:
         return response.content
 
     async def events(self, run: str) -> AsyncIterator[bytes]:
-        """Yield the records of a run as JSON as they arrive. A lost connection is re-established.
+        """Yield the records of a run as JSON, as they arrive. If the connection is lost, reconnect.
 
         Raises:
             CameraError: The connection is lost and cannot be re-established.
@@ -154,8 +154,8 @@ class Connection:
             else:
                 return
 
-    async def _send(self, method: str, path: str, body: Mapping[str, Any] | None, *, long: bool = False) -> httpx2.Response:
-        timeout = LONG_TIMEOUT if long else TIMEOUT
+    async def _send(self, method: str, path: str, body: Mapping[str, Any] | None, *, no_timeout: bool = False) -> httpx2.Response:
+        timeout = NO_TIMEOUT if no_timeout else TIMEOUT
         try:
             response = await self._client.request(method, self._url(path), json=body, timeout=timeout)
         except httpx2.HTTPError as error:
@@ -188,4 +188,4 @@ class Connection:
         )
 
     def _not_a_scope_server(self) -> CameraError:
-        return CameraError(f"{self.server} answers, but not like a `scope serve` server. Check the address.")
+        return CameraError(f"{self.server} answers, but it is not a `scope serve` server. Check the address.")

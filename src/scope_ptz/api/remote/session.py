@@ -112,7 +112,7 @@ class RemoteSession(AsyncScope):
             started = await connection.ask("POST", "/conversations", {"camera": connection.camera, "pair": pair})
             self._conversation_id = started["id"]
         body = {"camera": connection.camera, "instruction": instruction, "conversation": self._conversation_id, "pair": pair}
-        return str((await connection.ask("POST", "/runs", body, long=True))["id"])
+        return str((await connection.ask("POST", "/runs", body, no_timeout=True))["id"])
 
     async def _follow(self, run_id: str, records: list[Any], listener: EventListener) -> None:
         """Append the records of a run to ``records`` until the run ends. Records that the list already contains are skipped."""
@@ -138,7 +138,7 @@ class RemoteSession(AsyncScope):
         TOOLS.parse_call(name, call_arguments)  # raise the same error for wrong arguments as a local session
         with self._working():
             try:
-                reply = await self._connection.ask("POST", f"~/tools/{name}{self._query()}", call_arguments, long=True)
+                reply = await self._connection.ask("POST", f"~/tools/{name}{self._query()}", call_arguments, no_timeout=True)
             except anyio.get_cancelled_exc_class():
                 with anyio.CancelScope(shield=True):
                     await self._connection.ask("POST", "~/stop")
@@ -230,5 +230,5 @@ def _check(options: SessionOptions) -> None:
     given += [name for name in ServedModels.__dataclass_fields__ if name != "pair" and getattr(models, name) is not None]
     if given:
         raise InputError(
-            f"The server of this camera decides on {', '.join(given)}. Remove the argument. Use pair= to select one of its pairs."
+            f"The server of this camera determines {', '.join(given)}. Remove the argument. Use pair= to select one of its pairs."
         )

@@ -30,7 +30,7 @@ def build(
     seed: Annotated[
         int, typer.Option(help="Seed for every random choice; a different seed gives a different dataset of the same scenes.")
     ] = 1,
-    share: Annotated[float, typer.Option(min=0.02, max=1.0, help="Share of the published number of tasks to make.")] = 1.0,
+    share: Annotated[float, typer.Option(min=0.02, max=1.0, help="Fraction of the published number of tasks to make.")] = 1.0,
     seeds: Annotated[
         list[int] | None,
         typer.Option("--seeds", min=1, help="Numbers of scene variations to use instead of the scenes, for example 7 8 9."),

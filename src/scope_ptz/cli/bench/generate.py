@@ -28,7 +28,9 @@ def generate(
     out: Annotated[Path, typer.Option("--out", help="Folder for drafts, accepted tasks and the review list.")],
     model: Annotated[str, typer.Option(help="Name of the model on its server (default: the only one it lists).")] = "",
     key_file: Annotated[Path | None, typer.Option("--key-file", help="File with the server's key.")] = None,
-    number: Annotated[int, typer.Option("--n", min=1, help="Number of tasks, in the proportions of the published ones.")] = 20,
+    number: Annotated[
+        int, typer.Option("--n", min=1, help="Number of tasks, distributed over the categories like the published ones.")
+    ] = 20,
     want: Annotated[
         list[str] | None, typer.Option("--want", metavar="CATEGORY=N", help="Number of tasks of a category, instead of --n.")
     ] = None,
@@ -42,7 +44,7 @@ def generate(
     ] = 20,
     temperature: Annotated[float, typer.Option(min=0, max=2, help="Sampling temperature of the model.")] = 0.8,
     seed: Annotated[int, typer.Option(help="Seed for the choice of views and examples, and for the model if it accepts one.")] = 1,
-    timeout: Annotated[float, typer.Option(min=0.1, help="Seconds for one request, retries included.")] = 300.0,
+    timeout: Annotated[float, typer.Option(min=0.1, help="Timeout of one request in seconds, including retries.")] = 300.0,
 ) -> int:
     """Draft tasks with a language model. Expected answers come from the ground truth; tasks that fail validation are dropped.
 

@@ -120,7 +120,7 @@ def agree(
     as_json: JsonOption = False,
     seed: Annotated[int, typer.Option(help="Seed for the bootstrap.")] = 1,
 ) -> None:
-    """Measure how far judges, their repeats, the checks, human labels and known faults agree.
+    """Measure the agreement between judges, repeated judgements, the executable checks, human labels and known faults.
 
     Prints raw agreement, Cohen's kappa (pairs), Fleiss' kappa (groups), and 95% intervals.
     """
@@ -158,7 +158,7 @@ def judge_gold(
     gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published file).")] = None,
     tasks: TasksOption = "core",
     passing: Annotated[int, typer.Option(min=0, help="Number of runs without faults to add.")] = 60,
-    repeats: Annotated[int, typer.Option(min=1, help="Number of judgements of each run.")] = 1,
+    repeats: Annotated[int, typer.Option(min=1, help="Number of judgements per run.")] = 1,
     limit: Annotated[int | None, typer.Option(min=1, help="Judge at most N gold runs, taken from all error modes in turn.")] = None,
     concurrency: Annotated[int, typer.Option(min=1, help="Number of judgements at a time.")] = DEFAULT_CONCURRENCY,
     as_json: JsonOption = False,

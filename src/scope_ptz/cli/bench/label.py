@@ -40,7 +40,9 @@ def label(
     sample: Annotated[int | None, typer.Option(min=1, help="Label only N runs, sampled at random.")] = None,
     seed: Annotated[int, typer.Option(help="Seed for the order in which runs are shown.")] = 1,
     pictures: Annotated[Path | None, typer.Option(help="Folder for the pictures of runs (default: a temporary one).")] = None,
-    compare: Annotated[bool, typer.Option("--compare", help="Only print how far the labels agree with checks and judges.")] = False,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="Only print the agreement of the labels with the checks and judges.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Label runs by hand: correct, incorrect with an error mode, or unclear. Labels are saved next to the log.
@@ -56,7 +58,7 @@ def label(
 
     if not by.strip():
         raise InputError("Give your name or initials with --by NAME.")
-    trials = sampled(read_evaluation(log), sample, seed)
+    trials = sample_trials(read_evaluation(log), sample, seed)
     if pictures is not None:
         _Labelling(log, by.strip(), trials, pictures).run()
         return
@@ -64,7 +66,7 @@ def label(
         _Labelling(log, by.strip(), trials, Path(folder)).run()
 
 
-def sampled(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial]:
+def sample_trials(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial]:
     """Return the runs to label, in random order.
 
     Runs that never started are left out. So are runs that failed for infrastructure reasons, because resuming the evaluation

@@ -99,7 +99,7 @@ class LiveProgress(EvaluationProgress):
         remaining = f", about {duration_text(left)} left" if left is not None else ""
         judged = f", {pending} not judged yet" if pending else ""
         total = self._plan.runs if self._plan is not None else len(rows)
-        return f"{len(rows)} of {total} runs: {correct} correct{judged}, {broken} broken by infrastructure{remaining}"
+        return f"{len(rows)} of {total} runs: {correct} correct{judged}, {broken} failed because of infrastructure{remaining}"
 
     def _render(self) -> RenderableType:
         rows = list(self._trials.values())

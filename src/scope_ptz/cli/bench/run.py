@@ -30,7 +30,9 @@ def run(
     Without options, the built-in planner and ground-truth perception run the published core tasks.
     This needs neither a server nor a key.
 
-    Running the same command again resumes an interrupted evaluation. The exit code is 1 if runs are missing or broken.
+    Running the same command again resumes an interrupted evaluation.
+
+    The exit code is 1 if runs are missing or failed because of infrastructure.
     """
     from rich.console import Console
 
@@ -104,7 +106,7 @@ def _report_failures(result: EvaluationResult) -> int:
     if broken or missing:
         parts = []
         if broken:
-            parts.append(f"{broken} {'run was' if broken == 1 else 'runs were'} broken by infrastructure")
+            parts.append(f"{broken} {'run' if broken == 1 else 'runs'} failed because of infrastructure")
         if missing:
             parts.append(f"{missing} {'run is' if missing == 1 else 'runs are'} missing")
         print_error(f"{' and '.join(parts)}; running the same command again repeats {'it' if broken + missing == 1 else 'them'}.")

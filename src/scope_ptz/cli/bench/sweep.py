@@ -80,7 +80,7 @@ def sweep(
 
 
 def pair_names(text: str | None, *, paper: bool) -> list[str]:
-    """Return the pairs to run, each once. Raises ``InputError`` for unknown pairs before any pair runs."""
+    """Return the pairs to run, without duplicates. Raises ``InputError`` for unknown pairs before any pair runs."""
     from scope_ptz.factory.model_resolver import read_pair
     from scope_ptz.registry import load_registry
     from scope_ptz.settings import load_settings
@@ -174,10 +174,10 @@ def _pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], width: int)
         table.add_column(column, justify="right", no_wrap=column in ("macro", "micro", "runs", "broken"))
     for name, evaluation in sorted(rows, key=lambda row: -(macro_accuracy(row[1].trials) or 0.0)):
         trials = evaluation.trials
-        shares = [macro_accuracy(trials), accuracy(trials)]
-        shares += [accuracy([t for t in trials if t.task.category == category]) for category in shown]
+        fractions = [macro_accuracy(trials), accuracy(trials)]
+        fractions += [accuracy([t for t in trials if t.task.category == category]) for category in shown]
         broken = sum(t.headline == "infrastructure" for t in trials)
-        cells = [f"{100 * share:.1f}" if share is not None else "-" for share in shares]
+        cells = [f"{100 * fraction:.1f}" if fraction is not None else "-" for fraction in fractions]
         table.add_row(name, *cells, f"{len(trials)} of {evaluation.wanted}", str(broken) if broken else "-")
     return table
 

@@ -30,7 +30,7 @@ DryRunOption = Annotated[bool, typer.Option("--dry-run", help="Print what the ca
 def snapshot(
     camera: CameraSpecArgument,
     out: Annotated[Path, typer.Option("--out", "-o", help="File to write (.jpg or .png).")] = Path("snapshot.jpg"),
-    full: Annotated[bool, typer.Option("--full", help="Sweep the camera's whole range into one panorama.")] = False,
+    full: Annotated[bool, typer.Option("--full", help="Sweep the camera's whole range, and save one panorama.")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Save a picture of the camera's current view, or a panorama of its whole range."""
@@ -60,7 +60,9 @@ def move(
     centre: Annotated[
         str | None,
         typer.Option(
-            "--centre", metavar="X,Y", help="Point of the picture to centre, as shares from left and top, such as 0.7,0.4."
+            "--centre",
+            metavar="X,Y",
+            help="Point of the picture to centre, as fractions of width and height from the top left, such as 0.7,0.4.",
         ),
     ] = None,
     zoom_by: Annotated[float, typer.Option("--zoom-by", help="Factor to zoom by, with --centre.")] = 1.0,
@@ -70,7 +72,7 @@ def move(
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Move the camera to a pose, by an angle, to a point of its picture, to a preset or home. Without options, print the pose."""
+    """Move the camera to a pose, by an angle, to a point in the picture, to a preset or home. Without options, print the pose."""
     numbers = [value for value in (pan, tilt, zoom, by_pan, by_tilt) if value is not None]
     if not all(math.isfinite(value) for value in numbers) or (zoom is not None and zoom <= 0):
         raise InputError("Angles must be finite numbers of degrees, and the magnification must be above 0.")
@@ -114,12 +116,12 @@ def move(
 
 def presets(
     camera: CameraSpecArgument,
-    save: Annotated[str | None, typer.Option("--save", metavar="NAME", help="Save the current pose.")] = None,
+    save: Annotated[str | None, typer.Option("--save", metavar="NAME", help="Save the current pose under this name.")] = None,
     remove: Annotated[str | None, typer.Option("--remove", metavar="NAME", help="Remove a preset.")] = None,
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """List the presets, save one or remove one."""
+    """List the presets, save the current pose as a preset, or remove a preset."""
     if save is not None and remove is not None:
         raise InputError("Give --save or --remove, not both.")
 

@@ -41,7 +41,7 @@ def capture(
     tilt: Annotated[
         str | None, typer.Option("--tilt", metavar="FROM:TO", help="Range of tilt in degrees (default: the whole range).")
     ] = None,
-    overlap: Annotated[float, typer.Option("--overlap", help="Fraction of a picture that the next one also shows.")] = 0.45,
+    overlap: Annotated[float, typer.Option("--overlap", help="Fraction of a picture that overlaps with the next one.")] = 0.45,
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -134,7 +134,7 @@ def _lines(scene: CapturedScene) -> list[str]:
         lines.append(f"Presets outside the captured range were skipped: {', '.join(scene.left_out_presets)}.")
     if scene.unseen_share:
         lines.append(
-            f"{scene.unseen_share:.1%} of the directions in reach of the camera were not captured. They are grey in the scene."
+            f"{scene.unseen_share:.1%} of the directions within the camera's range were not captured. They are grey in the scene."
         )
     lines.append("The scene has no ground truth. Choose a vision model or a text reader with --perception.")
     lines.append(

@@ -1,4 +1,4 @@
-"""``scope camera focus|iris``: the lens of a camera by hand."""
+"""``scope camera focus|iris``: adjust the lens of a camera by hand."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.base import Camera
     from scope_ptz.camera.lens import FocusAction, IrisAction, LensState
 
-Step = Annotated[float, typer.Option("--step", help="Length of a step, as a share of the range.")]
+Step = Annotated[float, typer.Option("--step", help="Size of a step, as a fraction of the range.")]
 
 
 def focus(

@@ -152,7 +152,7 @@ def _probe_lines(record: ProbeRecord) -> list[str]:
 
 def _calibration_lines(record: CalibrationRecord) -> list[str]:
     signs = [
-        f"{name}: {words[0] if scale > 0 else words[1]}, {abs(scale):.3f} degrees for each reported degree"
+        f"{name}: {words[0] if scale > 0 else words[1]}, {abs(scale):.3f} degrees per reported degree"
         for name, scale, words in (
             ("Pan", record.pan_scale, ("positive is right", "INVERTED, positive is left")),
             ("Tilt", record.tilt_scale, ("positive is up", "INVERTED, positive is down")),

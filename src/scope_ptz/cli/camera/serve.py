@@ -95,7 +95,7 @@ def serve(
         port=port,
         rtsp_port=rtsp_port if rtsp_port is not None else DEFAULT_RTSP_PORT if port else 0,
         time_scale=time_scale,
-        hold_time=hold_time,
+        freeze_time=hold_time,
         latency_s=latency,
         faults=parse_faults(fault or []),
         truth=truth,

@@ -6,7 +6,7 @@ from scope_ptz.cli.lazy_group import LazyGroup
 
 HELP = """Stored runs: list, show, index, export and prune them; list audit logs.
 
-They are in the runs folder (SCOPE_RUNS_DIR, or --runs-dir). Its file `store.sqlite` is an index, which can be rebuilt.
+Runs are stored in the runs folder (SCOPE_RUNS_DIR, or --runs-dir). Its file `store.sqlite` is an index that can be rebuilt.
 """
 
 

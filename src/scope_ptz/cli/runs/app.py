@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from scope_ptz.store.rows import RunFilter, RunRow, StepRow
 
 RunId = Annotated[str, typer.Argument(metavar="RUN", help="Name of the run's folder.")]
-Words = Annotated[str, typer.Option("--text", help="Only runs whose instruction or answer contains these words.")]
-Camera = Annotated[str | None, typer.Option("--camera", help="Only runs with this camera or scene.")]
-Outcome = Annotated[str | None, typer.Option("--outcome", help="Only runs with this outcome, for example answered.")]
-Tool = Annotated[str | None, typer.Option("--tool", help="Only runs that called this tool.")]
-Rating = Annotated[str | None, typer.Option("--rating", help="Only runs with this rating: good or bad.")]
+Words = Annotated[str, typer.Option("--text", help="Select only runs whose instruction or answer contains these words.")]
+Camera = Annotated[str | None, typer.Option("--camera", help="Select only runs with this camera or scene.")]
+Outcome = Annotated[str | None, typer.Option("--outcome", help="Select only runs with this outcome, for example answered.")]
+Tool = Annotated[str | None, typer.Option("--tool", help="Select only runs that called this tool.")]
+Rating = Annotated[str | None, typer.Option("--rating", help="Select only runs with this rating: good or bad.")]
 Since = Annotated[
     str | None,
-    typer.Option("--since", metavar="TIME", help="Only runs that started at this time or later, for example 2026-05-01."),
+    typer.Option("--since", metavar="TIME", help="Select only runs that started at this time or later, for example 2026-05-01."),
 ]
-Until = Annotated[str | None, typer.Option("--until", metavar="TIME", help="Only runs that started before this time.")]
+Until = Annotated[str | None, typer.Option("--until", metavar="TIME", help="Select only runs that started before this time.")]
 
 runs_app = typer.Typer(help=HELP, no_args_is_help=True)
 
@@ -112,7 +112,7 @@ def runs_index(
     audit: AuditLogs = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Index run folders and audit logs, which are not changed. If a folder is damaged, report it and exit with code 1."""
+    """Index run folders and audit logs without changing them. The exit code is 1 if a folder is damaged."""
     from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 
     with open_store(runs_dir) as store:
@@ -158,7 +158,7 @@ def runs_export(
     with open_store(runs_dir) as store:
         store.index()
         chosen = run or store.ids(_filter(text, camera, outcome, tool, rating, since, until))
-        count = export_runs(store, chosen, out, kind)  # type: ignore[arg-type] # it checks it
+        count = export_runs(store, chosen, out, kind)  # type: ignore[arg-type] # export_runs checks the format
     if as_json:
         put_json({"runs": count, "file": str(out)})
     else:

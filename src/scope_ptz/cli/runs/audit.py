@@ -13,9 +13,9 @@ from scope_ptz.cli.runs.common import AuditLogs, RunsDir, index_audit_logs, open
 def runs_audit(
     runs_dir: RunsDir = None,
     audit: AuditLogs = None,
-    camera: Annotated[str | None, typer.Option("--camera", help="Only entries of this camera.")] = None,
-    since: Annotated[str | None, typer.Option("--since", metavar="TIME", help="Only entries at this time or later.")] = None,
-    until: Annotated[str | None, typer.Option("--until", metavar="TIME", help="Only entries before this time.")] = None,
+    camera: Annotated[str | None, typer.Option("--camera", help="Print only entries of this camera.")] = None,
+    since: Annotated[str | None, typer.Option("--since", metavar="TIME", help="Print only entries at this time or later.")] = None,
+    until: Annotated[str | None, typer.Option("--until", metavar="TIME", help="Print only entries before this time.")] = None,
     limit: Annotated[int, typer.Option("--limit", min=1, max=10_000, help="Number of entries to print.")] = 50,
     as_json: JsonOption = False,
 ) -> None:

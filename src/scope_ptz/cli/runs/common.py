@@ -1,4 +1,4 @@
-"""Code that the commands of ``scope runs`` share: opening the store, and parsing times of the command line."""
+"""Code that the commands of ``scope runs`` share: opening the store, and parsing times given as options."""
 
 from __future__ import annotations
 

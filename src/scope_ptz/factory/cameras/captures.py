@@ -29,13 +29,13 @@ class CapturedScene:
         name: The scene's name.
         folder: The scene's folder.
         frames: Number of frames.
-        registered: Number of frames whose pose was determined from their picture. The others have their reported poses.
+        registered: Number of frames whose pose was measured from image features. The others keep their reported poses.
         correction_deg: Median angle between reported and adjusted orientations; None if nothing was registered.
         largest_correction_deg: The largest such angle; None if nothing was registered.
         residual_px: Root mean square distance of matched features in pixels; None if nothing was registered.
         focal_factor: Ratio of measured to reported focal length at the widest zoom; None if nothing was registered.
         tiles: Number of sharper tiles.
-        unseen_share: Share of the directions in reach of the camera that no frame shows.
+        unseen_share: Fraction of the directions within the camera's range that no frame shows.
         presets: The presets of the scene.
         left_out_presets: Presets of the camera outside the captured range.
         refused: Number of poses that the rules of the site did not permit.
@@ -62,8 +62,8 @@ class CapturePlan:
 
     Attributes:
         camera: The camera's name.
-        pan_range_deg: The captured range of pan.
-        tilt_range_deg: The captured range of tilt.
+        pan_range_deg: The pan range that would be captured.
+        tilt_range_deg: The tilt range that would be captured.
         presets: The presets that would be visited, in addition to the home position.
         sweeps: The sweeps over the range.
         close_ups: Maximum number of close-ups.
@@ -121,7 +121,7 @@ async def capture_scene(camera: str, folder: Path, options: CaptureOptions, prog
     Raises:
         InputError: The spec or an option is invalid, or the camera's field of view is unknown.
         ControlHeldError: Another program controls the camera, or captures into the same folder.
-        CameraError: The camera fails. Frames that were taken before stay stored.
+        CameraError: The camera fails. Frames taken before the failure stay stored.
         OutputError: The folder cannot be written, or contains an unfinished capture with other settings.
     """
     from anyio import to_thread

@@ -25,7 +25,7 @@ def profile_name(spec: CameraSpec, address: DeviceAddress) -> str:
 
 
 def load_calibration(spec: CameraSpec, address: DeviceAddress) -> CalibrationRecord | None:
-    """Return the calibration of a camera, None if there is none. Contradictions that were found are logged as warnings.
+    """Return the calibration of a camera; None if there is none. Contradictions that it found are logged as warnings.
 
     Raises:
         PackError: The camera's profile is damaged.
@@ -40,22 +40,23 @@ def load_calibration(spec: CameraSpec, address: DeviceAddress) -> CalibrationRec
 
 
 def measured_fields(calibration: CalibrationRecord | None) -> tuple[tuple[float, float], ...] | None:
-    """Return rows of (share of the zoom range, measured horizontal field of view in degrees), widest first.
+    """Return rows of (position in the zoom range from 0 to 1, measured horizontal field of view in degrees), widest first.
 
-    None if there are none, or if the fields of view do not decrease with the zoom, because the measurement is then invalid.
+    Return None if there are no rows, or if the fields of view do not decrease as the zoom increases, because the measurement is
+    then invalid.
     """
     if calibration is None:
         return None
     rows = tuple((each.share, each.measured_deg) for each in calibration.fields)
-    falling = len(rows) > 1 and all(b[0] > a[0] and b[1] < a[1] for a, b in pairwise(rows))
-    return rows if falling else None
+    decreasing = len(rows) > 1 and all(b[0] > a[0] and b[1] < a[1] for a, b in pairwise(rows))
+    return rows if decreasing else None
 
 
 def measured_settling(calibration: CalibrationRecord | None) -> Settling:
     """Return the criteria for when a camera has settled. They allow more time if the picture settled late in the measurement."""
     from scope_ptz.camera.network.settling import Settling
 
-    usual = Settling()
+    default = Settling()
     if calibration is None:
-        return usual
-    return Settling(picture_timeout_s=max(usual.picture_timeout_s, 3 * calibration.settling_s))
+        return default
+    return Settling(picture_timeout_s=max(default.picture_timeout_s, 3 * calibration.settling_s))

@@ -20,7 +20,7 @@ def named_cameras() -> dict[str, NamedCamera]:
 
 
 def audit_logs() -> list[Path]:
-    """Return the audit logs of the cameras in ``scope.yaml``, each once. The files need not exist.
+    """Return the paths of the cameras' audit logs in ``scope.yaml``, without duplicates. The files need not exist.
 
     Raises:
         ConfigError: The file cannot be read, or its content is invalid.

@@ -36,7 +36,7 @@ def check_angles(spec: CameraSpec) -> None:
 def mapping_of(
     spec: CameraSpec, fields_deg: tuple[float, float] | None, calibration: CalibrationRecord | None
 ) -> OnvifMapping:  # fmt: skip
-    """Return the coordinate mapping of a camera. It is based on the camera's options; stored measurements replace missing options.
+    """Return the coordinate mapping of a camera from its options. Stored measurements fill in for options that are missing.
 
     Args:
         spec: The camera.

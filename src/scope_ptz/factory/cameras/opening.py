@@ -178,8 +178,8 @@ async def open_camera(
         actor: Who controls the camera, as recorded in the audit log and shown to other programs that request control; the default
             is the user of the operating system.
         measuring: Whether the camera is opened for a measurement. The driver may then assume values that are not known yet.
-        dry_run: If given, commands are not executed; it is called with a sentence for each of them. A simulated camera starts
-            at its preset.
+        dry_run: If given, commands are not executed. Instead, this function is called with a sentence about each. A simulated
+            camera still starts at its preset.
 
     Returns:
         The open camera, which the caller closes.
@@ -209,9 +209,9 @@ async def open_camera(
         if spec.name:
             from scope_ptz.factory.cameras.named import apply_rules
 
-            ruled = apply_rules(opened.camera, spec.name, actor=actor or f"scope: {user_name()}")
-            if ruled is not opened.camera:
-                opened.camera, opened.served_truth = ruled, None
+            guarded = apply_rules(opened.camera, spec.name, actor=actor or f"scope: {user_name()}")
+            if guarded is not opened.camera:
+                opened.camera, opened.served_truth = guarded, None
         if preset and (dry_run is None or opened.camera.info.simulated):
             await opened.camera.go_to_preset(preset)
         if dry_run is not None:

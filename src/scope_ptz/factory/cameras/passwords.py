@@ -1,4 +1,4 @@
-"""The credentials of network cameras. They never come from a command line."""
+"""The credentials of network cameras. A password is never read from the command line."""
 
 from __future__ import annotations
 

@@ -21,10 +21,10 @@ class _Part(BaseModel):
 
 
 class WhenIdle(_Part):
-    """Where a camera returns when nobody has commanded it for a time. Only servers do this.
+    """The view to which a server returns a camera that nobody has commanded for some time.
 
     Attributes:
-        after_s: The time in seconds.
+        after_s: Seconds since the last command.
         preset: The preset; None for the home view.
     """
 
@@ -43,7 +43,7 @@ class NamedCamera(_Part):
         mounting: How the camera is mounted.
         rules: Limits, keep-out regions, masks, dead zone and minimum time between moves.
         audit_log: File that records instructions, their authors and the moves, relative to the folder of ``scope.yaml``.
-        when_idle: Where the camera returns when nobody has commanded it for a time.
+        when_idle: The view to which a server returns the camera when nobody has commanded it for some time.
     """
 
     camera: str = Field(min_length=1, max_length=500)

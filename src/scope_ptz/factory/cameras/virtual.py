@@ -34,7 +34,7 @@ class VirtualCameraOptions:
         port: Port of the first camera; further cameras use the following ports. 0 lets the system choose all ports.
         rtsp_port: RTSP port of the first camera, assigned like ``port``.
         time_scale: Speed of the motors, as a multiple of the real speed.
-        hold_time: Whether scene time is stopped, so that actors do not move.
+        freeze_time: Whether scene time stands still, so that actors do not move.
         latency_s: Time from exposure until a frame is sent, in seconds.
         faults: Faults by name.
         truth: Whether clients on this machine get the ground truth of frames.
@@ -49,7 +49,7 @@ class VirtualCameraOptions:
     port: int = 0
     rtsp_port: int = 0
     time_scale: float = 1.0
-    hold_time: bool = False
+    freeze_time: bool = False
     latency_s: float = 0.0
     faults: Mapping[str, object] | None = None
     truth: bool = False
@@ -111,8 +111,8 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
     devices = []
     for scene_name, viewpoint in zip(options.scenes, options.viewpoints or (None,) * len(options.scenes), strict=True):
         scene = open_scene(scene_name)
-        # A clock that does not follow the wall clock is stopped here, because the motors do not advance it.
-        clock = SceneClock(scene.file.start_s, realtime=not options.hold_time)
+        # A clock that does not follow the wall clock stands still here, because nothing advances it: the motors do not.
+        clock = SceneClock(scene.file.start_s, realtime=not options.freeze_time)
         device = VirtualDevice(scene, viewpoint=viewpoint, accounts=accounts, clock=clock, time_scale=options.time_scale)
         device.faults = faults
         devices.append(device)

@@ -46,15 +46,15 @@ def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, pa
     if projection.density > TILE_GAIN * panorama_density(atlas) and len(atlas.slots) > 1:
         visible, rest = visible_tiles(tiles.in_view(projection), part)
     if rest == part:
-        slot = atlas.need(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
+        slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
         positions = panorama_map(band, slot, Grid(projection, step).inner(part), part)
     else:
         positions = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
         if rest is not None:
-            slot = atlas.need(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
+            slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
             _within(positions, part, rest)[...] = panorama_map(band, slot, Grid(projection, step).inner(rest), rest)
     slots = [
-        atlas.need(1 + index, suitable_scale(atlas, tiles.views[index].focal_px, projection.density))
+        atlas.ensure(1 + index, suitable_scale(atlas, tiles.views[index].focal_px, projection.density))
         for index in (tile.showing.tile for tile in visible)
     ]
     maps = tile_maps(tiles, projection, step, visible, slots)
@@ -74,9 +74,11 @@ def panorama_density(atlas: Atlas) -> float:
 
 
 def suitable_scale(atlas: Atlas, density: float, needed: float) -> int:
-    """Return the index of the scale at which a picture of full ``density`` (pixels per radian) suits a view of density ``needed``.
+    """Return the index of the scale at which to sample a picture for a view of density ``needed``.
 
-    This is the coarsest scale that is at least ``OVERSAMPLING`` times as dense as the view, or the first scale if none is.
+    ``density`` is the density of the picture at full size. Both are in pixels per radian.
+
+    The result is the coarsest scale that is at least ``OVERSAMPLING`` times as dense as the view, or the first scale if none is.
     """
     enough = [k for k, scale in enumerate(atlas.scales) if scale.size * density >= OVERSAMPLING * needed]
     return enough[-1] if enough else 0

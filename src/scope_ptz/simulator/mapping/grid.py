@@ -1,4 +1,4 @@
-"""Coarse grids over a picture, on which maps are computed exactly and from which they are interpolated."""
+"""Coarse grids over an image, on which maps are computed exactly and from which they are interpolated."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from scope_ptz.simulator.mapping.tiles import Place
 MAX_MAP_ERROR_PX = 0.04
 """Maximum permitted error of an interpolated map, in pixels of the view."""
 
-MAX_STEP_PX = 32
+MAX_STEP_PX = 32  # maximum distance between grid nodes
 
 Floats = NDArray[np.float64]
 
 
 class Grid:
-    """Nodes ``step`` pixels apart that cover a part of a picture and one step beyond it.
+    """Nodes ``step`` pixels apart that cover a part of an image and one step beyond it.
 
-    ``x`` and ``y`` are the columns and rows of the nodes in pixels, counted from the picture's top-left corner.
+    ``x`` and ``y`` are the columns and rows of the nodes in pixels, counted from the image's top-left corner.
     """
 
     def __init__(self, projection: Projection, step: int, place: Place | None = None) -> None:
@@ -48,7 +48,7 @@ class Grid:
 
     @property
     def covers_all(self) -> bool:
-        """Whether the grid covers the whole picture."""
+        """Whether the grid covers the whole image."""
         rows, columns = self.place
         return (rows.stop - rows.start, columns.stop - columns.start) == (self.projection.height, self.projection.width)
 
@@ -58,7 +58,7 @@ class Grid:
         return self.projection.directions(points)
 
     def inner(self, part: Place) -> Grid:
-        """Return a grid with only the nodes that a part of the picture needs. Interpolated values are identical."""
+        """Return a grid with only the nodes that a part of the image needs. Interpolated values are identical."""
         top, left = ((requested.start - whole.start) // self.step for whole, requested in zip(self.place, part, strict=True))
         rows, columns = self.place
         place = (
@@ -74,7 +74,7 @@ class Grid:
 
         Args:
             nodes: (rows, columns) or (rows, columns, n) values at all nodes.
-            part: The rows and columns of the picture that are needed; the default is all that the grid covers. The result
+            part: The rows and columns of the image that are needed; the default is all that the grid covers. The result
                 equals that part of the whole.
         """
         n, (rows, columns) = self.step, part or self.place
@@ -89,7 +89,11 @@ class Grid:
 
 
 def step_px(projection: Projection) -> int:
-    """Return the largest power of two that keeps ``step ** 2 / 8 * curvature`` within ``MAX_MAP_ERROR_PX``."""
+    """Return the distance between grid nodes in pixels.
+
+    It is the largest power of two for which the interpolation error, ``step ** 2 / 8 * curvature``, is within
+    ``MAX_MAP_ERROR_PX``.
+    """
     return _step_px(cast(Hashable, projection))
 
 

@@ -40,7 +40,7 @@ def panorama_map(band: Band, slot: Slot, grid: Grid, part: Place | None = None) 
 
 
 def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
-    """Return the pan of the picture's centre and, for each node, its pan relative to the centre and its tilt, all in degrees."""
+    """Return the pan of the image's centre and, for each node, its pan relative to the centre and its tilt, all in degrees."""
     projection = grid.projection
     if isinstance(projection, Equirectangular):
         fall = projection.bottom_tilt_deg - projection.top_tilt_deg

@@ -14,10 +14,10 @@ from scope_ptz.geometry.sphere import camera_axes
 
 Floats = NDArray[np.float64]
 Place = tuple[slice, slice]
-"""A rectangle of a picture: rows and columns."""
+"""A rectangular part of an image, as slices of rows and columns."""
 
 BEHIND = 1e-6
-BEHIND_POSITION = -1e3  # normalised coordinates of points behind a camera, far outside its picture
+BEHIND_POSITION = -1e3  # normalised coordinates of points behind a camera, far outside its image
 _FAR_PX = 1e5
 _INSET_PX = 1.5
 POLYGON_SHIFT = 8
@@ -28,9 +28,9 @@ MAX_CACHED_RESULTS = 4  # enough for a view and its half-size version, for two c
 
 
 class TileInView(NamedTuple):
-    """A tile in a picture, and the part of the picture that it may cover.
+    """A tile in an image, and the part of the image that it may cover.
 
-    For perspective pictures, ``turn`` is the (3, 3) rotation from the picture's axes to the tile's, and ``polygon`` is a (4, 2)
+    For perspective images, ``turn`` is the (3, 3) rotation from the image's axes to the tile's, and ``polygon`` is a (4, 2)
     outline at least one pixel inside the tile, in 1/256 pixels. Both are None for panoramas. ``edges`` are the (4, 3) half-planes
     (a, b, c) of the polygon, or of ``place`` without a polygon: ``a * x + b * y + c`` is the distance inside the edge in pixels.
     """
@@ -55,7 +55,7 @@ class TileInView(NamedTuple):
 
 
 class Tiles:
-    """Perspective pictures around one optical centre, sorted from the sharpest. Equally sharp pictures keep their order."""
+    """Perspective images around one optical centre, the sharpest first. Equally sharp images keep their order."""
 
     def __init__(self, views: Sequence[Perspective]) -> None:
         self.views = list(views)
@@ -67,7 +67,7 @@ class Tiles:
         self._outlines = np.array([v.directions(OUTLINE) for v in views]).reshape(-1, len(OUTLINE), 3)
 
     def in_view(self, projection: Projection) -> list[TileInView]:
-        """Return every tile that may be visible in a picture. Recent results are cached, because several layers need them."""
+        """Return every tile that may be visible in an image. Recent results are cached, because several layers need them."""
         for cached, tiles in self._results:
             if cached == projection:
                 return tiles
@@ -95,7 +95,7 @@ class Tiles:
         return [showing for showing in shown if showing.place[0].start < showing.place[0].stop]
 
     def points(self, showing: TileInView, projection: Projection, x: Floats, y: Floats) -> Floats:
-        """Return the tile's normalised points (rows, columns, 2) under columns ``x`` and rows ``y`` (pixels) of a picture.
+        """Return the tile's normalised points (rows, columns, 2) under columns ``x`` and rows ``y`` (pixels) of an image.
 
         Points behind the tile's camera get coordinates far outside the tile.
         """
@@ -147,11 +147,11 @@ def _edges(polygons: Sequence[NDArray[np.int32] | None], places: Sequence[Place]
 
 
 def bounds(projection: Projection, points: Floats) -> list[Place]:
-    """Return the rows and columns that each outline (n, m, 2) spans; empty for outlines outside the picture."""
+    """Return the rows and columns that each outline (n, m, 2) spans; empty for outlines outside the image."""
     size = np.array([projection.width, projection.height])
     unclear = np.isnan(points).any(axis=(1, 2))
     if isinstance(projection, Equirectangular):
-        unclear |= np.ptp(points[..., 0], axis=1) > 0.5  # it crosses the seam
+        unclear |= np.ptp(points[..., 0], axis=1) > 0.5  # the outline crosses the seam
     points = np.minimum(np.maximum(np.where(np.isnan(points), 0.0, points), -1.0), 2.0)
     low = np.floor(points.min(axis=1) * size).astype(int) - 1
     high = np.ceil(points.max(axis=1) * size).astype(int) + 1
@@ -162,7 +162,7 @@ def bounds(projection: Projection, points: Floats) -> list[Place]:
 
 
 def _outline() -> Floats:
-    """Return points around the border of a picture, clockwise from the top-left corner."""
+    """Return points around the border of an image, clockwise from the top-left corner."""
     side = np.arange(_SIDE_POINTS) / _SIDE_POINTS
     zero, one = np.zeros_like(side), np.ones_like(side)
     return np.concatenate([np.stack(p, axis=-1) for p in ((side, zero), (one, side), (1 - side, one), (zero, 1 - side))])

@@ -22,7 +22,7 @@ from scope_ptz.simulator.sheets.memory import CAN_RELEASE, ReleasableArray
 from scope_ptz.simulator.sheets.picture_cache import CachedSheet, PictureCache
 
 SHARPENING_SIGMA_PX = 0.7
-SHARPENING_REACH_PX = 2  # OpenCV's Gaussian of this sigma has 5 taps for 8-bit pictures
+SHARPENING_RADIUS_PX = 2  # OpenCV's Gaussian of this sigma has 5 taps for 8-bit pictures
 
 STRIP_PX = 256  # rows that are decoded or sharpened at once, to keep intermediate arrays small
 
@@ -65,7 +65,7 @@ class Atlas:
         channels: Channels per pixel.
         scales: Scales of every picture on the sheet.
         decode: Converts rows of a loaded picture to pixels; by default, they are used unchanged.
-        pans_deg: Pans of the tiles; see ``lay_out``. Required with ``tile_bytes``.
+        pans_deg: Pan angles of the tiles; see ``lay_out``. Required with ``tile_bytes``.
         tile_bytes: Limit on the memory of tiles. The panorama always stays in memory.
         disk_cache: Cache of the sheet on disk. Without it, or with a limit, the sheet is only in memory.
     """
@@ -100,7 +100,7 @@ class Atlas:
             self._memory = ReleasableArray(shape, dtype)
             self.sheet = self._memory.array
         self._clock = 0
-        self._last_used: dict[int, int] = {}  # by shelf of tiles that is in use
+        self._last_used: dict[int, int] = {}  # keyed by shelf; contains only the shelves of tiles that are in use
         self._readers: list[int] = []
 
     @property
@@ -113,19 +113,19 @@ class Atlas:
         """Whether any picture has been read."""
         return bool(self._ready)
 
-    def need(self, index: int, scale: int = 0) -> Slot:
-        """Fill one picture at one scale and return its slot.
+    def ensure(self, index: int, scale: int = 0) -> Slot:
+        """Load one picture at one scale, unless it is loaded already, and return its slot.
 
         If memory is limited, the slot keeps its content while the caller is inside ``reading``.
         """
         slot = self.slots[index][scale]
         if self._tile_bytes is None and (index, scale) in self._ready:
             return slot
-        self.need_scales(index, (scale,))
+        self.ensure_scales(index, (scale,))
         return slot
 
-    def need_scales(self, index: int, scales: Sequence[int]) -> None:
-        """Fill one picture at several scales. It is read only once."""
+    def ensure_scales(self, index: int, scales: Sequence[int]) -> None:
+        """Load one picture at several scales, unless they are loaded already. The picture is read only once."""
         with self._lock:
             if index and self._tile_bytes is not None:
                 self._clock += 1
@@ -168,7 +168,7 @@ class Atlas:
 
     @contextmanager
     def reading(self) -> Iterator[None]:
-        """Keep the content of all slots that are needed inside the context until it ends."""
+        """Keep every slot requested inside this context filled until the context ends."""
         if self._tile_bytes is None:
             yield
             return
@@ -220,13 +220,13 @@ class Atlas:
 
 def _sharpen(picture: NDArray[Any], sharpening: float) -> None:
     """Sharpen a picture in place, strip by strip, with the same result as sharpening it whole."""
-    reach, above = SHARPENING_REACH_PX, picture[:0]
+    radius, above = SHARPENING_RADIUS_PX, picture[:0]
     for top in range(0, len(picture), STRIP_PX):
         bottom = min(top + STRIP_PX, len(picture))
-        # The rows above are already sharpened, so their original content is saved in the previous iteration.
-        strip = np.concatenate([above, picture[top : bottom + reach]])
+        # The rows above are already sharpened, so their original content was saved in the previous iteration.
+        strip = np.concatenate([above, picture[top : bottom + radius]])
         skip = len(above)
-        above = picture[bottom - reach : bottom].copy()
+        above = picture[bottom - radius : bottom].copy()
         soft = cv2.GaussianBlur(strip, (0, 0), SHARPENING_SIGMA_PX)
         sharp = cv2.addWeighted(strip, 1 + sharpening, soft, -sharpening, 0, dst=soft)
         picture[top:bottom] = sharp[skip : skip + bottom - top]

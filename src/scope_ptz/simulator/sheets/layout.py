@@ -57,7 +57,7 @@ def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[f
     Args:
         sizes: Width and height of the panorama and of each tile.
         scales: Sizes of each picture on the sheet, relative to its full size.
-        pans_deg: Pans of the tiles. If given, tiles are ordered by scale and direction, so that a shelf holds tiles that
+        pans_deg: Pan angles of the tiles. If given, tiles are ordered by scale and direction, so that a shelf holds tiles that
             are seen together, and the panorama has separate shelves.
 
     Raises:

@@ -1,4 +1,4 @@
-"""A cache of decoded pictures on disk, so that later programs need not decode them again.
+"""A cache of decoded pictures on disk, so that later processes need not decode them again.
 
 A sheet of decoded pictures is a sparse file that is mapped into memory, so only the parts that a view samples are read. A list
 next to it contains the pictures that are complete. The pictures of the pack are always verified by their checksums.
@@ -93,7 +93,7 @@ class PictureCache:
             size = max(0, size - path.stat().st_blocks * _BLOCK_BYTES)
         else:
             self._remove_oldest()
-        # Writing to a mapped file on a full disk ends the program, so there must be room for the whole sheet.
+        # Writing to a mapped file on a full disk kills the process, so there must be room for the whole sheet.
         return shutil.disk_usage(self._folder).free >= size + SPARE_BYTES
 
     def _remove_oldest(self) -> None:
@@ -108,10 +108,10 @@ class PictureCache:
 
 
 class CachedSheet:
-    """A sheet in a file. Several programs may fill and read it at the same time.
+    """A sheet in a file. Several processes may fill and read it at the same time.
 
     Attributes:
-        array: The pixels. Parts that no program has filled are zero.
+        array: The pixels. Parts that no process has filled are zero.
     """
 
     def __init__(self, path: Path, size: int, shape: tuple[int, ...], dtype: type[np.generic]) -> None:
@@ -136,7 +136,7 @@ class CachedSheet:
 
     @contextmanager
     def filling(self) -> Iterator[None]:
-        """Prevent other programs from filling the sheet inside this context. It may be nested, but not used in several threads."""
+        """Prevent other processes from filling the sheet inside this context, which may be nested, but is not thread-safe."""
         if self._filling is not None:
             yield
             return

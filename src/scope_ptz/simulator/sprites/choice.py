@@ -19,7 +19,7 @@ SAME_HEADING_DEG = 15.0
 DEGREES_PER_OCTAVE = 6.0
 """A sprite rendered at half or twice the distance counts as if its viewing angle differed by this many degrees."""
 
-FADE_SHARE = 0.12
+FADE_FRACTION = 0.12
 """Half the width of the fade between two sprites, as a fraction of the distance between them."""
 
 FADE_DEG = 12.0
@@ -45,7 +45,7 @@ class Aspect(NamedTuple):
     heading: Floats
 
 
-class Weighted(NamedTuple):
+class WeightedSprite(NamedTuple):
     """A sprite, the aspect of the actor in it, and its weight in the picture, 0 to 1."""
 
     sprite: Sprite
@@ -89,10 +89,10 @@ class SpriteChoice:
         return np.asarray(self._rotation @ np.array([math.sin(bearing), math.cos(bearing), 0.0]))
 
     def reach_deg(self, offset_m: Floats) -> float:
-        """Return the largest angle between the actor's ground point, at an offset from the optical centre, and its pixels."""
+        """Return the largest angle between the actor's ground point, which lies at ``offset_m``, and any of its pixels."""
         return math.degrees(math.atan2(MAX_STRETCH * self._reach_m, float(np.linalg.norm(offset_m))))
 
-    def choose(self, now: Aspect, phase: float) -> list[Weighted]:
+    def choose(self, now: Aspect, phase: float) -> list[WeightedSprite]:
         """Return the one or two sprites that show the actor best, with weights that add up to 1.
 
         Args:
@@ -104,7 +104,7 @@ class SpriteChoice:
         second_weight = 0.0
         if len(order) == 2 and math.isfinite(cost[order[1]]):
             total = max(1e-9, float(cost[order].sum()))
-            fade = FADE_SHARE * min(1.0, FADE_DEG / total)
+            fade = FADE_FRACTION * min(1.0, FADE_DEG / total)
             closeness = max(0.0, (float(cost[order[0]]) / total - (0.5 - fade)) / (2 * fade))
             second_weight = closeness * closeness * (3 - 2 * closeness)
         weights = [1.0 - second_weight, second_weight]
@@ -117,9 +117,9 @@ class SpriteChoice:
         wrong_heading = self._headings @ now.heading < math.cos(math.radians(SAME_HEADING_DEG))
         return np.where(wrong_heading & ~wrong_heading.all(), np.inf, value)
 
-    def _weighted(self, place: int, phase: float, weight: float) -> Weighted:
+    def _weighted(self, place: int, phase: float, weight: float) -> WeightedSprite:
         sprite = min(self._places[place], key=lambda s: min(abs(s.phase - phase), 1.0 - abs(s.phase - phase)))
-        return Weighted(sprite, Aspect(self._offsets[place], self._headings[place]), weight)
+        return WeightedSprite(sprite, Aspect(self._offsets[place], self._headings[place]), weight)
 
     def _path_error_m(self, sprite: Sprite) -> float:
         """Return the distance between the actor's position at a sprite's time and the position stored in the sprite."""

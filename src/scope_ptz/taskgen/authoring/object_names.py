@@ -99,7 +99,7 @@ def named_things(truth: RobustTruth, min_pixels: int = 350, min_text_px: float =
             continue
         if (
             set(words) & _MISLEADING
-            or (set(words) & _PART_WORDS and sighting.share < _MIN_SHARE_WITH_PART)
+            or (set(words) & _PART_WORDS and sighting.visible_fraction < _MIN_SHARE_WITH_PART)
             or (set(words) & COLOUR_WORDS and not has_colour(thing))
             or ("phone" in words and thing.category in GROUPS["person"])
             or not is_recognisable(truth, sighting, name, min_text_px)
@@ -121,7 +121,9 @@ def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_
     if not by_number and not by_text:
         return True
     parts = with_parts(truth.scene, thing.id)
-    texts = [t for t in truth.first.texts if t.text.parent in parts and t.cap_height_px >= min_text_px and t.unhidden_share > 0.9]
+    texts = [
+        t for t in truth.first.texts if t.text.parent in parts and t.cap_height_px >= min_text_px and t.unhidden_fraction > 0.9
+    ]
     lettering = {word for t in texts for word in _words(t.text.text)}
     if by_number:
         return name.split()[-1] in lettering

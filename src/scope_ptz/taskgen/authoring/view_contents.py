@@ -44,7 +44,7 @@ def countable(truth: RobustTruth) -> tuple[tuple[Kind, int], ...]:
             continue
         things = truth.all_of(kind)
         max_count, min_px = (_MAX_COUNT_IN_SWEEP, _MIN_PX_IN_SWEEP) if truth.pose is None else (_MAX_COUNT, _MIN_PX)
-        if things and len(things) <= max_count and all(t.pixels >= min_px and t.share >= _MIN_SHARE for t in things):
+        if things and len(things) <= max_count and all(t.pixels >= min_px and t.visible_fraction >= _MIN_SHARE for t in things):
             special = kind.colour is not None or kind.attribute is not None
             redundant = special and len(things) == len(truth.all_of(Kind(kind.category)) or ())
             if not redundant:  # if all cars are red, "red cars" asks the same as "cars"

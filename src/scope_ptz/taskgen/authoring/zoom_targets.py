@@ -71,7 +71,7 @@ def framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing 
     """Return the requirement to frame an object; None if it is partly hidden, or if the zoom range is too small to frame it."""
     close = framed(place, sighting, thing)
     extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
-    if close is None or extent is None or sighting.share < 0.97:
+    if close is None or extent is None or sighting.visible_fraction < 0.97:
         return None
     fill = (close_pose(extent.hull, (TASK_CAMERA.limits.min_zoom, TASK_CAMERA.limits.max_zoom)) or (Pose(), 0.0))[1]
     close_truth = RobustTruth(place.scene, str(place.at.viewpoint), close.at.pose, place.truth.time_s)

@@ -18,15 +18,15 @@ from scope_ptz.bench.scoring.coverage import box_directions
 from scope_ptz.bench.scoring.episode import CameraPosition, FrameGeometry
 from scope_ptz.bench.tasks.task import Item
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, pan_tilt_deg
-from scope_ptz.simulator.actors import Appearance, appearances, shows
+from scope_ptz.simulator.actors import Appearance, appearances, may_be_visible
 from scope_ptz.simulator.models import SceneText
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import (
     MAX_READING_ANGLE_DEG,
     MIN_CAP_HEIGHT_PX,
-    MIN_UNHIDDEN_SHARE,
+    MIN_UNHIDDEN_FRACTION,
+    MIN_VISIBLE_FRACTION,
     MIN_VISIBLE_PX,
-    MIN_VISIBLE_SHARE,
     Sighting,
     TextSighting,
     ViewTruth,
@@ -111,7 +111,9 @@ class RobustTruth:
         """Numbers of the actors that are in view at some time."""
         by_actor = _all_appearances(self.scene, self.viewpoint)
         return frozenset(
-            number for number, seen_appearances in by_actor.items() if any(shows(a, self.projection) for a in seen_appearances)
+            number
+            for number, seen_appearances in by_actor.items()
+            if any(may_be_visible(a, self.projection) for a in seen_appearances)
         )
 
     @cached_property
@@ -273,7 +275,7 @@ class RobustTruth:
         """Return all texts on an object and its parts; None if one of them is only partly legible."""
         part_ids = with_parts(self.scene, thing.id)
         legible_ids = {t.text.id for t in self.legible}
-        shown = [t for t in self.samples[0].texts if t.text.parent in part_ids and t.unhidden_share > 0.3]
+        shown = [t for t in self.samples[0].texts if t.text.parent in part_ids and t.unhidden_fraction > 0.3]
         if any(t.text.id not in legible_ids and t.cap_height_px >= MIN_CAP_HEIGHT_PX * 0.35 for t in shown):
             return None
         return tuple(t for t in self.legible if t.text.parent in part_ids)
@@ -344,7 +346,7 @@ def _faces(text: SceneText, point: NDArray[np.float64]) -> bool:
 
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:
     """Return whether an object is visible by definition, with both thresholds multiplied by ``scale``."""
-    return sighting.pixels >= MIN_VISIBLE_PX * scale and sighting.share >= MIN_VISIBLE_SHARE * scale
+    return sighting.pixels >= MIN_VISIBLE_PX * scale and sighting.visible_fraction >= MIN_VISIBLE_FRACTION * scale
 
 
 def legible(text: TextSighting, scale: float = 1.0) -> bool:
@@ -352,7 +354,7 @@ def legible(text: TextSighting, scale: float = 1.0) -> bool:
     return (
         text.cap_height_px >= MIN_CAP_HEIGHT_PX * scale
         and text.angle_deg <= min(MAX_READING_ANGLE_DEG / scale, 85.0)
-        and text.unhidden_share >= 1 - (1 - MIN_UNHIDDEN_SHARE) / scale
+        and text.unhidden_fraction >= 1 - (1 - MIN_UNHIDDEN_FRACTION) / scale
     )
 
 

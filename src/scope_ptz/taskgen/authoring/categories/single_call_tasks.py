@@ -220,7 +220,7 @@ def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
         for sighting in at_start.visible:
             actor = sighting.instance
             kind = Kind(actor.category)
-            if not isinstance(actor, SceneActor) or sighting.pixels < 600 or sighting.share < 0.9:
+            if not isinstance(actor, SceneActor) or sighting.pixels < 600 or sighting.visible_fraction < 0.9:
                 continue
             others = [s for s in at_start.sightings if s.instance is not actor]
             rivals = [s for s in others if kind.fits(s.instance) or kind.ambiguous_with(s.instance)]
