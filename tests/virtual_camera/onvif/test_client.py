@@ -138,7 +138,7 @@ async def test_continuous_moves_run_until_their_timeout_or_a_stop(ptz: Any, devi
     start = device.pose()
     velocity = {"PanTilt": {"x": 0.5, "y": 0.0}, "Zoom": {"x": 0.2}}
     await ptz.ContinuousMove({"ProfileToken": PROFILE, "Velocity": velocity, "Timeout": timedelta(seconds=2)})
-    driven = device.driven
+    driven = device.commanded_velocity
     assert (driven.pan_dps, driven.tilt_dps, driven.zoom_rate) == pytest.approx((50.0, 0.0, 0.3))
     time.pass_(1.0)
     assert (await ptz.GetStatus({"ProfileToken": PROFILE})).MoveStatus.PanTilt == "MOVING"

@@ -44,7 +44,7 @@ class Journal:
         self._waiting: asyncio.Queue[str] = asyncio.Queue()
 
     async def read(self, work: Callable[[], _T]) -> _T:
-        """Call a function in a worker thread and return its result. Functions that read the store or files block."""
+        """Call a blocking function, such as one that reads the store, in a worker thread, and return its result."""
         return await to_thread.run_sync(work)
 
     def index_soon(self, run_id: str) -> None:

@@ -41,8 +41,8 @@ class Task:
         pair: The name of the pair of models.
         conversation: The id of its conversation, if any.
         kind: Whether it is an instruction, a dry run, or a tool call by a person.
-        planner: A planner that replaces the one of the pair.
-        snapshots: Whether views are stored in addition to the frames that perception reads.
+        planner: A planner that replaces the pair's planner, if any.
+        snapshots: Whether camera views are stored in addition to the frames that perception reads.
     """
 
     instruction: str
@@ -128,7 +128,7 @@ class Runner:
                 failure = StoppedError(station.name)
             station.running = None
             station.touch()
-            await station.desk.run_ended()
+            await station.control.run_ended()
             handle.finish(failure)
 
     async def _run(self, station: Station, camera: Camera, task: Task, folder: RunFolder, handle: RunHandle) -> None:

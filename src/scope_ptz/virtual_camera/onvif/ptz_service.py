@@ -94,7 +94,7 @@ class PtzService:
     def _continuous(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
         pan_tilt, zoom = _axes(request.Velocity)
-        velocity, top = self._device.driven, top_speed(self._device.head)
+        velocity, top = self._device.commanded_velocity, top_speed(self._device.head)
         if pan_tilt is not None:
             s.chosen(self._spaces.velocities, pan_tilt, s.VELOCITY).check(pan_tilt, "InvalidVelocity")
             velocity = replace(velocity, pan_dps=pan_tilt.x * top.pan_dps, tilt_dps=pan_tilt.y * top.tilt_dps)
@@ -121,7 +121,7 @@ class PtzService:
         return {}
 
     def _sent_s(self, request: Request, *, latest: bool) -> float | None:
-        """Return the creation time of a request in Unix seconds: the latest possible time of a move, the earliest of a stop.
+        """Return the creation time of a request in Unix seconds: the latest possible time for a move, the earliest for a stop.
 
         In case of doubt, the move is therefore carried out. A client whose clock is ahead must not block others.
         """
@@ -131,8 +131,8 @@ class PtzService:
         return min(created_s, device_time_s(self._device)) - self._device.faults.clock_skew_s
 
     def _move(self, pose: Pose, speed: Any) -> None:
-        share, zoom_share = self._configuration.shares(speed)
-        self._device.move(pose, speed_share=share, zoom_share=zoom_share)
+        fraction, zoom_fraction = self._configuration.speed_fractions(speed)
+        self._device.move(pose, speed_fraction=fraction, zoom_fraction=zoom_fraction)
 
 
 def _axes(vector: Any) -> tuple[Any, Any]:
