@@ -169,7 +169,7 @@ async def test_a_stop_of_one_axis_lets_an_absolute_move_of_the_other_go_on(
     assert near(device.pose(), Pose(stopped_at.pan_deg, stopped_at.tilt_deg, 5.0))
 
 
-async def test_speed_is_a_share_of_the_top_speed(ptz: Any, device: VirtualDevice, time: HandClock) -> None:
+async def test_speed_is_a_fraction_of_the_top_speed(ptz: Any, device: VirtualDevice, time: HandClock) -> None:
     async def degrees_in_a_second(speed: dict[str, Any] | None) -> float:
         device.move(Pose(0.0, 0.0, 1.0))
         time.pass_(60)

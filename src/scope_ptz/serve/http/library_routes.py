@@ -60,7 +60,7 @@ async def list_runs(
 ) -> RunList:
     """List runs, the newest first. Only the owner of a conversation can ask for its runs."""
     if conversation is not None:
-        await site.journal.read(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
+        await site.journal.in_thread(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
     chosen = run_filter(
         text=text,
         kind=kind,
@@ -76,15 +76,15 @@ async def list_runs(
     )
     store = site.journal.store
     await site.journal.settle()
-    page = await site.journal.read(partial(store.runs, chosen, limit=limit, after=after))
-    count = await site.journal.read(partial(store.count, chosen))
+    page = await site.journal.in_thread(partial(store.runs, chosen, limit=limit, after=after))
+    count = await site.journal.in_thread(partial(store.count, chosen))
     return RunList(runs=page.runs, next=page.next, count=count, count_is_limit=count >= MAX_COUNT)
 
 
 @router.get("/runs/values", responses=responses(503))
 async def run_values(site: SiteDep, client: Viewer) -> dict[str, list[str]]:  # noqa: ARG001 - checks the token
     """Return the cameras, planners, perception backends and outcomes of all stored runs, for menus."""
-    return await site.journal.read(partial(distinct_values, site.journal.store.database))
+    return await site.journal.in_thread(partial(distinct_values, site.journal.store.database))
 
 
 @router.get(
@@ -120,10 +120,10 @@ async def export_runs(
     os.close(number)
     path = FilePath(name)
     try:
-        ids = (await site.journal.read(partial(store.ids, chosen)))[:MAX_EXPORT]
-        await site.journal.read(partial(write_export, store, ids, path, form))
+        ids = (await site.journal.in_thread(partial(store.ids, chosen)))[:MAX_EXPORT]
+        await site.journal.in_thread(partial(write_export, store, ids, path, form))
     except BaseException:
-        await site.journal.read(partial(path.unlink, missing_ok=True))
+        await site.journal.in_thread(partial(path.unlink, missing_ok=True))
         raise
     kind, suffix = ("application/zip", "zip") if form == "zip" else ("application/x-ndjson", "jsonl")
     return FileResponse(
@@ -151,8 +151,8 @@ async def list_run_drafts(
     chosen = run_filter(text=text, camera=camera, outcome=outcome, rating="good", since=since, until=until)
     store = site.journal.store
     await site.journal.settle()
-    page = await site.journal.read(partial(store.runs, chosen, limit=MAX_DRAFTS))
-    return await site.journal.read(lambda: list(run_drafts(store, [run.id for run in page.runs])))
+    page = await site.journal.in_thread(partial(store.runs, chosen, limit=MAX_DRAFTS))
+    return await site.journal.in_thread(lambda: list(run_drafts(store, [run.id for run in page.runs])))
 
 
 @router.get("/runs/{run}/details", responses=_ERRORS)
@@ -160,8 +160,8 @@ async def run_details(site: SiteDep, client: Viewer, run: RunId) -> RunDetails: 
     """Return the stored data of a run: its times, calls, pictures and feedback."""
     store = site.journal.store
     await site.journal.settle()
-    stored = await site.journal.read(partial(store.run, run))
-    feedback = await site.journal.read(partial(feedback_on, store.database, run))
+    stored = await site.journal.in_thread(partial(store.run, run))
+    feedback = await site.journal.in_thread(partial(feedback_on, store.database, run))
     return RunDetails(run=stored.run, steps=stored.steps, frames=stored.frames, feedback=feedback)
 
 
@@ -205,7 +205,7 @@ async def run_picture(
         return draw_marks(data, marks_of(call_of(trace, file), file)) if marks else data
 
     kind = "image/jpeg" if marks or name.endswith(".jpg") else "image/png"
-    return Response(await site.journal.read(read), media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
+    return Response(await site.journal.in_thread(read), media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
 
 
 @router.get(
@@ -226,27 +226,27 @@ async def filmstrip(site: SiteDep, client: Viewer, run: RunId) -> Response:  # n
             raise TraceError("This run has no pictures.")
         return path.read_bytes()
 
-    return Response(await site.journal.read(read), media_type="image/png")
+    return Response(await site.journal.in_thread(read), media_type="image/png")
 
 
 @router.put("/runs/{run}/kept", status_code=204, responses=_ERRORS)
 async def keep_run(site: SiteDep, client: Operator, run: RunId, body: Kept) -> Response:  # noqa: ARG001 - checks the token
     """Set whether a run is kept when old runs are removed."""
-    await site.journal.read(partial(keep, site.journal.store.database, run, kept=body.kept))
+    await site.journal.in_thread(partial(keep, site.journal.store.database, run, kept=body.kept))
     return Response(status_code=204)
 
 
 @router.get("/runs/{run}/feedback", tags=["feedback"], responses=_ERRORS)
 async def list_feedback(site: SiteDep, client: Viewer, run: RunId) -> list[FeedbackRow]:  # noqa: ARG001 - checks the token
     """List the feedback on a run."""
-    return await site.journal.read(partial(feedback_on, site.journal.store.database, run))
+    return await site.journal.in_thread(partial(feedback_on, site.journal.store.database, run))
 
 
 @router.post("/runs/{run}/feedback", status_code=201, tags=["feedback"], responses=_ERRORS)
 async def give_feedback(site: SiteDep, client: Operator, run: RunId, body: FeedbackBody) -> FeedbackRow:
     """Rate a run or one of its calls. Later feedback by the same person on the same run or call replaces earlier feedback."""
     await site.journal.settle()
-    return await site.journal.read(
+    return await site.journal.in_thread(
         partial(
             add_feedback,
             site.journal.store.database,
@@ -262,5 +262,5 @@ async def give_feedback(site: SiteDep, client: Operator, run: RunId, body: Feedb
 @router.delete("/feedback/{number}", status_code=204, tags=["feedback"], responses=_ERRORS)
 async def withdraw_feedback(site: SiteDep, client: Operator, number: Annotated[int, Path(ge=0, le=2**53)]) -> Response:
     """Withdraw feedback that the client gave."""
-    await site.journal.read(partial(remove_feedback, site.journal.store.database, number, actor=client.name))
+    await site.journal.in_thread(partial(remove_feedback, site.journal.store.database, number, actor=client.name))
     return Response(status_code=204)

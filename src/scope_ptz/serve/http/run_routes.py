@@ -44,7 +44,7 @@ async def ask(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
 async def _start(site: Site, client: Client, body: RunStart) -> RunHandle:
     station, pair = site.station(body.camera), body.pair
     if body.conversation is not None:
-        conversation = await site.journal.read(
+        conversation = await site.journal.in_thread(
             partial(load_conversation, site.journal.store.database, body.conversation, owner=client.name)
         )
         if conversation.camera != station.name:

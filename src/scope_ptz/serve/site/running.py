@@ -17,7 +17,7 @@ from scope_ptz.errors import ScopeError
 from scope_ptz.factory.models import dry_run_note
 from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
-from scope_ptz.serve.site.by_hand import OneCall, call_text
+from scope_ptz.serve.site.by_hand import SingleCallPlanner, call_text
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import StoppedError
 from scope_ptz.serve.site.journal import Journal
@@ -56,7 +56,7 @@ class Task:
     def tool_call(cls, name: str, arguments: dict[str, Any], pair: str) -> Task:
         """Return the task of calling one tool."""
         text = call_text(name, arguments)[:MAX_INSTRUCTION_CHARS]
-        return cls(text, pair, kind="tool", planner=OneCall(name, arguments), snapshots=False)
+        return cls(text, pair, kind="tool", planner=SingleCallPlanner(name, arguments), snapshots=False)
 
 
 class Runner:

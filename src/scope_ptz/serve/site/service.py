@@ -98,7 +98,7 @@ class Site:
                 station.cancel_prefetch()
             for station in self.stations.values():
                 await station.close()
-            await self.journal.read(self.evaluations.close)
+            await self.journal.in_thread(self.evaluations.close)
             await self.journal.settle(10.0)
             for task in self._tasks:
                 task.cancel()

@@ -17,7 +17,7 @@ from scope_ptz.virtual_camera.identity import serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_time_s
 from scope_ptz.virtual_camera.onvif.device_service import PATHS, DeviceService
 from scope_ptz.virtual_camera.onvif.imaging_service import ImagingService
-from scope_ptz.virtual_camera.onvif.login import Stamp, UsernameTokens, created, not_authorized
+from scope_ptz.virtual_camera.onvif.login import Stamp, UsernameTokens, creation_time, not_authorized
 from scope_ptz.virtual_camera.onvif.media2_service import Media2Service
 from scope_ptz.virtual_camera.onvif.media_service import MediaService
 from scope_ptz.virtual_camera.onvif.operations import Operations, Reply, Request
@@ -141,7 +141,7 @@ class OnvifApp:
         if self._device.faults.unauthorized:
             raise not_authorized("The user name or the password is wrong.")
         if self._device.accounts.open_to_all:
-            return created(envelope.header)
+            return creation_time(envelope.header)
         sender = self._tokens.sender(envelope.header)
         account = sender.account if sender else target.verdict.account if target.verdict else None
         if account is None:

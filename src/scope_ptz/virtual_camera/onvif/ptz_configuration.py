@@ -146,11 +146,11 @@ class PtzConfiguration:
         pan_tilt, zoom = getattr(speed, "PanTilt", None), getattr(speed, "Zoom", None)
         fraction, zoom_fraction = self.speed, self.zoom_speed
         if pan_tilt is not None:
-            space = s.chosen(self.spaces.speeds, pan_tilt, s.SPEED)
+            space = s.requested_space(self.spaces.speeds, pan_tilt, s.SPEED)
             s.Space(space.uri, space.x, space.x).check(pan_tilt, subcode)
             fraction = min(max(pan_tilt.x, pan_tilt.y) or self.speed, 1.0)
         if zoom is not None:
-            s.chosen(self.spaces.zoom_speeds, zoom, s.ZOOM_SPEED).check(zoom, subcode)
+            s.requested_space(self.spaces.zoom_speeds, zoom, s.ZOOM_SPEED).check(zoom, subcode)
             zoom_fraction = min(zoom.x or self.zoom_speed, 1.0)
         return fraction, zoom_fraction
 

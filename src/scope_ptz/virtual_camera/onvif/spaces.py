@@ -52,7 +52,7 @@ class Space:
                 raise invalid_argument(f"{axis} must be from {limits[0]:g} to {limits[1]:g}; got {value}.", subcode)
 
 
-def chosen(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:
+def requested_space(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:
     """Return the space that a vector names, or the default.
 
     Raises:
