@@ -101,7 +101,7 @@ def test_a_page_follows_one_camera_and_conversations_stay_apart(page: Page, scen
     choose(page, OTHER)
     expect(page.locator(".thread h2")).to_have_text("Tell the camera what to do")
     choose(page, scene)
-    expect(page.locator(".turn .said")).to_have_text("pan right by 10 degrees")
+    expect(page.locator(".turn .request")).to_have_text("pan right by 10 degrees")
 
 
 def test_scene_time_on_the_stage_by_keyboard(page: Page, api: httpx2.Client, scene: str) -> None:

@@ -103,7 +103,7 @@ def test_an_instruction_appears_in_the_library(page: Page) -> None:
     expect(turn.get_by_role("button", name="Good: this answer")).to_have_attribute("aria-pressed", "true")
 
     page.reload()
-    expect(page.locator(".turn .said")).to_have_text("pan right by 20 degrees")
+    expect(page.locator(".turn .request")).to_have_text("pan right by 20 degrees")
     expect(page.locator(".turn .step")).to_have_count(1)
 
     page.locator(".turn").get_by_role("button", name="Frames").click()
@@ -151,7 +151,7 @@ def test_second_tab_joins_and_stops(page: Page, watched: Watched) -> None:
     other = watched.open()
     page.get_by_label("Instruction", exact=True).fill("keep panning right in 5 degree steps until you see a tram")
     page.keyboard.press("Enter")
-    expect(other.locator(".turn .said")).to_be_visible()
+    expect(other.locator(".turn .request")).to_be_visible()
     expect(other.locator(".turn .step").first).to_be_visible()
     other.get_by_role("button", name="Stop").click()
     for each in (page, other):
@@ -170,7 +170,7 @@ def test_an_instruction_sent_during_a_run_is_kept(page: Page) -> None:
     page.get_by_role("button", name="Cancel the one in progress").click()
     expect(page.locator(".turn .outcome")).to_have_text("Cancelled")
     text.press("Enter")
-    expect(page.locator(".turn .said").last).to_have_text("zoom in 2x")
+    expect(page.locator(".turn .request").last).to_have_text("zoom in 2x")
     expect(page.locator(".turn .answer p").last).to_be_visible()
 
 
@@ -185,7 +185,7 @@ def test_an_instruction_sent_early_waits_for_the_camera(watched: Watched) -> Non
         text = opened.get_by_label("Instruction", exact=True)
         text.fill("zoom in 2x")
         text.press("Enter")
-        expect(opened.locator(".turn .said")).to_have_text("zoom in 2x")
+        expect(opened.locator(".turn .request")).to_have_text("zoom in 2x")
         expect(text).to_have_value("")
 
 

@@ -58,7 +58,7 @@ def guarded(scenes: None, tokens: dict[str, str], tmp_path_factory: pytest.TempP
 def client(served: Served) -> Iterator[httpx2.Client]:
     """A client without control. The camera is free and in its home position."""
     for station in served.site.stations.values():
-        served.call(station.desk.clear)
+        served.call(station.control.clear)
     with served.client() as opened:
         opened.post(f"/cameras/{CAMERA}/stop")
         opened.post(f"/cameras/{CAMERA}/home")

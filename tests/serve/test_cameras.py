@@ -56,7 +56,7 @@ cameras:
 def user(site: Served) -> Iterator[httpx2.Client]:
     """A client of the server. Nobody controls any camera."""
     for station in site.site.stations.values():
-        site.call(station.desk.clear)
+        site.call(station.control.clear)
     with site.client() as opened:
         yield opened
 

@@ -107,7 +107,7 @@ def test_a_removed_token_ends_its_streams(guarded: Served, carl: tuple[str, Toke
     until(lambda: guarded.site.stations[CAMERA].live.watchers == 0)
     guarded.call(guarded.site.stations[CAMERA].stop)
     until(lambda: guarded.site.stations[CAMERA].running is None)
-    guarded.call(guarded.site.stations[CAMERA].desk.clear)
+    guarded.call(guarded.site.stations[CAMERA].control.clear)
 
 
 def test_signing_out_ends_the_streams_of_the_browser(guarded: Served, carl: tuple[str, TokenFile]) -> None:
@@ -134,7 +134,7 @@ def test_a_waiting_request_of_a_removed_token_is_refused(guarded: Served, carl: 
     assert (replies[0].status_code, replies[0].json()["error"]["code"]) == (401, "sign_in")
     guarded.call(guarded.site.stations[OTHER].stop)
     until(lambda: guarded.site.stations[OTHER].running is None)
-    guarded.call(guarded.site.stations[OTHER].desk.clear)
+    guarded.call(guarded.site.stations[OTHER].control.clear)
 
 
 def test_secrets_in_urls_are_ignored(guarded: Served, tokens: dict[str, str]) -> None:

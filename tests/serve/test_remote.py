@@ -136,7 +136,7 @@ def test_errors_have_clear_messages(
     monkeypatch.setenv("SCOPE_TOKEN", tokens["vera"])
     with scope_ptz.open(there) as scope:
         assert scope.frame().height == 180
-        with pytest.raises(ConfigError, match="role of an operator"):
+        with pytest.raises(ConfigError, match="operator role"):
             scope.ask("go home")
     monkeypatch.setenv("SCOPE_TOKEN", tokens["anna"])
     with scope_ptz.open(there) as scope:

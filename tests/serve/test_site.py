@@ -20,8 +20,8 @@ from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.serve.security.gate import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
+from scope_ptz.serve.site.camera_control import CameraControl
 from scope_ptz.serve.site.clients import Client
-from scope_ptz.serve.site.control_desk import ControlDesk
 from scope_ptz.serve.site.errors import NotInControlError
 from scope_ptz.serve.site.service import SiteOptions, site_cameras
 from scope_ptz.serve.site.station import IdleReturn
@@ -37,58 +37,58 @@ ANNA, BEN = Client("anna", "anna:1", "operator"), Client("ben", "ben:1", "operat
 @pytest.mark.anyio
 async def test_control_lapses_but_not_during_a_run(analytic_scene: Scene) -> None:
     camera, busy = SimulatedCamera(analytic_scene), False
-    desk = ControlDesk("yard", lambda: busy, lease_s=0.05)
-    await desk.require(ANNA, camera)
+    control = CameraControl("yard", lambda: busy, lease_s=0.05)
+    await control.require(ANNA, camera)
     with pytest.raises(NotInControlError, match="controlled by anna"):
-        await desk.require(BEN, camera)
+        await control.require(BEN, camera)
     busy = True
     await anyio.sleep(0.1)
     with pytest.raises(NotInControlError):
-        await desk.require(BEN, camera)
+        await control.require(BEN, camera)
     busy = False
-    await desk.require(BEN, camera)
-    assert desk.holder == BEN
+    await control.require(BEN, camera)
+    assert control.holder == BEN
     with pytest.raises(NotInControlError):
-        await desk.answer(ANNA, BEN.key, camera, grant=True)
+        await control.answer(ANNA, BEN.key, camera, grant=True)
 
 
 @pytest.mark.anyio
 async def test_control_shows_in_the_lock_of_the_camera(analytic_scene: Scene) -> None:
     camera = SimulatedCamera(analytic_scene)
-    desk = ControlDesk("yard", lambda: False)
-    await desk.ask(ANNA, camera)
+    control = CameraControl("yard", lambda: False)
+    await control.ask(ANNA, camera)
     assert camera.control_lock is not None and camera.control_lock.holder is not None
     assert camera.control_lock.holder.name == "anna"
-    assert not await desk.ask(BEN, camera)
-    await desk.answer(ANNA, BEN.key, camera, grant=True)
+    assert not await control.ask(BEN, camera)
+    await control.answer(ANNA, BEN.key, camera, grant=True)
     assert camera.control_lock.holder.name == "ben"
-    await desk.release(BEN)
+    await control.release(BEN)
     assert camera.control_lock.holder is None
 
 
 @pytest.mark.anyio
 async def test_control_ends_with_the_run_of_a_client_that_left(analytic_scene: Scene) -> None:
     camera, busy = SimulatedCamera(analytic_scene), True
-    desk = ControlDesk("yard", lambda: busy)
-    await desk.require(ANNA, camera)
-    await desk.release(ANNA)
-    assert desk.holder == ANNA  # for the run in progress
+    control = CameraControl("yard", lambda: busy)
+    await control.require(ANNA, camera)
+    await control.release(ANNA)
+    assert control.holder == ANNA  # for the run in progress
     busy = False
-    await desk.run_ended()
-    assert desk.holder is None
+    await control.run_ended()
+    assert control.holder is None
     assert camera.control_lock is not None and camera.control_lock.holder is None
 
 
 @pytest.mark.anyio
 async def test_a_client_that_comes_back_during_its_run_keeps_control(analytic_scene: Scene) -> None:
     camera, busy = SimulatedCamera(analytic_scene), True
-    desk = ControlDesk("yard", lambda: busy)
-    await desk.require(ANNA, camera)
-    await desk.release(ANNA)
-    assert await desk.ask(ANNA, camera)
+    control = CameraControl("yard", lambda: busy)
+    await control.require(ANNA, camera)
+    await control.release(ANNA)
+    assert await control.ask(ANNA, camera)
     busy = False
-    await desk.run_ended()
-    assert desk.holder == ANNA
+    await control.run_ended()
+    assert control.holder == ANNA
 
 
 def wait_for(client: httpx2.Client, path: str, field: str, value: object) -> None:

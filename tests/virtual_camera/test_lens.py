@@ -41,7 +41,7 @@ def sharpness(image: NDArray[np.uint8]) -> float:
 
 def test_an_automatic_lens_leaves_the_picture_as_it_is(lens: VirtualLens) -> None:
     image = picture()
-    assert lens.through(image, 1.0) is image
+    assert lens.apply(image, 1.0) is image
     assert (lens.autofocus, lens.autoiris, lens.focus, lens.iris) == (True, True, SHARP_FOCUS, AUTO_IRIS)
 
 
@@ -73,9 +73,9 @@ def test_defocus_blurs_more_with_distance_and_zoom(lens: VirtualLens, clock: Clo
     for position in (SHARP_FOCUS, SHARP_FOCUS - 0.1, SHARP_FOCUS - 0.3):
         lens.move_focus(position)
         clock.now_s += 10.0
-        seen.append(sharpness(lens.through(image, 1.0)))
+        seen.append(sharpness(lens.apply(image, 1.0)))
     assert seen[0] > 1.5 * seen[1] > 1.5 * seen[2]
-    assert sharpness(lens.through(image, 4.0)) < seen[2]
+    assert sharpness(lens.apply(image, 4.0)) < seen[2]
 
 
 @given(st.floats(0, 1), st.floats(0, 1))
@@ -85,7 +85,7 @@ def test_an_open_iris_is_brighter(first: float, second: float) -> None:
     for opening in sorted((first, second)):
         lens = VirtualLens(Clock())
         lens.set_iris(opening)
-        means.append(lens.through(image, 1.0).mean())
+        means.append(lens.apply(image, 1.0).mean())
     assert means[0] <= means[1]
 
 
@@ -93,9 +93,9 @@ def test_holding_the_iris_changes_nothing(lens: VirtualLens) -> None:
     lens.set_autoiris(on=False)
     assert lens.iris == AUTO_IRIS
     lens.set_iris(0.0)
-    dark = lens.through(picture(), 1.0).mean()
+    dark = lens.apply(picture(), 1.0).mean()
     lens.set_autoiris(on=True)
-    assert dark < 0.7 * lens.through(picture(), 1.0).mean()
+    assert dark < 0.7 * lens.apply(picture(), 1.0).mean()
 
 
 def test_the_device_shows_its_lens_and_a_reboot_resets_it(analytic_scene: Scene) -> None:

@@ -10,17 +10,17 @@ from scope_ptz.virtual_camera.pace import Pace
 
 def test_a_stream_without_a_rate_takes_every_frame() -> None:
     pace = Pace(25, 0)
-    assert all(pace.takes(100 + n / 25) for n in range(50))
+    assert all(pace.accepts(100 + n / 25) for n in range(50))
 
 
 @given(st.floats(1, 60), st.floats(0, 1e6))
 def test_a_stream_has_its_own_rate_or_that_of_the_camera(rate_hz: float, start_s: float) -> None:
     pace, seconds = Pace(25, rate_hz), 40
-    taken = sum(pace.takes(start_s + n / 25) for n in range(25 * seconds))
+    taken = sum(pace.accepts(start_s + n / 25) for n in range(25 * seconds))
     assert abs(taken / seconds - min(rate_hz, 25)) <= 0.05
 
 
 def test_after_a_pause_frames_are_not_made_up_for() -> None:
     pace = Pace(100, 10)
-    assert pace.takes(0.0)
-    assert [pace.takes(5.0 + n / 100) for n in range(12)] == [True, *[False] * 9, True, False]
+    assert pace.accepts(0.0)
+    assert [pace.accepts(5.0 + n / 100) for n in range(12)] == [True, *[False] * 9, True, False]

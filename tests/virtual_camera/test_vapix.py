@@ -105,12 +105,12 @@ def test_zoom_positions_survive_a_round_trip(step: int) -> None:
 @given(st.floats(-100, 100), st.floats(-100, 100))
 def test_speeds_rise_with_their_values(one: float, other: float) -> None:
     low, high = sorted((one, other))
-    assert scales.speed_share(low) <= scales.speed_share(high)
-    assert scales.speed_share(-one) == -scales.speed_share(one)
+    assert scales.speed_fraction(low) <= scales.speed_fraction(high)
+    assert scales.speed_fraction(-one) == -scales.speed_fraction(one)
 
 
 def test_the_ends_of_the_speed_scale() -> None:
-    assert [scales.speed_share(value) for value in (-100, 0, 100, 1000)] == [-1, 0, 1, 1]
+    assert [scales.speed_fraction(value) for value in (-100, 0, 100, 1000)] == [-1, 0, 1, 1]
 
 
 @given(pan=st.floats(-170, 170), tilt=st.floats(-55, 25), zoom=st.integers(1, 9999))
@@ -182,11 +182,11 @@ def test_the_move_speed_is_kept_and_slows_pan_and_tilt_only(unit: VapixUnit, tim
 def test_continuous_moves_of_pan_and_zoom_are_independent(unit: VapixUnit, time: HandClock) -> None:
     device = unit.device
     send(unit, continuouspantiltmove="100,-40")
-    assert device.driven == Velocity(100, -6, 0)
+    assert device.commanded_velocity == Velocity(100, -6, 0)
     send(unit, continuouszoommove="50")
-    assert device.driven == Velocity(100, -6, 0.75)
+    assert device.commanded_velocity == Velocity(100, -6, 0.75)
     send(unit, continuouspantiltmove="0,0")
-    assert device.driven == Velocity(0, 0, 0.75)
+    assert device.commanded_velocity == Velocity(0, 0, 0.75)
     time.now += 0.5
     send(unit, continuouszoommove="0")
     stopped = arrive(unit, time)

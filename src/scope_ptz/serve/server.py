@@ -55,7 +55,7 @@ def configuration(app: ASGIApp) -> uvicorn.Config:
         app,
         lifespan="off",
         log_config=None,
-        log_level="warning",  # where logging is set up, as Streamlit does, uvicorn would report every connection
+        log_level="warning",  # if a program configures logging, as Streamlit does, uvicorn would log every connection
         access_log=False,
         server_header=False,
         proxy_headers=False,  # address headers from clients are not trusted

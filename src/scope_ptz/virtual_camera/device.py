@@ -1,4 +1,4 @@
-"""The virtual device that all protocols share: motors, presets, accounts, faults, and the picture at the current pose."""
+"""The virtual device that all protocols fraction: motors, presets, accounts, faults, and the image at the current pose."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class DevicePreset:
 
 @dataclass(frozen=True, slots=True)
 class Exposure:
-    """A picture of the sensor.
+    """An image that the sensor captured, with its pose and times.
 
     Attributes:
         image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
@@ -65,7 +65,7 @@ class VirtualDevice:
         viewpoint: The viewpoint of the camera; by default, that of the scene's home preset.
         name: The device's name, which discovery and clients show.
         accounts: The accounts that may use it. If there are none, it requires no password.
-        clock: The scene's clock. It moves the actors, and can be held while the motors keep moving.
+        clock: The scene clock, which moves the actors. It can be paused while the motors keep moving.
         head: The motors; the default is those of the AXIS M5075-G.
         width: Width of a full-size picture in pixels.
         height: Height of a full-size picture in pixels.
@@ -73,7 +73,7 @@ class VirtualDevice:
 
     Attributes:
         faults: The current faults; assign another ``Faults`` to change them.
-        observers: Functions that get every new exposure, in the thread that takes it.
+        observers: Functions that are called with each new exposure, in the thread that captures it.
         lens: Its focus and iris.
     """
 
@@ -125,11 +125,11 @@ class VirtualDevice:
         return self._motion.pose(self.now_s())
 
     def moving(self) -> bool:
-        """Return whether a motor turns or the picture has not settled."""
+        """Return whether a motor is turning or the image has not settled yet."""
         return self._motion.moving(self.now_s())
 
     def reported_moving(self) -> bool | None:
-        """Return the move status that clients get; None if the device reports none."""
+        """Return the move status reported to clients; None if the device does not report one."""
         status = self._faults.move_status
         return None if status == "missing" else (self.moving() and status != "lying")
 
@@ -138,18 +138,18 @@ class VirtualDevice:
         """The target of the current move; the current pose if the camera is driven at a velocity."""
         return self._motion.end or self.pose()
 
-    def move(self, pose: Pose, *, speed_share: float = 1.0, zoom_share: float | None = None) -> None:
+    def move(self, pose: Pose, *, speed_fraction: float = 1.0, zoom_fraction: float | None = None) -> None:
         """Start a move to a pose. Values beyond a limit are clamped, and a stuck axis does not move.
 
         Args:
             pose: The target.
-            speed_share: Share of the top speeds.
-            zoom_share: Share of the top speed of zoom, if it differs.
+            speed_fraction: Speed as a fraction of the top speed of each axis.
+            zoom_fraction: Speed of the zoom as a fraction of its top speed; by default, ``speed_fraction``.
         """
         reachable, _ = self.limits.clamp(pose)
         here = self.pose()
         stuck = {_STUCK_FIELDS[axis]: getattr(here, _STUCK_FIELDS[axis]) for axis in self._faults.stuck}
-        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_share, zoom_share=zoom_share)
+        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_fraction, zoom_share=zoom_fraction)
 
     def drive(self, velocity: Velocity, *, timeout_s: float | None = None, sent_s: float | None = None) -> bool:
         """Move continuously. The command is dropped if it was sent before the last ``stop`` and arrived after it.
@@ -170,7 +170,7 @@ class VirtualDevice:
             0.0 if "tilt" in stuck else velocity.tilt_dps,
             0.0 if "zoom" in stuck else velocity.zoom_rate,
         )
-        # Without a timeout the motors run until the next command or their stops: a year of motor time represents "never".
+        # Without a timeout, the motors run until the next command or the end of their range. A year stands for "never".
         self._motion.drive(free, self.now_s(), 3.2e7 if timeout_s is None else timeout_s)
         return True
 
@@ -180,8 +180,8 @@ class VirtualDevice:
         return self._motion.velocity(self.now_s())
 
     @property
-    def driven(self) -> Velocity:
-        """The commanded velocity of a driven head, zero if it is not driven."""
+    def commanded_velocity(self) -> Velocity:
+        """The velocity that the drive command in effect requested; zero if the head is not being driven."""
         return self._motion.driven_at(self.now_s())
 
     def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
@@ -204,7 +204,7 @@ class VirtualDevice:
             self._motion.brake(now_s)
 
     def reboot(self) -> None:
-        """Return to the home position immediately and clear the stop times, as after a reboot.
+        """Return to the home position immediately and forget earlier stop commands, as after a reboot.
 
         Presets are kept; focus and iris become automatic.
         """
@@ -213,7 +213,7 @@ class VirtualDevice:
         self._stopped_by_s = -np.inf
 
     def presets(self) -> list[DevicePreset]:
-        """Return the presets by number."""
+        """Return the presets in the order of their numbers."""
         return [self._presets[number] for number in sorted(self._presets)]
 
     def find_preset(self, name: str) -> DevicePreset:
@@ -241,7 +241,7 @@ class VirtualDevice:
         """Store the current pose. A preset of the same name or number is replaced.
 
         Raises:
-            InputError: The name is empty, too long, or has characters that cannot be printed.
+            InputError: The name is empty, too long, or contains unprintable characters.
             CameraError: The device cannot store more presets.
         """
         check_preset_name(name)
@@ -259,7 +259,7 @@ class VirtualDevice:
 
         Raises:
             UnknownNameError: There is no such preset.
-            InputError: The name is empty, too long, in use, or has characters that cannot be printed.
+            InputError: The name is empty, too long, in use, or contains unprintable characters.
         """
         check_preset_name(name)
         if any(preset.name == name and preset.number != number for preset in self._presets.values()):
@@ -279,13 +279,13 @@ class VirtualDevice:
         self.home = self.pose()
 
     def prefetch(self) -> Prefetch:
-        """Read the viewpoint in the background, so that no later picture has to wait for a file."""
+        """Load the viewpoint in the background, so that no later exposure has to wait for a file."""
         return Prefetch(self.scene.viewpoint(self.viewpoint), self.width, self.optics, self.limits)
 
     def expose(self, width: int | None = None, height: int | None = None) -> Exposure:
-        """Take a picture. It blocks for the time of one re-projection.
+        """Capture the image at the current pose. This blocks for one re-projection.
 
-        The horizontal field of view depends only on the zoom, not on the size.
+        The horizontal field of view depends only on the zoom, not on the image size.
         """
         faults = self._faults
         if faults.picture == "frozen" and self._frozen is not None:
@@ -299,7 +299,7 @@ class VirtualDevice:
         else:
             drift_deg = faults.drift_dps * (self.now_s() - self._faults_since_s)
             view = Perspective(pose.pan_deg + drift_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), width, height)
-            image = self.lens.through(picture(self.scene, self.viewpoint, view, time_s), pose.zoom)
+            image = self.lens.apply(picture(self.scene, self.viewpoint, view, time_s), pose.zoom)
         image.flags.writeable = False
         exposure = Exposure(image, pose, time_s, taken_s)
         for observe in self.observers:

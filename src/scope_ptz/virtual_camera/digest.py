@@ -16,10 +16,10 @@ from urllib.parse import urlsplit
 from scope_ptz.virtual_camera.accounts import Account, Accounts
 
 NONCE_LIFETIME_S = 300.0
-"""Seconds for which a nonce is accepted. After that, a correct answer gets a new challenge that is marked stale."""
+"""How long a nonce is accepted, in seconds. After that, a correct response gets a new challenge that is marked stale."""
 
 _ALGORITHMS: dict[str, Callable[[bytes], hashlib._Hash]] = {"SHA-256": hashlib.sha256, "MD5": hashlib.md5}
-# Clients that read only one challenge either take the first one and know SHA-256, or take the last one and know MD5 (FFmpeg).
+# A client that reads only one challenge either takes the first and supports SHA-256, or takes the last and supports MD5 (FFmpeg).
 
 _PARAMETER = re.compile(r'([\w*-]+)\s*=\s*(?:"((?:[^"\\]|\\.)*)"|([^\s,"]+))\s*(?:,|$)')
 _NONCE = Struct("!d12s")  # time of issue, random bytes
@@ -29,7 +29,7 @@ _WINDOW = 64  # nonce counts up to this far below the highest one are accepted, 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The result of a check.
+    """The result of an authentication check.
 
     Attributes:
         account: The authenticated account; None if the request must be refused.
@@ -43,14 +43,14 @@ class Verdict:
 class DigestAuthenticator:
     """Challenges clients and checks their responses. The password itself never crosses the network.
 
-    Nonces are signed by the server, so that requests without an account cost it no memory.
+    The server signs nonces instead of storing them, so unauthenticated requests use no memory.
 
     Args:
         accounts: The accounts that may sign in.
         realm: The authentication realm, which clients show.
-        qop: Whether ``qop=auth`` is offered and required. Many RTSP clients do not know it.
+        qop: Whether ``qop=auth`` is offered and required. Many RTSP clients do not support it.
         nonce_lifetime_s: Seconds for which a nonce is accepted.
-        now_s: The clock of nonces.
+        now_s: The clock that determines the age of nonces, in seconds.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class DigestAuthenticator:
         self._used: dict[str, _NonceCounts] = {}
 
     def challenges(self, *, stale: bool = False) -> list[str]:
-        """Return the values of the ``WWW-Authenticate`` headers of a refusal, one for each algorithm."""
+        """Return the values of the ``WWW-Authenticate`` headers of a 401 reply, one for each algorithm."""
         nonce = self._new_nonce()
         ending = (', qop="auth"' if self._qop else "") + (", stale=true" if stale else "")
         return [f'Digest realm="{self.realm}", nonce="{nonce}", algorithm={name}{ending}' for name in _ALGORITHMS]
@@ -79,8 +79,8 @@ class DigestAuthenticator:
         Args:
             authorization: The value of the header, None if there is none.
             method: The method of the request, such as ``GET`` or ``DESCRIBE``.
-            uri: The target of the request: path and query in HTTP. None accepts any address in the answer, because RTSP clients
-                name the stream in requests for its tracks.
+            uri: The request target (in HTTP, the path and query). With None, any URI in the response is accepted, because RTSP
+                clients send the URI of the stream in requests for its tracks.
         """
         answer = _parse(authorization or "")
         algorithm = _ALGORITHMS.get(answer.get("algorithm", "MD5").upper())
@@ -177,7 +177,7 @@ def _parse(authorization: str) -> dict[str, str]:
 
 
 def _same_target(answered: str, target: str) -> bool:
-    """Return whether a signed address is that of the request. Some clients sign the full URL instead of path and query."""
+    """Return whether the URI in a response matches the request target. Some clients sign the full URL instead of path and query."""
     if answered == target:
         return True
     parts = urlsplit(answered)

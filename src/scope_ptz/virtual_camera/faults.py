@@ -12,17 +12,17 @@ from scope_ptz.geometry import Axis
 
 
 class Faults(BaseModel):
-    """The faults of a virtual camera. The default is none.
+    """The faults of a virtual camera. By default, there are none.
 
     Attributes:
-        drop: Share of requests whose connection is closed without a reply.
+        drop: Fraction of requests whose connection is closed without a reply.
         stall_s: Seconds by which every reply is delayed.
         unauthorized: Whether every account is rejected.
-        garbage: Whether the bodies of replies violate their protocol.
-        picture: The fault of pictures: ``truncated`` JPEGs, one ``frozen`` picture, a ``black`` one, or another ``size``.
-        stuck: Axes whose motor does not turn.
-        drift_dps: Degrees per second by which the picture drifts away from the pose that the encoders report.
-        move_status: The move status is ``lying`` (always idle) or ``missing``.
+        garbage: Whether reply bodies are replaced by invalid data.
+        picture: The image fault: ``truncated`` JPEGs, a ``frozen`` image, a ``black`` image, or a wrong ``size``; empty for none.
+        stuck: Axes whose motors do not turn.
+        drift_dps: Degrees per second by which the image drifts away from the pose that the encoders report.
+        move_status: The fault of the reported move status: ``lying`` (always idle) or ``missing``; empty for none.
         down: Whether the camera is off the network, as during a reboot.
         clock_skew_s: Seconds by which the camera's clock is ahead.
     """
@@ -42,7 +42,7 @@ class Faults(BaseModel):
 
 
 def checked_faults(content: Mapping[str, object]) -> Faults:
-    """Return faults from names and values.
+    """Validate faults that are given by name, and return them.
 
     Raises:
         InputError: A fault is unknown or has an invalid value.

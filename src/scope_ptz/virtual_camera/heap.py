@@ -33,7 +33,7 @@ def use_one_heap() -> bool:
 
 
 async def release_memory_regularly(every_s: float = RELEASE_EVERY_S) -> None:
-    """Return freed memory to the operating system again and again, until cancelled.
+    """Return freed memory to the operating system at regular intervals, until cancelled.
 
     Pictures of different sizes fragment the heap, so its size would otherwise grow by 1 to 2% in ten minutes of streaming.
     """

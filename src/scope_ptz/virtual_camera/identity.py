@@ -15,7 +15,7 @@ FIRMWARE = "11.11.0"
 
 
 def serial_number(device: VirtualDevice) -> str:
-    """Return twelve hexadecimal digits, constant for a viewpoint of a scene, so that clients recognise the camera."""
+    """Return the serial number: twelve hexadecimal digits that depend only on the scene and the viewpoint."""
     place = f"{device.scene.name}/{device.viewpoint}"
     return "ACCC8E" + hashlib.sha256(place.encode()).hexdigest()[:6].upper()
 
@@ -27,10 +27,10 @@ def mac_address(device: VirtualDevice) -> str:
 
 
 def hostname(device: VirtualDevice) -> str:
-    """Return a name of letters, digits and hyphens."""
+    """Return the host name of the camera, which consists of letters, digits and hyphens."""
     return re.sub(r"[^a-z0-9]+", "-", device.name.lower()).strip("-")[:63] or "camera"
 
 
 def device_uuid(device: VirtualDevice) -> UUID:
-    """Return the identity of the camera in WS-Discovery."""
+    """Return the UUID that identifies the camera in WS-Discovery."""
     return uuid5(NAMESPACE_URL, f"urn:scope-ptz:{serial_number(device)}:{device.name}")

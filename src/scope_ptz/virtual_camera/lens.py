@@ -17,9 +17,9 @@ AUTO_IRIS = 0.5
 """The iris opening for correct exposure of the scene."""
 
 TRAVEL_S = 3.0
-"""Time in seconds in which the focus moves from one end of its range to the other."""
+"""Time that the focus takes to travel its whole range, in seconds."""
 
-_BLUR_PX = 12.0  # standard deviation of the blur for a defocus of the whole range, at 1x in a picture 1280 pixels wide
+_BLUR_PX = 12.0  # standard deviation of the blur for a defocus of the whole range, at 1x in an image 1280 pixels wide
 _MAX_BLUR_PX = 8.0
 _STOPS = 4.0  # stops (factors of two) of light from the closed to the open iris
 _GAMMA = 2.2
@@ -27,7 +27,7 @@ _GAMMA = 2.2
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """Modes, the iris, and the motion of the focus: start, speed (shares of the range per second) and end."""
+    """Modes, the iris, and the motion of the focus: start, speed (fractions of the range per second) and end."""
 
     autofocus: bool = True
     autoiris: bool = True
@@ -39,9 +39,9 @@ class _State:
 
 
 class VirtualLens:
-    """Focus and iris. Positions are shares of their ranges: 0 is near or closed, 1 is far or open.
+    """Focus and iris. Positions are fractions of their ranges: 0 is near or closed, 1 is far or open.
 
-    Commands come from one thread. ``expose`` may run in another one at the same time.
+    Commands come from one thread. ``VirtualDevice.expose`` may run in another one at the same time.
 
     Args:
         now_s: A function that returns the time of the motors in seconds.
@@ -83,11 +83,11 @@ class VirtualLens:
             self.stop_focus()
 
     def move_focus(self, position: float) -> None:
-        """Move the focus to a position within its range. It turns autofocus off."""
-        self._travel(_share(position), 1 / TRAVEL_S)
+        """Move the focus to a position within its range. This turns autofocus off."""
+        self._travel(_clamped(position), 1 / TRAVEL_S)
 
     def drive_focus(self, speed: float) -> None:
-        """Move the focus to an end of its range, at a share of its top speed from -1 to 1. It turns autofocus off."""
+        """Move the focus to an end of its range, at a signed fraction of its top speed (-1 to 1). This turns autofocus off."""
         if not speed:
             self.stop_focus()
         else:
@@ -102,11 +102,11 @@ class VirtualLens:
         self._state = replace(self._state, autoiris=on, iris=self.iris)
 
     def set_iris(self, opening: float) -> None:
-        """Set the iris within its range. It turns the automatic iris off."""
-        self._state = replace(self._state, autoiris=False, iris=_share(opening))
+        """Set the iris within its range. This turns the automatic iris off."""
+        self._state = replace(self._state, autoiris=False, iris=_clamped(opening))
 
-    def through(self, image: NDArray[np.uint8], zoom: float) -> NDArray[np.uint8]:
-        """Apply the effect of the lens to a picture: blur it if it is out of focus, and darken or brighten it with the iris.
+    def apply(self, image: NDArray[np.uint8], zoom: float) -> NDArray[np.uint8]:
+        """Apply the effect of the lens to an image: blur it if it is out of focus, and darken or brighten it with the iris.
 
         Args:
             image: Array of shape ``(H, W, 3)``, uint8. It is returned unchanged if the lens is in focus with an automatic iris.
@@ -127,5 +127,5 @@ class VirtualLens:
         self._state = replace(self._state, autofocus=autofocus, start=here, end=end, speed=speed, started_s=now_s)
 
 
-def _share(value: float) -> float:
+def _clamped(value: float) -> float:
     return min(max(value, 0.0), 1.0)

@@ -32,7 +32,7 @@ class LiveSource:
         self._newest: Exposure | None = None
         self._number = 0
         self._changed = anyio.Event()
-        self._wanted = anyio.Event()
+        self._watched = anyio.Event()
         self._subscribers = 0
 
     @property
@@ -43,7 +43,7 @@ class LiveSource:
     async def run(self) -> None:
         """Expose frames while at least one client watches. Run it in a task group; cancel it to stop."""
         while True:
-            await self._wanted.wait()
+            await self._watched.wait()
             async with anyio.create_task_group() as group:
                 await self._expose_while_watched(group)
 
@@ -51,13 +51,13 @@ class LiveSource:
     async def subscribe(self) -> AsyncIterator[AsyncIterator[Exposure]]:
         """Return a context with an endless iterator over exposures. Each step waits for a new frame."""
         self._subscribers += 1
-        self._wanted.set()
+        self._watched.set()
         try:
             yield self._exposures()
         finally:
             self._subscribers -= 1
             if not self._subscribers:
-                self._wanted = anyio.Event()
+                self._watched = anyio.Event()
                 self._newest = None
 
     async def _exposures(self) -> AsyncIterator[Exposure]:
@@ -75,9 +75,9 @@ class LiveSource:
             exposure = await to_thread.run_sync(self.device.expose)
             if self.latency_s:
                 delayed.append(exposure)
-                group.start_soon(self._hand_out_later, delayed)
+                group.start_soon(self._publish_later, delayed)
             else:
-                self._hand_out(exposure)
+                self._publish(exposure)
             due_s += period_s
             if (behind_s := monotonic() - due_s) > 0:
                 skipped = int(behind_s / period_s)
@@ -86,12 +86,12 @@ class LiveSource:
             await anyio.sleep(max(0.0, due_s - monotonic()))
         group.cancel_scope.cancel()
 
-    async def _hand_out_later(self, delayed: deque[Exposure]) -> None:
+    async def _publish_later(self, delayed: deque[Exposure]) -> None:
         exposure = delayed.popleft()
         await anyio.sleep(max(0.0, exposure.taken_s + self.latency_s - monotonic()))
-        self._hand_out(exposure)
+        self._publish(exposure)
 
-    def _hand_out(self, exposure: Exposure) -> None:
+    def _publish(self, exposure: Exposure) -> None:
         self._newest = exposure
         self._number += 1
         changed, self._changed = self._changed, anyio.Event()

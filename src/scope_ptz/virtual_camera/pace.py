@@ -1,4 +1,4 @@
-"""The pace of a stream that is slower than the camera's picture."""
+"""Select frames for a stream that is slower than the camera's live picture."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ class Pace:
         self._early_s = 0.5 / source_hz
         self._due_s = 0.0
 
-    def takes(self, taken_s: float) -> bool:
-        """Return whether the frame that was taken at a time belongs in the stream. Call it once for each frame, in order.
+    def accepts(self, taken_s: float) -> bool:
+        """Return whether the stream includes the frame that was taken at ``taken_s``.
 
-        A frame may be up to half a frame interval early. Otherwise, a rate that does not divide the camera's rate would be reduced.
+        Call this once for each frame, in order. A frame may be up to half a frame interval early. Otherwise, a stream could not
+        reach a rate that does not divide the camera's rate.
         """
         if not self._period_s:
             return True

@@ -1,4 +1,4 @@
-"""Parse requested picture sizes, and fit pictures to a size."""
+"""Parse requested image sizes, and fit images to a size."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MIN_SIDE_PX = 16
 
 
 def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
-    """Parse ``WIDTHxHEIGHT``. An empty text means the size of the camera.
+    """Parse ``WIDTHxHEIGHT``. An empty string means the camera's full size.
 
     Raises:
         InputError: The text has another form, or the size is larger than the camera's.
@@ -30,7 +30,7 @@ def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
 
 
 def fitted(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
-    """Scale a picture to a size. If its shape differs, it is cropped at its sides or at top and bottom, never stretched.
+    """Scale an image to a size. If the aspect ratio differs, the image is cropped, never stretched.
 
     Args:
         image: Array of shape ``(H, W, 3)``.

@@ -38,7 +38,7 @@ class TruthLog:
 
         Args:
             taken_s: The time of the exposure in Unix seconds. The nearest exposure is returned.
-            time_s: The scene time of the exposure. While scene time is held, the newest exposure at that time is returned.
+            time_s: The scene time of the exposure. While scene time is paused, the newest exposure at that time is returned.
             within_s: Maximum difference from ``taken_s`` in seconds.
         """
         fitting = [
@@ -64,6 +64,6 @@ def unix_s(exposure: Exposure) -> float:
 
 
 def origin_fields(origin: FrameOrigin) -> dict[str, object]:
-    """Return an origin as JSON data."""
+    """Return the fields of an origin as JSON data."""
     pose = {"pan_deg": origin.pose.pan_deg, "tilt_deg": origin.pose.tilt_deg, "zoom": origin.pose.zoom}
     return {"scene": origin.scene, "viewpoint": origin.viewpoint, "pose": pose, "time_s": origin.time_s}

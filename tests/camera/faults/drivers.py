@@ -123,7 +123,7 @@ def set_patience(camera: NetworkCamera, reply_s: float = 5.0) -> None:
 
 def stands(device: VirtualDevice) -> bool:
     """Return whether no motor of a virtual camera turns, whatever it reports."""
-    return device.velocity == Velocity() and device.driven == Velocity() and not device.moving()
+    return device.velocity == Velocity() and device.commanded_velocity == Velocity() and not device.moving()
 
 
 def when_moved(device: VirtualDevice, action: Callable[[], object], *, after_s: float = 0.05) -> None:

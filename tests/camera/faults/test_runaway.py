@@ -50,7 +50,7 @@ async def connected(driver: Driver, device: VirtualDevice) -> AsyncIterator[tupl
 async def test_link_lost_during_a_drive(driver: Driver, device: VirtualDevice, fate: Fate) -> None:
     async with connected(driver, device) as (camera, network):
         await camera.drive(DPS, timeout_s=0.3)
-        await until(lambda: device.driven.pan_dps)
+        await until(lambda: device.commanded_velocity.pan_dps)
         network.fate = fate
         network.cut()
         with pytest.raises((CameraUnreachableError, CameraTimeoutError)):

@@ -205,7 +205,7 @@ async def test_generic_space_that_counts_the_other_way(device: VirtualDevice) ->
         assert device.pose().pan_deg == pytest.approx(-40.0, abs=0.05)
         await camera.drive(30.0, timeout_s=5.0)
         await anyio.sleep(0.02)
-        assert device.driven.pan_dps <= 0.0
+        assert device.commanded_velocity.pan_dps <= 0.0
         await camera.stop()
 
 

@@ -51,7 +51,7 @@ async def test_connections_break_without_a_reply(served_device: VirtualDevice, f
         assert (await session.get(PTZ, params={"query": "speed"})).text == "speed=100\n"
 
 
-async def test_a_share_of_requests_is_dropped(served_device: VirtualDevice) -> None:
+async def test_a_fraction_of_requests_is_dropped(served_device: VirtualDevice) -> None:
     served_device.faults = Faults(drop=0.5)
     outcomes = []
     async with serve([served_device]) as (camera,):

@@ -138,7 +138,7 @@ async def test_continuous_moves_run_until_their_timeout_or_a_stop(ptz: Any, devi
     start = device.pose()
     velocity = {"PanTilt": {"x": 0.5, "y": 0.0}, "Zoom": {"x": 0.2}}
     await ptz.ContinuousMove({"ProfileToken": PROFILE, "Velocity": velocity, "Timeout": timedelta(seconds=2)})
-    driven = device.driven
+    driven = device.commanded_velocity
     assert (driven.pan_dps, driven.tilt_dps, driven.zoom_rate) == pytest.approx((50.0, 0.0, 0.3))
     time.pass_(1.0)
     assert (await ptz.GetStatus({"ProfileToken": PROFILE})).MoveStatus.PanTilt == "MOVING"
@@ -169,7 +169,7 @@ async def test_a_stop_of_one_axis_lets_an_absolute_move_of_the_other_go_on(
     assert near(device.pose(), Pose(stopped_at.pan_deg, stopped_at.tilt_deg, 5.0))
 
 
-async def test_speed_is_a_share_of_the_top_speed(ptz: Any, device: VirtualDevice, time: HandClock) -> None:
+async def test_speed_is_a_fraction_of_the_top_speed(ptz: Any, device: VirtualDevice, time: HandClock) -> None:
     async def degrees_in_a_second(speed: dict[str, Any] | None) -> float:
         device.move(Pose(0.0, 0.0, 1.0))
         time.pass_(60)

@@ -96,7 +96,7 @@ async def test_home_assistant_sets_a_camera_up(client: Any, served: ServedCamera
     move.ProfileToken = profile.token
     move.Velocity = {"PanTilt": {"x": 0.5, "y": 0}}
     await ptz.ContinuousMove(move)
-    assert device.driven.pan_dps == 50.0
+    assert device.commanded_velocity.pan_dps == 50.0
     stop = ptz.create_type("Stop")
     stop.ProfileToken = profile.token
     await ptz.Stop(stop)

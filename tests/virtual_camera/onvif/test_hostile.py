@@ -17,7 +17,7 @@ from scope_ptz.errors import ConfigError
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.server import ServedCamera, listen
 from scope_ptz.virtual_camera.onvif import wsdl
-from scope_ptz.virtual_camera.onvif.app import Caller, OnvifApp
+from scope_ptz.virtual_camera.onvif.app import OnvifApp, RequestTarget
 from scope_ptz.virtual_camera.onvif.login import CLOCK_TOLERANCE_S
 from scope_ptz.virtual_camera.onvif.soap import MAX_REQUEST_BYTES, SoapFault
 from tests.virtual_camera.onvif.conftest import HandClock
@@ -29,7 +29,7 @@ PROFILES = f'<GetProfiles xmlns="{MEDIA}"/>'
 STATUS = ptz_request("GetStatus")
 MOVE = ptz_request("ContinuousMove", '<Velocity><tt:PanTilt x="1" y="0"/></Velocity>')
 STOP = ptz_request("Stop")
-CALLER = Caller("127.0.0.1", "http://127.0.0.1")
+TARGET = RequestTarget("127.0.0.1", "http://127.0.0.1")
 
 
 def laughs() -> bytes:
@@ -87,7 +87,7 @@ async def test_unknown_operations_paths_and_methods(served: ServedCamera) -> Non
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_any_bytes_end_in_a_fault(device: VirtualDevice, content: bytes) -> None:
     with pytest.raises(SoapFault) as refused:
-        OnvifApp(device).answer(content, CALLER)
+        OnvifApp(device).answer(content, TARGET)
     assert b"Fault" in refused.value.envelope()
 
 
@@ -113,7 +113,7 @@ def test_any_bytes_end_in_a_fault(device: VirtualDevice, content: bytes) -> None
 def test_any_arguments_are_carried_out_or_refused(device: VirtualDevice, name: str, inner: list[str], value: str) -> None:
     app = OnvifApp(VirtualDevice(device.scene, width=320, height=180))
     try:
-        app.answer(envelope(ptz_request(name, "".join(inner).format(*[value] * len(inner)))), CALLER)
+        app.answer(envelope(ptz_request(name, "".join(inner).format(*[value] * len(inner)))), TARGET)
     except SoapFault as fault:
         assert fault.subcodes
 
@@ -173,9 +173,9 @@ async def test_a_move_that_a_stop_has_overtaken_is_dropped(served: ServedCamera,
 
     await send(STOP, 1.0)
     await send(MOVE, 3.0)
-    assert device.driven == Velocity()
+    assert device.commanded_velocity == Velocity()
     await send(MOVE, 0.5)
-    assert device.driven.pan_dps > 0.0
+    assert device.commanded_velocity.pan_dps > 0.0
 
 
 async def test_whole_seconds_do_not_drop_a_move_in_the_second_of_a_stop(served: ServedCamera, device: VirtualDevice) -> None:
@@ -184,14 +184,14 @@ async def test_whole_seconds_do_not_drop_a_move_in_the_second_of_a_stop(served: 
     for body in (STOP, MOVE):
         header = token("operator", "0perate", created=second)
         assert (await post(served.url, envelope(body, header))).codes == []
-    assert device.driven.pan_dps > 0.0
+    assert device.commanded_velocity.pan_dps > 0.0
 
 
 async def test_a_client_whose_clock_is_ahead_does_not_hold_up_others(served: ServedCamera, device: VirtualDevice) -> None:
     ahead = token("operator", "0perate", created=ago(-30.0))
     assert (await post(served.url, envelope(STOP, ahead))).codes == []
     assert (await post(served.url, envelope(MOVE, token("admin", "s3cret")))).codes == []
-    assert device.driven.pan_dps > 0.0
+    assert device.commanded_velocity.pan_dps > 0.0
 
 
 async def test_the_host_header_is_reflected_only_if_it_is_a_host(served: ServedCamera) -> None:

@@ -50,7 +50,7 @@ async def test_a_camera_that_goes_down_breaks_everything_off_and_comes_back(open
             await client.packet(0)
 
 
-async def test_a_share_of_requests_is_dropped(open_device: VirtualDevice) -> None:
+async def test_a_fraction_of_requests_is_dropped(open_device: VirtualDevice) -> None:
     open_device.faults = Faults(drop=0.5)
     outcomes = []
     async with serving(open_device) as served:

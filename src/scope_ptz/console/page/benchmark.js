@@ -49,7 +49,7 @@ export function makeBenchmark() {
     const focus = list.contains(document.activeElement) ? document.activeElement.value : null;
     const now = entries.map((each) => (before.get(each.dataset.id)?.textContent === each.textContent ? before.get(each.dataset.id) : each));
     if (now.length !== list.children.length || now.some((each, index) => each !== list.children[index])) list.replaceChildren(...now);
-    if (!rows.length) list.replaceChildren(h("li", { className: "empty" }, "No evaluations yet. Start one above; the split lite takes a few minutes."));
+    if (!rows.length) list.replaceChildren(h("li", { className: "empty" }, "No evaluations yet. Start one above; the lite split takes a few minutes."));
     for (const each of list.querySelectorAll("button")) each.setAttribute("aria-pressed", String(each.value === chosen));
     if (focus) list.querySelector(`button[value="${CSS.escape(focus)}"]`)?.focus();
   }

@@ -26,7 +26,7 @@ export function makeFailures() {
   async function load(next = false) {
     const mine = ++asked, address = `/benchmark/evaluations/${part(evaluation)}`;
     try {
-      // A reload while the evaluation runs shows as many rows as before.
+      // A reload during the evaluation keeps the number of rows.
       const offset = next ? rows.length : 0, limit = next ? PAGE : Math.min(500, Math.max(PAGE, rows.length));
       const page = await get(`${address}/trials?verdict=failed&limit=${limit}&offset=${offset}${mode.value ? `&error_mode=${mode.value}` : ""}`);
       if (mine !== asked) return;
@@ -119,7 +119,7 @@ function viewer(evaluation, rows, first) {
     if (step < 0) return "The view at the start";
     const found = details.steps[step].pictures.find((one) => one.name === name);
     const label = `Step ${step + 1}, ${words(details.steps[step].tool)}`;
-    return found.marks ? `${label}: ${found.marks} marked` : name.includes("full") ? `${label}: all around` : label;
+    return found.marks ? `${label}: ${found.marks} marked` : name.includes("full") ? `${label}: panorama` : label;
   }
 
   document.querySelector("#scope").append(dialog);

@@ -1,5 +1,5 @@
-// Convert between directions and points of a picture. Angles are in degrees, positive to the right and up; points are fractions of
-// the picture from its top left.
+// Convert between directions and image points. Angles are in degrees, positive to the right and up; points are fractions of
+// the image size from the top left.
 
 const RAD = Math.PI / 180;
 
@@ -14,7 +14,7 @@ function axes(pose) {
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-// The direction of a point of a picture.
+// The direction of an image point.
 export function directionOf(x, y, pose, hfov_deg, aspect) {
   const { forward, right, up } = axes(pose), k = Math.tan((hfov_deg / 2) * RAD);
   const a = (2 * x - 1) * k, b = ((1 - 2 * y) * k) / aspect;
@@ -23,7 +23,7 @@ export function directionOf(x, y, pose, hfov_deg, aspect) {
   return v.map((each) => each / length);
 }
 
-// The point of a picture at which a direction appears; null for directions behind the camera.
+// The image point at which a direction appears; null for directions behind the camera.
 export function pointOf(direction, pose, hfov_deg, aspect) {
   const { forward, right, up } = axes(pose), k = Math.tan((hfov_deg / 2) * RAD);
   const depth = dot(direction, forward);

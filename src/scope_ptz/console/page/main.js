@@ -1,4 +1,4 @@
-// The page: its header, its views, and the choice of the camera.
+// The page: its header, its views, and the camera selection.
 
 import { command, get, part, request as send } from "./api.js";
 import { emit, on, shared } from "./app_state.js";
@@ -13,7 +13,7 @@ import { makeRuns } from "./runs.js";
 import { makeStage } from "./stage.js";
 import { makeTimings } from "./timings.js";
 
-const RETRY_MS = 4000; // until a camera that fails is tried again
+const RETRY_MS = 4000; // delay before a failed camera is retried
 const VIEWS = [["live", "Live"], ["runs", "Runs"], ["timings", "Timings"], ["benchmark", "Benchmark"], ["cameras", "Cameras"]];
 
 export async function mount(root) {
@@ -53,7 +53,7 @@ export async function mount(root) {
     await enter(name);
   }
 
-  // The stage shows once why a camera is not available. The page keeps retrying.
+  // The stage shows why a camera is not available, and the page keeps retrying.
   async function enter(name) {
     clearTimeout(trying);
     try {

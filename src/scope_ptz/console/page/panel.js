@@ -23,7 +23,7 @@ export function makePanel() {
     h("div", { className: "row head" }, pair, health, h("span", { className: "space" }), fresh), thread, form);
   const shown = new Map(); // turns by the id of their run
   let conversation = null, restores = 0;
-  let ready = false, early = false; // whether the conversation is on the page; whether an instruction was sent before that
+  let ready = false, early = false; // whether the conversation has been loaded; whether an instruction was entered before that
 
   text.addEventListener("keydown", (event) => {
     if (event.key === "Enter" && !event.shiftKey && !event.isComposing) { event.preventDefault(); submit(); }
@@ -158,7 +158,7 @@ export function makePanel() {
   });
   on("camera", () => { described = ""; ready = early = false; busy(null); clear(); });
   on("unavailable", () => {
-    if (!described) thread.replaceChildren(h("p", { className: "empty" }, "Its conversation opens here when the camera answers."));
+    if (!described) thread.replaceChildren(h("p", { className: "empty" }, "The conversation opens here when the camera responds."));
   });
   on("status", (status) => { busy(status.run); if (status.run && described) attach(status.run); });
   return element;

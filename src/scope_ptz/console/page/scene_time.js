@@ -6,7 +6,7 @@ import { h, icon, iconButton } from "./dom.js";
 
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 10];
 const STEP_S = 10;
-const LEAST_S = 120, ROUND_S = 60; // the slider ends at the next full minute, and at LEAST_S or later
+const MIN_RANGE_S = 120, ROUND_S = 60; // the slider ends at the next full minute, but not before MIN_RANGE_S
 const LATEST_S = 86_400;
 
 export const clockText = (time_s) => `${Math.floor(time_s / 60)}:${(time_s % 60).toFixed(1).padStart(4, "0")}`;
@@ -15,7 +15,7 @@ export const clockText = (time_s) => `${Math.floor(time_s / 60)}:${(time_s % 60)
 export function makeSceneTime(camera) {
   const toggle = iconButton("pause", "Pause scene time", () => change({ playing: !now.playing }), { className: "quiet play" });
   const clock = h("output", { className: "clock" });
-  const slider = h("input", { type: "range", min: 0, max: LEAST_S, step: 0.1, "aria-label": "Scene time in seconds" });
+  const slider = h("input", { type: "range", min: 0, max: MIN_RANGE_S, step: 0.1, "aria-label": "Scene time in seconds" });
   const speed = h("select", { "aria-label": "Speed of scene time", title: "Speed of scene time", onchange: () => change({ speed: Number(speed.value) }) });
   const element = h("div", { className: "scene-time", role: "group", "aria-label": "Scene time" }, toggle,
     iconButton("back", `Back ${STEP_S} seconds`, () => step(-STEP_S)), slider, iconButton("ahead", `Ahead ${STEP_S} seconds`, () => step(STEP_S)), clock, speed);
@@ -31,7 +31,7 @@ export function makeSceneTime(camera) {
   }
 
   function draw() {
-    const held = dragged || sought !== null; // the user's newest position is still to be sent
+    const held = dragged || sought !== null; // the user's newest position has not been sent yet
     const time_s = held ? Number(slider.value) : present();
     if (toggle.dataset.playing !== String(now.playing)) {
       toggle.dataset.playing = now.playing;
@@ -42,7 +42,7 @@ export function makeSceneTime(camera) {
     const text = clockText(time_s);
     if (clock.value !== text) clock.value = text;
     if (!held) {
-      slider.max = Math.max(LEAST_S, Math.ceil((time_s + 1) / ROUND_S) * ROUND_S);
+      slider.max = Math.max(MIN_RANGE_S, Math.ceil((time_s + 1) / ROUND_S) * ROUND_S);
       slider.value = time_s;
     }
     slider.setAttribute("aria-valuetext", text);

@@ -26,7 +26,7 @@ export function makeStage() {
   const rate = h("span", { className: "rate" });
   const stop = h("button", { type: "button", className: "stop", title: "Stop the camera and the instruction (Space)", onclick: halt },
     icon("stop"), "Stop");
-  const pad = h("div", { className: "pad", role: "group", "aria-label": "Move by hand" },
+  const pad = h("div", { className: "pad", role: "group", "aria-label": "Manual control" },
     hold("left", "Left"), h("span", { className: "column" }, hold("up", "Up"), hold("down", "Down")), hold("right", "Right"),
     h("span", { className: "column" }, hold("plus", "Zoom in"), hold("minus", "Zoom out")),
     iconButton("home", "Home view (H)", () => move("/home")), iconButton("undo", "Undo: return to the previous view (U)", () => move("/undo")));

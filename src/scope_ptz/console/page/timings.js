@@ -1,4 +1,4 @@
-// The durations of instructions by component, with the real-time criterion of the paper: 500 ms per step, or 2 Hz.
+// The durations of instructions by component, with the real-time criterion of the SCOPE paper: 500 ms per step, or 2 Hz.
 
 import { get, part } from "./api.js";
 import { emit, on, shared } from "./app_state.js";

@@ -18,7 +18,7 @@ export function makeTurn(run, { live = false, onEnd = null, kind = "instruction"
   const thinking = h("p", { className: "thinking", role: "status" }, "Thinking …");
   const answer = h("div", { className: "answer" });
   const foot = h("div", { className: "row foot" });
-  const element = h("article", { className: `turn ${kind}` }, h("p", { className: "said" }, run.instruction), steps, thinking, answer, foot);
+  const element = h("article", { className: `turn ${kind}` }, h("p", { className: "request" }, run.instruction), steps, thinking, answer, foot);
   let position = 0;
   if (!run.id) return { element, fail };
 
@@ -78,13 +78,13 @@ export function makeTurn(run, { live = false, onEnd = null, kind = "instruction"
 }
 
 function step(run, call, position) {
-  const { call: asked, result, error } = call.outcome;
+  const { call: toolCall, result, error } = call.outcome;
   const name = result?.frames?.at(-1) ?? call.frame;
   const image = name && h("img", { alt: `Picture of step ${position + 1}`, loading: "lazy", src: url(`/runs/${part(run)}/pictures/${name}?marks=true`) });
-  const shown = Object.entries(asked.arguments ?? {}).map(([key, value]) => `${key} ${typeof value === "object" ? JSON.stringify(value) : value}`).join(", ");
+  const shown = Object.entries(toolCall.arguments ?? {}).map(([key, value]) => `${key} ${typeof value === "object" ? JSON.stringify(value) : value}`).join(", ");
   return h("li", { className: error ? "step failed" : "step" },
     h("div", {},
-      h("p", { className: "tool" }, h("b", {}, asked.name.replaceAll("_", " ")), " ", h("span", { className: "arguments" }, shown)),
+      h("p", { className: "tool" }, h("b", {}, toolCall.name.replaceAll("_", " ")), " ", h("span", { className: "arguments" }, shown)),
       h("p", { className: "result" }, error ?? result?.message ?? ""),
       h("p", { className: "row small" }, h("span", {}, seconds(call.timings.total_s)), ...feedbackButtons(run, position))),
     image && h("button", { type: "button", className: "shot", title: "Open the frames of this run", onclick: () => emit("open run", run) }, image));

@@ -1,4 +1,4 @@
-"""Routes for evaluations: start, follow, cancel and resume them, view single runs, and read the report."""
+"""Routes for evaluations: start, follow, cancel and resume them, view individual runs, and read the report."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from scope_ptz.serve.http.benchmark_models import (
     TrialModel,
     TrialStep,
 )
-from scope_ptz.serve.http.dependencies import Operator, RunOperator, StoppingOperator, TheSite, Viewer
+from scope_ptz.serve.http.dependencies import Operator, RunOperator, SiteDep, StoppingOperator, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.site.benchmark.choices import missing_packages, split_choices
 from scope_ptz.serve.site.benchmark.evaluations import EvaluationRequest
-from scope_ptz.serve.site.benchmark.trajectories import names_of, steps_of
+from scope_ptz.serve.site.benchmark.trajectories import picture_names_of, steps_of
 from scope_ptz.serve.site.service import Site
 
 REPORT_POLICY = (
@@ -42,68 +42,68 @@ _ERRORS = responses(404, 409)
 
 
 @router.get("", responses=responses())
-async def benchmark(site: TheSite, client: Viewer) -> BenchmarkModel:  # noqa: ARG001 - checks the token
+async def benchmark(site: SiteDep, client: Viewer) -> BenchmarkModel:  # noqa: ARG001 - checks the token
     """Return the pairs and splits that can be evaluated, and the id of the evaluation in progress."""
-    splits = await site.journal.read(split_choices)
+    splits = await site.journal.in_thread(split_choices)
     return BenchmarkModel(
         pairs=list(site.pairs.names),
         splits=[SplitModel(name=each.name, tasks=each.tasks, by_category=each.by_category) for each in splits],
         missing=missing_packages(),
-        running=await site.journal.read(site.evaluations.running),
+        running=await site.journal.in_thread(site.evaluations.running),
     )
 
 
 @router.get("/evaluations", responses=responses())
-async def list_evaluations(site: TheSite, client: Viewer) -> list[EvaluationModel]:  # noqa: ARG001 - checks the token
+async def list_evaluations(site: SiteDep, client: Viewer) -> list[EvaluationModel]:  # noqa: ARG001 - checks the token
     """List the evaluations that were started on the server, newest first."""
-    return [EvaluationModel.of(each) for each in await site.journal.read(site.evaluations.all)]
+    return [EvaluationModel.of(each) for each in await site.journal.in_thread(site.evaluations.all)]
 
 
 @router.post("/evaluations", status_code=202, responses=responses(404, 409, 507))
-async def start_evaluation(site: TheSite, client: RunOperator, body: EvaluationStart) -> EvaluationModel:
+async def start_evaluation(site: SiteDep, client: RunOperator, body: EvaluationStart) -> EvaluationModel:
     """Start an evaluation and reply immediately. It runs in a separate process. Only one evaluation runs at a time."""
     if missing := missing_packages():
         raise ConfigError(missing)
-    chosen = next((each for each in await site.journal.read(split_choices) if each.name == body.split), None)
+    chosen = next((each for each in await site.journal.in_thread(split_choices) if each.name == body.split), None)
     if chosen is None:
         raise InputError(f"The split '{body.split}' is not installed. `GET /benchmark` lists the installed splits.")
     categories = tuple(dict.fromkeys(body.categories))
     if absent := [name for name in categories if name not in chosen.by_category]:
         raise InputError(f"The split '{body.split}' has no tasks of the category {absent[0].replace('_', ' ')}.")
     request = EvaluationRequest(site.pairs.check(body.pair), body.split, body.limit, categories)
-    return await _status(site, await site.journal.read(partial(site.evaluations.start, request, client.name)))
+    return await _status(site, await site.journal.in_thread(partial(site.evaluations.start, request, client.name)))
 
 
 @router.get("/evaluations/{evaluation}", responses=_ERRORS)
-async def evaluation_state(site: TheSite, client: Viewer, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
+async def evaluation_state(site: SiteDep, client: Viewer, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
     """Return an evaluation: its state, its scores so far, and the estimated remaining time."""
     return await _status(site, evaluation)
 
 
 @router.post("/evaluations/{evaluation}/cancel", status_code=202, responses=_ERRORS)
-async def cancel_evaluation(site: TheSite, client: StoppingOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
+async def cancel_evaluation(site: SiteDep, client: StoppingOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
     """Cancel an evaluation. Finished runs are kept, and the evaluation can be resumed."""
-    await site.journal.read(partial(site.evaluations.cancel, evaluation))
+    await site.journal.in_thread(partial(site.evaluations.cancel, evaluation))
     return await _status(site, evaluation)
 
 
 @router.post("/evaluations/{evaluation}/resume", status_code=202, responses=responses(404, 409, 507))
-async def resume_evaluation(site: TheSite, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
+async def resume_evaluation(site: SiteDep, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
     """Resume an evaluation that has ended: execute its missing and broken runs."""
-    await site.journal.read(partial(site.evaluations.resume, evaluation))
+    await site.journal.in_thread(partial(site.evaluations.resume, evaluation))
     return await _status(site, evaluation)
 
 
 @router.delete("/evaluations/{evaluation}", status_code=204, responses=_ERRORS)
-async def remove_evaluation(site: TheSite, client: Operator, evaluation: EvaluationId) -> Response:  # noqa: ARG001 - checks the token
+async def remove_evaluation(site: SiteDep, client: Operator, evaluation: EvaluationId) -> Response:  # noqa: ARG001 - checks the token
     """Remove an evaluation that has ended, with its logs and its report."""
-    await site.journal.read(partial(site.evaluations.remove, evaluation))
+    await site.journal.in_thread(partial(site.evaluations.remove, evaluation))
     return Response(status_code=204)
 
 
 @router.get("/evaluations/{evaluation}/trials", responses=_ERRORS)
 async def list_trials(
-    site: TheSite,
+    site: SiteDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     evaluation: EvaluationId,
     verdict: Annotated[
@@ -130,15 +130,15 @@ async def list_trials(
 
 
 @router.get("/evaluations/{evaluation}/trials/{sample}", responses=_ERRORS)
-async def trial_details(site: TheSite, client: Viewer, evaluation: EvaluationId, sample: Sample) -> TrialDetails:  # noqa: ARG001 - checks the token
+async def trial_details(site: SiteDep, client: Viewer, evaluation: EvaluationId, sample: Sample) -> TrialDetails:  # noqa: ARG001 - checks the token
     """Return a run with its checks, its steps and the names of its pictures."""
     trial = await _trial(site, evaluation, sample)
     steps, start, missing = [], None, ""
     try:
         folder = site.evaluations.folder(evaluation)
-        trace = await site.journal.read(partial(site.trajectories.trace, folder, trial))
+        trace = await site.journal.in_thread(partial(site.trajectories.trace, folder, trial))
         steps = [TrialStep.model_validate(each) for each in steps_of(trace)]
-        start = next((name for name, position in names_of(trace).items() if position is None), None)
+        start = next((name for name, position in picture_names_of(trace).items() if position is None), None)
     except TraceError as error:
         missing = str(error)
     return TrialDetails(
@@ -157,27 +157,27 @@ async def trial_details(site: TheSite, client: Viewer, evaluation: EvaluationId,
     responses={200: {"content": {"image/jpeg": {}}, "description": "The picture"}, **_ERRORS},
 )
 async def trial_picture(
-    site: TheSite,
+    site: SiteDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     evaluation: EvaluationId,
     sample: Sample,
     part: Literal["frames", "pictures"],
     name: Annotated[str, Path(min_length=1, max_length=60)],
-    marks: Annotated[bool, Query(description="Draw the detections in the picture")] = False,
+    marks: Annotated[bool, Query(description="Draw the detections on the picture")] = False,
 ) -> Response:
     """Return a picture of a run, optionally with numbered boxes around the detections."""
     trial = await _trial(site, evaluation, sample)
     folder = site.evaluations.folder(evaluation)
     read = partial(site.trajectories.picture, folder, trial, f"{part}/{name}", marks=marks)
-    return Response(await site.journal.read(read), media_type="image/jpeg", headers={"Cache-Control": "private, max-age=3600"})
+    return Response(await site.journal.in_thread(read), media_type="image/jpeg", headers={"Cache-Control": "private, max-age=3600"})
 
 
 @router.post("/evaluations/{evaluation}/report", status_code=202, responses=responses(404, 409, 507))
-async def make_report(site: TheSite, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
+async def make_report(site: SiteDep, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
     """Start writing the report of an evaluation. When it is complete, the field `report` of the evaluation is `ready`."""
     if missing := missing_packages():
         raise ConfigError(missing)
-    await site.journal.read(partial(site.evaluations.make_report, evaluation))
+    await site.journal.in_thread(partial(site.evaluations.make_report, evaluation))
     return await _status(site, evaluation)
 
 
@@ -186,10 +186,10 @@ async def make_report(site: TheSite, client: RunOperator, evaluation: Evaluation
     response_class=FileResponse,
     responses={200: {"content": {"text/html": {}}, "description": "The report"}, **_ERRORS},
 )
-async def report_page(site: TheSite, client: Viewer, evaluation: EvaluationId) -> FileResponse:  # noqa: ARG001 - checks the token
+async def report_page(site: SiteDep, client: Viewer, evaluation: EvaluationId) -> FileResponse:  # noqa: ARG001 - checks the token
     """Return the first page of the report."""
-    folder = await site.journal.read(partial(site.evaluations.folder, evaluation))
-    page = await site.journal.read(folder.report_page)
+    folder = await site.journal.in_thread(partial(site.evaluations.folder, evaluation))
+    page = await site.journal.in_thread(folder.report_page)
     if page is None:
         raise TraceError("There is no report of this evaluation yet, or it is older than the last runs. Make it first.")
     return FileResponse(page, media_type="text/html", headers={"Content-Security-Policy": REPORT_POLICY})
@@ -204,27 +204,27 @@ async def report_page(site: TheSite, client: Viewer, evaluation: EvaluationId) -
     },
 )
 async def report_file(
-    site: TheSite,
+    site: SiteDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     evaluation: EvaluationId,
     part: Literal["tasks", "frames", "tables"],
     name: Annotated[str, Path(min_length=1, max_length=120)],
 ) -> FileResponse:
     """Return a page, picture or table of the report."""
-    folder = await site.journal.read(partial(site.evaluations.folder, evaluation))
-    path = await site.journal.read(partial(folder.report_file, part, name))
+    folder = await site.journal.in_thread(partial(site.evaluations.folder, evaluation))
+    path = await site.journal.in_thread(partial(folder.report_file, part, name))
     if path is None:
         raise UnknownNameError("file of the report", name[:120], ())
     return FileResponse(path, media_type=_MEDIA_TYPES[part], headers={"Content-Security-Policy": REPORT_POLICY})
 
 
 async def _status(site: Site, evaluation: str) -> EvaluationModel:
-    return EvaluationModel.of(await site.journal.read(partial(site.evaluations.status, evaluation)))
+    return EvaluationModel.of(await site.journal.in_thread(partial(site.evaluations.status, evaluation)))
 
 
 async def _trials(site: Site, evaluation: str) -> list[Trial]:
-    folder = await site.journal.read(partial(site.evaluations.folder, evaluation))
-    return await site.journal.read(folder.trials)
+    folder = await site.journal.in_thread(partial(site.evaluations.folder, evaluation))
+    return await site.journal.in_thread(folder.trials)
 
 
 async def _trial(site: Site, evaluation: str, sample: str) -> Trial:

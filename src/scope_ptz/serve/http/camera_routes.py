@@ -9,7 +9,7 @@ from fastapi import APIRouter
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.guard.guarded import GuardedCamera
 from scope_ptz.camera.guard.wrapper import layers
-from scope_ptz.serve.http.dependencies import TheSite, TheStation, Viewer, presets_of
+from scope_ptz.serve.http.dependencies import SiteDep, StationDep, Viewer, presets_of
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import (
     CameraState,
@@ -29,21 +29,21 @@ router = APIRouter(prefix="/cameras", tags=["cameras"])
 
 
 @router.get("", responses=responses())
-async def list_cameras(site: TheSite, client: Viewer) -> list[CameraSummary]:  # noqa: ARG001 - checks the token
+async def list_cameras(site: SiteDep, client: Viewer) -> list[CameraSummary]:  # noqa: ARG001 - checks the token
     """List the cameras."""
     return [
         CameraSummary(
             name=station.name,
             open=station.is_open,
             run=station.running.id if station.running else None,
-            holder=station.desk.holder.name if station.desk.holder else None,
+            holder=station.control.holder.name if station.control.holder else None,
         )
         for station in site.stations.values()
     ]
 
 
 @router.get("/{camera}", responses=responses(404, 409, 503))
-async def camera_state(site: TheSite, station: TheStation, client: Viewer) -> CameraState:
+async def camera_state(site: SiteDep, station: StationDep, client: Viewer) -> CameraState:
     """Return the state of a camera. The first request opens the camera."""
     opened = await station.opened()
     camera = opened.camera
@@ -74,12 +74,12 @@ async def camera_state(site: TheSite, station: TheStation, client: Viewer) -> Ca
 
 def control_model(station: Station, client: Client) -> ControlModel:
     """Return the client that controls a camera and the requests for control, as the given client sees them."""
-    desk, holder = station.desk, station.desk.holder
+    control, holder = station.control, station.control.holder
     return ControlModel(
         holder=holder.name if holder else None,
-        since=desk.since if holder else None,
+        since=control.since if holder else None,
         mine=holder is not None and holder.key == client.key,
-        requests=[ControlRequestModel(client=each.key, name=each.name, since=each.since) for each in desk.requests],
+        requests=[ControlRequestModel(client=each.key, name=each.name, since=each.since) for each in control.requests],
     )
 
 

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Response
 
 from scope_ptz.serve.http.camera_models import CameraCardModel, HealthModel, SceneModel, SceneTimeModel, VirtualCameraModel
 from scope_ptz.serve.http.camera_routes import control_model
-from scope_ptz.serve.http.dependencies import TheSite, TheStation, Viewer, presets_of
+from scope_ptz.serve.http.dependencies import SiteDep, StationDep, Viewer, presets_of
 from scope_ptz.serve.http.errors import responses, status_of
 from scope_ptz.serve.http.models import Problem
 from scope_ptz.serve.site.live_picture import encode_jpeg
@@ -19,7 +19,7 @@ router = APIRouter(prefix="/cameras/{camera}", tags=["cameras"])
 
 
 @router.get("/card", responses=responses(404))
-async def camera_card(site: TheSite, station: TheStation, client: Viewer) -> CameraCardModel:
+async def camera_card(site: SiteDep, station: StationDep, client: Viewer) -> CameraCardModel:
     """Return the kind and the abilities of a camera, and check whether it works. A failure is part of the reply.
 
     The check connects to a device, but does not open a scene.
@@ -53,8 +53,8 @@ async def camera_card(site: TheSite, station: TheStation, client: Viewer) -> Cam
     responses={200: {"content": {"image/jpeg": {}}, "description": "A small picture"}, **responses(404, 409, 503)},
 )
 async def camera_thumbnail(
-    site: TheSite,
-    station: TheStation,
+    site: SiteDep,
+    station: StationDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     width: Annotated[int, Query(ge=160, le=640, description="Maximum width in pixels")] = 480,
 ) -> Response:

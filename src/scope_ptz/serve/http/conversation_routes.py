@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Response
 
-from scope_ptz.serve.http.dependencies import Operator, TheSite, Viewer
+from scope_ptz.serve.http.dependencies import Operator, SiteDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import ConversationChange, ConversationStart
 from scope_ptz.store.conversations import (
@@ -25,44 +25,44 @@ ConversationId = Annotated[str, Path(min_length=1, max_length=60)]
 
 @router.get("", responses=responses(503))
 async def conversations(
-    site: TheSite, client: Viewer, camera: Annotated[str | None, Query(max_length=120)] = None
+    site: SiteDep, client: Viewer, camera: Annotated[str | None, Query(max_length=120)] = None
 ) -> list[ConversationRow]:
     """List the client's conversations, the most recently used first."""
-    return await site.journal.read(partial(list_conversations, site.journal.store.database, owner=client.name, camera=camera))
+    return await site.journal.in_thread(partial(list_conversations, site.journal.store.database, owner=client.name, camera=camera))
 
 
 @router.post("", status_code=201, responses=responses(404, 503))
-async def start_conversation(site: TheSite, client: Operator, body: ConversationStart) -> ConversationRow:
+async def start_conversation(site: SiteDep, client: Operator, body: ConversationStart) -> ConversationRow:
     """Start a conversation about a camera. Instructions in it may refer to earlier ones."""
     camera, pair = site.station(body.camera).name, site.pairs.check(body.pair)
     title = body.title.encode("utf-8", "replace").decode()
-    return await site.journal.read(
+    return await site.journal.in_thread(
         partial(add_conversation, site.journal.store.database, camera=camera, pair=pair, owner=client.name, title=title)
     )
 
 
 @router.get("/{conversation}", responses=responses(404, 503))
-async def conversation_state(site: TheSite, client: Viewer, conversation: ConversationId) -> ConversationRow:
+async def conversation_state(site: SiteDep, client: Viewer, conversation: ConversationId) -> ConversationRow:
     """Return a conversation. `GET /runs?conversation=...` lists its runs."""
-    return await site.journal.read(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
+    return await site.journal.in_thread(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
 
 
 @router.patch("/{conversation}", responses=responses(404, 503))
 async def change_conversation(
-    site: TheSite, client: Operator, conversation: ConversationId, body: ConversationChange
+    site: SiteDep, client: Operator, conversation: ConversationId, body: ConversationChange
 ) -> ConversationRow:
     """Change the title or the pair of a conversation."""
     database = site.journal.store.database
-    await site.journal.read(partial(load_conversation, database, conversation, owner=client.name))
+    await site.journal.in_thread(partial(load_conversation, database, conversation, owner=client.name))
     pair = None if body.pair is None else site.pairs.check(body.pair)
     title = None if body.title is None else body.title.encode("utf-8", "replace").decode()
-    await site.journal.read(partial(touch_conversation, database, conversation, title=title, pair=pair))
-    return await site.journal.read(partial(load_conversation, database, conversation, owner=client.name))
+    await site.journal.in_thread(partial(touch_conversation, database, conversation, title=title, pair=pair))
+    return await site.journal.in_thread(partial(load_conversation, database, conversation, owner=client.name))
 
 
 @router.delete("/{conversation}", status_code=204, responses=responses(404, 503))
-async def end_conversation(site: TheSite, client: Operator, conversation: ConversationId) -> Response:
+async def end_conversation(site: SiteDep, client: Operator, conversation: ConversationId) -> Response:
     """Remove a conversation. Its runs stay."""
-    await site.journal.read(partial(remove_conversation, site.journal.store.database, conversation, owner=client.name))
+    await site.journal.in_thread(partial(remove_conversation, site.journal.store.database, conversation, owner=client.name))
     site.journal.forget(conversation)
     return Response(status_code=204)

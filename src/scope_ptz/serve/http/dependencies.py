@@ -61,7 +61,7 @@ def _counted(kind: Kind, *, operates: bool) -> Callable[[Request], Client]:
 def _operator(request: Request) -> Client:
     client = client_of(request)
     if not client.operates:
-        raise HTTPException(403, "This request needs the role of an operator, but your token has the role of a viewer.")
+        raise HTTPException(403, "This request needs the operator role, but your token has the viewer role.")
     return client
 
 
@@ -79,9 +79,9 @@ def presets_of(site: Site, station: Station) -> Presets:
     return Presets(station, site.journal.root / "thumbnails")
 
 
-TheSite = Annotated[Site, Depends(_site)]
-TheAccess = Annotated[Access, Depends(_access)]
-TheStation = Annotated[Station, Depends(_station)]
+SiteDep = Annotated[Site, Depends(_site)]
+AccessDep = Annotated[Access, Depends(_access)]
+StationDep = Annotated[Station, Depends(_station)]
 Viewer = Annotated[Client, Depends(_counted("read", operates=False))]
 """A client that watches."""
 Operator = Annotated[Client, Depends(_counted("command", operates=True))]

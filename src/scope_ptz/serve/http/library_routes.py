@@ -17,11 +17,11 @@ from scope_ptz.agent.trace import picture_names, picture_of
 from scope_ptz.errors import InputError, TraceError, UnknownNameError
 from scope_ptz.factory.run_export import AnyFormat, run_drafts
 from scope_ptz.factory.run_export import export_runs as write_export
-from scope_ptz.serve.http.dependencies import Operator, TheSite, Viewer
+from scope_ptz.serve.http.dependencies import Operator, SiteDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import FeedbackBody, Kept, Mark, Moment, PictureModel, RunDetails, RunList
 from scope_ptz.serve.http.run_reading import run_filter, trace_of_run
-from scope_ptz.serve.site.marks import call_of, drawn, marks_of
+from scope_ptz.serve.site.marks import call_of, draw_marks, marks_of
 from scope_ptz.store.conversations import load_conversation
 from scope_ptz.store.feedback import add_feedback, feedback_on, remove_feedback
 from scope_ptz.store.queries import MAX_COUNT, distinct_values
@@ -42,7 +42,7 @@ _ERRORS = responses(404, 409, 503)
 
 @router.get("/runs", responses=responses(404, 409, 503))
 async def list_runs(
-    site: TheSite,
+    site: SiteDep,
     client: Viewer,
     text: Annotated[str, Query(max_length=200, description="Words that the instruction or the answer contains")] = "",
     kind: RunKind | None = None,
@@ -60,7 +60,7 @@ async def list_runs(
 ) -> RunList:
     """List runs, the newest first. Only the owner of a conversation can ask for its runs."""
     if conversation is not None:
-        await site.journal.read(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
+        await site.journal.in_thread(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
     chosen = run_filter(
         text=text,
         kind=kind,
@@ -76,15 +76,15 @@ async def list_runs(
     )
     store = site.journal.store
     await site.journal.settle()
-    page = await site.journal.read(partial(store.runs, chosen, limit=limit, after=after))
-    count = await site.journal.read(partial(store.count, chosen))
+    page = await site.journal.in_thread(partial(store.runs, chosen, limit=limit, after=after))
+    count = await site.journal.in_thread(partial(store.count, chosen))
     return RunList(runs=page.runs, next=page.next, count=count, count_is_limit=count >= MAX_COUNT)
 
 
 @router.get("/runs/values", responses=responses(503))
-async def run_values(site: TheSite, client: Viewer) -> dict[str, list[str]]:  # noqa: ARG001 - checks the token
+async def run_values(site: SiteDep, client: Viewer) -> dict[str, list[str]]:  # noqa: ARG001 - checks the token
     """Return the cameras, planners, perception backends and outcomes of all stored runs, for menus."""
-    return await site.journal.read(partial(distinct_values, site.journal.store.database))
+    return await site.journal.in_thread(partial(distinct_values, site.journal.store.database))
 
 
 @router.get(
@@ -96,7 +96,7 @@ async def run_values(site: TheSite, client: Viewer) -> dict[str, list[str]]:  # 
     },
 )
 async def export_runs(
-    site: TheSite,
+    site: SiteDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     form: Annotated[AnyFormat, Query(alias="format")] = "jsonl",
     text: Annotated[str, Query(max_length=200)] = "",
@@ -120,10 +120,10 @@ async def export_runs(
     os.close(number)
     path = FilePath(name)
     try:
-        ids = (await site.journal.read(partial(store.ids, chosen)))[:MAX_EXPORT]
-        await site.journal.read(partial(write_export, store, ids, path, form))
+        ids = (await site.journal.in_thread(partial(store.ids, chosen)))[:MAX_EXPORT]
+        await site.journal.in_thread(partial(write_export, store, ids, path, form))
     except BaseException:
-        await site.journal.read(partial(path.unlink, missing_ok=True))
+        await site.journal.in_thread(partial(path.unlink, missing_ok=True))
         raise
     kind, suffix = ("application/zip", "zip") if form == "zip" else ("application/x-ndjson", "jsonl")
     return FileResponse(
@@ -136,7 +136,7 @@ async def export_runs(
 
 @router.get("/runs/drafts", responses=responses(409, 503))
 async def list_run_drafts(
-    site: TheSite,
+    site: SiteDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     text: Annotated[str, Query(max_length=200)] = "",
     camera: Annotated[str | None, Query(max_length=120)] = None,
@@ -144,26 +144,29 @@ async def list_run_drafts(
     since: Moment | None = None,
     until: Moment | None = None,
 ) -> list[RunDraft]:
-    """Convert the newest runs with good feedback to drafts of benchmark tasks. Runs without a draft have the reason."""
+    """Convert the newest runs with good feedback to drafts of benchmark tasks.
+
+    A run that cannot become a draft is listed with the reason.
+    """
     chosen = run_filter(text=text, camera=camera, outcome=outcome, rating="good", since=since, until=until)
     store = site.journal.store
     await site.journal.settle()
-    page = await site.journal.read(partial(store.runs, chosen, limit=MAX_DRAFTS))
-    return await site.journal.read(lambda: list(run_drafts(store, [run.id for run in page.runs])))
+    page = await site.journal.in_thread(partial(store.runs, chosen, limit=MAX_DRAFTS))
+    return await site.journal.in_thread(lambda: list(run_drafts(store, [run.id for run in page.runs])))
 
 
 @router.get("/runs/{run}/details", responses=_ERRORS)
-async def run_details(site: TheSite, client: Viewer, run: RunId) -> RunDetails:  # noqa: ARG001 - checks the token
+async def run_details(site: SiteDep, client: Viewer, run: RunId) -> RunDetails:  # noqa: ARG001 - checks the token
     """Return the stored data of a run: its times, calls, pictures and feedback."""
     store = site.journal.store
     await site.journal.settle()
-    stored = await site.journal.read(partial(store.run, run))
-    feedback = await site.journal.read(partial(feedback_on, store.database, run))
+    stored = await site.journal.in_thread(partial(store.run, run))
+    feedback = await site.journal.in_thread(partial(feedback_on, store.database, run))
     return RunDetails(run=stored.run, steps=stored.steps, frames=stored.frames, feedback=feedback)
 
 
 @router.get("/runs/{run}/pictures", responses=_ERRORS)
-async def list_pictures(site: TheSite, client: Viewer, run: RunId) -> list[PictureModel]:  # noqa: ARG001 - checks the token
+async def list_pictures(site: SiteDep, client: Viewer, run: RunId) -> list[PictureModel]:  # noqa: ARG001 - checks the token
     """List the pictures of a run with their marks."""
     trace = await trace_of_run(site, run)
     pictures = []
@@ -182,12 +185,12 @@ async def list_pictures(site: TheSite, client: Viewer, run: RunId) -> list[Pictu
     responses={200: {"content": {"image/jpeg": {}, "image/png": {}}, "description": "The picture"}, **_ERRORS},
 )
 async def run_picture(
-    site: TheSite,
+    site: SiteDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     run: RunId,
     part: Literal["frames", "pictures"],
     name: Annotated[str, Path(min_length=1, max_length=60)],
-    marks: Annotated[bool, Query(description="Whether to draw the marks on the picture")] = False,
+    marks: Annotated[bool, Query(description="Draw the marks on the picture")] = False,
 ) -> Response:
     """Return a picture of a run, either as it was taken or with numbered boxes drawn on it."""
     trace, file = await trace_of_run(site, run), f"{part}/{name}"
@@ -199,10 +202,10 @@ async def run_picture(
             data = picture_of(trace.folder, file).read_bytes()
         except OSError as error:
             raise TraceError(f"The file of the picture {file} of this run is missing.") from error
-        return drawn(data, marks_of(call_of(trace, file), file)) if marks else data
+        return draw_marks(data, marks_of(call_of(trace, file), file)) if marks else data
 
     kind = "image/jpeg" if marks or name.endswith(".jpg") else "image/png"
-    return Response(await site.journal.read(read), media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
+    return Response(await site.journal.in_thread(read), media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
 
 
 @router.get(
@@ -210,8 +213,8 @@ async def run_picture(
     response_class=Response,
     responses={200: {"content": {"image/png": {}}, "description": "The filmstrip"}, **_ERRORS},
 )
-async def filmstrip(site: TheSite, client: Viewer, run: RunId) -> Response:  # noqa: ARG001 - checks the token
-    """Return the filmstrip of a run: one picture of all its steps."""
+async def filmstrip(site: SiteDep, client: Viewer, run: RunId) -> Response:  # noqa: ARG001 - checks the token
+    """Return the filmstrip of a run: one image that shows all its steps."""
     trace = await trace_of_run(site, run)
     if trace.ended is None:
         raise InputError("The run is still in progress. Its filmstrip is available when it has ended.")
@@ -223,27 +226,27 @@ async def filmstrip(site: TheSite, client: Viewer, run: RunId) -> Response:  # n
             raise TraceError("This run has no pictures.")
         return path.read_bytes()
 
-    return Response(await site.journal.read(read), media_type="image/png")
+    return Response(await site.journal.in_thread(read), media_type="image/png")
 
 
 @router.put("/runs/{run}/kept", status_code=204, responses=_ERRORS)
-async def keep_run(site: TheSite, client: Operator, run: RunId, body: Kept) -> Response:  # noqa: ARG001 - checks the token
+async def keep_run(site: SiteDep, client: Operator, run: RunId, body: Kept) -> Response:  # noqa: ARG001 - checks the token
     """Set whether a run is kept when old runs are removed."""
-    await site.journal.read(partial(keep, site.journal.store.database, run, kept=body.kept))
+    await site.journal.in_thread(partial(keep, site.journal.store.database, run, kept=body.kept))
     return Response(status_code=204)
 
 
 @router.get("/runs/{run}/feedback", tags=["feedback"], responses=_ERRORS)
-async def list_feedback(site: TheSite, client: Viewer, run: RunId) -> list[FeedbackRow]:  # noqa: ARG001 - checks the token
+async def list_feedback(site: SiteDep, client: Viewer, run: RunId) -> list[FeedbackRow]:  # noqa: ARG001 - checks the token
     """List the feedback on a run."""
-    return await site.journal.read(partial(feedback_on, site.journal.store.database, run))
+    return await site.journal.in_thread(partial(feedback_on, site.journal.store.database, run))
 
 
 @router.post("/runs/{run}/feedback", status_code=201, tags=["feedback"], responses=_ERRORS)
-async def give_feedback(site: TheSite, client: Operator, run: RunId, body: FeedbackBody) -> FeedbackRow:
+async def give_feedback(site: SiteDep, client: Operator, run: RunId, body: FeedbackBody) -> FeedbackRow:
     """Rate a run or one of its calls. Later feedback by the same person on the same run or call replaces earlier feedback."""
     await site.journal.settle()
-    return await site.journal.read(
+    return await site.journal.in_thread(
         partial(
             add_feedback,
             site.journal.store.database,
@@ -257,7 +260,7 @@ async def give_feedback(site: TheSite, client: Operator, run: RunId, body: Feedb
 
 
 @router.delete("/feedback/{number}", status_code=204, tags=["feedback"], responses=_ERRORS)
-async def withdraw_feedback(site: TheSite, client: Operator, number: Annotated[int, Path(ge=0, le=2**53)]) -> Response:
+async def withdraw_feedback(site: SiteDep, client: Operator, number: Annotated[int, Path(ge=0, le=2**53)]) -> Response:
     """Withdraw feedback that the client gave."""
-    await site.journal.read(partial(remove_feedback, site.journal.store.database, number, actor=client.name))
+    await site.journal.in_thread(partial(remove_feedback, site.journal.store.database, number, actor=client.name))
     return Response(status_code=204)

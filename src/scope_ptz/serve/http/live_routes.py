@@ -15,7 +15,7 @@ from fastapi.responses import StreamingResponse
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import CameraError, ScopeError
-from scope_ptz.serve.http.dependencies import TheSite, TheStation, Viewer, client_of, site_of, station_of
+from scope_ptz.serve.http.dependencies import SiteDep, StationDep, Viewer, client_of, site_of, station_of
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.site.live_picture import LiveFrame, encode_jpeg
 from scope_ptz.serve.site.scene_time import scene_time
@@ -35,7 +35,7 @@ Width = Annotated[int, Query(ge=160, le=3840, description="Maximum width in pixe
     responses={200: {"content": {"image/jpeg": {}, "image/png": {}}, "description": "The picture"}, **responses(404, 409, 503)},
 )
 async def frame(
-    station: TheStation,
+    station: StationDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     form: Annotated[Literal["jpeg", "png"], Query(alias="format")] = "jpeg",
     width: Width = 3840,
@@ -52,8 +52,8 @@ async def frame(
     responses={200: {"content": {"multipart/x-mixed-replace": {}}, "description": "A stream of JPEGs"}, **responses(404, 409, 503)},
 )
 async def motion_jpeg(
-    site: TheSite,
-    station: TheStation,
+    site: SiteDep,
+    station: StationDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     width: Width = 1280,
     frames: Annotated[int | None, Query(ge=1, le=100_000, description="Number of frames after which the stream ends")] = None,
@@ -143,13 +143,13 @@ class _Watcher:
             self._acknowledged.set()
 
     async def _send_state(self) -> None:
-        """Send the state apart from the picture, such as the run, control and presets, if it has changed."""
+        """Send the camera's state, such as its run, control and presets, if it has changed."""
         station = self._station
-        holder = station.desk.holder
+        holder = station.control.holder
         state = {
             "run": station.running.id if station.running else None,
             "holder": holder.name if holder else None,
-            "control": station.desk.changes,
+            "control": station.control.changes,
             "presets": station.preset_changes,
             "can_undo": station.can_undo,
             "problem": station.live.problem,
@@ -179,7 +179,10 @@ def frame_facts(taken: Frame) -> dict[str, Any]:
 
 
 def _passing(station: Station) -> dict[str, Any] | None:
-    """Return whether scene time is playing and its speed; None for a camera that shows the real world. Frames contain the time."""
+    """Return whether scene time is playing, and its speed; None for a camera that shows the real world.
+
+    The time itself is part of each frame.
+    """
     now = scene_time(station.open_camera.camera) if station.open_camera is not None else None
     return None if now is None else {"playing": now.playing, "speed": now.speed}
 

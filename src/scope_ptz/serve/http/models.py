@@ -267,7 +267,7 @@ class RunStart(Body):
         instruction: The instruction in plain language.
         conversation: The id of the conversation that it continues; by default, none.
         pair: The pair of models; by default, the one of the conversation, or the site's default.
-        dry_run: Whether moves are only reported instead of made. Pictures are taken in any case.
+        dry_run: Whether moves are only reported and not carried out. Pictures are taken in any case.
     """
 
     camera: Identifier

@@ -10,7 +10,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Box
 from scope_ptz.serve.http.camera_routes import control_model
-from scope_ptz.serve.http.dependencies import Operator, StoppingOperator, TheSite, TheStation, Viewer, presets_of
+from scope_ptz.serve.http.dependencies import Operator, SiteDep, StationDep, StoppingOperator, Viewer, presets_of
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import (
     ArrivalModel,
@@ -30,7 +30,7 @@ from scope_ptz.serve.site.station import Station
 from scope_ptz.tools.aiming import aim, aim_at_zoom, outline_in, view
 
 MIN_BOX = 0.005
-"""Minimum side of a box that can fill the view, in fractions of the frame. A smaller box is taken for a click."""
+"""Minimum side of a box that can fill the view, in fractions of the frame. Requests with smaller boxes are refused."""
 
 router = APIRouter(prefix="/cameras/{camera}", tags=["manual control"])
 Name = Annotated[str, Path(min_length=1, max_length=31)]
@@ -38,7 +38,7 @@ _ERRORS = responses(404, 409, 503)
 
 
 @router.post("/move", responses=_ERRORS)
-async def move(station: TheStation, client: Operator, body: Move) -> ArrivalModel:
+async def move(station: StationDep, client: Operator, body: Move) -> ArrivalModel:
     """Go to an absolute pose. The server replies when the camera has arrived."""
     async with station.commanding(client) as camera:
         now = await camera.pose()
@@ -51,7 +51,7 @@ async def move(station: TheStation, client: Operator, body: Move) -> ArrivalMode
 
 
 @router.post("/centre", responses=_ERRORS)
-async def centre(station: TheStation, client: Operator, body: Centre) -> ArrivalModel:
+async def centre(station: StationDep, client: Operator, body: Centre) -> ArrivalModel:
     """Turn the camera so that a point of a picture is in the centre, at the same magnification."""
     async with station.commanding(client) as camera:
         if body.pose is None:
@@ -63,7 +63,7 @@ async def centre(station: TheStation, client: Operator, body: Centre) -> Arrival
 
 
 @router.post("/frame-box", responses=_ERRORS)
-async def frame_box(station: TheStation, client: Operator, body: FrameBox) -> ArrivalModel:
+async def frame_box(station: StationDep, client: Operator, body: FrameBox) -> ArrivalModel:
     """Turn and zoom the camera so that a box of a picture fills the view."""
     if body.x_max - body.x_min < MIN_BOX or body.y_max - body.y_min < MIN_BOX:
         raise InputError(f"Each side of the box must be at least {MIN_BOX} of the frame, and its minima must be below its maxima.")
@@ -75,61 +75,61 @@ async def frame_box(station: TheStation, client: Operator, body: FrameBox) -> Ar
 
 
 @router.post("/drive", status_code=204, responses=_ERRORS)
-async def drive(station: TheStation, client: Operator, body: Drive) -> Response:
+async def drive(station: StationDep, client: Operator, body: Drive) -> Response:
     """Move at constant velocities until the timeout or the next command. Repeat the request to keep moving."""
     await station.drive(client, body.pan_dps, body.tilt_dps, body.zoom_rate, body.timeout_s)
     return Response(status_code=204)
 
 
 @router.post("/stop", status_code=204, responses=responses(404, 503))
-async def stop(station: TheStation, client: StoppingOperator) -> Response:  # noqa: ARG001 - checks the token
+async def stop(station: StationDep, client: StoppingOperator) -> Response:  # noqa: ARG001 - checks the token
     """Stop the camera and cancel the run in progress. Any operator may do so, even without control."""
     await station.stop()
     return Response(status_code=204)
 
 
 @router.post("/home", responses=_ERRORS)
-async def home(station: TheStation, client: Operator) -> ArrivalModel:
+async def home(station: StationDep, client: Operator) -> ArrivalModel:
     """Go to the home view."""
     async with station.commanding(client) as camera:
         return ArrivalModel.of(await camera.go_home())
 
 
 @router.post("/undo", responses=_ERRORS)
-async def undo(station: TheStation, client: Operator) -> ArrivalModel:
+async def undo(station: StationDep, client: Operator) -> ArrivalModel:
     """Return to the view before the last command, which is a run, a tool call, a move or a drive."""
     return ArrivalModel.of(await station.undo(client))
 
 
 @router.get("/presets", responses=_ERRORS)
-async def list_presets(site: TheSite, station: TheStation, client: Viewer) -> list[PresetModel]:  # noqa: ARG001 - checks the token
+async def list_presets(site: SiteDep, station: StationDep, client: Viewer) -> list[PresetModel]:  # noqa: ARG001 - checks the token
     """List the presets, with their poses if these are known."""
     return [PresetModel.of(each) for each in await presets_of(site, station).known()]
 
 
 @router.put("/presets/{name}", responses=_ERRORS)
-async def save_preset(site: TheSite, station: TheStation, client: Operator, name: Name, body: PresetText) -> PresetModel:
+async def save_preset(site: SiteDep, station: StationDep, client: Operator, name: Name, body: PresetText) -> PresetModel:
     """Save the current view as a preset. A preset of the same name is replaced."""
     saved = await presets_of(site, station).save(client, name, body.description)
     return await _known(site, station, saved.name)
 
 
 @router.patch("/presets/{name}", responses=_ERRORS)
-async def rename_preset(site: TheSite, station: TheStation, client: Operator, name: Name, body: PresetName) -> PresetModel:
+async def rename_preset(site: SiteDep, station: StationDep, client: Operator, name: Name, body: PresetName) -> PresetModel:
     """Rename a preset. The camera goes to the preset and back."""
     saved = await presets_of(site, station).rename(client, name, body.name)
     return await _known(site, station, saved.name)
 
 
 @router.delete("/presets/{name}", status_code=204, responses=_ERRORS)
-async def remove_preset(site: TheSite, station: TheStation, client: Operator, name: Name) -> Response:
+async def remove_preset(site: SiteDep, station: StationDep, client: Operator, name: Name) -> Response:
     """Remove a preset."""
     await presets_of(site, station).remove(client, name)
     return Response(status_code=204)
 
 
 @router.post("/presets/{name}/go", responses=_ERRORS)
-async def go_to_preset(site: TheSite, station: TheStation, client: Operator, name: Name) -> ArrivalModel:
+async def go_to_preset(site: SiteDep, station: StationDep, client: Operator, name: Name) -> ArrivalModel:
     """Go to a preset."""
     return ArrivalModel.of(await presets_of(site, station).go_to(client, name))
 
@@ -139,7 +139,7 @@ async def go_to_preset(site: TheSite, station: TheStation, client: Operator, nam
     response_class=Response,
     responses={200: {"content": {"image/jpeg": {}}, "description": "A small picture of the preset's view"}, **_ERRORS},
 )
-async def preset_thumbnail(site: TheSite, station: TheStation, client: Viewer, name: Name) -> Response:  # noqa: ARG001
+async def preset_thumbnail(site: SiteDep, station: StationDep, client: Viewer, name: Name) -> Response:  # noqa: ARG001
     """Return a small picture of a preset's view. A preset of a real camera has one only after it was saved or visited here."""
     return Response(
         await presets_of(site, station).thumbnail(name), media_type="image/jpeg", headers={"Cache-Control": "private, max-age=5"}
@@ -151,33 +151,33 @@ async def _known(site: Site, station: Station, name: str) -> PresetModel:
 
 
 @router.get("/control", responses=_ERRORS)
-async def control(station: TheStation, client: Viewer) -> ControlModel:
+async def control(station: StationDep, client: Viewer) -> ControlModel:
     """Return the client that controls the camera and the clients that request control."""
     return control_model(station, client)
 
 
 @router.post("/control", responses=_ERRORS)
-async def ask_for_control(station: TheStation, client: Operator) -> ControlModel:
+async def ask_for_control(station: StationDep, client: Operator) -> ControlModel:
     """Take control if nobody has it; otherwise, request it from the holder. In the reply, `mine` is true if the client has it."""
-    await station.desk.ask(client, await station.camera())
+    await station.control.ask(client, await station.camera())
     return control_model(station, client)
 
 
 @router.post("/control/answer", responses=_ERRORS)
-async def answer_request(station: TheStation, client: Operator, body: ControlAnswer) -> ControlModel:
+async def answer_request(station: StationDep, client: Operator, body: ControlAnswer) -> ControlModel:
     """Hand control over to a client that requests it, or refuse. Only the holder can answer."""
-    await station.desk.answer(client, body.client, await station.camera(), grant=body.grant)
+    await station.control.answer(client, body.client, await station.camera(), grant=body.grant)
     return control_model(station, client)
 
 
 @router.delete("/control", responses=_ERRORS)
-async def release_control(station: TheStation, client: Operator) -> ControlModel:
+async def release_control(station: StationDep, client: Operator) -> ControlModel:
     """Give control up, or withdraw a request for it."""
-    await station.desk.release(client)
+    await station.control.release(client)
     return control_model(station, client)
 
 
 @router.get("/pose", responses=_ERRORS)
-async def pose(station: TheStation, client: Viewer) -> PoseModel:  # noqa: ARG001 - checks the token
+async def pose(station: StationDep, client: Viewer) -> PoseModel:  # noqa: ARG001 - checks the token
     """Return the camera's pose."""
     return PoseModel.of(await (await station.camera()).pose())

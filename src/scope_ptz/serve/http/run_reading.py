@@ -48,7 +48,7 @@ async def stored_state(site: Site, run_id: str) -> RunState:
         UnknownNameError: There is no such run.
     """
     trace = await trace_of_run(site, run_id)
-    request = await site.journal.read(partial(read_request, trace.folder))
+    request = await site.journal.in_thread(partial(read_request, trace.folder))
     started, ended = trace.started, trace.ended
     return RunState(
         id=run_id,
@@ -73,9 +73,9 @@ async def trace_of_run(site: Site, run_id: str) -> Trace:
         TraceError: Its trace is damaged.
     """
     folder = site.journal.store.folder(run_id)
-    if not await site.journal.read((folder / "trace.jsonl").is_file):
+    if not await site.journal.in_thread((folder / "trace.jsonl").is_file):
         raise UnknownNameError("run", run_id[:120], ())
-    return await site.journal.read(partial(read_trace, folder))
+    return await site.journal.in_thread(partial(read_trace, folder))
 
 
 def records_of(trace: Trace) -> list[Record]:

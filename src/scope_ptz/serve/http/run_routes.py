@@ -9,7 +9,7 @@ from fastapi import APIRouter, Header, Path, Query
 from fastapi.responses import StreamingResponse
 
 from scope_ptz.errors import InputError
-from scope_ptz.serve.http.dependencies import RunOperator, StoppingOperator, TheSite, Viewer
+from scope_ptz.serve.http.dependencies import RunOperator, SiteDep, StoppingOperator, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import RunStart, RunState
 from scope_ptz.serve.http.run_reading import live_events, state_of, stored_events, stored_state, trace_of_run
@@ -26,13 +26,13 @@ _ERRORS = responses(404, 409, 503)
 
 
 @router.post("/runs", status_code=202, responses=_ERRORS)
-async def start_run(site: TheSite, client: RunOperator, body: RunStart) -> RunState:
+async def start_run(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
     """Start a run and return immediately. Follow it at `/runs/{run}/events`; it continues even if nobody follows it."""
     return state_of(await _start(site, client, body))
 
 
 @router.post("/ask", responses=_ERRORS)
-async def ask(site: TheSite, client: RunOperator, body: RunStart) -> RunState:
+async def ask(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
     """Run an instruction and return when it has ended."""
     handle = await _start(site, client, body)
     await handle.done.wait()
@@ -44,7 +44,7 @@ async def ask(site: TheSite, client: RunOperator, body: RunStart) -> RunState:
 async def _start(site: Site, client: Client, body: RunStart) -> RunHandle:
     station, pair = site.station(body.camera), body.pair
     if body.conversation is not None:
-        conversation = await site.journal.read(
+        conversation = await site.journal.in_thread(
             partial(load_conversation, site.journal.store.database, body.conversation, owner=client.name)
         )
         if conversation.camera != station.name:
@@ -59,7 +59,7 @@ async def _start(site: Site, client: Client, body: RunStart) -> RunHandle:
 
 
 @router.get("/runs/{run}", responses=_ERRORS)
-async def run_state(site: TheSite, client: Viewer, run: RunId) -> RunState:  # noqa: ARG001 - checks the token
+async def run_state(site: SiteDep, client: Viewer, run: RunId) -> RunState:  # noqa: ARG001 - checks the token
     """Return the state of a run, in progress or ended."""
     handle = site.runner.find(run)
     return state_of(handle) if handle is not None else await stored_state(site, run)
@@ -71,7 +71,7 @@ async def run_state(site: TheSite, client: Viewer, run: RunId) -> RunState:  # n
     responses={200: {"content": {"text/event-stream": {}}, "description": "The records of the run"}, **_ERRORS},
 )
 async def run_events(
-    site: TheSite,
+    site: SiteDep,
     client: Viewer,  # noqa: ARG001 - checks the token
     run: RunId,
     last_event_id: Annotated[str | None, Header(max_length=20)] = None,
@@ -91,7 +91,7 @@ async def run_events(
 
 
 @router.post("/runs/{run}/cancel", status_code=202, responses=_ERRORS)
-async def cancel_run(site: TheSite, client: StoppingOperator, run: RunId) -> RunState:  # noqa: ARG001 - checks the token
+async def cancel_run(site: SiteDep, client: StoppingOperator, run: RunId) -> RunState:  # noqa: ARG001 - checks the token
     """Cancel a run. It ends with the outcome "cancelled". A run that has already ended does not change."""
     handle = site.runner.find(run)
     if handle is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 from starlette.exceptions import HTTPException
 
-from scope_ptz.serve.http.dependencies import TheAccess, TheSite, Viewer
+from scope_ptz.serve.http.dependencies import AccessDep, SiteDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import Me, ModelHealth, PairHealth, ServerInfo, SignIn
 from scope_ptz.serve.security.gate import cookie_of
@@ -23,19 +23,19 @@ async def health() -> dict[str, str]:
 
 
 @router.get("/server", responses=responses())
-async def server(site: TheSite, client: Viewer) -> ServerInfo:  # noqa: ARG001 - checks the token
+async def server(site: SiteDep, client: Viewer) -> ServerInfo:  # noqa: ARG001 - checks the token
     """Return the version of the server and the names of its cameras and pairs."""
     return ServerInfo(name="scope-ptz", version=__version__, cameras=list(site.stations), pairs=list(site.pairs.names))
 
 
 @router.get("/me", responses=responses())
-async def me(client: Viewer, access: TheAccess) -> Me:
+async def me(client: Viewer, access: AccessDep) -> Me:
     """Return the name, role and key of the client."""
     return Me(name=client.name, role=client.role, client=client.key, signs_in=access.needs_token)
 
 
 @router.post("/session", status_code=204, responses=responses(409))
-async def sign_in(request: Request, access: TheAccess, body: SignIn) -> Response:
+async def sign_in(request: Request, access: AccessDep, body: SignIn) -> Response:
     """Sign a browser in with a token. The reply sets a cookie that scripts cannot read."""
     access.limits.count(request.client.host if request.client else "", "sign_in")
     token = access.tokens.find(body.token) if access.tokens is not None else None
@@ -47,7 +47,7 @@ async def sign_in(request: Request, access: TheAccess, body: SignIn) -> Response
 
 
 @router.delete("/session", status_code=204, responses=responses())
-async def sign_out(request: Request, access: TheAccess) -> Response:
+async def sign_out(request: Request, access: AccessDep) -> Response:
     """Sign a browser out."""
     access.sessions.end(cookie_of({name.lower(): value for name, value in request.headers.items()}))
     response = Response(status_code=204)
@@ -56,13 +56,13 @@ async def sign_out(request: Request, access: TheAccess) -> Response:
 
 
 @router.get("/pairs", responses=responses())
-async def pairs(site: TheSite, client: Viewer) -> list[str]:  # noqa: ARG001 - checks the token
+async def pairs(site: SiteDep, client: Viewer) -> list[str]:  # noqa: ARG001 - checks the token
     """List the pairs of models that requests can use. The first pair is the default."""
     return list(site.pairs.names)
 
 
 @router.get("/pairs/{pair}/health", responses=responses(404))
-async def pair_health(site: TheSite, client: Viewer, pair: str) -> PairHealth:  # noqa: ARG001 - checks the token
+async def pair_health(site: SiteDep, client: Viewer, pair: str) -> PairHealth:  # noqa: ARG001 - checks the token
     """Return whether the models of a pair can be used."""
     planner, perception = await site.pairs.health(pair)
     return PairHealth(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Response
 
 from scope_ptz.serve.http.camera_models import SceneTimeBody, SceneTimeModel, VirtualCameraBody, VirtualCameraModel
-from scope_ptz.serve.http.dependencies import Operator, TheSite, TheStation, Viewer
+from scope_ptz.serve.http.dependencies import Operator, SiteDep, StationDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.site.scene_time import SceneTimeChange, change_scene_time, read_scene_time
 
@@ -14,14 +14,14 @@ _ERRORS = responses(404, 409, 503)
 
 
 @router.get("/time", responses=_ERRORS)
-async def camera_time(station: TheStation, client: Viewer) -> SceneTimeModel:  # noqa: ARG001 - checks the token
+async def camera_time(station: StationDep, client: Viewer) -> SceneTimeModel:  # noqa: ARG001 - checks the token
     """Return the scene time of a simulated camera. Other cameras reply `not_simulated`."""
     now = await read_scene_time(station)
     return SceneTimeModel(time_s=now.time_s, playing=now.playing, speed=now.speed)
 
 
 @router.patch("/time", responses=_ERRORS)
-async def change_camera_time(station: TheStation, client: Operator, body: SceneTimeBody) -> SceneTimeModel:
+async def change_camera_time(station: StationDep, client: Operator, body: SceneTimeBody) -> SceneTimeModel:
     """Play or pause scene time, seek, or change the speed. The change applies to all clients of the camera.
 
     Like other commands, the request needs control and is refused during an instruction. If the camera is not simulated, the reply
@@ -32,15 +32,15 @@ async def change_camera_time(station: TheStation, client: Operator, body: SceneT
 
 
 @router.get("/virtual", responses=_ERRORS)
-async def virtual_camera(site: TheSite, station: TheStation, client: Viewer) -> VirtualCameraModel:  # noqa: ARG001 - checks the token
+async def virtual_camera(site: SiteDep, station: StationDep, client: Viewer) -> VirtualCameraModel:  # noqa: ARG001 - checks the token
     """Return whether the virtual camera of a scene is on, and its addresses on the server's machine."""
     return VirtualCameraModel.of(site.virtual_cameras.find(station.name))
 
 
 @router.post("/virtual", status_code=201, responses=_ERRORS)
 async def turn_virtual_camera_on(
-    site: TheSite,
-    station: TheStation,
+    site: SiteDep,
+    station: StationDep,
     client: Operator,  # noqa: ARG001 - checks the token
     body: VirtualCameraBody,
 ) -> VirtualCameraModel:
@@ -53,7 +53,7 @@ async def turn_virtual_camera_on(
 
 
 @router.delete("/virtual", status_code=204, responses=_ERRORS)
-async def turn_virtual_camera_off(site: TheSite, station: TheStation, client: Operator) -> Response:  # noqa: ARG001 - checks the token
+async def turn_virtual_camera_off(site: SiteDep, station: StationDep, client: Operator) -> Response:  # noqa: ARG001 - checks the token
     """Turn the virtual camera of a scene off. Its clients are disconnected. If it is off, the request has no effect."""
     await site.virtual_cameras.turn_off(station.name)
     return Response(status_code=204)

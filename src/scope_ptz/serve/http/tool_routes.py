@@ -10,7 +10,7 @@ from pydantic import Field, ValidationError
 
 from scope_ptz.agent.records import Called
 from scope_ptz.errors import ScopeError
-from scope_ptz.serve.http.dependencies import Operator, TheSite, TheStation, Viewer
+from scope_ptz.serve.http.dependencies import Operator, SiteDep, StationDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import PoseModel, ToolReply
 from scope_ptz.serve.site.running import Task
@@ -33,8 +33,8 @@ def _add(tool: Tool) -> None:
 
     async def call(
         request: Request,
-        site: TheSite,
-        station: TheStation,
+        site: SiteDep,
+        station: StationDep,
         client: Operator,
         pair: Annotated[str | None, Field(min_length=1, max_length=120)] = None,
     ) -> ToolReply:

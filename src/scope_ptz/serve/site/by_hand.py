@@ -1,4 +1,4 @@
-"""Tool calls by a person instead of a planner. Each is recorded as a run of one step."""
+"""Tool calls that a person makes directly, without a planner. Each is recorded as a run with one step."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ BY_HAND = "by-hand"
 """The planner name in the traces of these runs."""
 
 
-class OneCall(Planner):
+class SingleCallPlanner(Planner):
     """A planner that makes one tool call and answers with its result.
 
     Args:

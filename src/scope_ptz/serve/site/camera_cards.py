@@ -52,7 +52,7 @@ class CameraCard:
         health: "connected" if it answers, "ready" if it will be opened on first use, "failed" with ``problem``.
         problem: The reason why it cannot be used; None if it can.
         configured: Whether it is a camera in ``scope.yaml``.
-        has_picture: Whether there is a picture of it.
+        has_picture: Whether a thumbnail is available.
     """
 
     title: str
@@ -102,7 +102,7 @@ class CameraCards:
         return self._scenes[name]
 
     async def _check(self, station: Station) -> ScopeError | None:
-        """Return the error of a camera that cannot be used; None if it can. Concurrent requests share one check."""
+        """Return the error of a camera; None if the camera works. Concurrent requests share one check."""
         task, since_s = self._checks.get(station.name, (None, 0.0))
         if task is None or (task.done() and monotonic() - since_s > FRESH_S):
             task = asyncio.create_task(_problem(station))

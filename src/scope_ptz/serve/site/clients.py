@@ -12,7 +12,7 @@ LOCAL = "local"
 
 
 def shown_name(name: str) -> str:
-    """Return a client's name as people read it in a sentence."""
+    """Return a client's name in the form used in messages."""
     return "another window or program on this computer" if name == LOCAL else name
 
 
@@ -32,5 +32,5 @@ class Client:
 
     @property
     def operates(self) -> bool:
-        """Whether the client may do more than watch."""
+        """Whether the client may send commands."""
         return self.role == "operator"

@@ -43,8 +43,8 @@ class Journal:
         self._turns: dict[str, tuple[PastTurn, ...]] = {}
         self._waiting: asyncio.Queue[str] = asyncio.Queue()
 
-    async def read(self, work: Callable[[], _T]) -> _T:
-        """Call a function in a worker thread and return its result. Functions that read the store or files block."""
+    async def in_thread(self, work: Callable[[], _T]) -> _T:
+        """Call a blocking function, such as one that reads the store, in a worker thread, and return its result."""
         return await to_thread.run_sync(work)
 
     def index_soon(self, run_id: str) -> None:
@@ -70,7 +70,7 @@ class Journal:
     async def turns(self, conversation: str) -> tuple[PastTurn, ...]:
         """Return the earlier turns of a conversation. After a restart, they are read from the run folders."""
         if conversation not in self._turns:
-            self._turns[conversation] = await self.read(lambda: self._stored_turns(conversation))
+            self._turns[conversation] = await self.in_thread(lambda: self._stored_turns(conversation))
         return self._turns[conversation]
 
     async def add_turn(self, conversation: str, turn: PastTurn) -> None:

@@ -16,7 +16,7 @@ from scope_ptz.perception.base import Box
 ACCENT = (76, 195, 247)
 INK = (14, 19, 26)
 MAX_NUMBERS = 40
-"""Maximum number of marks that are numbered; the numbers of more marks would cover the picture."""
+"""Maximum number of marks with numbers. The numbers of more marks would cover the picture, so they are omitted."""
 
 
 def call_of(trace: Trace, name: str) -> Called | None:
@@ -42,7 +42,7 @@ def marks_of(call: Called | None, name: str) -> list[dict[str, Any]]:
     return marks
 
 
-def drawn(picture: bytes, marks: list[dict[str, Any]]) -> bytes:
+def draw_marks(picture: bytes, marks: list[dict[str, Any]]) -> bytes:
     """Return an encoded picture with its marks drawn on it, as a JPEG.
 
     Raises:

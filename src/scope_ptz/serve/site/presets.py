@@ -1,4 +1,4 @@
-"""The presets of a camera, with thumbnails and with renaming, which cameras do not offer."""
+"""The presets of a camera, with thumbnails and renaming, neither of which cameras offer themselves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ THUMBNAIL_WIDTH = 320
 
 @dataclass(frozen=True, slots=True)
 class KnownPreset:
-    """A preset, its place if the camera can tell it or has been there, and whether there is a picture of it."""
+    """A preset, where it points (if the camera reports that or has visited it), and whether it has a thumbnail."""
 
     preset: PresetInfo
     place: Place | None
@@ -216,7 +216,7 @@ def _place_in_scene(camera: Camera, name: str) -> Place | None:
 def _detecting_refusals() -> Iterator[None]:
     """Raise ``RefusedByCameraError`` if the camera refuses to edit a preset, such as its home position.
 
-    A refusal is a plain ``CameraError``; failures of the camera are subclasses, which pass unchanged.
+    A refusal is a plain ``CameraError``; camera failures raise subclasses, which propagate unchanged.
     """
     try:
         yield

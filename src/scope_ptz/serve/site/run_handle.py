@@ -15,7 +15,7 @@ Record = Started | Decided | Called | Ended
 
 @dataclass(frozen=True, slots=True)
 class RunEvent:
-    """A record of a run with its number, counted from 0. The stored run gives its records the same numbers."""
+    """A record of a run with its number, counted from 0. The stored run numbers its records in the same way."""
 
     number: int
     record: Record
@@ -27,10 +27,10 @@ class RunHandle:
     Attributes:
         id: The name of its folder.
         instruction: The instruction.
-        request: The request: who asked, on which camera, in which conversation.
+        request: The client, camera and conversation of the run.
         preview: The commands that a dry run would send, one sentence each.
         records: The records so far.
-        scope: The scope that cancels the run.
+        scope: The cancel scope of the run.
         failure: The error that ended the run, if any.
         done: Set when no more records will come.
     """

@@ -17,7 +17,7 @@ from scope_ptz.errors import ScopeError
 from scope_ptz.factory.models import dry_run_note
 from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
-from scope_ptz.serve.site.by_hand import OneCall, call_text
+from scope_ptz.serve.site.by_hand import SingleCallPlanner, call_text
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import StoppedError
 from scope_ptz.serve.site.journal import Journal
@@ -41,8 +41,8 @@ class Task:
         pair: The name of the pair of models.
         conversation: The id of its conversation, if any.
         kind: Whether it is an instruction, a dry run, or a tool call by a person.
-        planner: A planner that replaces the one of the pair.
-        snapshots: Whether views are stored in addition to the frames that perception reads.
+        planner: A planner that replaces the pair's planner, if any.
+        snapshots: Whether camera views are stored in addition to the frames that perception reads.
     """
 
     instruction: str
@@ -56,7 +56,7 @@ class Task:
     def tool_call(cls, name: str, arguments: dict[str, Any], pair: str) -> Task:
         """Return the task of calling one tool."""
         text = call_text(name, arguments)[:MAX_INSTRUCTION_CHARS]
-        return cls(text, pair, kind="tool", planner=OneCall(name, arguments), snapshots=False)
+        return cls(text, pair, kind="tool", planner=SingleCallPlanner(name, arguments), snapshots=False)
 
 
 class Runner:
@@ -128,7 +128,7 @@ class Runner:
                 failure = StoppedError(station.name)
             station.running = None
             station.touch()
-            await station.desk.run_ended()
+            await station.control.run_ended()
             handle.finish(failure)
 
     async def _run(self, station: Station, camera: Camera, task: Task, folder: RunFolder, handle: RunHandle) -> None:

@@ -19,7 +19,7 @@ from scope_ptz.factory.scenes import scene_search
 from scope_ptz.serve.site.benchmark.evaluations import Evaluations
 from scope_ptz.serve.site.benchmark.trajectories import Trajectories
 from scope_ptz.serve.site.camera_cards import CameraCards
-from scope_ptz.serve.site.control_desk import LEASE_S
+from scope_ptz.serve.site.camera_control import LEASE_S
 from scope_ptz.serve.site.journal import Journal
 from scope_ptz.serve.site.pairs import Pairs
 from scope_ptz.serve.site.running import Runner
@@ -38,8 +38,8 @@ class SiteOptions:
         cameras: Names of cameras in ``scope.yaml`` and of scenes; empty for all.
         pairs: Names of pairs, the default first; empty for the built-in pair.
         budgets: The limits of a run.
-        idle: Where cameras return when nobody uses them; None to leave them where they are.
-        idle_of: The same for single cameras by name. It takes precedence over ``idle``.
+        idle: Where cameras return to when nobody uses them; None to leave them where they are.
+        idle_of: Overrides of ``idle`` for individual cameras, by name.
         lease_s: Seconds without a command after which control of a camera expires.
     """
 
@@ -53,7 +53,7 @@ class SiteOptions:
 
 
 class Site:
-    """A site, as an async context manager around its server.
+    """The cameras, pairs, runs and evaluations of a server. An async context manager surrounds the server.
 
     Args:
         cameras: The spec of each camera, by the name that requests use.
@@ -89,7 +89,7 @@ class Site:
         return self
 
     async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        # Ctrl-C cancels the surrounding code: cameras are stopped and runs are recorded nevertheless.
+        # Ctrl-C cancels the surrounding code, but cameras must still be stopped and runs recorded.
         with anyio.CancelScope(shield=True):
             self.closing.set()
             await self.runner.close()
@@ -98,7 +98,7 @@ class Site:
                 station.cancel_prefetch()
             for station in self.stations.values():
                 await station.close()
-            await self.journal.read(self.evaluations.close)
+            await self.journal.in_thread(self.evaluations.close)
             await self.journal.settle(10.0)
             for task in self._tasks:
                 task.cancel()
@@ -139,10 +139,10 @@ def site_cameras(names: Sequence[str], settings: ScopeSettings) -> dict[str, str
 
 
 def idle_returns() -> dict[str, IdleReturn]:
-    """Return what the cameras of ``scope.yaml`` do when nobody commands them, by name, where the file says it.
+    """Return the idle behaviour of each camera for which ``scope.yaml`` defines one, by name.
 
     Raises:
-        ConfigError: ``scope.yaml`` is wrong.
+        ConfigError: ``scope.yaml`` is invalid.
     """
     return {
         name: IdleReturn(named.when_idle.after_s, named.when_idle.preset or "")

@@ -19,8 +19,8 @@ from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import CameraError, InputError, PackError, ScopeError
 from scope_ptz.factory.cameras import OpenCamera, open_camera
 from scope_ptz.geometry import Pose
+from scope_ptz.serve.site.camera_control import LEASE_S, CameraControl
 from scope_ptz.serve.site.clients import Client
-from scope_ptz.serve.site.control_desk import LEASE_S, ControlDesk
 from scope_ptz.serve.site.errors import BusyError
 from scope_ptz.serve.site.live_picture import LivePicture
 from scope_ptz.serve.site.pairs import Models, Pairs
@@ -31,7 +31,7 @@ MAX_UNDO = 50
 """Maximum number of poses that ``undo`` can return to."""
 
 PREFETCH_END_S = 20.0
-"""Seconds that the picture may take that is being read when the camera is closed."""
+"""Maximum time to wait on close for a picture that is still being read in the background, in seconds."""
 
 DRIVE_GROUP_S = 2.0
 """Drive commands that follow each other within this many seconds are undone together."""
@@ -63,7 +63,7 @@ class Station:
         spec: The camera's spec. It must not come from a request.
         pairs: The pairs of models.
         actor: The name under which the camera is controlled, for its audit log and for other programs.
-        idle: Where the camera returns when nobody uses it; None to leave it where it is.
+        idle: Where the camera returns to when nobody uses it; None to leave it where it is.
         lease_s: Seconds without a command after which control expires.
     """
 
@@ -78,14 +78,14 @@ class Station:
         self._models: dict[str, Models] = {}
         self._places: deque[Place] = deque(maxlen=MAX_UNDO)
         self.problem: ScopeError | None = None
-        """Why the camera could not be opened the last time; None if it was."""
+        """The error of the last attempt to open the camera; None if the attempt succeeded."""
         self.visited: dict[str, Place] = {}
-        """Where the camera was at presets whose pose it cannot tell, by the preset's name."""
+        """The position of the camera at each visited preset, by preset name. Not all cameras report the poses of their presets."""
         self._driven_s = -DRIVE_GROUP_S
         self._commanded_s = monotonic()
         self._returned = True
         self.running: RunHandle | None = None
-        self.desk = ControlDesk(name, lambda: self.running is not None, lease_s=lease_s)
+        self.control = CameraControl(name, lambda: self.running is not None, lease_s=lease_s)
         self.live = LivePicture(name, self.camera)
         self.preset_changes = 0
         """Number of preset changes so far. Watchers compare it to notice changes."""
@@ -109,7 +109,7 @@ class Station:
             return self._opened
 
     async def camera(self) -> Camera:
-        """Return the open camera. Raises as ``opened`` does."""
+        """Return the open camera. Raises the same errors as ``opened``."""
         return (await self.opened()).camera
 
     @property
@@ -136,7 +136,7 @@ class Station:
             BusyError: A run is in progress.
         """
         camera = await self.camera()
-        await self.desk.require(client, camera)
+        await self.control.require(client, camera)
         if self.running is not None:
             raise BusyError(self.name, self.running.id)
         self.touch()
@@ -171,7 +171,7 @@ class Station:
         await camera.drive(pan_dps, tilt_dps, zoom_rate, timeout_s=timeout_s)
 
     async def stop(self) -> None:
-        """Cancel the run in progress, if any, and stop the camera. The caller needs no control."""
+        """Cancel the run in progress, if any, and stop the camera. The caller does not need control."""
         if self.running is not None:
             self.running.cancel()
         if self._opened is not None:
@@ -218,7 +218,7 @@ class Station:
                 logger.warning("%s is not used and cannot return to its preset: %s", self.name, error)
 
     def cancel_prefetch(self) -> None:
-        """Read no more pictures in the background."""
+        """Stop reading pictures in the background."""
         if self._prefetch is not None:
             self._prefetch.cancel()
 
@@ -228,12 +228,12 @@ class Station:
         for models in self._models.values():
             await models.close()
         if opened is not None:
-            await self.desk.clear()
+            await self.control.clear()
             with suppress(CameraError):
                 await opened.camera.stop()
             await opened.aclose()
         if self._prefetch is not None:
-            # A thread that still computes when the interpreter ends would abort the program.
+            # A thread that is still running when the interpreter exits would crash the program.
             self.cancel_prefetch()
             with suppress(PackError, OSError):
                 await to_thread.run_sync(self._prefetch.wait, PREFETCH_END_S)

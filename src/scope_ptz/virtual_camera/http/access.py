@@ -41,7 +41,7 @@ class Gate:
         return endpoint
 
     def refusal(self, *, stale: bool = False) -> Response:
-        """Return the reply that asks for an account."""
+        """Return the 401 reply, which asks the client to authenticate."""
         response = PlainTextResponse("Unauthorized\n", 401)
         for challenge in self._digest.challenges(stale=stale):
             response.headers.append("WWW-Authenticate", challenge)

@@ -33,8 +33,8 @@ class CameraApplication:
     Args:
         unit: The VAPIX state of the camera.
         source: Its live picture.
-        truth: The ground truth of its frames; None if it is not offered.
-        onvif: An application for addresses below ``/onvif/``, which authenticates its own clients; None if there is none.
+        truth: The ground truth of its frames; None if it is not served.
+        onvif: An application for the paths below ``/onvif/``, which authenticates its own clients; None if there is none.
 
     Attributes:
         app: The ASGI application.

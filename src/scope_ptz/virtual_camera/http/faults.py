@@ -1,4 +1,4 @@
-"""Apply a camera's faults to HTTP requests, except to those that switch faults."""
+"""Apply a camera's faults to HTTP requests, except requests that set faults."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""JPEGs of exposures. Clients that request the same size and compression share one encoding."""
+"""Encode exposures as JPEG. Clients that request the same size and compression share one encoding."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
 from scope_ptz.virtual_camera.picture_size import fitted, parse_resolution
 
 DEFAULT_COMPRESSION = 30
-"""The compression of AXIS cameras, from 0 (best picture) to 100."""
+"""The default compression of AXIS cameras, on a scale from 0 (best quality) to 100."""
 
-MAX_SHARED = 8  # sizes and compressions for which the newest encoding is kept
+MAX_SHARED = 8  # maximum number of formats whose newest encoding is cached
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class PictureFormat:
 
 
 def picture_format(device: VirtualDevice, resolution: str, compression: str) -> PictureFormat:
-    """Return the format that a client requests. Empty texts mean the defaults.
+    """Return the format that a client requests. Empty strings mean the defaults.
 
     Raises:
         InputError: The resolution is not WIDTHxHEIGHT or larger than the camera's, or the compression is not 0 to 100.
@@ -43,7 +43,7 @@ def picture_format(device: VirtualDevice, resolution: str, compression: str) -> 
 
 
 def encode(image: NDArray[np.uint8], requested: PictureFormat) -> bytes:
-    """Return an RGB picture as a JPEG. A picture of another shape is cropped at its sides or at top and bottom, never stretched."""
+    """Encode an RGB image as a JPEG. If the aspect ratio differs, the image is cropped, never stretched."""
     image = fitted(image, requested.width, requested.height)
     quality = round(98 - 0.85 * requested.compression)
     done, content = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])

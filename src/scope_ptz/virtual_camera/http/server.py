@@ -89,7 +89,7 @@ async def serve(
         host: Address to listen on. Unless it is a loopback address, all cameras must have accounts.
         ports: A port for each camera; 0 for any free one. If the list is empty, the system chooses all ports.
         truth: Whether clients on this machine get the ground truth of frames.
-        onvif: A function that creates the application for addresses below ``/onvif/`` of a camera.
+        onvif: A function that creates the application for the paths below ``/onvif/`` of a camera.
         rate_hz: Frames per second of live pictures.
         latency_s: Time from exposure until a frame is sent.
         certificates: A certificate for each camera, which then serves HTTPS instead of HTTP; empty for HTTP.

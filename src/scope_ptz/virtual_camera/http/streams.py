@@ -72,12 +72,12 @@ class MotionJpeg(Response):
             await abort_connection(scope, receive)
 
     async def _send_parts(self, send: Send) -> bool:
-        """Send frames until a limit. Return False if the client is stuck."""
+        """Send frames until a limit is reached. Return False if the client has stopped reading."""
         options, sent, pace = self._options, 0, Pace(self._source.rate_hz, self._options.fps)
         started_s = anyio.current_time()
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
-                if not pace.takes(exposure.taken_s):
+                if not pace.accepts(exposure.taken_s):
                     continue
                 part = await self._part(exposure)
                 with anyio.move_on_after(STUCK_S) as patience:

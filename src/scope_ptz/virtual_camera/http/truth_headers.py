@@ -10,10 +10,10 @@ from scope_ptz.virtual_camera.truth import TruthLog, origin_fields, unix_s
 
 
 class TruthHeaders:
-    """Describes exposures for local clients.
+    """Builds the ground-truth headers and JPEG comments for local clients.
 
     Args:
-        log: The exposures of the camera.
+        log: The log of the camera's exposures.
     """
 
     def __init__(self, log: TruthLog) -> None:

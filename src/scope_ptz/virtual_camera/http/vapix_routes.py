@@ -1,4 +1,4 @@
-"""VAPIX over HTTP: requests become arguments, replies become responses."""
+"""Routes that serve VAPIX over HTTP."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ GROUPS = {Role.VIEWER: "viewer", Role.OPERATOR: "operator viewer ptz", Role.ADMI
 
 
 class VapixRoutes:
-    """The addresses below ``/axis-cgi/`` of one camera.
+    """The routes below ``/axis-cgi/`` of one camera.
 
     Args:
         unit: The VAPIX state of the camera.
         source: Its live picture.
-        gate: Admits clients.
-        truth: Adds the ground truth to pictures for local clients; None if it is not offered.
+        gate: Authenticates clients.
+        truth: Adds the ground truth to pictures for local clients; None if it is not served.
         closing: Set when the server shuts down.
     """
 

@@ -1,4 +1,4 @@
-"""Addresses that a real camera does not have: faults, reboots and ground truth, for clients on the same machine only."""
+"""Routes that a real camera does not have: faults, reboots and ground truth, for clients on the same machine only."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ MAX_WITHIN_S = 5.0
 
 
 class VirtualRoutes:
-    """The addresses below ``/virtual/`` of one camera.
+    """The routes below ``/virtual/`` of one camera.
 
     Args:
         device: The camera.
-        gate: Admits clients.
-        truth: The ground truth; None if it is not offered.
+        gate: Authenticates clients.
+        truth: The ground truth; None if it is not served.
     """
 
     def __init__(self, device: VirtualDevice, gate: Gate, truth: TruthLog | None) -> None:
@@ -67,7 +67,7 @@ class VirtualRoutes:
     async def _faults(self, request: Request, _: Client) -> Response:
         if request.method == "POST":
             try:
-                self._device.faults = changed(self._device.faults, await read_body(request))
+                self._device.faults = changed_faults(self._device.faults, await read_body(request))
             except InputError as problem:
                 return JSONResponse({"error": str(problem)}, 400)
         elif request.method == "DELETE":
@@ -92,7 +92,7 @@ class VirtualRoutes:
         device.faults = device.faults.model_copy(update={"down": False})
 
     async def _origin(self, request: Request, _: Client) -> Response:
-        assert self._truth is not None  # noqa: S101 - the route exists only with it
+        assert self._truth is not None  # noqa: S101 - otherwise, there is no such route
         try:
             arguments = await read_arguments(request)
             asked = {name: arguments.numbers(name, 1)[0] for name in ("time", "taken") if name in arguments}
@@ -107,8 +107,8 @@ class VirtualRoutes:
         return JSONResponse({**origin_fields(origin), "hfov_deg": hfov_deg, "taken_s": taken_s})
 
 
-def changed(faults: Faults, body: bytes) -> Faults:
-    """Return faults with the changes of a JSON object.
+def changed_faults(faults: Faults, body: bytes) -> Faults:
+    """Return faults after applying the changes in a JSON object.
 
     Raises:
         InputError: The body is not a JSON object, or a fault is unknown or has an invalid value.

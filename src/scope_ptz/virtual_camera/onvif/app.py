@@ -17,7 +17,7 @@ from scope_ptz.virtual_camera.identity import serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_time_s
 from scope_ptz.virtual_camera.onvif.device_service import PATHS, DeviceService
 from scope_ptz.virtual_camera.onvif.imaging_service import ImagingService
-from scope_ptz.virtual_camera.onvif.login import Stamp, UsernameTokens, created, not_authorized
+from scope_ptz.virtual_camera.onvif.login import Stamp, UsernameTokens, creation_time, not_authorized
 from scope_ptz.virtual_camera.onvif.media2_service import Media2Service
 from scope_ptz.virtual_camera.onvif.media_service import MediaService
 from scope_ptz.virtual_camera.onvif.operations import Operations, Reply, Request
@@ -44,12 +44,12 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
 
 @dataclass(frozen=True, slots=True)
-class Caller:
-    """The address that a client used for the device, and the result of its HTTP authentication.
+class RequestTarget:
+    """The address at which a client reached the device, and the result of its HTTP authentication.
 
     Attributes:
-        host: The host, in the form used in URLs.
-        origin: Scheme, host and port.
+        host: The host name or address of the device, in the form used in URLs.
+        origin: The scheme, host and port of the device.
         verdict: The result of HTTP digest authentication; None if the client did not use it.
     """
 
@@ -63,7 +63,7 @@ class OnvifApp:
 
     Args:
         device: The camera.
-        rtsp_port: Port of its RTSP server, which replies contain.
+        rtsp_port: Port of its RTSP server, to be stated in replies.
 
     Raises:
         ConfigError: The WSDL files are not installed.
@@ -94,20 +94,20 @@ class OnvifApp:
             return await _send(send, 404, b"")
         if scope["method"] != "POST":
             return await _send(send, 405, b"", [(b"allow", b"POST")])
-        caller, headers = self._caller(scope), []
+        target, headers = self._request_target(scope), []
         try:
             data = await _read(receive)
             if data is None:
                 return None
-            status, reply = 200, self.answer(data, caller)
+            status, reply = 200, self.answer(data, target)
         except SoapFault as fault:
             status, reply = fault.status, fault.envelope()
             if status == 401:
-                stale = caller.verdict is not None and caller.verdict.stale
+                stale = target.verdict is not None and target.verdict.stale
                 headers = [(b"www-authenticate", text.encode()) for text in self._digest.challenges(stale=stale)]
         return await _send(send, status, reply, headers)
 
-    def answer(self, data: bytes, caller: Caller) -> bytes:
+    def answer(self, data: bytes, target: RequestTarget) -> bytes:
         """Return the reply to a request.
 
         Raises:
@@ -120,16 +120,16 @@ class OnvifApp:
             known = (namespace, name) in self._messages
             what = "does not offer" if known else "does not know"
             raise SoapFault(f"The device {what} the operation {name[:64]}.", "ActionNotSupported", receiver=known)
-        stamp = None if operation.role is None else self._admit(envelope, caller, operation.role)
+        stamp = None if operation.role is None else self._authorize(envelope, target, operation.role)
         try:
             arguments = self._messages[namespace, name].input.body.parse(envelope.body, self._types)
         except (ZeepError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
             _LOG.debug("Arguments of %s: %s", name, error)
-            raise SoapFault(f"The arguments of {name} are not of the types in its WSDL.", "InvalidArgs") from error
-        reply = operation.run(Request(arguments, caller.host, caller.origin, stamp))
+            raise SoapFault(f"The arguments of {name} do not match the types in its WSDL.", "InvalidArgs") from error
+        reply = operation.run(Request(arguments, target.host, target.origin, stamp))
         return as_bytes(self._serialized(namespace, name, reply))
 
-    def _admit(self, envelope: Envelope, caller: Caller, role: Role) -> Stamp | None:
+    def _authorize(self, envelope: Envelope, target: RequestTarget, role: Role) -> Stamp | None:
         """Check that the sender has the role that a request requires.
 
         Returns:
@@ -141,23 +141,23 @@ class OnvifApp:
         if self._device.faults.unauthorized:
             raise not_authorized("The user name or the password is wrong.")
         if self._device.accounts.open_to_all:
-            return created(envelope.header)
+            return creation_time(envelope.header)
         sender = self._tokens.sender(envelope.header)
-        account = sender.account if sender else caller.verdict.account if caller.verdict else None
+        account = sender.account if sender else target.verdict.account if target.verdict else None
         if account is None:
             raise not_authorized("The operation needs a login.", status=401)
         if account.role < role:
             raise not_authorized(f"The operation requires the role {role.name.lower()}.")
         return sender.stamp if sender else None
 
-    def _caller(self, scope: Scope) -> Caller:
+    def _request_target(self, scope: Scope) -> RequestTarget:
         headers = dict(scope["headers"])
         host, origin = _address(scope, headers.get(b"host", b"").decode("latin-1"))
         if (answer := headers.get(b"authorization")) is None:
-            return Caller(host, origin)
+            return RequestTarget(host, origin)
         query = scope["query_string"].decode("latin-1")
-        target = scope["raw_path"].decode("latin-1") + (f"?{query}" if query else "")
-        return Caller(host, origin, self._digest.check(answer.decode("latin-1"), scope["method"], target))
+        uri = scope["raw_path"].decode("latin-1") + (f"?{query}" if query else "")
+        return RequestTarget(host, origin, self._digest.check(answer.decode("latin-1"), scope["method"], uri))
 
     def _serialized(self, namespace: str, name: str, reply: Reply) -> Any:
         return self._messages[namespace, name].output.serialize(**reply).content

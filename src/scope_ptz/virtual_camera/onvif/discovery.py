@@ -135,7 +135,7 @@ def _xaddr(host: str, camera: Discoverable) -> str:
 
 
 def _own_address(client: Address) -> str:
-    """Return the address of this machine from which it would reach a client."""
+    """Return this machine's address on the route to a client."""
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
         probe.connect(client)  # only looks up the route; nothing is sent
         return str(probe.getsockname()[0])

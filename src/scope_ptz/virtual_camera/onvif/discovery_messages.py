@@ -131,7 +131,7 @@ class Sender:
 
         Args:
             query: The query.
-            xaddr: The address of the Device service that the client can reach.
+            xaddr: The address at which the client can reach the Device service.
         """
         kind = "Probe" if query.resolves is None else "Resolve"
         found = _D(f"{kind}Match", *self._description(xaddr))
@@ -162,7 +162,7 @@ def _qname(element: etree._Element, name: str) -> tuple[str, str]:
 
 
 def _begins(scope: str, prefix: str) -> bool:
-    """Return whether a scope begins with another one: the same scheme and host, and a path that begins with its segments."""
+    """Return whether a scope matches a prefix: equal scheme and host, and a path that begins with the segments of the prefix."""
     ours, theirs = urlsplit(scope), urlsplit(prefix)
     if (ours.scheme.lower(), ours.netloc.lower()) != (theirs.scheme.lower(), theirs.netloc.lower()):
         return False

@@ -93,7 +93,7 @@ class UsernameTokens:
         self._used[nonce, created] = now_s + 2 * CLOCK_TOLERANCE_S
 
 
-def created(header: Any) -> Stamp | None:
+def creation_time(header: Any) -> Stamp | None:
     """Return the creation time of a request to a device without accounts; None if the request does not state it."""
     token = _token(header)
     text = None if token is None else token.findtext(f"{{{_UTILITY}}}Created")

@@ -40,12 +40,12 @@ class MediaProfile:
 
     @property
     def resolution(self) -> dict[str, int]:
-        """The size in the form of replies."""
+        """The size, as it appears in replies."""
         return {"Width": self.width, "Height": self.height}
 
 
 def media_profiles(device: VirtualDevice) -> tuple[MediaProfile, ...]:
-    """Return the profiles: the full picture, and one of half its width and height for programs that analyse it."""
+    """Return the profiles: one at full size, and one at half the width and height for programs that analyse the video."""
     width, height = device.width, device.height
     main = MediaProfile("profile-1", "h264-configuration-1", "Main", width, height, 4096, "")
     if width % 4 or height % 4:  # H.264 needs even sizes
@@ -110,7 +110,7 @@ def source_configuration(device: VirtualDevice) -> dict[str, Any]:
 
 
 def source_options(device: VirtualDevice) -> dict[str, Any]:
-    """Return the options of the video source's configuration, which allow only the whole picture."""
+    """Return the options of the video source's configuration, which allow only the full image."""
     zero = {"Min": 0, "Max": 0}
     return {
         "BoundsRange": {
@@ -124,11 +124,11 @@ def source_options(device: VirtualDevice) -> dict[str, Any]:
 
 
 def stream_uri(request: Request, profile: MediaProfile, rtsp_port: int) -> str:
-    """Return the address of a stream that the client can reach."""
+    """Return the address at which the client can reach a stream."""
     port = "" if rtsp_port == 554 else f":{rtsp_port}"
     return f"rtsp://{request.host}{port}{STREAM_PATH}{profile.query}"
 
 
 def snapshot_uri(request: Request, profile: MediaProfile) -> str:
-    """Return the address of the current picture that the client can reach."""
+    """Return the address at which the client can get the current image."""
     return f"{request.origin}{SNAPSHOT_PATH}?resolution={profile.width}x{profile.height}"

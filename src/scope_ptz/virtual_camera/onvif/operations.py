@@ -16,8 +16,8 @@ class Request:
 
     Attributes:
         arguments: The arguments by name, parsed by zeep with the types of the WSDL.
-        host: The host that the client used for the device, in the form used in URLs (with brackets for IPv6).
-        origin: The scheme, host and port that the client used for the device.
+        host: The host at which the client reached the device, in the form used in URLs (with brackets for IPv6).
+        origin: The scheme, host and port at which the client reached the device.
         stamp: The time at which the client created the request; None if the request does not state it.
     """
 

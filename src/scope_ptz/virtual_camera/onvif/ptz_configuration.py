@@ -33,8 +33,8 @@ class PtzConfiguration:
         position: The space of positions in status and presets, and the default space of absolute moves.
         translation: The default space of relative moves.
         timeout_s: The default duration of a continuous move in seconds.
-        speed: The default speed of pan and tilt, as a share of the top speed.
-        zoom_speed: The default speed of the zoom, as a share of the top speed.
+        speed: The default speed of pan and tilt, as a fraction of the top speed.
+        zoom_speed: The default speed of the zoom, as a fraction of the top speed.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
@@ -124,7 +124,7 @@ class PtzConfiguration:
         _known(self.spaces.zoom_translations, requested.DefaultRelativeZoomTranslationSpace, s.ZOOM_TRANSLATION)
         _known(self.spaces.velocities, requested.DefaultContinuousPanTiltVelocitySpace, s.VELOCITY)
         _known(self.spaces.zoom_velocities, requested.DefaultContinuousZoomVelocitySpace, s.ZOOM_VELOCITY)
-        speed, zoom_speed = self.shares(requested.DefaultPTZSpeed, "ConfigModify")
+        speed, zoom_speed = self.speed_fractions(requested.DefaultPTZSpeed, "ConfigModify")
         timeout_s: float | None = self.timeout_s
         if requested.DefaultPTZTimeout is not None:
             timeout_s = duration_s(requested.DefaultPTZTimeout)
@@ -135,22 +135,24 @@ class PtzConfiguration:
         self.speed, self.zoom_speed = speed, zoom_speed
         return {}
 
-    def shares(self, speed: Any, subcode: str = "InvalidSpeed") -> tuple[float, float]:
-        """Return the requested shares of the top speeds of pan and tilt, and of the zoom. Missing values and 0 mean the default.
+    def speed_fractions(self, speed: Any, subcode: str = "InvalidSpeed") -> tuple[float, float]:
+        """Return the requested speeds of pan and tilt, and of the zoom, as fractions of their top speeds.
+
+        Missing values and 0 mean the default.
 
         Raises:
             SoapFault: A number is not from 0 to 1, or the space is unknown.
         """
         pan_tilt, zoom = getattr(speed, "PanTilt", None), getattr(speed, "Zoom", None)
-        share, zoom_share = self.speed, self.zoom_speed
+        fraction, zoom_fraction = self.speed, self.zoom_speed
         if pan_tilt is not None:
-            space = s.chosen(self.spaces.speeds, pan_tilt, s.SPEED)
+            space = s.requested_space(self.spaces.speeds, pan_tilt, s.SPEED)
             s.Space(space.uri, space.x, space.x).check(pan_tilt, subcode)
-            share = min(max(pan_tilt.x, pan_tilt.y) or self.speed, 1.0)
+            fraction = min(max(pan_tilt.x, pan_tilt.y) or self.speed, 1.0)
         if zoom is not None:
-            s.chosen(self.spaces.zoom_speeds, zoom, s.ZOOM_SPEED).check(zoom, subcode)
-            zoom_share = min(zoom.x or self.zoom_speed, 1.0)
-        return share, zoom_share
+            s.requested_space(self.spaces.zoom_speeds, zoom, s.ZOOM_SPEED).check(zoom, subcode)
+            zoom_fraction = min(zoom.x or self.zoom_speed, 1.0)
+        return fraction, zoom_fraction
 
     def _require(self, token: str | None) -> None:
         require_token("PTZ configuration", token, CONFIGURATION, "NoConfig")

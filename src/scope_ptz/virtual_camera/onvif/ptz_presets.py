@@ -68,14 +68,14 @@ class PresetOperations:
 
     def _go_to(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
-        share, zoom_share = self._configuration.shares(request.Speed)
-        self._device.move(self._preset(request.PresetToken).pose, speed_share=share, zoom_share=zoom_share)
+        fraction, zoom_fraction = self._configuration.speed_fractions(request.Speed)
+        self._device.move(self._preset(request.PresetToken).pose, speed_fraction=fraction, zoom_fraction=zoom_fraction)
         return {}
 
     def _go_home(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
-        share, zoom_share = self._configuration.shares(request.Speed)
-        self._device.move(self._device.home, speed_share=share, zoom_share=zoom_share)
+        fraction, zoom_fraction = self._configuration.speed_fractions(request.Speed)
+        self._device.move(self._device.home, speed_fraction=fraction, zoom_fraction=zoom_fraction)
         return {}
 
     def _set_home(self, request: Request) -> Reply:

@@ -67,11 +67,11 @@ class PtzService:
         pan_tilt, zoom = _axes(request.Position)
         pose = self._device.destination
         if pan_tilt is not None:
-            space = s.chosen(self._spaces.positions, pan_tilt, self._configuration.position)
+            space = s.requested_space(self._spaces.positions, pan_tilt, self._configuration.position)
             space.check(pan_tilt, "InvalidPosition")
             pose = self._spaces.at_position(pose, space, pan_tilt.x, pan_tilt.y)
         if zoom is not None:
-            s.chosen(self._spaces.zoom_positions, zoom, s.ZOOM_POSITION).check(zoom, "InvalidPosition")
+            s.requested_space(self._spaces.zoom_positions, zoom, s.ZOOM_POSITION).check(zoom, "InvalidPosition")
             pose = self._spaces.at_zoom_position(pose, zoom.x)
         self._move(pose, request.Speed)
         return {}
@@ -81,12 +81,12 @@ class PtzService:
         pan_tilt, zoom = _axes(request.Translation)
         here, pose = self._device.pose(), self._device.destination
         if pan_tilt is not None:
-            space = s.chosen(self._spaces.translations, pan_tilt, self._configuration.translation)
+            space = s.requested_space(self._spaces.translations, pan_tilt, self._configuration.translation)
             space.check(pan_tilt, "InvalidTranslation")
             there = self._spaces.turned(here, space, pan_tilt.x, pan_tilt.y)
             pose = replace(there, zoom=pose.zoom)
         if zoom is not None:
-            s.chosen(self._spaces.zoom_translations, zoom, s.ZOOM_TRANSLATION).check(zoom, "InvalidTranslation")
+            s.requested_space(self._spaces.zoom_translations, zoom, s.ZOOM_TRANSLATION).check(zoom, "InvalidTranslation")
             pose = replace(pose, zoom=self._spaces.zoomed(here, zoom.x).zoom)
         self._move(pose, request.Speed)
         return {}
@@ -94,12 +94,12 @@ class PtzService:
     def _continuous(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
         pan_tilt, zoom = _axes(request.Velocity)
-        velocity, top = self._device.driven, top_speed(self._device.head)
+        velocity, top = self._device.commanded_velocity, top_speed(self._device.head)
         if pan_tilt is not None:
-            s.chosen(self._spaces.velocities, pan_tilt, s.VELOCITY).check(pan_tilt, "InvalidVelocity")
+            s.requested_space(self._spaces.velocities, pan_tilt, s.VELOCITY).check(pan_tilt, "InvalidVelocity")
             velocity = replace(velocity, pan_dps=pan_tilt.x * top.pan_dps, tilt_dps=pan_tilt.y * top.tilt_dps)
         if zoom is not None:
-            s.chosen(self._spaces.zoom_velocities, zoom, s.ZOOM_VELOCITY).check(zoom, "InvalidVelocity")
+            s.requested_space(self._spaces.zoom_velocities, zoom, s.ZOOM_VELOCITY).check(zoom, "InvalidVelocity")
             velocity = replace(velocity, zoom_rate=zoom.x * top.zoom_rate)
         timeout_s: float | None = self._configuration.timeout_s
         if request.Timeout is not None and (timeout_s := duration_s(request.Timeout)) is None:
@@ -121,7 +121,7 @@ class PtzService:
         return {}
 
     def _sent_s(self, request: Request, *, latest: bool) -> float | None:
-        """Return the creation time of a request in Unix seconds: the latest possible time of a move, the earliest of a stop.
+        """Return the creation time of a request in Unix seconds: the latest possible time for a move, the earliest for a stop.
 
         In case of doubt, the move is therefore carried out. A client whose clock is ahead must not block others.
         """
@@ -131,8 +131,8 @@ class PtzService:
         return min(created_s, device_time_s(self._device)) - self._device.faults.clock_skew_s
 
     def _move(self, pose: Pose, speed: Any) -> None:
-        share, zoom_share = self._configuration.shares(speed)
-        self._device.move(pose, speed_share=share, zoom_share=zoom_share)
+        fraction, zoom_fraction = self._configuration.speed_fractions(speed)
+        self._device.move(pose, speed_fraction=fraction, zoom_fraction=zoom_fraction)
 
 
 def _axes(vector: Any) -> tuple[Any, Any]:

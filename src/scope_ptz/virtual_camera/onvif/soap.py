@@ -26,7 +26,7 @@ class SoapFault(Exception):  # noqa: N818 - the term of the SOAP specification
     """A refused request. The fault is sent as the reply.
 
     Args:
-        reason: A message for people.
+        reason: A human-readable message.
         subcodes: The subcodes of Sender or Receiver, in the namespace of ONVIF errors.
         receiver: Whether the device rather than the request caused the fault.
         status: Status of the HTTP reply; the default is 400 for a sender's fault, 500 for a receiver's.

@@ -31,7 +31,7 @@ _TOLERANCE = 1e-4  # clients that calculate in single precision exceed the end o
 
 Range = tuple[float, float]
 UNIT: Range = (-1.0, 1.0)
-SHARE: Range = (0.0, 1.0)
+FRACTION: Range = (0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Space:
                 raise invalid_argument(f"{axis} must be from {limits[0]:g} to {limits[1]:g}; got {value}.", subcode)
 
 
-def chosen(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:
+def requested_space(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:
     """Return the space that a vector names, or the default.
 
     Raises:
@@ -95,11 +95,11 @@ class Spaces:
         return Space(TRANSLATION, UNIT, UNIT), Space(TRANSLATION_FOV, UNIT, UNIT), degrees
 
     velocities = (Space(VELOCITY, UNIT, UNIT),)
-    speeds = (Space(SPEED, SHARE),)
-    zoom_positions = (Space(ZOOM_POSITION, SHARE),)
+    speeds = (Space(SPEED, FRACTION),)
+    zoom_positions = (Space(ZOOM_POSITION, FRACTION),)
     zoom_translations = (Space(ZOOM_TRANSLATION, UNIT),)
     zoom_velocities = (Space(ZOOM_VELOCITY, UNIT),)
-    zoom_speeds = (Space(ZOOM_SPEED, SHARE),)
+    zoom_speeds = (Space(ZOOM_SPEED, FRACTION),)
 
     def at_position(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
         """Return the pose at a position of pan and tilt, with the zoom of ``pose``."""
@@ -137,7 +137,7 @@ class Spaces:
         return min(max((pose.zoom - low) / (high - low), 0.0), 1.0)
 
     def _centred(self, pose: Pose, x: float, y: float) -> Pose:
-        """Return the pose that centres a point of the picture, where -1 and 1 are its borders."""
+        """Return the pose that centres a point of the image, in coordinates from -1 to 1."""
         size = 1000
         view = Perspective(pose.pan_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), size, round(size / self.aspect))
         pan_deg, tilt_deg = pan_tilt_deg(view.directions([0.5 + x / 2, 0.5 - y / 2]))

@@ -19,14 +19,14 @@ from scope_ptz.virtual_camera.rtsp.messages import Interleaved, MalformedError, 
 from scope_ptz.virtual_camera.rtsp.sdp import describe
 from scope_ptz.virtual_camera.rtsp.session import Session
 from scope_ptz.virtual_camera.rtsp.sessions import Sessions
-from scope_ptz.virtual_camera.rtsp.sinks import InterleavedSink, bound_unsent, open_udp
+from scope_ptz.virtual_camera.rtsp.sinks import InterleavedSink, limit_send_buffers, open_udp
 from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat, StreamUrl, parse_url, stream_format
 from scope_ptz.virtual_camera.rtsp.transport_header import TransportOffer, choose_transport
 
 IDLE_S = 60.0
 """Seconds after which a connection without sessions is closed."""
 
-READ_S = 10.0  # for the rest of a message that has begun
+READ_S = 10.0  # maximum time in seconds to receive the rest of a message
 GARBAGE = b"\x00\xff<<<%%garbage}{\r\n\r\n"
 SERVER = "scope-ptz"
 
@@ -82,7 +82,7 @@ class RtspConnection:
 
     async def run(self) -> None:
         """Answer requests until either side closes the connection."""
-        bound_unsent(self._writer)
+        limit_send_buffers(self._writer)
         try:
             while await self._serve_next():
                 pass

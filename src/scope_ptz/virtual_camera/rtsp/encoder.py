@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 QUALITY_CRF = 23
 BITS_PER_PIXEL_S = 6.5
-"""Maximum bit rate in bits per second and pixel: 6 Mbit/s at 1280x720."""
+"""Maximum bit rate in bits per second per pixel: 6 Mbit/s at 1280x720."""
 
-MIN_BITS_PER_S = 500_000  # maximum bit rate of small pictures, whose headers take a larger share
+MIN_BITS_PER_S = 500_000  # maximum bit rate of small pictures, whose headers take up a larger part
 
 BURST_S = 0.33
 """Maximum size of a picture, in seconds of the maximum bit rate. It limits keyframes."""
@@ -44,7 +44,7 @@ class ParameterSets:
 
     @property
     def profile_level_id(self) -> str:
-        """Profile and level in the form of SDP."""
+        """The profile and level, in the notation of SDP."""
         return self.sps[1:4].hex()
 
 
@@ -68,12 +68,12 @@ class H264Encoder:
         self._last_pts = -1
 
     def encode(self, image: NDArray[np.uint8], time_s: float, *, keyframe: bool) -> list[bytes]:
-        """Return the NAL units of a picture. It blocks for the time of one encoding.
+        """Return the NAL units of a picture. This blocks until the picture is encoded.
 
         Args:
-            image: Array of shape ``(H, W, 3)``, RGB. Another size is fitted to that of the encoder.
+            image: Array of shape ``(H, W, 3)``, RGB. An image of another size is fitted to that of the encoder.
             time_s: The time at which it was taken, in seconds from an arbitrary origin.
-            keyframe: Whether decoding can begin here. The parameter sets come first then.
+            keyframe: Whether decoding can begin at this picture. If so, the parameter sets come first.
 
         Raises:
             CameraError: libx264 failed.
@@ -101,7 +101,7 @@ def nal_units(stream: bytes) -> list[bytes]:
 
 @lru_cache(maxsize=64)
 def parameter_sets(width: int, height: int, fps: float) -> ParameterSets:
-    """Return the parameter sets that encoders of this format have.
+    """Return the parameter sets that an encoder of this format produces.
 
     Raises:
         ConfigError: PyAV is missing, or lacks libx264.
@@ -121,7 +121,7 @@ def _open_codec(width: int, height: int, fps: float) -> VideoCodecContext:
         codec.width, codec.height, codec.pix_fmt = width, height, "yuv420p"
         codec.time_base, codec.framerate = Fraction(1, CLOCK_HZ), Fraction(fps).limit_denominator(1000)
         codec.thread_count = 1
-        codec.gop_size = 10_000  # keyframes come where the caller asks for them
+        codec.gop_size = 10_000  # the caller decides where keyframes are
         codec.flags |= Flags.global_header
         codec.colorspace, codec.color_range = _BT601, _LIMITED_RANGE
         codec.color_primaries = codec.color_trc = _BT709

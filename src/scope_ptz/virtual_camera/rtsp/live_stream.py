@@ -37,7 +37,7 @@ class AccessUnit:
 
     Attributes:
         taken_s: The time at which it was taken, on ``time.monotonic``.
-        keyframe: Whether decoding can begin here.
+        keyframe: Whether decoding can begin at this picture.
         contents: The payloads of its RTP packets.
     """
 
@@ -50,7 +50,7 @@ class Viewer(Protocol):
     """A client that plays a stream."""
 
     def offer(self, unit: AccessUnit) -> None:
-        """Take a picture without waiting."""
+        """Accept a picture without blocking."""
 
     def end(self) -> None:
         """Record that the stream has failed."""
@@ -137,7 +137,7 @@ class _Stream:
                 # The time stamps of a frozen picture continue, as on a camera whose sensor hangs.
                 taken_s = exposure.taken_s if exposure is not before else monotonic() - self._source.latency_s
                 before = exposure
-                if not pace.takes(taken_s):
+                if not pace.accepts(taken_s):
                     continue
                 width, height = _size(device, self._requested)
                 if encoder is None or (encoder.width, encoder.height) != (width, height):
@@ -154,7 +154,10 @@ class _Stream:
                     viewer.offer(unit)
 
     def _damaged(self, nals: list[bytes]) -> list[bytes]:
-        """Return NAL units after applying the camera's faults. Parameter sets stay intact, so that decoders try the rest."""
+        """Return NAL units after applying the camera's faults.
+
+        Parameter sets stay intact, so that decoders still try to decode the rest.
+        """
         faults = self._source.device.faults
         if faults.garbage:
             return [nal if nal[0] & 0x1F in _SETS else nal[:1] + self._random.randbytes(len(nal) - 1) for nal in nals]
@@ -164,7 +167,7 @@ class _Stream:
 
 
 def _size(device: VirtualDevice, requested: StreamFormat) -> tuple[int, int]:
-    """Return the size to encode, which a fault halves."""
+    """Return the size to encode: the requested size, or half of it if the camera has that fault."""
     if device.faults.picture != "size":
         return requested.width, requested.height
     return max(2, requested.width // 4 * 2), max(2, requested.height // 4 * 2)

@@ -40,11 +40,11 @@ REASONS = {
 
 
 class RefusedError(CameraError):
-    """A request is refused with a status code.
+    """Raised to refuse a request with a status code.
 
     Args:
         status: The status code of RTSP.
-        headers: Further headers of the reply.
+        headers: Additional headers of the reply.
     """
 
     def __init__(self, status: int, headers: Mapping[str, str] | None = None) -> None:
@@ -58,7 +58,7 @@ class MalformedError(RefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A request. Names of headers are lower case."""
+    """A request. Header names are in lower case."""
 
     method: str
     uri: str
@@ -102,7 +102,7 @@ async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | 
     """Read the rest of a message.
 
     Args:
-        reader: The connection. The limit of its lines is ``MAX_LINE_BYTES``.
+        reader: The connection. Its line limit is ``MAX_LINE_BYTES``.
         first: The first byte of the message.
 
     Returns:

@@ -41,7 +41,7 @@ class Playback:
 
     Args:
         sink: The destination of the packets.
-        clock: The sender's RTP numbers.
+        clock: The RTP sequence numbers and time stamps of the sender.
         latency_s: The configured latency of the stream.
         clock_skew_s: Returns the seconds by which the camera's clock is ahead.
         statistics: The counters to update.
@@ -61,7 +61,7 @@ class Playback:
         self._sink, self._clock, self._statistics = sink, clock, statistics
         self._latency_s, self._clock_skew_s, self._on_sent = latency_s, clock_skew_s, on_sent
         self.start_s = monotonic() - latency_s
-        """Pictures from before this time are not sent, so that no time stamp lies before the start."""
+        """Pictures from before this time are not sent, so that no time stamp precedes the start."""
         self._queue: deque[AccessUnit] = deque()
         self._changed = asyncio.Event()
         self._needs_keyframe, self._ended = True, False
@@ -69,7 +69,7 @@ class Playback:
         self._reported_s = -rtcp.REPORT_INTERVAL_S
 
     def offer(self, unit: AccessUnit) -> None:
-        """Queue a picture for sending, without waiting."""
+        """Queue a picture for sending, without blocking."""
         if unit.taken_s < self.start_s:
             return
         if len(self._queue) >= MAX_QUEUED:
@@ -123,7 +123,7 @@ class Playback:
         return True
 
     def _drop_waiting(self) -> None:
-        """Drop the queued pictures. Those that follow cannot be decoded without them, up to the next keyframe."""
+        """Drop the queued pictures. Without them, later pictures cannot be decoded until the next keyframe."""
         self._statistics.dropped += len(self._queue)
         self._queue.clear()
         self._needs_keyframe = True

@@ -38,7 +38,7 @@ def _fragments(nal: bytes) -> Iterator[bytes]:
 
 
 class RtpClock:
-    """The numbers of one sender: source, sequence, and time stamps that count from a random start (RFC 3550, 5.1)."""
+    """The source identifier, sequence numbers and time stamps of one sender, which start at random (RFC 3550, 5.1)."""
 
     def __init__(self) -> None:
         self.ssrc = secrets.randbits(32)

@@ -21,7 +21,7 @@ _PORT_ATTEMPTS = 50
 
 
 class Sink(Protocol):
-    """Takes the packets of one client."""
+    """Sends packets to one client."""
 
     async def send(self, packets: Sequence[bytes]) -> bool:
         """Send RTP packets. Return False if they were dropped.
@@ -37,7 +37,7 @@ class Sink(Protocol):
         """Release the resources of this client."""
 
 
-def bound_unsent(writer: asyncio.StreamWriter) -> None:
+def limit_send_buffers(writer: asyncio.StreamWriter) -> None:
     """Limit the send buffers, so that writes wait when a client is too slow."""
     writer.transport.set_write_buffer_limits(high=0)
     raw = writer.get_extra_info("socket")
@@ -63,7 +63,7 @@ class InterleavedSink:
             async with asyncio.timeout(STUCK_S):
                 await self._writer.drain()
         except TimeoutError:
-            raise ConnectionError("The client reads nothing.") from None
+            raise ConnectionError("The client has stopped reading.") from None
         return True
 
     def report(self, packet: bytes) -> None:
@@ -124,7 +124,7 @@ class _Receiver(asyncio.DatagramProtocol):
 async def open_udp(
     local_host: str, remote_host: str, ports: tuple[int, int], on_packet: Callable[[], None], on_gone: Callable[[], None]
 ) -> UdpSink:
-    """Open a pair of neighbouring ports for a client.
+    """Open a pair of adjacent ports for a client.
 
     Args:
         local_host: Address of this end of the RTSP connection.

@@ -38,7 +38,7 @@ class StreamFormat:
 
 @dataclass(frozen=True, slots=True)
 class StreamUrl:
-    """An address that a client sent, without account, trailing slash and name of the track."""
+    """The URL of a stream as a client sent it, without credentials, trailing slash and track name."""
 
     base: str
     query: str
@@ -59,7 +59,7 @@ class StreamUrl:
 
 
 def parse_url(uri: str) -> StreamUrl:
-    """Return the stream that a client addresses.
+    """Parse the URL of a stream.
 
     Raises:
         RefusedError: The address is not an RTSP address, or there is no such stream.
@@ -80,7 +80,7 @@ def parse_url(uri: str) -> StreamUrl:
 
 
 def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> StreamFormat:
-    """Return the format that an address asks for. Options that the camera does not know are ignored, as on AXIS cameras.
+    """Return the format that a stream URL requests. Unknown options are ignored, as on AXIS cameras.
 
     Args:
         url: The address.

@@ -1,4 +1,4 @@
-"""Parse the ``Transport`` header, in which a client requests a transport of its packets."""
+"""Parse the ``Transport`` header, in which a client lists the transports that it accepts for packets."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""VAPIX, the protocol of AXIS cameras: pure functions from a device and the arguments of a request to a reply."""
+"""VAPIX, the protocol of AXIS cameras: functions that execute a request on a device and return the reply, independently of HTTP."""

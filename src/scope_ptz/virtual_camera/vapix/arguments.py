@@ -1,4 +1,4 @@
-"""The arguments of a VAPIX request, with conversions whose errors name the wrong argument."""
+"""The arguments of a VAPIX request, with conversions whose errors name the invalid argument."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MAX_SHOWN_CHARS = 60  # longer text from a client is truncated in error messages
 
 
 class Arguments:
-    """The arguments of a request by name. All conversions raise ``InputError`` for a wrong value.
+    """The arguments of a request by name. All conversions raise ``InputError`` for an invalid value.
 
     Args:
         values: Argument texts by name. If a request repeats a name, its first value is used.
@@ -43,11 +43,11 @@ class Arguments:
         return int(self.number(name, low, high))
 
     def numbers(self, name: str, count: int) -> tuple[float, ...]:
-        """Return finite numbers that are separated by commas."""
+        """Return finite numbers from a comma-separated list."""
         return tuple(self._numbers(name, count))
 
     def choice(self, name: str, known: tuple[str, ...]) -> str:
-        """Return one of several words."""
+        """Return an argument that must be one of the known words."""
         value = self._values[name]
         if value not in known:
             raise InputError(f"{name}: unknown value: {value[:MAX_SHOWN_CHARS]}")

@@ -11,7 +11,7 @@ from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.vapix.replies import Client
 
 CONTROL_S = 60.0
-"""Seconds after its last command for which a client keeps control."""
+"""How long a client keeps control after its last command, in seconds."""
 
 PRIORITIES = {Role.ADMINISTRATOR: 10, Role.OPERATOR: 30, Role.VIEWER: 50}
 """Priority of a client; the lowest number goes first."""
@@ -26,7 +26,13 @@ class _Place:
 
 @dataclass(frozen=True, slots=True)
 class QueueStatus:
-    """The place of a client: ``position`` 1 is in control, 0 is not in the queue; ``seconds`` until control changes."""
+    """The status of a client in the queue.
+
+    Attributes:
+        position: 1 for the client in control, and 0 for a client that is not in the queue.
+        seconds: Time until control passes on.
+        poll_s: Seconds after which a waiting client that does not poll loses its place.
+    """
 
     position: int
     seconds: int
@@ -37,7 +43,7 @@ class ControlQueue:
     """Gives control to one client at a time, by priority and then by arrival.
 
     Args:
-        now_s: The clock of its timeouts.
+        now_s: The clock for timeouts, in seconds.
 
     Attributes:
         enabled: Whether clients need control to move the camera.

@@ -53,7 +53,7 @@ def basic_device_info(unit: VapixUnit, method: str, body: bytes) -> Reply:
 
 
 class _RequestError(Exception):
-    """A request that is refused with a code of the interface."""
+    """A refused request, with its error code."""
 
 
 def _answer(http_method: str, body: bytes, version: str, methods: dict[str, Callable[[dict[str, Any]], dict[str, Any]]]) -> Reply:

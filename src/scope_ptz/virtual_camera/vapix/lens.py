@@ -32,24 +32,24 @@ def adjust(lens: VirtualLens, arguments: Arguments) -> None:
     """Carry out the focus and iris commands of one request. A manual command turns the automatic mode off.
 
     Raises:
-        InputError: An argument is wrong. In that case, nothing changes.
+        InputError: An argument is invalid. In that case, nothing changes.
     """
     numbers = {
         name: arguments.number(name, low, high) for name, (low, high) in _RANGES.items() if name in arguments
-    }  # all of them are checked before the first takes effect
+    }  # all values are validated before the first takes effect
     switches = {name: arguments.choice(name, _ON_OFF) == "on" for name in ("autofocus", "autoiris") if name in arguments}
     if "autofocus" in switches:
         lens.set_autofocus(on=switches["autofocus"])
     if "autoiris" in switches:
         lens.set_autoiris(on=switches["autoiris"])
     if "focus" in numbers:
-        lens.move_focus(_share(numbers["focus"]))
+        lens.move_focus(_fraction(numbers["focus"]))
     if "rfocus" in numbers:
         lens.move_focus(lens.focus + numbers["rfocus"] / (MAX_POSITION - 1))
     if "continuousfocusmove" in numbers:
         lens.drive_focus(numbers["continuousfocusmove"] / 100)
     if "iris" in numbers:
-        lens.set_iris(_share(numbers["iris"]))
+        lens.set_iris(_fraction(numbers["iris"]))
     if "riris" in numbers:
         lens.set_iris(lens.iris + numbers["riris"] / (MAX_POSITION - 1))
 
@@ -63,9 +63,9 @@ _RANGES = {
 }
 
 
-def _position(share: float) -> int:
-    return round(1 + share * (MAX_POSITION - 1))
+def _position(fraction: float) -> int:
+    return round(1 + fraction * (MAX_POSITION - 1))
 
 
-def _share(position: float) -> float:
+def _fraction(position: float) -> float:
     return (position - 1) / (MAX_POSITION - 1)

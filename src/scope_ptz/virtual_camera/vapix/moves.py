@@ -14,8 +14,8 @@ from scope_ptz.virtual_camera.vapix import scales
 from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
-STEP_SHARE = 0.25
-"""Share of the picture by which commands such as ``move=left`` turn the camera."""
+STEP_FRACTION = 0.25
+"""Fraction of the field of view by which commands such as ``move=left`` turn the camera."""
 
 DIRECTIONS = {
     "up": (0, 1),
@@ -41,7 +41,7 @@ def move(unit: VapixUnit, arguments: Arguments) -> None:
     """Carry out the movement commands of one request.
 
     Raises:
-        InputError: An argument is wrong, or there is no such preset. In that case, nothing moves.
+        InputError: An argument is invalid, or there is no such preset. In that case, nothing moves.
     """
     device = unit.device
     if "move" in arguments:
@@ -57,7 +57,7 @@ def move(unit: VapixUnit, arguments: Arguments) -> None:
 
 
 def _go(unit: VapixUnit, pose: Pose) -> None:
-    unit.device.move(pose, speed_share=scales.speed_share(unit.speed), zoom_share=1.0)
+    unit.device.move(pose, speed_fraction=scales.speed_fraction(unit.speed), zoom_fraction=1.0)
 
 
 def _move_word(unit: VapixUnit, word: str) -> None:
@@ -69,7 +69,7 @@ def _move_word(unit: VapixUnit, word: str) -> None:
     else:
         right, up = DIRECTIONS[word]
         view = _view(device, device.pose(), device.width, device.height)
-        _go(unit, device.pose().turned(right * STEP_SHARE * view.hfov_deg, up * STEP_SHARE * view.vfov_deg))
+        _go(unit, device.pose().turned(right * STEP_FRACTION * view.hfov_deg, up * STEP_FRACTION * view.vfov_deg))
 
 
 def _target(device: VirtualDevice, arguments: Arguments) -> Pose:
@@ -94,13 +94,13 @@ def _target(device: VirtualDevice, arguments: Arguments) -> Pose:
 
 def _drive(device: VirtualDevice, arguments: Arguments) -> None:
     """Drive pan and tilt, zoom, or all three. Axes that a request does not name keep their speed."""
-    velocity, head = device.driven, device.head
+    velocity, head = device.commanded_velocity, device.head
     if "continuouspantiltmove" in arguments:
-        pan, tilt = (scales.speed_share(value) for value in arguments.numbers("continuouspantiltmove", 2))
+        pan, tilt = (scales.speed_fraction(value) for value in arguments.numbers("continuouspantiltmove", 2))
         velocity = replace(velocity, pan_dps=pan * head.pan.speed, tilt_dps=tilt * head.tilt.speed)
     if "continuouszoommove" in arguments:
-        share = arguments.number("continuouszoommove", -100, 100) / 100
-        velocity = replace(velocity, zoom_rate=share * head.zoom.speed)
+        fraction = arguments.number("continuouszoommove", -100, 100) / 100
+        velocity = replace(velocity, zoom_rate=fraction * head.zoom.speed)
     if velocity == Velocity():
         device.stop()
     else:

@@ -19,7 +19,7 @@ ABILITIES = (
     "ContinuousFocus", "ContinuousPan", "ContinuousTilt", "ContinuousZoom", "RelativeFocus", "RelativeIris", "RelativePan",
     "RelativeTilt", "RelativeZoom", "ServerPreset", "SpeedCtl",
 )  # fmt: skip
-INABILITIES = (
+UNSUPPORTED_ABILITIES = (
     "AbsoluteBrightness", "ActionNotification", "AutoIrCutFilter", "Auxiliary", "BackLight", "ContinuousBrightness",
     "ContinuousIris", "DevicePreset", "DigitalZoom", "GenericHTTP", "IrCutFilter", "JoyStickEmulation", "LensOffset", "OSDMenu",
     "ProportionalSpeed", "RelativeBrightness",
@@ -154,7 +154,7 @@ def _media(unit: VapixUnit) -> dict[str, str]:
 
 def _ptz(unit: VapixUnit) -> dict[str, str]:
     queue = unit.queue
-    support = {**dict.fromkeys(ABILITIES, "true"), **dict.fromkeys(INABILITIES, "false")}
+    support = {**dict.fromkeys(ABILITIES, "true"), **dict.fromkeys(UNSUPPORTED_ABILITIES, "false")}
     content: dict[str, object] = {
         "BoaProtPTZOperator": "password",
         "CameraDefault": 1,

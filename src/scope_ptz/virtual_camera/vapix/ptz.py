@@ -17,7 +17,7 @@ UNSUPPORTED = (
 """Commands of other AXIS cameras."""
 
 FORBIDDEN_IN_NAMES = '"<>~:'
-"""Characters that preset names of AXIS cameras cannot have."""
+"""Characters that preset names on AXIS cameras cannot contain."""
 
 COMMANDS = f"""Available commands:
 {{camera=[n]}}
@@ -151,5 +151,5 @@ def _check_camera(arguments: Arguments) -> None:
 def _preset_name(arguments: Arguments, argument: str) -> str:
     name = arguments.text(argument)
     if any(character in FORBIDDEN_IN_NAMES for character in name):
-        raise InputError(f"{argument}: a preset name cannot have any of {' '.join(FORBIDDEN_IN_NAMES)}")
+        raise InputError(f"{argument}: a preset name cannot contain any of {' '.join(FORBIDDEN_IN_NAMES)}")
     return name

@@ -32,12 +32,12 @@ DONE = Reply(204)
 
 
 def error(message: str) -> Reply:
-    """Return an error of a PTZ request. Its HTTP status is that of a success, as on AXIS cameras."""
+    """Return the error reply to a PTZ request. Its HTTP status is 200, as on AXIS cameras."""
     return Reply(200, f"Error: {_one_line(message)}\n")
 
 
 def parameter_error(message: str) -> Reply:
-    """Return an error of ``param.cgi``."""
+    """Return the error reply of ``param.cgi``."""
     return Reply(200, f"# Error: {_one_line(message)}\n")
 
 

@@ -11,32 +11,32 @@ MAX_ZOOM_STEP = 9999
 """The zoom position at the end of the optical range."""
 
 SPEEDS = ((1, 0.0005), (20, 0.015), (40, 0.06), (60, 0.2), (80, 0.5), (100, 1.0))
-"""Speed values with their share of the top speed. Slow speeds are finely graded, as in the tables of AXIS cameras."""
+"""Speed values, each with its fraction of the top speed. Slow speeds are finely graded, as in the tables of AXIS cameras."""
 
 
 def zoom_step(zoom: float, limits: Limits) -> int:
     """Return the zoom position of a magnification. It is linear in magnification."""
-    share = (zoom - limits.min_zoom) / (limits.max_zoom - limits.min_zoom)
-    return round(1 + min(max(share, 0.0), 1.0) * (MAX_ZOOM_STEP - 1))
+    fraction = (zoom - limits.min_zoom) / (limits.max_zoom - limits.min_zoom)
+    return round(1 + min(max(fraction, 0.0), 1.0) * (MAX_ZOOM_STEP - 1))
 
 
 def magnification(step: float, limits: Limits) -> float:
     """Return the magnification of a zoom position, clamped to the optical range."""
-    share = (min(max(step, 1), MAX_ZOOM_STEP) - 1) / (MAX_ZOOM_STEP - 1)
-    return limits.min_zoom + share * (limits.max_zoom - limits.min_zoom)
+    fraction = (min(max(step, 1), MAX_ZOOM_STEP) - 1) / (MAX_ZOOM_STEP - 1)
+    return limits.min_zoom + fraction * (limits.max_zoom - limits.min_zoom)
 
 
-def speed_share(speed: float) -> float:
-    """Return the share of the top speed for a speed value, with its sign; 0 for values between -1 and 1."""
+def speed_fraction(speed: float) -> float:
+    """Return the signed fraction of the top speed for a speed value; 0 for values between -1 and 1."""
     value = min(abs(speed), 100.0)
     if value < 1:
         return 0.0
     upper = min(bisect_right(SPEEDS, value, key=lambda row: row[0]), len(SPEEDS) - 1)
-    (low, low_share), (high, high_share) = SPEEDS[upper - 1], SPEEDS[upper]
-    share = low_share + (high_share - low_share) * (value - low) / (high - low)
-    return share if speed > 0 else -share
+    (low, low_fraction), (high, high_fraction) = SPEEDS[upper - 1], SPEEDS[upper]
+    fraction = low_fraction + (high_fraction - low_fraction) * (value - low) / (high - low)
+    return fraction if speed > 0 else -fraction
 
 
 def speed_table(motor: Motor) -> list[tuple[int, float]]:
-    """Return speed values with the speeds of a motor."""
-    return [(value, share * motor.speed) for value, share in SPEEDS]
+    """Return the speed values, each with the corresponding speed of a motor."""
+    return [(value, fraction * motor.speed) for value, fraction in SPEEDS]

@@ -1,4 +1,4 @@
-"""Read the steps and pictures of single runs from the log of an evaluation."""
+"""Read the steps and pictures of individual runs from the log of an evaluation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import TraceError, UnknownNameError
 from scope_ptz.serve.site.benchmark.choices import missing_packages
 from scope_ptz.serve.site.benchmark.evaluation_folder import EvaluationFolder, modified
-from scope_ptz.serve.site.marks import call_of, drawn, marks_of
+from scope_ptz.serve.site.marks import call_of, draw_marks, marks_of
 
 if TYPE_CHECKING:
     from scope_ptz.agent.trace import Trace
@@ -37,19 +37,19 @@ class Trajectories:
         return self._sample(folder, trial).trace
 
     def picture(self, folder: EvaluationFolder, trial: Trial, name: str, *, marks: bool) -> bytes:
-        """Return a picture of a run as JPEG. With ``marks``, draw the detections in it.
+        """Return a picture of a run as JPEG. With ``marks``, draw the detections on it.
 
         Raises:
             UnknownNameError: The run has no such picture.
             TraceError: The log does not contain the picture, or a package is missing.
         """
         sample = self._sample(folder, trial)
-        if name not in names_of(sample.trace):
+        if name not in picture_names_of(sample.trace):
             raise UnknownNameError("picture", name[:80], ())
         data = sample.picture(name)
         if data is None:
             raise TraceError("The log does not contain this picture.")
-        return drawn(data, marks_of(call_of(sample.trace, name), name)) if marks else data
+        return draw_marks(data, marks_of(call_of(sample.trace, name), name)) if marks else data
 
     def _sample(self, folder: EvaluationFolder, trial: Trial) -> SampleFiles:
         if missing := missing_packages():
@@ -77,14 +77,14 @@ class Trajectories:
             return sample
 
 
-def names_of(trace: Trace) -> dict[str, int | None]:
+def picture_names_of(trace: Trace) -> dict[str, int | None]:
     """Return the names of the pictures of a run, in order, each with the index of its tool call; None for the start picture."""
     return picture_names(trace)
 
 
 def steps_of(trace: Trace) -> list[dict[str, Any]]:
     """Return the tool calls of a run as JSON data: tool, arguments, message, error flag, duration, and pictures."""
-    names = names_of(trace)
+    names = picture_names_of(trace)
     steps = []
     for position, call in enumerate(trace.calls):
         outcome = call.outcome

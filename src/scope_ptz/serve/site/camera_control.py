@@ -29,7 +29,7 @@ class Request:
     since: datetime
 
 
-class ControlDesk:
+class CameraControl:
     """Control of one camera.
 
     A command takes control if nobody has it. Otherwise, the client requests control, and the holder hands it over or keeps it.
