@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from scope_ptz.bench.answers.figures import is_figure, parse_figure
 from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
-from scope_ptz.bench.answers.quotes import Quote, reported_quotes, quotes_of
+from scope_ptz.bench.answers.quotes import Quote, quotes_of, reported_quotes
 from scope_ptz.bench.answers.text import AnswerText
 from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
@@ -26,7 +26,8 @@ _CUES = (
 )
 """Patterns that introduce a text, the most reliable first, each with the maximum number of words that may follow it.
 
-For the last pattern, the last match counts; for the others, the first match. An "IS" in capitals is part of the text and does not match.
+For the last pattern, the last match counts; for the others, the first match.
+An "IS" in capitals is part of the text and does not match.
 """
 _WRITTEN = re.compile(
     r"^\W*(?!it\b|what\b|the (?:text|words?)\b)(.{1,80}?)\s+(?:is|are)\s+(?:written|painted|printed|displayed)\b", re.IGNORECASE

@@ -30,7 +30,7 @@ WIDTH, HEIGHT = 1280, 720
 
 
 class BrokenRunError(Exception):
-    """A run failed for a reason outside the agent. Inspect excludes the run from scores, and repeats it when the evaluation is resumed."""
+    """A run failed for a reason outside the agent. Inspect does not score it, and repeats it when the evaluation is resumed."""
 
 
 def agent_solver(

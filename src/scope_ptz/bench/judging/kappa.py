@@ -127,8 +127,8 @@ def fleiss_values(sums: Numbers) -> Numbers:
     """Return Fleiss' kappa of each row of sums.
 
     Args:
-        sums: Array of shape ``(n, k + 2)``. Its columns are the counts of the k labels, the fraction of agreeing pairs, and the number
-            of runs, each summed over runs.
+        sums: Array of shape ``(n, k + 2)``. Its columns are the counts of the k labels, the fraction of agreeing pairs, and the
+            number of runs, each summed over runs.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         shares = sums[:, :-2] / sums[:, :-2].sum(axis=1, keepdims=True)

@@ -194,8 +194,8 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable
     if left_out := [run.label for run in ranked if run not in comparable]:
         warnings.append(
             f"These pairs were run on different tasks from most pairs: {'; '.join(left_out)}. Their averages are not comparable. "
-            "They are left out of the oracle setting, the spreads and the recommendation of a pair. Paired comparisons use the shared "
-            "tasks."
+            "They are left out of the oracle setting, the spreads and the recommendation of a pair. Paired comparisons use the "
+            "shared tasks."
         )
     if other_runs := [run.label for run in runs if run.other_tasks and run not in ranked]:
         warnings.append(
@@ -211,8 +211,8 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable
         )
     if not all(run.ranked for run in runs):
         warnings.append(
-            "Some runs used the grammar planner or ground-truth perception (exact or noisy), ran without perception, or were carried out "
-            "by a person. They are marked and not ranked."
+            "Some runs used the grammar planner or ground-truth perception (exact or noisy), ran without perception, or were "
+            "carried out by a person. They are marked and not ranked."
         )
     return tuple(warnings)
 

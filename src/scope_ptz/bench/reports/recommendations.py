@@ -184,7 +184,8 @@ def architecture_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportR
     )
     precision = comparison_table("quantised", "Quantised minus full precision", comparisons, notes)
     text = [
-        "The registry states which models are mixture-of-experts models or quantised. Models that are not in the registry are left out."
+        "The registry states which models are mixture-of-experts models or quantised. Models that are not in the registry are "
+        "left out."
     ]
     if not comparisons:
         text.append("No two pairs differ only in precision, so quantisation is not measured.")

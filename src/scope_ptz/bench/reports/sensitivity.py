@@ -32,7 +32,7 @@ def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
 
 
 def _by_system(runs: Sequence[ReportRun]) -> dict[System, list[Trial]]:
-    """Return the first trial of each task in all logs of a system, by system. Trials with an infrastructure failure are left out."""
+    """Return the first trial of each task in the logs of each system. Trials with an infrastructure failure are left out."""
     by_system: dict[System, dict[str, Trial]] = defaultdict(dict)
     for run in runs:
         for trial in run.evaluation.trials:

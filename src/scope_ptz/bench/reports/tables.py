@@ -131,8 +131,8 @@ def _number(value: float, kind: ColumnKind) -> str:
 def as_csv(table: ReportTable) -> str:
     """Return a table as CSV (RFC 4180).
 
-    Numbers have full precision, fractions are from 0 to 1, and missing values are empty. An estimate has three columns: value, low and
-    high. It has a fourth column if its interval leaves out some strata.
+    Numbers have full precision, fractions are from 0 to 1, and missing values are empty. An estimate has three columns: value, low
+    and high. It has a fourth column if its interval leaves out some strata.
     """
     columns = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
     suffixes = [_suffixes([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in columns]

@@ -199,9 +199,9 @@ def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> In
 def proportion_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
     """Estimate the proportion of ``first`` minus that of ``second``, which are different sets of outcomes.
 
-    The interval combines the intervals of the two proportions as if these were independent (Newcombe 1998, method 10; Zou and Donner
-    2008). Unlike value +- t se, it has a non-zero width even if all outcomes of one set are equal. If one of the proportions has no interval, the
-    difference has none.
+    The interval combines the intervals of the two proportions as if these were independent (Newcombe 1998, method 10; Zou and
+    Donner 2008). Unlike value +- t se, it has a non-zero width even if all outcomes of one set are equal. If one of the
+    proportions has no interval, the difference has none.
 
     Returns:
         The estimate, or None if one of the sets is empty.
