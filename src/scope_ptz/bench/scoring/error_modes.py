@@ -174,7 +174,7 @@ def _was_left_unanswered(case: _Case) -> bool:
 
 
 def _was_misled(case: _Case) -> bool:
-    """Return whether the camera missed its target because perception located nothing or the wrong thing for a correct description."""
+    """Return whether the camera missed the target because perception located nothing or the wrong thing for a right description."""
     required = case.task.behaviour.calls
     if not case.acted_wrongly or (case.verdict.failed("calls") and _missing_call(case, required, {"found"}) is not None):
         return False
