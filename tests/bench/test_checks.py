@@ -236,7 +236,7 @@ def test_a_task_without_checks_is_an_error() -> None:
 
 def test_collateral_changes_are_reported_but_do_not_affect_the_verdict() -> None:
     here = task(901, "counting", Number(value=2, unit=("cone",)), [counted(2)], evidence=[view(START)])
-    assert not score_episode(here, play([counted(2)], "2")).collateral
+    assert not score_episode(here, play([counted(2)], "2")).moved_needlessly
     wandered = score_episode(here, play([counted(2), ("adjust_ptz", {"pan_deg": 30.0})], "2"))
-    assert (wandered.headline, wandered.collateral) == ("correct", True)
-    assert not score_episode(COUNT_TASK, COUNT_RUN).collateral
+    assert (wandered.headline, wandered.moved_needlessly) == ("correct", True)
+    assert not score_episode(COUNT_TASK, COUNT_RUN).moved_needlessly

@@ -121,7 +121,7 @@ class HumanPlanner(Planner):
     """A planner that shows the view and the latest results to a person, and returns the calls that the person types.
 
     Attributes:
-        left: The error with which the person left the task; None if the person did not leave it.
+        left: The error that records how the person left the task; None if the person did not leave it.
     """
 
     sees = True
@@ -161,7 +161,7 @@ class HumanPerception(Perception):
     """A perception backend that asks a person.
 
     Attributes:
-        counts: Whether the next detection is for counting, so that the person enters a number and no boxes.
+        counts: Whether the next detection is for counting. If so, the person enters a number instead of a box.
     """
 
     def __init__(self, name: str, viewer: Viewer, ask: Ask, tell: Callable[[str], None]) -> None:

@@ -1,4 +1,4 @@
-"""The human baseline: runs by people, which have the same checks and the same records as runs of models."""
+"""The human baseline: runs by people, with the same checks and the same records as runs by models."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ DIGEST_CHARS = 16
 
 
 def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
-    """Return the run card of a session of a person, who is both planner and perception."""
+    """Return the run card of a human session, in which the person is both planner and perception."""
     person = ModelCard(name=by, provider="person")
     return RunCard(
         run_id=f"human-{by}",
@@ -58,7 +58,7 @@ def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Tria
         reason=verdict.reason,
         error_mode=error_mode(task, episode),
         checks=tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
-        collateral=verdict.collateral,
+        collateral=verdict.moved_needlessly,
         outcome=episode.outcome,
         answer=episode.answer,
         steps=ended.steps if ended else len(trace.decisions),
@@ -79,7 +79,7 @@ class StoredHumanRun:
         """Return a picture by its name in the trace; None if it does not exist.
 
         Raises:
-            TraceError: The name is that of a path outside the folder.
+            TraceError: The name refers to a path outside the folder.
         """
         path = picture_of(self.trace.folder, name)
         try:
@@ -92,7 +92,7 @@ def open_run(result: Path, sample: str) -> StoredHumanRun:
     """Open a run by its name (``Trial.sample``). Its folder is in the folder of the result.
 
     Raises:
-        TraceError: The run cannot be read, or its name is that of a path outside the folder.
+        TraceError: The run cannot be read, or its name refers to a path outside the folder.
     """
     folder = result.parent / sample
     if sample in {"", ".", ".."} or Path(sample).name != sample:

@@ -16,9 +16,9 @@ from scope_ptz.settings import InlineProtocol
 
 JPEG_QUALITY = 92
 _KITTY_CHUNK_CHARS = 4096
-"""Maximum length of a chunk of data in kitty's protocol."""
+"""Maximum length of a chunk of data in kitty's protocol, in characters."""
 _GRID_PERCENT = range(10, 100, 10)
-"""Positions of the grid lines in percent of the width and height."""
+"""Positions of the grid lines as percentages of the width and height."""
 
 
 class Viewer:

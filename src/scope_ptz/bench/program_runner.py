@@ -26,7 +26,7 @@ MakeToolContext = Callable[[Camera], ToolContext]
 
 
 class BlankCamera(SimulatedCamera):
-    """A simulated camera with blank frames, so that no time is spent on rendering. The frames contain their origin."""
+    """A simulated camera with blank frames, so that no time is spent on rendering. Each frame records its origin."""
 
     def __init__(self, scene: Scene, *, clock: SceneClock, width: int, height: int) -> None:
         super().__init__(scene, clock=clock, width=width, height=height)

@@ -176,7 +176,7 @@ class EvaluationSession:
         )  # fmt: skip
 
     async def _engine_setup(self, judge: JudgeServer | None) -> EngineSetup:
-        from scope_ptz.bench.engine.recording.scope_model import engine_model
+        from scope_ptz.bench.engine.recording.scope_model import inspect_model
         from scope_ptz.bench.engine.runs import EngineSetup
         from scope_ptz.factory.run_card import run_card
 
@@ -191,9 +191,9 @@ class EvaluationSession:
         planner = None
         if self.planner is not None:
             served = endpoint.model if endpoint else None
-            planner = engine_model(pair.planner.name, connections, url=endpoint.url if endpoint else None, served=served)
+            planner = inspect_model(pair.planner.name, connections, url=endpoint.url if endpoint else None, served=served)
         url = spec.endpoint.url if spec is not None and spec.endpoint is not None else None
-        perception = engine_model(pair.perception.name, connections, url=url)
+        perception = inspect_model(pair.perception.name, connections, url=url)
         judging = judge_model(judge, self.concurrency * 2) if judge is not None else None
         return EngineSetup(
             options.out, planner, perception, judging, self.concurrency, self.identity, card, realtime=not _is_built_in(pair)

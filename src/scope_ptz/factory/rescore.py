@@ -41,10 +41,10 @@ async def open_requested_judge(settings: JudgeSettings) -> JudgeServer:
 
 def judge_model(judge: JudgeServer, max_connections: int) -> Model:
     """Return the engine's model object that represents a judge in the log."""
-    from scope_ptz.bench.engine.recording.scope_model import engine_model
+    from scope_ptz.bench.engine.recording.scope_model import inspect_model
 
     endpoint = judge.client.endpoint
-    return engine_model(endpoint.model, max_connections, url=endpoint.url, served=endpoint.model)
+    return inspect_model(endpoint.model, max_connections, url=endpoint.url, served=endpoint.model)
 
 
 async def add_scores(

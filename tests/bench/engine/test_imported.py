@@ -9,7 +9,7 @@ from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.regression_gate import gate
 from scope_ptz.bench.engine.run_totals import accuracy
 from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge, other_judges_note, reported_judge
-from scope_ptz.bench.judging.judgement_tally import not_judged
+from scope_ptz.bench.judging.judgement_tally import needs_judgement
 from scope_ptz.bench.reports.report_judge import judge_name, verdicts
 from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
@@ -95,7 +95,7 @@ def test_one_judge_decides_on_all_runs_of_a_log(evaluated: Path) -> None:
     rows = [judged(first, a, b), judged(second, a, b), judged(third, said_by("a", "failed"), b), fourth]
     made = decided_by_one_judge(rows)
     assert [t.headline for t in made] == ["correct", "correct", "unscored", "unscored"]
-    assert not_judged(made[2]) and not_judged(made[3]) and accuracy(made) == 1.0
+    assert needs_judgement(made[2]) and needs_judgement(made[3]) and accuracy(made) == 1.0
     assert reported_judge(made) == "a (p)" and "a (p) decides on the 4 runs" in other_judges_note(made)
     named = decided_by_one_judge(rows, "b")
     assert [t.headline for t in named] == ["incorrect", "incorrect", "incorrect", "unscored"]

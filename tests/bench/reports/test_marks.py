@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
-from scope_ptz.bench.reports.chart_style import shades
+from scope_ptz.bench.reports.chart_style import bar_styles
 from scope_ptz.bench.reports.display_names import served_instead
 from scope_ptz.bench.reports.report_runs import main_tasks, report_runs
 from scope_ptz.bench.reports.tables import unmarked
@@ -69,11 +69,11 @@ def test_runs_over_other_tasks_are_listed_first_and_marked_everywhere(mixed: Eva
     drawn = charts(mixed)
     for key in ("chart-accuracy", "chart-error-modes"):
         assert "20 tasks, 3" in drawn[key] and "10 of the" in drawn[key]
-    assert "Hollow: runs over other tasks" in next(c.title for s in mixed.sections for c in s.charts if c.key == "chart-accuracy")
+    assert "Hollow: runs on other tasks" in next(c.title for s in mixed.sections for c in s.charts if c.key == "chart-accuracy")
 
 
 def test_only_pairs_over_the_main_tasks_are_counted_and_averaged(mixed: EvaluationReport) -> None:
-    assert "2 pairs of models on the main task set (32 tasks); 1 more pair over other tasks." in mixed.summary[0]
+    assert "2 pairs of models on the main task set (32 tasks); 1 more pair on other tasks." in mixed.summary[0]
     told = [row(mixed, "scope", f"{planner} + moondream3")["current"] for planner in PAIRS]
     assert row(mixed, "scope", "Mean of the model pairs")["current"] == pytest.approx(sum(map(float, told)) / 2)  # type: ignore[arg-type]
     assert {unmarked(values[0]) for values in table(mixed, "design_points").rows} == {
@@ -93,7 +93,7 @@ def test_runs_over_the_same_tasks_are_not_marked() -> None:
 def test_reference_runs_are_distinguished_in_the_chart_of_error_modes() -> None:
     references = [run(planner, "ground-truth") for planner in (*PAIRS, "qwen3-4b-fp8", "grammar", "qwen3-32b", "qwen3-14b")]
     runs = report_runs([run("qwen3-4b", "moondream3"), *references], load_registry())
-    looks = shades(runs)
+    looks = bar_styles(runs)
     assert len(set(looks)) == len(runs)
     assert all((hatch is None) is r.ranked for r, (_, hatch) in zip(runs, looks, strict=True))
 

@@ -18,8 +18,8 @@ from scope_ptz.bench.statistics.clustered import (
     independent_variance,
     macro_weights,
     newcombe,
-    share,
-    share_difference,
+    proportion,
+    proportion_difference,
 )
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, facts, trial
@@ -57,7 +57,7 @@ def test_repeats_of_a_deterministic_run_do_not_narrow_the_interval(number: int) 
 def test_tasks_with_equal_variation_have_an_interval() -> None:
     # Every task right in one of three trials: no task differs from another, which must not pass for certainty.
     values, units = np.array([1.0, 0.0, 0.0] * 5), tuple(n for n in range(5) for _ in range(3))
-    found = share(Scores(values, ("a",) * 15, tuple(n % 3 for n in units), units))
+    found = proportion(Scores(values, ("a",) * 15, tuple(n % 3 for n in units), units))
     assert found is not None and found.low is not None and found.high is not None
     assert found.n == 5 and found.high - found.low > 0.4
 
@@ -77,7 +77,7 @@ def test_the_floor_of_the_variance_is_over_tasks() -> None:
 def test_a_perfect_score_is_one_for_any_number_of_categories(number: int) -> None:
     strata = tuple(n % number for n in range(3 * number))
     scores = Scores(np.ones(3 * number), strata, tuple(n % 4 for n in range(3 * number)))
-    found = share(scores, macro_weights(scores))
+    found = proportion(scores, macro_weights(scores))
     assert found is not None and found.value == 1.0
 
 
@@ -114,13 +114,13 @@ def test_the_difference_of_two_proportions_uses_newcombes_interval() -> None:
 def test_a_side_without_spread_is_as_uncertain_in_the_difference_as_alone() -> None:
     first = Scores(np.array([1.0, 0, 1, 1, 0, 1, 0, 1]), ("a",) * 8, (1, 1, 2, 2, 3, 3, 4, 4))
     alike = Scores(np.zeros(2), ("a",) * 2, (1, 2))
-    found, alone = share_difference(first, alike), share(alike)
+    found, alone = proportion_difference(first, alike), proportion(alike)
     assert found is not None and found.low is not None and found.high is not None and alone is not None and alone.high is not None
     assert found.value == pytest.approx(5 / 8)
     assert found.value - found.low >= alone.high - 1e-12 > 0.9, "two trials of one side leave it open"
     assert -1 <= found.low <= found.value <= found.high <= 1
-    assert share_difference(first, Scores(np.array([]), (), ())) is None
-    single = share_difference(first, Scores(np.array([0.0, 1.0]), ("a",) * 2, (1, 1)))
+    assert proportion_difference(first, Scores(np.array([]), (), ())) is None
+    single = proportion_difference(first, Scores(np.array([0.0, 1.0]), ("a",) * 2, (1, 1)))
     assert single is not None and (single.low, single.high) == (None, None)
 
 

@@ -18,7 +18,7 @@ from scope_ptz.bench.statistics.clustered import (
     independent_variance,
     macro_weights,
     pooled,
-    share,
+    proportion,
     strata_without_spread,
     t_quantile,
     two_sided_p,
@@ -61,7 +61,7 @@ def test_clusters_that_agree_by_chance_do_not_lower_the_standard_error() -> None
     # Both clusters have half right, so that they tell nothing of a variance: 0 between them, the floor of four outcomes stays.
     scores = Scores(np.array([1.0, 0, 1, 0]), ("a",) * 4, ("x", "x", "y", "y"))
     assert cluster_variance(scores, {"a": 1.0}) == 0
-    found = share(scores)
+    found = proportion(scores)
     assert found is not None and found.se == pytest.approx(sqrt(4 * 0.25 / 3 / 4))
 
 
@@ -71,13 +71,13 @@ def test_strata_of_one_cluster_are_named_and_give_no_interval_of_their_own() -> 
     scores = Scores(values, strata, ("x", "x", "y", "y", "x", "x", "y"))
     assert strata_without_spread(scores, macro_weights(scores)) == ("b", "c")
     assert strata_without_spread(scores, {"a": 1.0}) == ()
-    for estimate in (share(scores, macro_weights(scores)), difference(scores, macro_weights(scores))):
+    for estimate in (proportion(scores, macro_weights(scores)), difference(scores, macro_weights(scores))):
         assert estimate is not None and estimate.without == ("b", "c") and estimate.low is not None
     alone = Scores(values[:2], ("b", "c"), ("x", "y"))
-    for estimate in (share(alone, macro_weights(alone)), difference(alone, macro_weights(alone))):
+    for estimate in (proportion(alone, macro_weights(alone)), difference(alone, macro_weights(alone))):
         assert estimate is not None and (estimate.value, estimate.low, estimate.high, estimate.se) == (0.5, None, None, None)
         assert two_sided_p(estimate) is None
-    whole = share(SMALL, macro_weights(SMALL))
+    whole = proportion(SMALL, macro_weights(SMALL))
     assert whole is not None and whole.without == ()
 
 
@@ -121,7 +121,7 @@ def test_intervals_cover_the_truth_although_viewpoints_differ() -> None:
         level = np.clip(chance.normal(0.65, 0.15, 12), 0.05, 0.95)
         clusters = np.repeat(np.arange(12), 40)
         values = (chance.random(480) < level[clusters]).astype(float)
-        found = share(Scores(values, ("all",) * 480, tuple(clusters.tolist())))
+        found = proportion(Scores(values, ("all",) * 480, tuple(clusters.tolist())))
         assert found is not None and found.low is not None and found.high is not None
         covered += found.low <= 0.65 <= found.high
         low, high = wilson(found.value, 480, 1.96)
@@ -135,7 +135,7 @@ def test_intervals_cover_the_truth_although_viewpoints_differ() -> None:
 def test_shares_stay_within_their_intervals_and_these_within_0_and_1(rows: list[tuple[bool, str, int]]) -> None:
     scores = Scores(np.array([float(right) for right, _, _ in rows]), tuple(s for _, s, _ in rows), tuple(c for _, _, c in rows))
     for weights in (None, macro_weights(scores)):
-        found = share(scores, weights)
+        found = proportion(scores, weights)
         assert found is not None
         groups = ["all"] * len(rows) if weights is None else [s for _, s, _ in rows]
         viewpoints = [len({c for own, (_, _, c) in zip(groups, rows, strict=True) if own == group}) for group in set(groups)]
@@ -151,7 +151,7 @@ def test_shares_stay_within_their_intervals_and_these_within_0_and_1(rows: list[
 
 def test_without_data_there_is_no_estimate() -> None:
     empty = Scores(np.array([]), (), ())
-    assert share(empty) is None and difference(empty) is None and cluster_bootstrap(empty) is None
+    assert proportion(empty) is None and difference(empty) is None and cluster_bootstrap(empty) is None
     with pytest.raises(ValueError, match="there is none in c"):
         weighted_mean(SMALL, {"c": 1.0})
     with pytest.raises(ValueError, match="length"):

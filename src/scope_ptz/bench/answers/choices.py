@@ -81,7 +81,7 @@ def _parse_comparison(
     Args:
         expected: The expected choice.
         text: The answer.
-        compared: Mentions of options, without equality.
+        compared: Mentions of options, without mentions of equality.
         mentions: The mentions in ``compared`` that are not merely the reference of a comparison.
         stated: The mentions in ``compared`` and the mentions of equality.
     """
@@ -156,7 +156,7 @@ def _is_only_counted(text: AnswerText, mention: NameMention, wordings: Sequence[
 
 
 def _is_remark(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether an option is named only in a remark: the red of "green (the wall above is red)", not of "green (or red)"."""
+    """Return whether an option is named only in a remark: "red" in "green (the wall above is red)", but not in "green (or red)"."""
     before = text.words[mention.start - 1].text if mention.start else ""
     return text.in_brackets(mention.start) and before not in _ALTERNATIVES
 
@@ -165,7 +165,7 @@ _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "ra
 
 
 def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
-    """Return the mentions that describe only a part of a thing or its base, such as the yellow of "blue, with a yellow top"."""
+    """Return the mentions that describe only a part of a thing or its base, such as "yellow" in "blue, with a yellow top"."""
     parts = list[NameMention]()
     for at, mention in enumerate(mentions):
         after = text.words[mention.end : mention.end + 1]

@@ -81,5 +81,5 @@ _NO_KNOWLEDGE = re.compile(
     r"(?:information|info|data|results?|answers?|counts?|records?|knowledge|outputs?|response|reports?|details?|idea|reply|figures?|"
     r"detections?|readings?|measurements?) (?:\w+ ){0,5}?(?:about|of|on|for|regarding|concerning) (?:\w+ ){0,3}$"
 )
-"""Phrases that deny knowledge and not presence, such as "no information about"."""
+"""Phrases that deny knowledge rather than presence, such as "no information about"."""
 _ONLY_CHECKED = re.compile(r"(has|have) (not )?(yet )?been (counted|checked|searched|queried|measured)\b")

@@ -84,12 +84,12 @@ def _number_in_words(text: AnswerText, unit: Sequence[str]) -> float | str:
 
 
 def _is_denied(text: AnswerText, unit: Sequence[str]) -> bool:
-    """Return whether the answer denies the thing itself and not only a number of it."""
+    """Return whether the answer denies the thing itself, rather than only a number of it."""
     return bool(unit) and any(m.denied and not is_only_number_denied(text, m, unit) for m in text.mentions({"unit": unit}))
 
 
 def _wholes(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMention]:
-    """Return the totals of which another number is a part, such as the 7 of "5 of the 7 cones" and "5 out of 7"."""
+    """Return the totals of which another number is a part, such as 7 in "5 of the 7 cones" and in "5 out of 7"."""
     links = (["of", "the"], ["of"], ["out", "of"], ["out", "of", "the"], ["of", "these"], ["of", "those"])
     pairs = pairwise(numbers)
     return [two for one, two in pairs if [w.text for w in text.words[one.end : two.start]] in links]
@@ -139,7 +139,7 @@ def _is_absent(text: AnswerText, unit: Sequence[str], number: NumberMention) -> 
 
 
 def is_only_number_denied(text: AnswerText, mention: NameMention, unit: Sequence[str]) -> bool:
-    """Return whether only a number of a thing is denied and not its presence: "not 5 cones", "5 cones are missing"."""
+    """Return whether only a number of a thing is denied, but not its presence: "not 5 cones", "5 cones are missing"."""
     numbers = [q for q in find_numbers(text, unit) if q.counts_unit and 0 <= mention.start - q.end <= 4 and q.value > 0]
     return any(q.value > 1 or not q.denied for q in numbers)
 

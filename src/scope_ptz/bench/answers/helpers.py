@@ -11,11 +11,11 @@ from scope_ptz.bench.answers.text import answer_text
 def numbers_in(text: str) -> set[float]:
     """Return every number in a text that could be a count.
 
-    Measures ("15 degrees"), ordinals and labels ("preset 3") are left out.
+    Measurements ("15 degrees"), ordinals and labels ("preset 3") are left out.
     """
     return {number.value for number in find_numbers(answer_text(text), ())}
 
 
 def is_stated(text: str, wordings: Sequence[str]) -> bool:
-    """Return whether a text contains one of the wordings of a thing and does not deny it."""
+    """Return whether a text mentions a thing, in any of its wordings, without denying it."""
     return any(not mention.denied for mention in answer_text(text).mentions({"thing": wordings}))

@@ -78,8 +78,8 @@ class NumberMention:
 def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
     """Return every number that could be a count, in order.
 
-    Ordinals, labels and numbers joined to letters ("0x3", "A4") are left out. Measures ("15 degrees", "2x") are left out unless the
-    question asks for them.
+    Ordinals, labels and numbers joined to letters ("0x3", "A4") are left out. Measurements ("15 degrees", "2x") are left out unless
+    the question asks for them.
 
     Args:
         text: The text.

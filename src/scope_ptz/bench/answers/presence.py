@@ -17,7 +17,7 @@ from scope_ptz.bench.tasks.expected import NoneThere, YesNo
 _YES = frozenset({"yes", "yeah", "yep", "yup", "correct", "affirmative", "true", "indeed"})
 _NO = frozenset({"no", "nope", "nah", "negative", "false", "incorrect"})
 _NO_LAST = frozenset({"no", "nope", "nah"})
-"""Words that are a verdict at the end of a segment: "I say no", "it is a no"."""
+"""Words that express a verdict at the end of a segment: "I say no", "it is a no"."""
 
 
 def verdict_words(text: AnswerText) -> set[bool]:

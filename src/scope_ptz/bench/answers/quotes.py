@@ -1,4 +1,4 @@
-"""Find the quotes in a text, and select those that report lettering. Names and denied readings are left out."""
+"""Find the quotes in an answer, and select those that report text from a sign. Names and denied readings are left out."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Quote:
 def quotes_of(text: str) -> list[Quote]:
     """Return the quotes of a cleaned text in order.
 
-    If a quoted sentence itself quotes lettering ("The sign reads 'STOP'"), the inner quotes are returned instead.
+    If a quoted sentence itself contains a quote ("The sign reads 'STOP'"), the inner quotes are returned instead.
     """
     opened, quotes = list[tuple[str, int]](), list[Quote]()
     for at, mark in enumerate(text):
@@ -55,7 +55,7 @@ def quotes_of(text: str) -> list[Quote]:
 
 
 def _close(text: str, start: int, end: int, quotes: list[Quote]) -> None:
-    """Add a closed quote and drop the quotes inside it. If it is a sentence about lettering, keep the inner quotes instead."""
+    """Add a closed quote and drop the quotes inside it. If it is a sentence about a text, keep the inner quotes instead."""
     within = [quote for quote in quotes if quote.start > start]
     rest = text[start + 1 : end - 1]
     for quote in within:
@@ -67,8 +67,8 @@ def _close(text: str, start: int, end: int, quotes: list[Quote]) -> None:
         quotes.append(Quote(text[start + 1 : end - 1], start, end))
 
 
-def quoted_lettering(quotes: list[Quote], text: str) -> list[Quote]:
-    """Return the quotes that report lettering. Denied readings, preset names and names of signs are left out."""
+def reported_quotes(quotes: list[Quote], text: str) -> list[Quote]:
+    """Return the quotes that report text from a sign. Denied readings, preset names and names of signs are left out."""
     readings = list[Quote]()
     for number, quote in enumerate(quotes):
         before = text[quotes[number - 1].end if number else 0 : quote.start]

@@ -1,4 +1,4 @@
-"""Parse the lettering that an answer reports, and compare lettering with tolerance for characters that look alike."""
+"""Parse the text that an answer reports, and compare texts with tolerance for characters that look alike."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from scope_ptz.bench.answers.figures import is_figure, parse_figure
 from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
-from scope_ptz.bench.answers.quotes import Quote, quoted_lettering, quotes_of
+from scope_ptz.bench.answers.quotes import Quote, quotes_of, reported_quotes
 from scope_ptz.bench.answers.text import AnswerText
 from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
@@ -24,14 +24,15 @@ _CUES = (
     (re.compile(r"\b(?:shows?|called|named)\b\s*", re.IGNORECASE), 14),
     (re.compile(r"\b(?:(?<![Tt]here )is|(?<![Tt]here )are)\b\s*"), 6),
 )
-"""Patterns that introduce a text, the most reliable first, each with the maximum number of words that may follow.
+"""Patterns that introduce a text, the most reliable first, each with the maximum number of words that may follow it.
 
-For the last pattern, the last match counts; for the others, the first match. An "IS" in capitals is lettering and does not match.
+For the last pattern, the last match counts; for the others, the first match.
+An "IS" in capitals is part of the text and does not match.
 """
 _WRITTEN = re.compile(
     r"^\W*(?!it\b|what\b|the (?:text|words?)\b)(.{1,80}?)\s+(?:is|are)\s+(?:written|painted|printed|displayed)\b", re.IGNORECASE
 )
-"""A sentence that begins with the lettering."""
+"""A sentence that begins with the text ("STOP is written on the sign")."""
 
 _LEADS = re.compile(r"^(?:the )?(?:text|words?|letters|lettering)\s+(?:that reads?\s+)?", re.IGNORECASE)
 _TRAILERS = re.compile(
@@ -42,7 +43,7 @@ _TRAILERS = re.compile(
 )
 _NEXT_SENTENCE = re.compile(r"[.!]\s+(?=(?:It|This|That|The|There|I|They|In|On|At|Source|Let|Please|If|Would|You|Feel|So)\b)")
 _DENIED = re.compile(r"(?:\bnot|n't|\bnever)(?: \w+)? $", re.IGNORECASE)
-_NO_LETTERING = re.compile(r"(?:there (?:is|are)|done|not)\b", re.IGNORECASE)
+_NO_TEXT = re.compile(r"(?:there (?:is|are)|done|not)\b", re.IGNORECASE)
 _FINISHED = re.compile(
     r"(?:(?:ok|okay|sure|done|finished|completed?|ready|all set)|"
     r"(?:(?:the|this|your|all|i have|i|has) )*(?:it|everything|task|request|job|action|operation|command|instruction|step|all)s?"
@@ -50,11 +51,11 @@ _FINISHED = re.compile(
     r"(?:,? (?:\w+ly|with success|as (?:requested|asked)|now))*)\W*",
     re.IGNORECASE,
 )
-"""Prose that reports a finished task and no lettering."""
+"""An answer that only says that the task is finished and reports no text."""
 
 _MAX_WORDS_ALONE = 8
 _MAX_WORDS_IN_CAPITALS = 16
-"""Maximum numbers of words of lettering that no pattern introduces, and of lettering in capitals."""
+"""Maximum number of words in a text that no cue introduces, and in a text in capitals."""
 
 
 def same_text(one: str, other: str, *, ocr: bool) -> bool:
@@ -77,9 +78,9 @@ def normalized_text(text: str, ocr: bool) -> str:
 
 
 def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnswer:
-    """Parse the lettering that an answer reports.
+    """Parse the text that an answer reports.
 
-    The lettering is the quoted text. Without quotes it is the text after "reads", "says" or "is", otherwise the whole of a short
+    This is the quoted text. Without quotes it is whatever follows "reads", "says" or "is"; otherwise it is the whole of a short
     answer.
     """
     text = clean(answer)
@@ -101,9 +102,9 @@ def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnsw
     candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", TEXT_SEPARATOR, candidate))
     words = [word for word in candidate.split() if word != TEXT_SEPARATOR.strip()]
     if candidate.isupper():
-        # Text in capitals is taken as lettering and not as prose.
+        # Text in capitals is taken to be the reported text rather than prose.
         max_words = max(max_words, _MAX_WORDS_IN_CAPITALS)
-    if not candidate.isupper() and (_NO_LETTERING.match(candidate) or any(map(_FINISHED.fullmatch, (candidate, text)))):
+    if not candidate.isupper() and (_NO_TEXT.match(candidate) or any(map(_FINISHED.fullmatch, (candidate, text)))):
         return Unreadable("no text is quoted")
     if len(words) > max_words:
         return Unreadable("no text is quoted")
@@ -113,9 +114,9 @@ def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnsw
 
 
 def _after_cue(text: str) -> tuple[str, int]:
-    """Return the text that follows the most reliable cue, and the maximum number of its words.
+    """Return the text that follows the most reliable cue, and the maximum number of words that it may have.
 
-    Without a cue the whole text is returned. If every match of the cue is denied ("does not read"), the maximum is 0.
+    Without a cue the whole text is returned. If every match of the cue is negated ("does not read"), the maximum is 0.
     """
     for cue, max_words in _CUES:
         matches = [match for match in cue.finditer(text) if match.end() < len(text)]
@@ -128,7 +129,7 @@ def _after_cue(text: str) -> tuple[str, int]:
 
 
 def _from_quotes(quotes: list[Quote], text: str) -> ParsedAnswer:
-    readings = quoted_lettering(quotes, text)
+    readings = reported_quotes(quotes, text)
     if not readings:
         return Unreadable("it only quotes what the text is not")
     between = [text[one.end : two.start] for one, two in pairwise(quotes)]

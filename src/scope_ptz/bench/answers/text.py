@@ -58,7 +58,7 @@ _AFTER_VERB_CAN = frozenset({
     "not", "see", "be", "find", "only", "also", "make", "tell", "count", "spot", "confirm", "say", "identify", "read", "clearly",
     "just", "still", "barely", "definitely", "hardly", "detect", "recognise", "notice", "determine",
 })  # fmt: skip
-"""Words before and after "can" that show that it is the verb and not a drinks can."""
+"""Words before and after "can" that show that it is the verb rather than a drinks can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +134,7 @@ class AnswerText:
         )
 
     def _is_verb(self, at: int) -> bool:
-        """Return whether "can" is the verb and not the object."""
+        """Return whether "can" is the verb rather than the object."""
         before, after = self.words[max(0, at - 1) : at], self.words[at + 1 : at + 2]
         return any(w.text in _BEFORE_VERB_CAN for w in before) or any(w.text in _AFTER_VERB_CAN for w in after)
 

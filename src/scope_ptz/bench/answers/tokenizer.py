@@ -1,4 +1,4 @@
-"""Split a text into normalised words, without markup and with one spelling of each word."""
+"""Split a text into normalised words: markup is removed, and every word has one spelling."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def _forms(word: str) -> frozenset[str]:
 
 
 def same_word(one: str, other: str) -> bool:
-    """Return whether two words are equal apart from singular and plural."""
+    """Return whether two words are equal, ignoring the difference between singular and plural."""
     return one == other or one in _forms(other) or other in _forms(one)
 
 

@@ -30,7 +30,7 @@ WIDTH, HEIGHT = 1280, 720
 
 
 class BrokenRunError(Exception):
-    """A run failed for a reason outside the agent. Inspect excludes the run from scores, and runs it again on resuming."""
+    """A run failed for a reason outside the agent. Inspect does not score it, and repeats it when the evaluation is resumed."""
 
 
 def agent_solver(
@@ -57,7 +57,7 @@ def agent_solver(
     def scope_agent(
         agent: str = BUILT_IN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
     ) -> Solver:
-        async def solve(state: TaskState, generate: Generate) -> TaskState:  # noqa: ARG001 - the engine's signature
+        async def solve(state: TaskState, generate: Generate) -> TaskState:  # noqa: ARG001 - Inspect's signature
             entry = Entry.of_metadata(state.metadata)
             context.watcher.run_began(sample_name(entry.facts.id, state.epoch), entry)
             planner: Planner = (

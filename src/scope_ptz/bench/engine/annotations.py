@@ -1,4 +1,4 @@
-"""Archive logs whose runs another log has taken over, together with their human labels and judgement journals."""
+"""Archive logs whose runs have been carried over to another log, together with their human labels and judgement journals."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def check_labels(logs: Sequence[Path]) -> None:
 def archive_logs(logs: Sequence[Path], new: Path, folder: Path) -> None:
     """Move logs that ``new`` supersedes into a folder, with their labels and journals, so that reports count no run twice.
 
-    The labels and judgements of runs that ``new`` has taken over are copied to the files of ``new``. Those of runs that were
+    The labels and judgements of runs that were carried over to ``new`` are copied to the files of ``new``. Those of runs that were
     repeated remain with the old log.
     """
     logs = [log for log in logs if log.is_file()]
@@ -45,22 +45,22 @@ def _sample_uuids(log: Path) -> Mapping[str, str | None]:
     return {sample_name(*run): uuid for run, uuid in uuids_in(log).items()}
 
 
-def _samples_taken_over(log: Path, new_uuids: Mapping[str, str | None]) -> set[str]:
-    """Return the names of the samples of a log that the new log took over unchanged."""
+def _carried_over_samples(log: Path, new_uuids: Mapping[str, str | None]) -> set[str]:
+    """Return the names of the samples of a log that were carried over to the new log unchanged."""
     return {name for name, uuid in _sample_uuids(log).items() if uuid is not None and new_uuids.get(name) == uuid}
 
 
 def _copy_labels(logs: Sequence[Path], new: Path) -> None:
-    """Copy the newest label of each person about each run that was taken over."""
+    """Copy the newest label by each person for each run that was carried over."""
     if not any(labels_file(log).is_file() for log in logs):
         return
     new_uuids, target = _sample_uuids(new), labels_file(new)
     newest: dict[tuple[str, str], LabelRow] = {}
     for log in logs:
-        taken_over = _samples_taken_over(log, new_uuids)
+        carried_over = _carried_over_samples(log, new_uuids)
         for row in read_labels(labels_file(log)):
             key = (row.sample, row.by)
-            if row.sample in taken_over and (key not in newest or newest[key].at < row.at):
+            if row.sample in carried_over and (key not in newest or newest[key].at < row.at):
                 newest[key] = row
     existing = {(row.sample, row.by): row.at for row in read_labels(target)}
     for row in sorted(newest.values(), key=lambda row: row.at):
@@ -75,9 +75,9 @@ def _copy_journals(logs: Sequence[Path], new: Path) -> None:
     new_uuids, target = _sample_uuids(new), journal_file(new)
     existing = {line for _, line in complete_lines(target)}
     for log in logs:
-        taken_over = _samples_taken_over(log, new_uuids)
+        carried_over = _carried_over_samples(log, new_uuids)
         for _, line in complete_lines(journal_file(log)):
-            if line not in existing and _sample_of(line) in taken_over:
+            if line not in existing and _sample_of(line) in carried_over:
                 append_line(target, line)
 
 

@@ -20,8 +20,8 @@ from scope_ptz.version import __version__
 
 __all__ = ["Task", "benchmark_task"]
 
-MAX_BROKEN_SHARE = 0.1
-"""Maximum share of runs that infrastructure may break. If more runs break, the whole evaluation fails."""
+MAX_BROKEN_FRACTION = 0.1
+"""Maximum fraction of runs that may have an infrastructure failure. If more runs fail, the whole evaluation fails."""
 
 
 def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..., Task]:
@@ -45,7 +45,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
         epochs: int = 1,
         judgements: int = 0,
     ) -> Task:
-        """SCOPE: a PTZ camera that is controlled in plain language.
+        """SCOPE: a PTZ camera controlled in plain language.
 
         Args:
             split: Split of the dataset (core, lite, paraphrase, reaction, unseen, all), or a task file.
@@ -67,7 +67,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
             solver=agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed),
             scorer=[checks_scorer(context), *(judge_scorer(context, repeat) for repeat in range(judgements))],
             epochs=Epochs(epochs, "mean"),
-            fail_on_error=MAX_BROKEN_SHARE,
+            fail_on_error=MAX_BROKEN_FRACTION,
             continue_on_fail=True,
             score_on_error=True,
             version=datasets(entries),

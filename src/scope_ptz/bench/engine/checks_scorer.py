@@ -71,7 +71,7 @@ def checks_scorer(context: EvalContext | None = None) -> Scorer:
 
     @scorer(metrics=list(METRICS), name=CHECKS)
     def checks() -> Scorer:
-        async def score(state: TaskState, target: Target) -> Score:  # noqa: ARG001 - the engine's signature
+        async def score(state: TaskState, target: Target) -> Score:  # noqa: ARG001 - Inspect's signature
             return score_of(await _trial(state, context))
 
         return score

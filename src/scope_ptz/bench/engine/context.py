@@ -25,8 +25,8 @@ class ModelRequest:
 
     Attributes:
         name: Name of the model.
-        url: Address of its server; None for the default.
-        options: Options of the model from the engine's command line.
+        url: Base URL of its server; None for the default.
+        options: Options of the model from Inspect's command line.
     """
 
     name: str

@@ -91,7 +91,7 @@ def entries_of(tasks: Iterable[Task], open_scene: OpenScene) -> tuple[Entry, ...
 
 
 def imported_entries(tasks: Iterable[ImportedTask]) -> tuple[Entry, ...]:
-    """Return the entries of imported tasks. A judge scores their answers; the only check is that of their expected calls."""
+    """Return the entries of imported tasks. A judge scores their answers; the only check is that the expected calls were made."""
     return tuple(Entry(facts=t.facts, world=t.facts.scene, time_s=t.start_s, imported=t) for t in tasks)
 
 

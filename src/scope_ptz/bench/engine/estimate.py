@@ -46,7 +46,7 @@ class Estimate:
         output_tokens: Output tokens of the planner.
         cost_usd: Cost of these tokens in US dollars.
         measured_on: Number of earlier runs on which the estimate is based.
-        guessed: Whether the numbers of tokens are guessed from the length of the prompt.
+        guessed: Whether the token counts are guessed from the length of the prompt.
     """
 
     runs: int

@@ -1,4 +1,4 @@
-"""Summarize the runs of an evaluation that infrastructure broke or failed perception calls affected, with remedies."""
+"""Summarize the infrastructure failures and the failed perception calls of an evaluation, with remedies."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
 
 def failure_summary(trials: Sequence[Trial], card: RunCard) -> list[str]:
-    """Return a line for each reason for which runs broke, and a line for failed perception calls in the runs that were scored."""
+    """Return one line per cause of infrastructure failures, and one line on failed perception calls in the scored runs."""
     broken = [trial for trial in trials if trial.headline == "infrastructure"]
     lines = []
     for reason in dict.fromkeys(_without_kind(trial.reason) for trial in broken):

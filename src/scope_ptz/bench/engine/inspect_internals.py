@@ -7,7 +7,7 @@ The version of Inspect AI is pinned exactly. Before upgrading it, check whether 
   because they patch asyncio for the whole program when an event loop runs.
 - ``attachment_reference``: a sample stores each picture once, under the hash of its data URL.
 - ``recover_log``: the public ``recover_eval_log`` starts its own event loop.
-- ``resumed_task``: ``eval_async`` takes over samples of an earlier log only through a ``PreviousTask``. ``eval_retry`` would create
+- ``resumed_task``: ``eval_async`` reuses samples of an earlier log only through a ``PreviousTask``. ``eval_retry`` would create
   the task and the models from their names, without the evaluation context.
 - ``recorder``: the public functions load a whole log into memory; the recorder reads and writes one sample at a time.
 """
@@ -58,7 +58,7 @@ async def recover_log(path: Path) -> None:
 
 
 def resumed_task(task: Task, header: EvalLog, info: EvalLogInfo | None) -> PreviousTask:
-    """Return a task that takes over the samples of an earlier log.
+    """Return a task that reuses the samples of an earlier log.
 
     Args:
         task: The task to run.

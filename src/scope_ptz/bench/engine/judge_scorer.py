@@ -52,7 +52,7 @@ def judge_scorer(context: EvalContext, repeat: int = 0, journal: Journal | None 
 
     @scorer(metrics=list(METRICS), name=JUDGE)
     def judge(repeat: int = 0) -> Scorer:
-        async def score(state: TaskState, target: Target) -> Score:  # noqa: ARG001 - the engine's signature
+        async def score(state: TaskState, target: Target) -> Score:  # noqa: ARG001 - Inspect's signature
             return await _judgement(state, context, repeat, used_journal)
 
         return score
@@ -61,7 +61,7 @@ def judge_scorer(context: EvalContext, repeat: int = 0, journal: Journal | None 
 
 
 async def _judgement(state: TaskState, context: EvalContext, repeat: int, journal: Journal) -> Score:
-    """Return the judgement of a run as a score. A run that infrastructure broke gets a score without a value."""
+    """Return the judgement of a run as a score. A run with an infrastructure failure gets a score without a value."""
     stored = state.store.get(STORE)
     entry = Entry.of_metadata(state.metadata)
     stored_run = StoredRun.from_store(stored) if stored else StoredRun("", {}, "")

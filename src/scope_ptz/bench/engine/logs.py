@@ -23,7 +23,7 @@ from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
 
 DECIDES = "decides"
-"""Metadata key for the name of the judge that decides the runs that only a judge can score."""
+"""Metadata key for the name of the judge whose verdicts count for the runs that only a judge can score."""
 HEADER, START = "header.json", "_journal/start.json"
 SUMMARIES, SUMMARY_PARTS = "summaries.json", "_journal/summaries/"
 
@@ -71,14 +71,14 @@ def read_header(path: Path) -> EvalLog:
 
 
 def runs_in(path: Path) -> dict[tuple[str, int], bool]:
-    """Return for each run of a log, by task and epoch, whether it completed without an error. Raises ``TraceError``."""
+    """Return whether each run of a log, by task and epoch, completed without an error. Raises ``TraceError``."""
     return {run: not row.get("error") for run, row in _summaries(path).items()}
 
 
 def uuids_in(path: Path) -> dict[tuple[str, int], str | None]:
     """Return the unique ids of the runs of a log, by task and epoch. Raises ``TraceError``.
 
-    A run has the same id in every log that takes it over.
+    A run keeps its id when it is carried over to another log.
     """
     return {run: row.get("uuid") for run, row in _summaries(path).items()}
 

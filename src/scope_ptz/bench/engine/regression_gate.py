@@ -21,8 +21,8 @@ class Comparison:
     Attributes:
         group: A category, or "all".
         tasks: Number of tasks.
-        before: Share of correct runs in the earlier evaluation.
-        now: Share of correct runs in the new evaluation.
+        before: Fraction of correct runs in the earlier evaluation.
+        now: Fraction of correct runs in the new evaluation.
         worse: The tasks that are correct less often than before.
         better: The tasks that are correct more often than before.
         p: Two-sided p value of McNemar's exact test; with repeats, of the sign test. For categories it is adjusted for multiple
@@ -38,7 +38,7 @@ class Comparison:
     p: float
 
     def regressed(self, alpha: float) -> bool:
-        """Return whether the share of correct runs fell significantly at level ``alpha``."""
+        """Return whether the fraction of correct runs fell significantly at level ``alpha``."""
         return self.now < self.before and self.p < alpha
 
 
@@ -105,7 +105,7 @@ def _tasks(evaluation: Evaluation) -> str:
 
 
 def _shares(trials: Sequence[Trial]) -> dict[str, float]:
-    """Return the share of correct runs of each task. Broken runs and runs without a judge's verdict are excluded."""
+    """Return the fraction of correct runs of each task. Broken runs and runs without a judge's verdict are excluded."""
     runs: dict[str, list[bool]] = {}
     for trial in trials:
         if trial.headline != "infrastructure" and not without_verdict(trial):

@@ -55,8 +55,8 @@ async def rescore(
         context: The resources of the evaluation, which include the judge and ground truth.
         judge_model: The judge; None to apply only the checks.
         repeats: Number of judgements of each run.
-        additional: Whether to add ``repeats`` judgements to those in the log. Otherwise only those of the first ``repeats``
-            judgements are made that the log does not contain.
+        additional: Whether to add ``repeats`` judgements to those in the log. If False, only those of the first ``repeats``
+            judgements that the log lacks are made.
         with_checks: Whether to apply the executable checks again.
         concurrency: Number of samples that are scored concurrently.
         report: Called after each sample.
@@ -94,7 +94,7 @@ async def rescore(
 
 
 def set_deciding_judge(log: Path, judge: str) -> None:
-    """Record in a log which of its judges decides the runs that only a judge can score.
+    """Record in a log which judge's verdicts count for the runs that only a judge can score.
 
     Raises:
         TraceError: The log does not exist or is damaged.

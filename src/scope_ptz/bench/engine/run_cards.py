@@ -1,4 +1,4 @@
-"""Read the run card of a log. The card records the conditions of the runs."""
+"""Read the run card of a log, which records the conditions of the runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compute shares of correct runs, and summarize an evaluation as JSON data."""
+"""Compute fractions of correct runs, and summarize an evaluation as JSON data."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import get_args
 
 from scope_ptz.bench.engine.failure_summary import failure_summary, server_events
-from scope_ptz.bench.judging.judgement_tally import not_judged, without_verdict
+from scope_ptz.bench.judging.judgement_tally import needs_judgement, without_verdict
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.tasks.task import Category
 
@@ -14,9 +14,9 @@ CATEGORIES: tuple[str, ...] = get_args(Category)
 
 
 def accuracy(trials: Sequence[Trial]) -> float | None:
-    """Return the share of correct runs; None if no run is scored.
+    """Return the fraction of correct runs; None if no run is scored.
 
-    Runs that infrastructure broke and runs without a judge's verdict are excluded.
+    Runs with an infrastructure failure and runs without a judge's verdict are excluded.
     """
     scored = [t for t in trials if t.headline != "infrastructure" and not without_verdict(t)]
     return sum(t.headline == "correct" for t in scored) / len(scored) if scored else None
@@ -45,7 +45,7 @@ def evaluation_summary(evaluation: Evaluation) -> dict[str, object]:
         "headlines": {
             name: sum(t.headline == name for t in trials) for name in ("correct", "incorrect", "unscored", "infrastructure")
         },
-        "not_judged": sum(not_judged(t) for t in trials),
+        "not_judged": sum(needs_judgement(t) for t in trials),
         "server_events": dict(server_events(trials)),
         "failure_summary": failure_summary(trials, evaluation.card),
     }

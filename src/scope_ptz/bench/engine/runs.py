@@ -1,7 +1,7 @@
 """Run an evaluation, and resume it after interruptions.
 
 An interrupted evaluation is resumed from its log. The log is found by the identity of the evaluation, which is a digest of
-everything that affects the results. The complete runs of the log are taken over, and only the other runs are executed.
+everything that affects the results. The complete runs of the log are reused, and only the other runs are executed.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from scope_ptz.errors import InputError, OutputError, TraceError
 
 IDENTITY = "identity"
 SUPERSEDED = "superseded"
-"""Folder for logs whose runs another log has taken over."""
+"""Folder for logs whose runs have been carried over to another log."""
 
 LOG_LEVEL = "error"
 """Minimum level of Inspect's own log messages."""
@@ -62,7 +62,7 @@ class StoredLog:
 
 @dataclass(frozen=True, slots=True)
 class EngineSetup:
-    """The settings with which the engine runs a task.
+    """The settings for running a task.
 
     Attributes:
         log_dir: Folder for the log.
@@ -162,7 +162,7 @@ def exclusive(log_dir: Path, identity: str) -> Iterator[None]:
     """Lock an evaluation, so that a second program cannot run it at the same time.
 
     Raises:
-        InputError: Another program runs the evaluation.
+        InputError: Another program is running the evaluation.
         OutputError: The log folder cannot be written.
     """
     try:
@@ -174,14 +174,14 @@ def exclusive(log_dir: Path, identity: str) -> Iterator[None]:
         ) from error
     with lock:
         if not lock_file(lock):
-            raise InputError(f"This evaluation is running already and writes to {log_dir}. Wait for it, or stop it first.")
+            raise InputError(f"This evaluation is already running and writes to {log_dir}. Wait for it, or stop it first.")
         yield
 
 
 async def run(task: Task, setup: EngineSetup, earlier: Sequence[StoredLog]) -> Path:
-    """Run a task, take over the complete runs of earlier logs, and return the path of the log.
+    """Run a task, reusing the complete runs of earlier logs, and return the path of the log.
 
-    If the evaluation is cancelled, its log is returned as far as it was written.
+    If the evaluation is cancelled, return the path of its partial log.
 
     Args:
         task: The task.
@@ -230,7 +230,7 @@ async def run(task: Task, setup: EngineSetup, earlier: Sequence[StoredLog]) -> P
 
 
 async def _resumed(task: Task, earlier: Sequence[StoredLog]) -> PreviousTask:
-    """Return a task that takes over the complete runs of earlier logs.
+    """Return a task that reuses the complete runs of earlier logs.
 
     If the runs are in several logs, their samples are read into memory.
     """

@@ -9,7 +9,7 @@ from inspect_ai.dataset import MemoryDataset, Sample
 from scope_ptz.bench.engine.entries import Entry, OpenScene
 
 MAX_SHARED_VIEWPOINTS = 2
-"""Maximum number of viewpoints of entries that are grouped by viewpoint. Entries with more come last in their scene."""
+"""Entries that use at most this many viewpoints are grouped by viewpoint. Entries that use more come last in their scene."""
 
 
 def viewpoint_order(entries: Iterable[Entry], open_scene: OpenScene) -> list[Entry]:

@@ -60,7 +60,7 @@ def _verdict_of_checks(entry: Entry, stored_run: StoredRun, trace: Trace) -> dic
         "reason": verdict.reason,
         "error_mode": error_mode(entry.task, episode, truth if stored_run.truths else None),
         "checks": tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
-        "collateral": verdict.collateral,
+        "collateral": verdict.moved_needlessly,
     }
 
 
@@ -88,7 +88,7 @@ def failure_at_end(ended: Ended | None) -> str | None:
     if ended is None:
         return "the run was cut off"
     if ended.outcome in ("camera_error", "cancelled"):
-        return f"the run ended {ended.outcome}"
+        return f"the run ended with the outcome {ended.outcome}"
     if ended.outcome == "planner_error" and ended.kind is not None and ended.kind not in AGENT_FAILURES:
         return f"the planner's server failed: {ended.kind}"
     return None

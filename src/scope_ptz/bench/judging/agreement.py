@@ -50,7 +50,7 @@ class Rater:
         kind: Kind of rater.
         group: Name of the rater's group. The repeats of one judge form a group.
         ratings: The rating of each run.
-        other_verdicts: Numbers of verdicts that are not ratings, by verdict ("unscored", "failed", ...).
+        other_verdicts: Counts of verdicts that are not ratings, by verdict ("unscored", "failed", ...).
     """
 
     name: str
@@ -162,7 +162,7 @@ def _group(raters: Sequence[Rater], title: str, seed: int) -> RaterGroup:
 
 
 def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
-    """Return the raters of evaluations: the checks first, then judges, then people."""
+    """Return the raters of evaluations: the checks first, then judges, people and gold runs."""
     collector = _RaterCollector()
     for evaluation in evaluations:
         for trial in evaluation.trials:

@@ -1,6 +1,6 @@
-"""Select the deciding judge: the judge whose verdicts count if several judges have judged the runs that only a judge can score.
+"""Select the deciding judge: the judge whose verdicts count for the runs that only a judge can score.
 
-One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge requested by name, or
+One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge that was requested by name, or
 otherwise the judge that gave the first verdict on most of the runs. Later judgements by other judges do not change the choice.
 """
 
@@ -27,7 +27,7 @@ def first_verdict(judgements: Iterable[Judgement]) -> Judgement | None:
 
 
 def deciding_judge(trials: Iterable[Trial], requested: str = "") -> str | None:
-    """Return the judge that decides the runs of a log that only a judge can score.
+    """Return the judge whose verdicts count for the runs of a log that only a judge can score.
 
     Args:
         trials: The trials of the log.

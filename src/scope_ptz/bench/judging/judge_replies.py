@@ -13,7 +13,7 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode
 NO_MODE = "none"
 MAX_REASON_CHARS = 1_000
 _MAX_FAILED_BRACES = 100
-"""Number of opening braces without valid JSON after which the parser stops."""
+"""The parser gives up after this many opening braces that do not start a valid JSON object."""
 
 REPLY_SCHEMA: dict[str, Any] = {
     "type": "object",
@@ -25,7 +25,7 @@ REPLY_SCHEMA: dict[str, Any] = {
     "required": ["reason", "verdict", "error_mode"],
     "additionalProperties": False,
 }
-"""Schema of a reply. The reason comes first, so that a model without a reasoning phase states it before it decides."""
+"""Schema of a reply. The reason comes first, so that a model without a reasoning phase has to state it before its verdict."""
 
 
 class JudgeReply(BaseModel):

@@ -14,7 +14,7 @@ _MAX_FAILURE_CHARS = 300
 
 @dataclass(frozen=True, slots=True)
 class JudgementTally:
-    """The numbers of judgements by result. ``failure`` is the reason for the first failure, on one line."""
+    """The counts of judgements by result. ``failure`` is the reason for the first failure, on one line."""
 
     verdicts: int = 0
     unparseable: int = 0
@@ -41,12 +41,12 @@ class JudgementTally:
 
     @property
     def total(self) -> int:
-        """Number of all judgements."""
+        """Total number of judgements."""
         return self.verdicts + self.unparseable + self.failed
 
     @property
     def summary(self) -> str:
-        """The numbers as text."""
+        """The counts as text."""
         return f"{self.verdicts} with a verdict, {self.unparseable} unparseable, {self.failed} failed"
 
 
@@ -55,7 +55,7 @@ def without_verdict(trial: Trial) -> bool:
     return trial.scored_by == "judge" and trial.headline == "unscored"
 
 
-def not_judged(trial: Trial) -> bool:
+def needs_judgement(trial: Trial) -> bool:
     """Return whether a run without a verdict still needs a judgement.
 
     It does if it was not judged, if the judge's server failed, or if only judges other than the deciding judge have judged it.
@@ -66,7 +66,7 @@ def not_judged(trial: Trial) -> bool:
 def requested_judgements(trials: Iterable[Trial], judge: str, repeats: int) -> list[Judgement | None]:
     """Return the requested judgements of every run by a judge with the current prompt.
 
-    Runs that infrastructure broke are not judged.
+    Runs with an infrastructure failure are not judged.
 
     Args:
         trials: The runs.

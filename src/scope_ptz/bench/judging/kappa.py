@@ -19,8 +19,8 @@ LEVEL = 0.95
 """Confidence level of the intervals."""
 DRAWS = 2000
 """Number of bootstrap draws."""
-_MIN_DEFINED_SHARE = 0.5
-"""Minimum share of draws in which kappa must be defined. If fewer are defined, there is no interval."""
+_MIN_DEFINED_FRACTION = 0.5
+"""Minimum fraction of draws in which kappa must be defined. If fewer are defined, there is no interval."""
 
 Numbers = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ class KappaResult:
     Attributes:
         runs: Number of runs.
         raters: Number of raters.
-        raw: Share of runs on which two raters agree. For more raters, share of agreeing pairs of ratings of the same run.
+        raw: Fraction of runs on which two raters agree. For more raters, fraction of agreeing pairs of ratings of the same run.
         kappa: Agreement beyond chance; None if undefined.
         low: Lower limit of the 95% interval of kappa; None if unknown.
         high: Upper limit of the 95% interval of kappa; None if unknown.
@@ -127,8 +127,8 @@ def fleiss_values(sums: Numbers) -> Numbers:
     """Return Fleiss' kappa of each row of sums.
 
     Args:
-        sums: Array of shape ``(n, k + 2)``. Its columns are the counts of the k labels, the share of agreeing pairs, and the number
-            of runs, each summed over runs.
+        sums: Array of shape ``(n, k + 2)``. Its columns are the counts of the k labels, the fraction of agreeing pairs, and the
+            number of runs, each summed over runs.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         shares = sums[:, :-2] / sums[:, :-2].sum(axis=1, keepdims=True)
@@ -163,7 +163,7 @@ def _interval(sums_by_cluster: Numbers, statistic: Callable[[Numbers], Numbers],
     drawn = np.random.default_rng(seed).multinomial(clusters, np.full(clusters, 1 / clusters), size=DRAWS)
     values = statistic(drawn @ sums_by_cluster)
     values = values[~np.isnan(values)]
-    if len(values) < DRAWS * _MIN_DEFINED_SHARE:
+    if len(values) < DRAWS * _MIN_DEFINED_FRACTION:
         return {"low": None, "high": None}
     tail = (1 - LEVEL) / 2
     low, high = np.quantile(values, (tail, 1 - tail))

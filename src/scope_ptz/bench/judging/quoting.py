@@ -20,7 +20,7 @@ _MAX_FOUR_DIGIT_CODE = 0xFFFF
 
 
 def quoted(text: str) -> str:
-    """Return a text with a bar before each line, and with unprintable characters escaped. An empty text becomes a bar."""
+    """Return a text with a bar before each line, and with unprintable characters escaped. An empty text becomes a single bar."""
     return "\n".join(BAR + _neutralize(line) for line in _LINE_ENDS.split(text))
 
 

@@ -24,7 +24,7 @@ MIN_CHARS = 6_000
 
 _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
 _RESULT_CHARS = (4_000, 1_200, 300)
-"""Maximum lengths of a tool result in characters, tried in this order until all calls fit into the budget."""
+"""Maximum lengths of a tool result in characters, tried in this order until all calls fit in the budget."""
 
 _NAME_CHARS, _MAX_PRESETS, _NOTE_CHARS = 60, 40, 300
 _OMITTED_FIELDS = frozenset({"boxes", "box", "path", "frames", "source"})

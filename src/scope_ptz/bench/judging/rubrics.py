@@ -1,6 +1,6 @@
 """Load the published prompt for judges from its file.
 
-Store a changed prompt in a new file, because verdicts are comparable only if they were given with the same prompt. Every judgement
+Store a changed prompt in a new file, because verdicts are comparable only if the judges had the same prompt. Every judgement
 records the name of the file and a digest of its text.
 """
 

@@ -25,9 +25,9 @@ _REJECTION_KINDS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKi
 _FORMAT_WORDS = re.compile(
     r"response_format|json_?(schema|object)|schema|grammar|guided|structured|xgrammar|outlines", re.IGNORECASE
 )
-"""Words in an error message that are about the response format."""
+"""Words that show that an error message is about the response format."""
 _MAX_REQUESTS = 6
-"""Maximum number of requests for one reply. Each request leaves out an option that the server rejected."""
+"""Maximum number of requests for one reply. Each retry leaves out an option that the server rejected."""
 
 
 class JudgeModelOptions(BaseModel):
@@ -35,7 +35,7 @@ class JudgeModelOptions(BaseModel):
 
     Attributes:
         temperature: Sampling temperature.
-        seed: Seed of the sampling.
+        seed: Sampling seed.
         max_tokens: Maximum number of tokens of a reply, including reasoning.
         reasoning_effort: Reasoning effort, for models that support it.
     """

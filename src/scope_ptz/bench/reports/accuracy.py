@@ -12,7 +12,7 @@ from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, macr
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, unmarked
 from scope_ptz.bench.scoring.trials import Trial
-from scope_ptz.bench.statistics.clustered import IntervalEstimate, share
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, proportion
 
 KIND_TITLES = {
     "models": "models",
@@ -41,17 +41,17 @@ def accuracy_section(runs: Sequence[ReportRun]) -> Section:
     if any(t.judgements for run in scored_runs for t in run.scored_trials):
         tables.append(_judge_table(scored_runs))
     text = [
-        "The macro average is the unweighted mean over categories, which the paper calls average. The micro average is the share "
-        "of all trials; a trial is one run of one task. Both count correct trials among those that infrastructure did not break. "
+        "The macro average is the unweighted mean over categories; the paper calls it the average. The micro average is the share "
+        "of all trials; a trial is one run of one task. Both count correct trials among those without an infrastructure failure. "
         "An unscored trial counts as not correct. Trials that only a judge can score are left out until a judge has given a "
         "verdict."
     ]
     if len({(run.task_set, run.tasks) for run in scored_runs}) > 1:
         text.append(
-            "Not all runs cover the same tasks. The best values are marked among runs over exactly the same tasks. The chart shows "
+            "Not all runs cover the same tasks. The best values are marked among runs on exactly the same tasks. The chart shows "
             "the main task set."
             + (
-                " Runs over a different selection of its tasks have hollow markers and are below the others. Their labels state "
+                " Runs on a different selection of its tasks have hollow markers and are below the others. Their labels state "
                 "the number of shared tasks."
                 if any(run.other_tasks for run in scored_runs)
                 else ""
@@ -91,7 +91,7 @@ def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: boo
 
 
 def _category_share(run: ReportRun, name: str) -> IntervalEstimate | None:
-    return share(scores_of([t for t in run.scored_trials if t.task.category == name]))
+    return proportion(scores_of([t for t in run.scored_trials if t.task.category == name]))
 
 
 def _marked(
@@ -128,7 +128,7 @@ def _outcome_table(runs: Sequence[ReportRun]) -> ReportTable:
     )  # fmt: skip
     notes = (
         "Unscored: no check failed, but the answer could not be parsed. Infrastructure: a server or the camera failed, so "
-        "the trial cannot be used to score the agent. At least and at most: the share of correct trials if all unscored and "
+        "the trial cannot be used to score the agent. At least and at most: the fraction of correct trials if all unscored and "
         "infrastructure trials were incorrect, or if all of them were correct.",
     )
     return ReportTable("outcomes", "Outcomes of the trials, with bounds", columns, tuple(_outcome_row(run) for run in runs), notes)
@@ -154,7 +154,7 @@ def _judge_table(runs: Sequence[ReportRun]) -> ReportTable:
     notes = (
         "The paper reports accuracy by a judge. Both macro averages cover the trials with a verdict of the judge, without "
         "unparseable and failed judgements. Trials that only a judge can score are excluded from the macro average by checks and "
-        "from the share of same verdicts.",
+        "from the fraction of same verdicts.",
     )
     return ReportTable("judge", "Verdicts of the judge and of the checks", columns, tuple(_judged_row(run) for run in runs), notes)
 
@@ -174,6 +174,6 @@ def _judged_row(run: ReportRun) -> tuple[CellValue, ...]:
     return run.label, name, len(judged), counts["unparseable"], counts["failed"], by_judge, macro(scores_of(checked)), agreement
 
 
-def share_correct(trials: Sequence[Trial]) -> float | None:
-    """Return the share of correct trials; None if there are no trials."""
+def fraction_correct(trials: Sequence[Trial]) -> float | None:
+    """Return the fraction of correct trials; None if there are no trials."""
     return sum(t.headline == "correct" for t in trials) / len(trials) if trials else None

@@ -194,8 +194,8 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable
     if left_out := [run.label for run in ranked if run not in comparable]:
         warnings.append(
             f"These pairs were run on different tasks from most pairs: {'; '.join(left_out)}. Their averages are not comparable. "
-            "They are left out of the oracle setting, the spreads and the choice of a pair. Paired comparisons use the shared "
-            "tasks."
+            "They are left out of the oracle setting, the spreads and the recommendation of a pair. Paired comparisons use the "
+            "shared tasks."
         )
     if other_runs := [run.label for run in runs if run.other_tasks and run not in ranked]:
         warnings.append(
@@ -211,8 +211,8 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable
         )
     if not all(run.ranked for run in runs):
         warnings.append(
-            "Some runs used the grammar planner or ground-truth perception (exact or noisy), ran without perception, or were made "
-            "by a person. They are marked and not ranked."
+            "Some runs used the grammar planner or ground-truth perception (exact or noisy), ran without perception, or were "
+            "carried out by a person. They are marked and not ranked."
         )
     return tuple(warnings)
 
@@ -240,7 +240,7 @@ def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable:
         f"{_number(len(runs), 'run')} with {_number(trials, 'trial')} (a trial is one run of one task); "
         f"{_number(len(comparable), 'pair')} of models on the main task set"
         + (f" ({_number(len(comparable[0].tasks), 'task')})" if comparable else "")
-        + (f"; {_number(len(ranked) - len(comparable), 'more pair')} over other tasks." if len(ranked) > len(comparable) else ".")
+        + (f"; {_number(len(ranked) - len(comparable), 'more pair')} on other tasks." if len(ranked) > len(comparable) else ".")
     ]
     order = sorted((r for r in comparable if r.macro), key=lambda r: -(r.macro.value if r.macro else 0.0))
     if order and order[0].macro:
@@ -286,7 +286,7 @@ def _failed_tasks(runs: Sequence[ReportRun], pages: Mapping[str, str]) -> Sectio
         Column("instruction", "Instruction", "prose"),
         Column("expected", "Expected", "prose"),
         Column("failed", "Failed trials", "count"),
-        Column("unscored", "Unscored among them", "count"),
+        Column("unscored", "Of these, unscored", "count"),
         Column("trials", "All trials", "count"),
         Column("failed_by", "Failed by"),
     )

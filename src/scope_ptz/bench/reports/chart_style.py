@@ -75,7 +75,7 @@ def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
 def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
     """Return the colour of each run, by its label.
 
-    Runs with the same perception model have the same hue, which is darker for later runs. Runs that are not ranked are grey.
+    Runs with the same perception model share a hue, in stronger shades for later runs. Runs that are not ranked are grey.
     """
     perception = list(dict.fromkeys(run.perception_name for run in runs if run.ranked))
     colour_of_run = {}
@@ -90,13 +90,13 @@ def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
     return colour_of_run
 
 
-def _mixed(colour: str, share: float) -> str:
-    """Mix a colour with light grey, so that it is visible on white and on black."""
+def _mixed(colour: str, strength: float) -> str:
+    """Mix a colour with light grey, so that it is visible on white and on black. ``strength`` is the fraction of the colour."""
     parts = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
-    return "#" + "".join(f"{round(part * share + 205 * (1 - share)):02x}" for part in parts)
+    return "#" + "".join(f"{round(part * strength + 205 * (1 - strength)):02x}" for part in parts)
 
 
-def shades(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
+def bar_styles(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
     """Return the fill and the hatch of each run's bars. Runs that are not ranked have a grey and a hatch instead of a hue."""
     colour_of_run, others = colours(runs), [run for run in runs if not run.ranked]
     styles: list[tuple[str, str | None]] = []

@@ -15,13 +15,13 @@ from scope_ptz.bench.reports.chart_style import (
     INK,
     PAPER,
     as_chart,
+    bar_styles,
     canvas,
     colours,
     legend_below,
     legend_px,
     panels,
     row_px,
-    shades,
     shorten_label,
     wrap_label,
 )
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
     """Draw macro accuracy with its intervals, best first.
 
-    Runs over other tasks have hollow markers and are below the others. Runs that are not ranked are grey and come last.
+    Runs on other tasks have hollow markers and are below the others. Runs that are not ranked are grey and come last.
     """
     ordered = sorted(runs, key=lambda r: (r.ranked, not r.other_tasks, r.macro.value if r.macro else 0.0))
     colour_of_run = colours(runs)
@@ -61,7 +61,7 @@ def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
         axes.set_ylim(-0.6, len(ordered) - 0.4)
         axes.set_xlabel("Macro accuracy (%), 95% interval")
         values = "; ".join(f"{r.label} {100 * r.macro.value:.1f}%" for r in reversed(ordered) if r.macro)
-        title = "Macro accuracy" + (". Hollow: runs over other tasks" if any(r.other_tasks for r in runs) else "")
+        title = "Macro accuracy" + (". Hollow: runs on other tasks" if any(r.other_tasks for r in runs) else "")
         return as_chart("chart-accuracy", title, f"Macro accuracy by run, best first: {values}.", figure)
 
 
@@ -88,7 +88,7 @@ def mode_chart(
     from matplotlib.patches import Patch
 
     keys: list[Artist] = []
-    fills = dict(zip((run.label for run in all_runs), shades(all_runs), strict=True))
+    fills = dict(zip((run.label for run in all_runs), bar_styles(all_runs), strict=True))
     labels = [shorten_label(run.label + ("" if run.ranked else " (not ranked)"), 120) for run in runs]
     with canvas(980, 370 + legend_px(labels)) as (figure, axes):
         width = 0.84 / max(1, len(runs))

@@ -1,4 +1,4 @@
-"""Determine the names of splits and models that reports show."""
+"""Determine the names that reports show for splits and models."""
 
 from __future__ import annotations
 

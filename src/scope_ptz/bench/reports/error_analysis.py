@@ -128,7 +128,7 @@ MEANS_NOTE = (
 
 
 Oracle = tuple[IntervalEstimate | None, IntervalEstimate | None, float | None]
-"""Measured macro accuracy, macro accuracy with errors of perception counted as correct, and their share of all errors."""
+"""Measured macro accuracy, macro accuracy with errors of perception counted as correct, and their fraction of all errors."""
 
 
 def _rules_oracle(run: ReportRun) -> Oracle:
@@ -151,7 +151,7 @@ def _trials_with_verdict(run: ReportRun, judge: str | None) -> list[tuple[Trial,
 
 
 def _perception_share(modes: Counter[ErrorMode]) -> float | None:
-    """Return the share of perception errors among all errors; None if there are no errors."""
+    """Return the fraction of perception errors among all errors; None if there are no errors."""
     return sum(modes[mode] for mode in PERCEPTION_MODES) / modes.total() if modes else None
 
 

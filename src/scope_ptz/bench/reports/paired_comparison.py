@@ -43,7 +43,7 @@ class PairedComparison:
         only_second: Tasks on which the second run is better.
         p_mcnemar: P value of McNemar's exact test.
         p_clustered: P value of the clustered test.
-        least: The smallest true difference that the clustered test detects with 80% power; None if unknown.
+        smallest_detectable: The smallest true difference that the clustered test detects with 80% power; None if unknown.
     """
 
     first: str
@@ -55,7 +55,7 @@ class PairedComparison:
     only_second: int
     p_mcnemar: float
     p_clustered: float | None
-    least: float | None
+    smallest_detectable: float | None
 
 
 def compare(first: ReportRun, second: ReportRun) -> PairedComparison | None:
@@ -116,7 +116,7 @@ def comparison_table(key: str, title: str, comparisons: Sequence[PairedCompariso
         (
             c.first,
             c.second, c.shared, c.macro, _interval(c.bootstrap), c.only_first, c.only_second,
-            c.p_mcnemar, mcnemar[n], c.p_clustered, clustered[n], differ(mcnemar[n], clustered[n]), c.least,
+            c.p_mcnemar, mcnemar[n], c.p_clustered, clustered[n], differ(mcnemar[n], clustered[n]), c.smallest_detectable,
         )
         for n, c in enumerate(comparisons)
     )  # fmt: skip
@@ -151,7 +151,7 @@ def comparison_section(runs: Sequence[ReportRun]) -> Section:
             (unpaired,),
         )
     number = sum(row[11] == "yes" for row in comparison_table("x", "x", comparisons).rows)
-    smallest = [c.least for c in comparisons if c.least is not None]
+    smallest = [c.smallest_detectable for c in comparisons if c.smallest_detectable is not None]
     power = (
         f" With 80% power, differences of {100 * median(smallest):.1f} points (median of the comparisons) are detectable."
         if smallest

@@ -43,7 +43,7 @@ class PaperMode(_Row):
 
 
 class PaperModel(_Row):
-    """A model that the paper evaluates. Sizes are in 10^9 parameters."""
+    """A model that the paper evaluates. Sizes are in billions of parameters."""
 
     title: str
     name: str
@@ -154,7 +154,7 @@ def _accuracy(paper: Paper) -> ReportTable:
         rows.append((row.planner, *cells, paper.micro(row) / 100, row.line))
     notes = (
         "Values are in percent. The paper's average is the macro average. The value 36.5 (qwen3-next-80b-a3b with moondream2-4bit, "
-        "comparative) is not a possible share of 62 tasks.",
+        "comparative) is not a possible fraction of 62 tasks.",
     )
     return ReportTable("paper_accuracy", "The paper: accuracy by category", tuple(columns), tuple(rows), notes, groups)
 

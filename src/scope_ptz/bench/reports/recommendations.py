@@ -1,4 +1,4 @@
-"""The sections that help to choose a pair: Pareto front, memory, spreads, scopes, mixtures of experts, and quantisation."""
+"""The sections that help to choose a pair: Pareto front, memory, spreads, scopes, mixture-of-experts models, and quantisation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
 from scope_ptz.bench.reports.report_runs import FULL_PRECISION, ReportRun, is_mixture, scores_of
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
-from scope_ptz.bench.statistics.clustered import share, share_difference
+from scope_ptz.bench.statistics.clustered import proportion, proportion_difference
 from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
@@ -42,7 +42,7 @@ def design_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -
         for c in sorted(pairs, key=lambda c: -(c.accuracy or 0.0))
     )
     notes = (
-        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each server), "
+        "Memory is computed from the registry (parameters at their precision, KV cache for 16,384 tokens, 1.5 GB for each server), "
         "not measured. A pair is on the Pareto front if no other pair is at least as good in accuracy, latency and memory, and "
         "better in one of them.",
     )
@@ -71,7 +71,7 @@ def _memory_table(pairs: Sequence[Candidate]) -> ReportTable:
         if candidates_that_fit:
             best = max(candidates_that_fit, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
             rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
-    notes = (f"Memory sizes of {', '.join(map(str, SIZES_GB))} GB. Sizes into which no pair fits are left out.",)
+    notes = (f"Memory sizes of {', '.join(map(str, SIZES_GB))} GB. Sizes in which no pair fits are left out.",)
     return ReportTable("memory_fits", "Best pair by memory size", columns, tuple(rows), notes)
 
 
@@ -151,7 +151,7 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
     text = (
         "This section compares the micro accuracy of tasks about the current view and about the full scene. These tasks also "
         "differ in category, so the panorama is not the only cause of the difference. The interval of the difference combines the "
-        "intervals of the two shares (Newcombe 1998). It is unknown if one of these is unknown.",
+        "intervals of the two proportions (Newcombe 1998). It is unknown if one of these is unknown.",
     )
     return Section("scope", "Current view against full scene", text, (), (ReportTable("scope", "By scope", columns, tuple(rows)),))
 
@@ -159,7 +159,14 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
 def _scope_row(run: ReportRun) -> tuple[CellValue, ...]:
     parts = {scope: [t for t in run.scored_trials if t.task.scope == scope] for scope in ("current", "full")}
     current, full = (scores_of(parts[scope]) for scope in ("current", "full"))
-    return run.label, len(parts["current"]), share(current), len(parts["full"]), share(full), share_difference(current, full)
+    return (
+        run.label,
+        len(parts["current"]),
+        proportion(current),
+        len(parts["full"]),
+        proportion(full),
+        proportion_difference(current, full),
+    )
 
 
 def _mean(rows: Sequence[tuple[CellValue, ...]], index: int) -> float | None:
@@ -168,7 +175,7 @@ def _mean(rows: Sequence[tuple[CellValue, ...]], index: int) -> float | None:
 
 
 def architecture_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> Section:
-    """Return the section that compares mixtures of experts with dense models, and quantised models with full precision."""
+    """Return the section that compares mixture-of-experts models with dense models, and quantised models with full precision."""
     pairs = [(q, f) for q in ranked for f in ranked if _is_quantised_pair(q, f)]
     comparisons = [c for quantised, full in pairs if (c := compare(quantised, full)) is not None]
     notes = (
@@ -177,12 +184,13 @@ def architecture_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportR
     )
     precision = comparison_table("quantised", "Quantised minus full precision", comparisons, notes)
     text = [
-        "The registry states which models are mixtures of experts or quantised. Models that are not in the registry are left out."
+        "The registry states which models are mixture-of-experts models or quantised. Models that are not in the registry are "
+        "left out."
     ]
     if not comparisons:
         text.append("No two pairs differ only in precision, so quantisation is not measured.")
     tables = (_mixture_table(ranked, all_runs), *((precision,) if comparisons else ()))
-    return Section("architecture", "Mixtures of experts and quantisation", tuple(text), (), tables)
+    return Section("architecture", "Mixture-of-experts models and quantisation", tuple(text), (), tables)
 
 
 def _is_quantised_pair(one: ReportRun, other: ReportRun) -> bool:
@@ -202,7 +210,7 @@ def _is_quantised_model(one: Model | None, other: Model | None) -> bool:
 
 
 def _mixture_table(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> ReportTable:
-    """Return a table with a row for each model that is paired with both mixtures of experts and dense models."""
+    """Return a table with a row for each model that is paired with both mixture-of-experts and dense models."""
     columns = [Column("held", "Fixed model"), Column("changed", "Changed model")]
     for key, title in (("moe", "Mixtures"), ("dense", "Dense")):
         columns += [
@@ -227,7 +235,7 @@ def _mixture_table(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -
         "Values are means over the pairs with mixtures and over the pairs with dense models. Fixed models that were paired with "
         "only one kind are left out.",
     )
-    return ReportTable("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
+    return ReportTable("mixtures", "Mixture-of-experts models against dense models", tuple(columns), tuple(rows), notes)
 
 
 def _average(pairs: Sequence[Candidate], field: str) -> float | None:

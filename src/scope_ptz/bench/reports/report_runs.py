@@ -13,7 +13,7 @@ import numpy as np
 from scope_ptz.bench.judging.judgement_tally import without_verdict
 from scope_ptz.bench.reports.display_names import served_instead, split_name
 from scope_ptz.bench.scoring.trials import Evaluation, ModelCard, Trial
-from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, share
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, proportion
 from scope_ptz.builtin_names import GRAMMAR, GROUND_TRUTH
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.registry import Model, Registry
@@ -145,8 +145,8 @@ class ReportRun:
 
     @cached_property
     def micro(self) -> IntervalEstimate | None:
-        """Micro accuracy: the share of correct trials."""
-        return share(scores_of(self.scored_trials))
+        """Micro accuracy: the fraction of correct trials."""
+        return proportion(scores_of(self.scored_trials))
 
 
 def scores_of(trials: Sequence[Trial], correct: Iterable[bool] | None = None) -> Scores:
@@ -167,7 +167,7 @@ def scores_of(trials: Sequence[Trial], correct: Iterable[bool] | None = None) ->
 
 def macro(scores: Scores) -> IntervalEstimate | None:
     """Return macro accuracy with its interval; None if there are no outcomes."""
-    return share(scores, macro_weights(scores)) if len(scores.values) else None
+    return proportion(scores, macro_weights(scores)) if len(scores.values) else None
 
 
 def viewpoint(trial: Trial) -> str:
@@ -301,5 +301,5 @@ def timing_run(run: ReportRun, runs: Sequence[ReportRun]) -> ReportRun:
 
 
 def is_mixture(model: Model) -> bool:
-    """Return whether a model is a mixture of experts, which has fewer active parameters than parameters."""
+    """Return whether a model is a mixture of experts, which has fewer active than total parameters."""
     return model.active_b < model.size_b

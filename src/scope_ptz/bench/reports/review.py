@@ -142,11 +142,11 @@ def _cost_row(run: ReportRun) -> tuple[CellValue, ...]:
 
 
 def conduct_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the section on collateral changes, wrong calls, failures of perception and failures of servers."""
+    """Return the section on collateral changes, invalid calls, perception failures and server failures."""
     columns = (
         Column("run", "Run"),
         Column("collateral", "Collateral change (%)", "share"),
-        Column("bad_calls", "Wrong calls per trial", "number"),
+        Column("bad_calls", "Invalid calls per trial", "number"),
         Column("perception_failures", "Failed perception calls per trial", "number"),
         Column("steps", "Steps per trial", "number"),
         Column("limit", "At the step or time limit (%)", "share"),

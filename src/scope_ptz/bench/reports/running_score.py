@@ -9,13 +9,13 @@ from scope_ptz.bench.judging.judgement_tally import without_verdict
 from scope_ptz.bench.reports.progress_state import CategoryProgress, Score
 from scope_ptz.bench.reports.report_runs import macro, scores_of
 from scope_ptz.bench.scoring.trials import Trial
-from scope_ptz.bench.statistics.clustered import IntervalEstimate, share
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, proportion
 
 
 def score_fields(trials: Sequence[Trial]) -> Mapping[str, object]:
     """Return the fields of ``ProgressState`` that follow from the finished runs.
 
-    The scores are those of the report: runs that infrastructure broke, and runs that still need a judge, are left out.
+    The scores are those of the report: runs with an infrastructure failure, and runs that still need a judge, are left out.
     """
     scored = [t for t in trials if t.headline != "infrastructure" and not without_verdict(t)]
     scores = scores_of(scored)
@@ -26,7 +26,7 @@ def score_fields(trials: Sequence[Trial]) -> Mapping[str, object]:
         "incorrect": counts["incorrect"],
         "unscored": counts["unscored"],
         "broken": counts["infrastructure"],
-        "micro": _score(share(scores)),
+        "micro": _score(proportion(scores)),
         "macro": _score(macro(scores)),
         "categories": tuple(_category(name, trials, scored) for name in CATEGORIES if any(t.task.category == name for t in trials)),
     }

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.accuracy import share_correct
+from scope_ptz.bench.reports.accuracy import fraction_correct
 from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun
 from scope_ptz.bench.reports.sections import Section
@@ -32,7 +32,7 @@ def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
 
 
 def _by_system(runs: Sequence[ReportRun]) -> dict[System, list[Trial]]:
-    """Return the first trial of each task in all logs of a system, by system. Trials that infrastructure broke are left out."""
+    """Return the first trial of each task in the logs of each system. Trials with an infrastructure failure are left out."""
     by_system: dict[System, dict[str, Trial]] = defaultdict(dict)
     for run in runs:
         for trial in run.evaluation.trials:
@@ -101,7 +101,7 @@ def repeats_section(runs: Sequence[ReportRun]) -> Section:
         rows.append((run.label, len(tasks), *(mean_pass_all(tasks, k)[0] for k in range(1, max_trials + 1))))
     text = (
         "pass^k is the probability that k trials of a task all succeed. For a task with c correct of n trials it is C(c, k) / "
-        "C(n, k). The table shows the mean over the tasks with at least k trials that infrastructure did not break. Runs without "
+        "C(n, k). The table shows the mean over the tasks with at least k trials without an infrastructure failure. Runs without "
         "repeats are left out.",
     )
     table = ReportTable("repeats", "pass^k", tuple(columns), tuple(rows))
@@ -138,7 +138,7 @@ def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
         (
             run.label,
             len(trials),
-            share_correct(trials),
+            fraction_correct(trials),
             *(fmean(t.outcome == o for t in trials) for o in ("answered", "clarification", "refused")),
         )
         for run, trials in reacting
@@ -165,15 +165,14 @@ def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
     rows = tuple(
         (
             run.label,
-            "sees nothing" if run.kind == "blind" else "a person",
-            *(share_correct([t for t in run.scored_trials if t.task.category == name]) for name in CATEGORY_TITLES),
+            "without perception" if run.kind == "blind" else "a person",
+            *(fraction_correct([t for t in run.scored_trials if t.task.category == name]) for name in CATEGORY_TITLES),
             run.macro,
         )
         for run in baselines
     )
     text = (
-        "The blind baseline is the accuracy of a planner without perception. The human baseline shows which accuracy is "
-        "achievable.",
+        "The blind baseline is the accuracy of a planner without perception. The human baseline shows what accuracy is achievable.",
     )
     return Section(
         "baselines", "Baselines", text, (), (ReportTable("baselines", "Blind and human baselines", tuple(columns), rows),)

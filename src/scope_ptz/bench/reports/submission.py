@@ -222,7 +222,7 @@ def _check_results(checks: Sequence[CheckRecord]) -> dict[str, bool | None]:
 
 
 def _public_tool_calls(calls: Mapping[str, int]) -> dict[str, int]:
-    """Return the number of calls by tool. Calls of tools that do not exist are counted as "unknown"."""
+    """Return the number of calls by tool. Calls to tools that do not exist are counted as "unknown"."""
     counts = {name: number for name, number in calls.items() if name in TOOLS}
     unknown = sum(number for name, number in calls.items() if name not in TOOLS)
     return {**counts, UNKNOWN_TOOL: unknown} if unknown else counts

@@ -26,7 +26,7 @@ class MarkedCell:
         value: The value.
         best: Whether it is the best of its group.
         best_of_all: Whether it is the best of the table.
-        link: Address to which the value links.
+        link: URL to which the value links.
         note: A note that is shown after the value.
     """
 
@@ -131,8 +131,8 @@ def _number(value: float, kind: ColumnKind) -> str:
 def as_csv(table: ReportTable) -> str:
     """Return a table as CSV (RFC 4180).
 
-    Numbers have full precision, shares are from 0 to 1, and missing values are empty. An estimate has three columns: value, low and
-    high. It has a fourth column if its interval leaves out some strata.
+    Numbers have full precision, fractions are from 0 to 1, and missing values are empty. An estimate has three columns: value, low
+    and high. It has a fourth column if its interval leaves out some strata.
     """
     columns = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
     suffixes = [_suffixes([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in columns]

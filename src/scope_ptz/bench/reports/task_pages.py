@@ -133,7 +133,7 @@ def file_name(task: str) -> str:
 
 
 class FrameStore:
-    """Stores the pictures of a report in reduced size. Identical pictures are stored once, under the hash of their content.
+    """Stores the pictures of a report at reduced size. Identical pictures are stored once, under the hash of their content.
 
     Args:
         folder: Folder of the pictures.

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 GENERATOR = "scope bench report"
-"""Value of the page's ``generator`` tag, by which an earlier report is recognised."""
+"""Value of the page's ``generator`` tag, which identifies an earlier report."""
 _REPORT_FILES = (("tables", "*.csv"), ("tasks", "*.html"), ("frames", "*.jpg"))
 """Folders and file patterns of a report."""
 
@@ -102,7 +102,7 @@ def _clear(out: Path) -> None:
 
 
 def html(report: EvaluationReport, environment: Environment | None = None) -> str:
-    """Return the HTML page. It has no scripts and loads nothing from the network."""
+    """Return the HTML page. It contains no scripts and loads nothing from the network."""
     template = (environment or _environment()).get_template("index.html.j2")
     return template.render(report=report, version=__version__, generator=GENERATOR)
 

@@ -18,7 +18,7 @@ from scope_ptz.geometry import Perspective, direction, wrap_pan_deg
 
 CheckName = Literal["outcome", "answer", "coverage", "pose", "calls", "forbidden", "pictures", "framing"]
 SAME_ANGLE_DEG = 0.5
-SAME_ZOOM_SHARE = 0.03
+SAME_ZOOM_RATIO = 0.03
 """Tolerances within which two poses are the same: degrees of pan or tilt, and the relative difference of zoom."""
 
 
@@ -76,7 +76,7 @@ def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def check_pose(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the camera ends at the pose that the instruction asks for."""
+    """Check that the camera ends at the pose that the task requires."""
     final = task.behaviour.final
     if final is None:
         return None
@@ -128,7 +128,7 @@ def changes(before: CameraPosition, after: CameraPosition) -> list[str]:
         "viewpoint": before.viewpoint != after.viewpoint,
         "pan": abs(wrap_pan_deg(one.pan_deg - two.pan_deg)) > SAME_ANGLE_DEG,
         "tilt": abs(one.tilt_deg - two.tilt_deg) > SAME_ANGLE_DEG,
-        "zoom": abs(two.zoom / one.zoom - 1) > SAME_ZOOM_SHARE,
+        "zoom": abs(two.zoom / one.zoom - 1) > SAME_ZOOM_RATIO,
     }
     return [name for name, different in differs.items() if different]
 
@@ -146,7 +146,7 @@ def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def check_framing(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the target is in the middle of the final view and that its size is within the required limits."""
+    """Check that the target is in the centre of the final view and that its size is within the required limits."""
     framing = task.behaviour.framing
     if framing is None:
         return None
@@ -169,7 +169,7 @@ def framing_of(outline_deg: Sequence[tuple[float, float]], episode: Episode) -> 
         episode: The run.
 
     Returns:
-        The larger of width and height, and the larger of the horizontal and vertical offset from the middle, as shares of the
+        The larger of width and height, and the larger of the horizontal and vertical offset from the middle, as fractions of the
         frame's width or height. Both are infinite if a part of the outline is behind the camera.
     """
     pose = episode.final.pose

@@ -17,7 +17,7 @@ from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Equirectangular, Perspective, direction
 
 INSET = 0.02
-"""Share of the view along each border that need not be covered, because it contains no evidence."""
+"""Fraction of the view along each border that need not be covered, because it contains no evidence."""
 
 MIN_CAP_PX = 14.0
 """Minimum height of capitals in pixels. Smaller text is not legible."""
@@ -84,19 +84,19 @@ def reference_directions(view: EvidenceView) -> Floats:
 
 
 def inside(observation: Observation, directions: Floats) -> NDArray[np.bool_]:
-    """Return which directions, of shape ``(n, 3)``, lie in the picture of an observation."""
+    """Return which directions, of shape ``(n, 3)``, lie in the image of an observation."""
     points = observation.projection.points(directions)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.all((points >= -_TOLERANCE) & (points <= 1 + _TOLERANCE), axis=-1))
 
 
 def is_within(item: Item, observation: Observation) -> bool:
-    """Return whether a piece of evidence is completely in the picture, at any size."""
+    """Return whether a piece of evidence is completely in the image, at any size."""
     return bool(inside(observation, box_directions(item.box_deg)).all())
 
 
 def shows(item: Item, observation: Observation) -> bool:
-    """Return whether a piece of evidence is completely in the picture and large enough."""
+    """Return whether a piece of evidence is completely in the image and large enough."""
     if not is_within(item, observation):
         return False
     outline = box_directions(item.box_deg)
@@ -121,5 +121,5 @@ def box_directions(box_deg: tuple[float, float, float, float], per_side: int = 5
 
 
 def density_px_deg(observation: Observation) -> float:
-    """Return the pixels per degree in the middle of the picture."""
+    """Return the pixels per degree at the centre of the image."""
     return observation.projection.density * math.pi / 180

@@ -17,8 +17,13 @@ from scope_ptz.geometry import AXIS_M5075_G, Equirectangular, Limits, Optics, Pe
 from scope_ptz.simulator.models import SceneFile
 from scope_ptz.tools.sweep import plan_sweep
 
-How = Literal["count", "query", "locate", "track", "planner"]
-_HOW: dict[str, How] = {"count_objects": "count", "query_answer": "query", "zoom_to_object": "locate", "track_object": "track"}
+ObservationKind = Literal["count", "query", "locate", "track", "planner"]
+_HOW: dict[str, ObservationKind] = {
+    "count_objects": "count",
+    "query_answer": "query",
+    "zoom_to_object": "locate",
+    "track_object": "track",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +40,7 @@ class Observation:
 
     Attributes:
         viewpoint: Viewpoint of the camera.
-        projection: Projection of the picture.
+        projection: Projection of the image.
         time_s: Scene time.
         how: The kind of perception call; "planner" for a frame that the planner was shown.
         asked: The description or question of the call.
@@ -45,7 +50,7 @@ class Observation:
     viewpoint: str | None
     projection: Perspective | Equirectangular
     time_s: float
-    how: How
+    how: ObservationKind
     asked: str = ""
     known: bool = True
 

@@ -80,7 +80,7 @@ class _Case:
         return _MOVING_TOOLS if name in _MOVING_TOOLS and not missed_target else frozenset({name})
 
     def missing_tools(self) -> set[str]:
-        """Return the needed tools of which neither the tool nor, unless it is required, a replacement was tried."""
+        """Return the needed tools that were not tried. A tool that is not required is left out if a replacement was tried."""
         untried = self.needed - self.attempted
         return {name for name in untried if name in self.required or not self.replacements(name) & self.attempted}
 
@@ -174,7 +174,7 @@ def _was_left_unanswered(case: _Case) -> bool:
 
 
 def _was_misled(case: _Case) -> bool:
-    """Return whether the camera missed its target because perception located the wrong thing or none for a correct description."""
+    """Return whether the camera missed the target because perception located nothing or the wrong thing for a right description."""
     required = case.task.behaviour.calls
     if not case.acted_wrongly or (case.verdict.failed("calls") and _missing_call(case, required, {"found"}) is not None):
         return False

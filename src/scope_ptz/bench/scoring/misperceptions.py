@@ -12,7 +12,7 @@ from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NameSet, NoneThe
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 
 CountTruth = Callable[[Observation], int | None]
-"""Returns the true count of the requested things in the picture of an observation; None if the ground truth does not define it."""
+"""Returns the true count of the requested things in the image of an observation; None if the ground truth does not define it."""
 
 
 def wrong_counts(task: Task, episode: Episode, truth: CountTruth | None) -> bool:
@@ -98,7 +98,7 @@ def _misreads(expected: AnyExpected | None, call: EpisodeCall) -> bool:
 def shown_by(task: Task, observation: Observation) -> Iterator[EvidenceView]:
     """Yield the evidence views that an observation shows.
 
-    The viewpoint, the scope and the subject must match, and the picture must contain the items or the whole view.
+    The viewpoint, the scope and the subject must match, and the image must contain the items or the whole view.
     """
     for view in task.evidence:
         if (view.scope == "full") == observation.swept and counts_for(view, observation):
@@ -111,7 +111,7 @@ def shown_by(task: Task, observation: Observation) -> Iterator[EvidenceView]:
 
 
 def _is_as_narrow(view: EvidenceView, observation: Observation) -> bool:
-    """Return whether a picture shows little more than the reference view. A wider picture may contain more to count."""
+    """Return whether an image shows little more than the reference view. A wider image may contain more things to count."""
     return observation.swept or observation.projection.reach_deg <= 1.1 * _reach_deg(view)
 
 
@@ -121,7 +121,7 @@ def _reach_deg(view: EvidenceView) -> float:
 
 
 def target_in(task: Task, observation: Observation) -> bool:
-    """Return whether a target of the task is in the picture at any size, so that a search can find it.
+    """Return whether a target of the task is in the image at any size, so that a search can find it.
 
     If the evidence has no items, return True.
     """
@@ -129,7 +129,7 @@ def target_in(task: Task, observation: Observation) -> bool:
 
 
 def target_shown(task: Task, observation: Observation) -> bool:
-    """Return whether a target of the task is in the picture and large enough to recognise or read."""
+    """Return whether a target of the task is in the image and large enough to recognise or read."""
     return _has_target(task, observation, shows)
 
 

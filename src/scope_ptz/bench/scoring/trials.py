@@ -73,8 +73,8 @@ class ObservationTime(_Record):
 
     Attributes:
         view: The view that was observed.
-        eyes_s: Seconds of perception.
-        capture_s: Seconds of camera moves and frames, rendering included.
+        eyes_s: Seconds of perception (the model role "eyes").
+        capture_s: Seconds of camera moves and captures, including rendering.
         call_s: Seconds of the whole tool call.
     """
 
@@ -91,24 +91,24 @@ class Trial(_Record):
         task: The facts about the task.
         epoch: 1 for the first run of the task.
         sample: Name of the sample in the log. The sample contains the trace and the pictures of the run.
-        headline: The verdict.
-        scored_by: The source of the headline: the checks, or a judge if the task has no check of its answer.
-        reason: The reason for the headline.
+        headline: The verdict: correct, incorrect, unscored, or infrastructure failure.
+        scored_by: The source of the verdict: the checks, or a judge if the task has no check of its answer.
+        reason: The reason for the verdict.
         error_mode: The error mode; None unless the headline is "incorrect".
         checks: The results of the checks.
         collateral: Whether the final pose differs from the start although the task required no move.
         outcome: How the run ended; None if it was interrupted.
         answer: The agent's final answer.
-        steps: Decisions of the planner.
-        tool_calls: Number of calls by tool, failed ones included.
-        bad_calls: Calls with wrong arguments or of unknown tools.
-        perception_failures: Calls that failed because perception failed.
+        steps: Number of decisions that the planner made.
+        tool_calls: Number of calls by tool, including failed calls.
+        bad_calls: Number of calls with invalid arguments or to unknown tools.
+        perception_failures: Number of calls that failed because perception failed.
         server_events: Failures of model servers by kind.
         input_tokens: Tokens of the planner's requests.
         output_tokens: Tokens of the planner's replies.
         cost_usd: Cost of the planner's tokens; None if unknown.
         timings: Wall-clock seconds by stage.
-        looks: Wall-clock seconds of each perception call.
+        looks: The observation times: wall-clock seconds of each perception call.
         judgements: The verdicts of judges.
         labels: The human labels.
     """
@@ -146,7 +146,7 @@ class ModelCard(_Record):
     provider: str = ""
     reported: dict[str, str] = {}
     deterministic: bool = False
-    """Whether it is not a model: the grammar planner or ground-truth perception. Such pairs are not ranked."""
+    """Whether this is the rule-based grammar planner or ground-truth perception, not a model. Such pairs are not ranked."""
 
 
 class RunCard(_Record):
@@ -193,7 +193,7 @@ class Evaluation(_Record):
     Attributes:
         card: The conditions of the evaluation.
         trials: The finished runs.
-        wanted: Number of trials that the evaluation has when it is finished: tasks times epochs.
+        wanted: Number of trials in the complete evaluation: tasks times epochs.
         log: Path of the log.
     """
 

@@ -1,7 +1,7 @@
-"""Combine the checks of a run into one verdict, the headline.
+"""Combine the check results of a run into a verdict.
 
-A run is correct only if every check passes. Runs that cannot be scored, and runs that infrastructure broke, have their own
-headlines.
+A run is correct only if every check passes. Runs that cannot be scored, and runs that failed because of infrastructure, have
+their own verdicts.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ class Verdict:
 
     Attributes:
         task: The task's id.
-        headline: The verdict itself.
+        headline: "correct", "incorrect", "unscored" or "infrastructure".
         checks: The results of the checks.
-        collateral: Whether the final pose differs from the start although the task required no move. It does not affect the
-            headline.
+        moved_needlessly: Whether the final pose differs from the start although the task required no move. It does not affect
+            the headline.
         reason: The reason for the headline.
     """
 
     task: str
     headline: Headline
     checks: tuple[CheckResult, ...]
-    collateral: bool
+    moved_needlessly: bool
     reason: str
 
     def failed(self, name: str) -> bool:
@@ -78,12 +78,12 @@ def infrastructure_failure(task: Task, episode: Episode) -> str | None:
     if episode.outcome is None:
         return "the run was cut off"
     if episode.outcome in ("camera_error", "cancelled"):
-        return f"the run ended {episode.outcome}"
+        return f"the run ended with the outcome {episode.outcome}"
     if episode.outcome == "planner_error" and episode.failure is not None and episode.failure not in AGENT_FAILURES:
         return f"the planner's server failed: {episode.failure}"
     all_failed = any(call.fault == "perception" for call in episode.calls) and not episode.observations
     if all_failed and any(view.must_look for view in task.evidence) and not states_value(task, episode):
-        return "perception failed and the agent said no more than it knew"
+        return "perception failed and the agent stated no value"
     return None
 
 

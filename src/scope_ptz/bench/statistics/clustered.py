@@ -111,8 +111,8 @@ def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | No
     labels, index = _factorise(scores.clusters)
     if len(labels) < 2:
         return None
-    residuals, share = _residuals(scores, weights)
-    sums = np.bincount(index, weights=residuals * share, minlength=len(labels))
+    residuals, weight = _residuals(scores, weights)
+    sums = np.bincount(index, weights=residuals * weight, minlength=len(labels))
     return float(len(labels) / (len(labels) - 1) * np.sum(sums**2))
 
 
@@ -151,8 +151,8 @@ def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None
     return sqrt(variance) if variance > _ROUNDING else 0.0
 
 
-def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
-    """Estimate a share in [0, 1] with a Wilson interval at the effective sample size p(1-p)/se^2 (Dean and Pagano 2015).
+def proportion(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
+    """Estimate a proportion in [0, 1] with a Wilson interval at the effective sample size p(1-p)/se^2 (Dean and Pagano 2015).
 
     If the variance is 0, the effective size is the number of units.
 
@@ -176,7 +176,7 @@ def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Interva
 
 
 def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
-    """Estimate a mean difference or a contrast of shares, with the interval value +- t se, limited to [-1, 1].
+    """Estimate a mean difference or a contrast of proportions, with the interval value +- t se, limited to [-1, 1].
 
     If all outcomes are equal, there is no interval, because a variance of 0 does not mean that the difference is known.
 
@@ -196,17 +196,17 @@ def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> In
     return IntervalEstimate(value, low, high, se, len(set(scores.unit_of_each)), clusters, _single_cluster_strata(scores, weights))
 
 
-def share_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
-    """Estimate the share of ``first`` minus the share of ``second``, which are different sets of outcomes.
+def proportion_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
+    """Estimate the proportion of ``first`` minus that of ``second``, which are different sets of outcomes.
 
-    The interval combines the intervals of the two shares as if these were independent (Newcombe 1998, method 10; Zou and Donner
-    2008). Unlike value +- t se, it has a width even if all outcomes of one set are equal. If one of the shares has no interval, the
-    difference has none.
+    The interval combines the intervals of the two proportions as if these were independent (Newcombe 1998, method 10; Zou and
+    Donner 2008). Unlike value +- t se, it has a non-zero width even if all outcomes of one set are equal. If one of the
+    proportions has no interval, the difference has none.
 
     Returns:
         The estimate, or None if one of the sets is empty.
     """
-    one, other = share(first), share(second)
+    one, other = proportion(first), proportion(second)
     if one is None or other is None:
         return None
     both = Scores(
@@ -227,7 +227,7 @@ Bounded = tuple[float, float | None, float | None]
 
 
 def newcombe(one: Bounded, other: Bounded) -> tuple[float, float] | tuple[None, None]:
-    """Return the interval of the difference of two independent shares by Newcombe's method, which combines their intervals.
+    """Return the interval of the difference of two independent proportions by Newcombe's method, which combines their intervals.
 
     Returns:
         The lower and upper limit, or (None, None) if one of the intervals is unknown.

@@ -31,7 +31,7 @@ FindingKind = Literal[
 BLOCKING: frozenset[FindingKind] = frozenset(
     {"empty-question", "nothing-expected", "unknown-category", "missing-scene", "missing-preset"}
 )
-"""Kinds of findings that prevent a row from being run."""
+"""The kinds of findings that prevent a row from being run."""
 
 MEANINGS: dict[FindingKind, str] = {
     "empty-question": "the question is empty",

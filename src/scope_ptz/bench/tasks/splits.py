@@ -26,7 +26,7 @@ from scope_ptz.simulator.pack import Scene
 SPLITS = ("core", "lite", "paraphrase", "reaction", "unseen", "all")
 SPLIT_FILES = {"core": "tasks.jsonl", "paraphrase": "paraphrase.jsonl", "reaction": "reaction.jsonl", "unseen": "unseen.jsonl"}
 LITE_FILE, MANIFEST_FILE = "lite.txt", "manifest.json"
-LITE_SHARE = 0.1
+LITE_FRACTION = 0.1
 
 
 def published_folder() -> Path:
@@ -75,7 +75,7 @@ def _listed_tasks(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
 def lite(tasks: Sequence[Task], seed: int) -> tuple[Task, ...]:
     """Return a stratified tenth of the core tasks."""
     core = tasks_of_stratum(tasks, "core")
-    return stratified_sample(core, round(len(core) * LITE_SHARE), seed)
+    return stratified_sample(core, round(len(core) * LITE_FRACTION), seed)
 
 
 def tasks_of_stratum(tasks: Iterable[Task], stratum: Stratum) -> tuple[Task, ...]:

@@ -10,7 +10,7 @@ from scope_ptz.bench.tasks.task import Task
 
 
 def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
-    """Return a sample that approximately preserves the shares of categories, scenes, difficulties and their combinations.
+    """Return a sample that approximately preserves the fractions of categories, scenes, difficulties and their combinations.
 
     Tasks are taken one by one from the most underrepresented group. Within a group the choice depends only on the seed and the
     task ids.

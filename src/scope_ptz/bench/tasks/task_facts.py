@@ -1,4 +1,4 @@
-"""The facts about a task that judges read and reports use to group runs."""
+"""The facts about a task that judges are given and that reports use to group runs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.bench.tasks.task import Category, Scope, Stratum
 
 
 class TaskFacts(BaseModel):
-    """The facts about a task that judges read and reports group by.
+    """The facts about a task that judges are given and by which reports group runs.
 
     Attributes:
         id: The task's id.

@@ -17,7 +17,7 @@ from scope_ptz.bench.engine.estimate_text import duration_text, estimate_lines
 from scope_ptz.bench.engine.failure_summary import counts_text, server_events
 from scope_ptz.bench.engine.run_totals import CATEGORIES, accuracy
 from scope_ptz.bench.judging.deciding_judge import other_judges_note
-from scope_ptz.bench.judging.judgement_tally import not_judged, without_verdict
+from scope_ptz.bench.judging.judgement_tally import needs_judgement, without_verdict
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.cli.exit import print_error
 from scope_ptz.factory.evaluation_options import EvaluationPlan, EvaluationProgress
@@ -149,8 +149,8 @@ def _percent(fraction: float | None) -> str:
 
 def unscored_lines(trials: Sequence[Trial]) -> list[str]:
     """Return lines about runs that only a judge can score and that have no verdict. They are excluded from the accuracy."""
-    pending = sum(not_judged(t) for t in trials)
-    unparseable = sum(without_verdict(t) and not not_judged(t) for t in trials)
+    pending = sum(needs_judgement(t) for t in trials)
+    unparseable = sum(without_verdict(t) and not needs_judgement(t) for t in trials)
     lines = [f"not scored {pending} not judged yet: scope bench rescore LOG --judge-url ..."] if pending else []
     return lines + ([f"not scored {unparseable} without a verdict: the judge's replies were unparseable"] if unparseable else [])
 

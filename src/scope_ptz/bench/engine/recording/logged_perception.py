@@ -28,7 +28,7 @@ class LoggedPerception(Perception):
     async def of(cls, model: Model, context: EvalContext, *, pictures: bool) -> LoggedPerception:
         """Return the perception backend for an Inspect model. Raises ``ConfigError`` if the model is not a ``ScopeModel``."""
         if not isinstance(model.api, ScopeModel):
-            raise ConfigError(f"The model in the role 'eyes' must be one of SCOPE (scope_ptz/...); got {model}.")
+            raise ConfigError(f"The model in the role 'eyes' must be a SCOPE model (scope_ptz/...); got {model}.")
         return cls(model, model.api, await model.api.perception(context), pictures=pictures)
 
     async def caption(self, frame: Frame) -> Caption:

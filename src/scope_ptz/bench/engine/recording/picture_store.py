@@ -13,7 +13,7 @@ from scope_ptz.agent.store import Numbering
 from scope_ptz.camera.base import Frame
 
 MAX_PANORAMA_SIDE_PX = 2560
-"""Maximum length of the longer side of a logged panorama. Perception receives the panorama in full size."""
+"""Maximum length of the longer side of a logged panorama. Perception receives the panorama at full size."""
 JPEG_QUALITY = 85
 """JPEG quality of a logged panorama."""
 _URL_PREFIX = "data:image/jpeg;base64,"

@@ -25,7 +25,7 @@ class Exchanges:
 
 
 def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
-    """Return a copy of a planner that records its exchanges with its server. The copy shares connections and state with it.
+    """Return a copy of a planner that records its server exchanges. The copy shares connections and state with the original.
 
     A planner without a server is returned unchanged.
     """

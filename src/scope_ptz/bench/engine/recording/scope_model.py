@@ -35,7 +35,7 @@ from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import CallTools, Decision, Planner
 from scope_ptz.planner.chat.chat_messages import valid_tool_name
 
-__all__ = ["PROVIDER", "Model", "ScopeModel", "engine_model", "output_of", "scope_ptz"]
+__all__ = ["PROVIDER", "Model", "ScopeModel", "inspect_model", "output_of", "scope_ptz"]
 
 PROVIDER = "scope_ptz"
 
@@ -89,7 +89,7 @@ class ScopeModel(ModelAPI):
         """Make a call inside an Inspect model event, so that Inspect counts, limits and logs it.
 
         Args:
-            model: The Inspect model of which this object is the API.
+            model: The Inspect model whose API this object is.
             messages: The input that the log shows.
             call: Function that makes the call.
 
@@ -108,7 +108,7 @@ class ScopeModel(ModelAPI):
 
     async def generate(
         self,
-        input: list[ChatMessage],  # noqa: A002 - the engine's signature
+        input: list[ChatMessage],  # noqa: A002 - Inspect's signature
         tools: list[ToolInfo],  # noqa: ARG002
         tool_choice: ToolChoice,  # noqa: ARG002
         config: GenerateConfig,  # noqa: ARG002
@@ -153,13 +153,13 @@ def scope_ptz() -> type[ModelAPI]:
     return ScopeModel
 
 
-def engine_model(name: str, max_connections: int, *, url: str | None = None, **model_args: Any) -> Model:
+def inspect_model(name: str, max_connections: int, *, url: str | None = None, **model_args: Any) -> Model:
     """Return the Inspect model for one of SCOPE's planners, perception backends or judges.
 
     Args:
         name: Name in the registry, name of a built-in, or the model's name on its server.
         max_connections: Maximum number of concurrent calls.
-        url: Address of the server.
+        url: Base URL of the server.
         model_args: Options of the model, which the log records.
     """
     config = GenerateConfig(max_connections=max_connections)
