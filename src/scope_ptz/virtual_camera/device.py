@@ -138,18 +138,18 @@ class VirtualDevice:
         """The target of the current move; the current pose if the camera is driven at a velocity."""
         return self._motion.end or self.pose()
 
-    def move(self, pose: Pose, *, speed_share: float = 1.0, zoom_share: float | None = None) -> None:
+    def move(self, pose: Pose, *, speed_fraction: float = 1.0, zoom_fraction: float | None = None) -> None:
         """Start a move to a pose. Values beyond a limit are clamped, and a stuck axis does not move.
 
         Args:
             pose: The target.
-            speed_share: Share of the top speeds.
-            zoom_share: Share of the top speed of zoom, if it differs.
+            speed_fraction: Fraction of the top speeds.
+            zoom_fraction: Fraction of the top speed of zoom, if it differs.
         """
         reachable, _ = self.limits.clamp(pose)
         here = self.pose()
         stuck = {_STUCK_FIELDS[axis]: getattr(here, _STUCK_FIELDS[axis]) for axis in self._faults.stuck}
-        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_share, zoom_share=zoom_share)
+        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_fraction=speed_fraction, zoom_fraction=zoom_fraction)
 
     def drive(self, velocity: Velocity, *, timeout_s: float | None = None, sent_s: float | None = None) -> bool:
         """Move continuously. The command is dropped if it was sent before the last ``stop`` and arrived after it.

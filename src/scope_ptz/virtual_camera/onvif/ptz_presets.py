@@ -69,13 +69,13 @@ class PresetOperations:
     def _go_to(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
         share, zoom_share = self._configuration.shares(request.Speed)
-        self._device.move(self._preset(request.PresetToken).pose, speed_share=share, zoom_share=zoom_share)
+        self._device.move(self._preset(request.PresetToken).pose, speed_fraction=share, zoom_fraction=zoom_share)
         return {}
 
     def _go_home(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
         share, zoom_share = self._configuration.shares(request.Speed)
-        self._device.move(self._device.home, speed_share=share, zoom_share=zoom_share)
+        self._device.move(self._device.home, speed_fraction=share, zoom_fraction=zoom_share)
         return {}
 
     def _set_home(self, request: Request) -> Reply:

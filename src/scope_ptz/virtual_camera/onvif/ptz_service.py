@@ -132,7 +132,7 @@ class PtzService:
 
     def _move(self, pose: Pose, speed: Any) -> None:
         share, zoom_share = self._configuration.shares(speed)
-        self._device.move(pose, speed_share=share, zoom_share=zoom_share)
+        self._device.move(pose, speed_fraction=share, zoom_fraction=zoom_share)
 
 
 def _axes(vector: Any) -> tuple[Any, Any]:

@@ -57,7 +57,7 @@ def move(unit: VapixUnit, arguments: Arguments) -> None:
 
 
 def _go(unit: VapixUnit, pose: Pose) -> None:
-    unit.device.move(pose, speed_share=scales.speed_share(unit.speed), zoom_share=1.0)
+    unit.device.move(pose, speed_fraction=scales.speed_share(unit.speed), zoom_fraction=1.0)
 
 
 def _move_word(unit: VapixUnit, word: str) -> None:
