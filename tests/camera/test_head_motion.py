@@ -97,7 +97,7 @@ def test_braking_takes_the_braking_distance_of_the_motor() -> None:
 def test_a_reduced_speed_takes_longer() -> None:
     quick, slow = _motion(Pose()), _motion(Pose())
     quick.move(Pose(90, 0, 1), 0.0)
-    slow.move(Pose(90, 0, 1), 0.0, speed_share=0.1)
+    slow.move(Pose(90, 0, 1), 0.0, speed_fraction=0.1)
     assert slow.ends_s() == pytest.approx(Head.at_speed(AXIS_M5075_G_HEAD, 0.1).duration_s(Pose(), Pose(90, 0, 1)))
     assert slow.ends_s() > 7 * quick.ends_s()
 
@@ -121,6 +121,6 @@ def test_the_end_of_a_move_and_the_commanded_velocity() -> None:
 
 def test_zoom_can_have_a_speed_of_its_own() -> None:
     motion = _motion(Pose())
-    motion.move(Pose(90.0, 0.0, 5.0), 0.0, speed_share=0.01, zoom_share=1.0)
+    motion.move(Pose(90.0, 0.0, 5.0), 0.0, speed_fraction=0.01, zoom_fraction=1.0)
     assert motion.pose(5.0).zoom == pytest.approx(5.0)
     assert motion.pose(5.0).pan_deg < 10.0

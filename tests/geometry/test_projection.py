@@ -65,7 +65,7 @@ def test_field_of_view_is_the_angle_between_its_sides(view: Perspective) -> None
 
 @given(views, unit, unit)
 def test_reach_holds_every_pixel(view: Perspective, x: float, y: float) -> None:
-    assert float(angle_between_deg(view.directions((x, y)), view.directions((0.5, 0.5)))) <= view.reach_deg + 1e-6
+    assert float(angle_between_deg(view.directions((x, y)), view.directions((0.5, 0.5)))) <= view.max_off_axis_deg + 1e-6
 
 
 @given(pans, st.floats(-60, 30), st.floats(1, 60))

@@ -115,14 +115,14 @@ def test_tiles_hidden_by_sharper_ones_change_nothing(analytic_scene: Scene, pan:
     viewpoint, view = analytic_scene.viewpoint("mast"), Perspective(pan, tilt, hfov_deg, 640, 360)
     atlas, tiles = viewpoint.colour_atlas, viewpoint.tiles
     found = view_map(viewpoint, atlas, view)
-    if view.density <= TILE_GAIN * panorama_density(atlas):
+    if view.pixels_per_radian <= TILE_GAIN * panorama_density(atlas):
         return
     whole = slice(0, view.height), slice(0, view.width)
     grid = Grid(view, step_px(view))
-    slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), view.density))
+    slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), view.pixels_per_radian))
     expected = panorama_map(viewpoint.manifest.band, slot, grid, whole).copy()
     for showing in reversed(tiles.in_view(view)):
-        slot = atlas.ensure(1 + showing.tile, suitable_scale(atlas, tiles.views[showing.tile].focal_px, view.density))
+        slot = atlas.ensure(1 + showing.tile, suitable_scale(atlas, tiles.views[showing.tile].focal_px, view.pixels_per_radian))
         part = Grid(view, step_px(view), showing.place)
         nodes = tiles.points(showing, view, part.x, part.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
         mask = showing.mask()

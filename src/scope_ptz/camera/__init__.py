@@ -1,1 +1,1 @@
-"""Cameras behind one contract."""
+"""Cameras, simulated and real, which all implement one contract."""

@@ -35,7 +35,7 @@ class Camera(ABC):
     @property
     @abstractmethod
     def info(self) -> CameraInfo:
-        """Name, limits, optics and frame size."""
+        """The camera's name, limits, optics, frame size and capabilities."""
 
     @abstractmethod
     async def pose(self) -> Pose:
@@ -43,9 +43,9 @@ class Camera(ABC):
 
     @abstractmethod
     async def move(self, pose: Pose) -> Arrival:
-        """Go to an absolute pose within the limits and return when the picture has settled.
+        """Move to an absolute pose, clamped to the limits, and return when the picture has settled.
 
-        ``pose.pan_deg`` is clamped without being wrapped first: 190 stops at 179 and never turns the long way round.
+        Pan is not wrapped before it is clamped: a request for 190 stops at 179 and never turns the long way round.
         """
 
     @abstractmethod
@@ -76,7 +76,7 @@ class Camera(ABC):
         """Move at constant velocities until the next command. The call returns immediately.
 
         The camera stops on its own after ``timeout_s`` without another command, so a lost controller cannot leave it moving.
-        Velocities above the top speed are reduced to it, and an axis stops at its limit.
+        Velocities are capped at the top speed, and an axis stops at its limit.
 
         Args:
             pan_dps: Degrees per second to the right.
@@ -92,12 +92,12 @@ class Camera(ABC):
         raise CameraError(f"{self.info.name} cannot be driven at a velocity; move it to a pose.")
 
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
-        """Turn so that a point of the current picture comes to its middle, and zoom by a factor: click to centre, area zoom.
+        """Turn until a point of the current picture is in its centre, and zoom by a factor (click-to-centre and area zoom).
 
         Args:
-            x: The point from 0 (left border) to 1 (right border).
-            y: The point from 0 (top) to 1 (bottom).
-            zoom_factor: Factor of the focal length; 2.0 shows half of the picture's width.
+            x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
+            y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
+            zoom_factor: Factor by which the focal length changes; 2.0 shows half of the picture's width.
 
         Raises:
             InputError: The point is not within the picture, or the factor is not above 0.
@@ -116,8 +116,8 @@ class Camera(ABC):
         """Set the focus and return when it has settled.
 
         Args:
-            action: What to do; ``info.capabilities.focus`` lists what the camera offers.
-            step: Length of a step as a share of the range, for "near" and "far".
+            action: The focus action; ``info.capabilities.focus`` lists those that the camera offers.
+            step: Length of a step as a fraction of the range, for "near" and "far".
 
         Raises:
             InputError: The action is unknown, or the step is not above 0 and at most 1.
@@ -130,8 +130,8 @@ class Camera(ABC):
         """Set the iris.
 
         Args:
-            action: What to do; ``info.capabilities.iris`` lists what the camera offers.
-            step: Length of a step as a share of the range, for "open" and "close".
+            action: The iris action; ``info.capabilities.iris`` lists those that the camera offers.
+            step: Length of a step as a fraction of the range, for "open" and "close".
 
         Raises:
             InputError: The action is unknown, or the step is not above 0 and at most 1.
@@ -153,10 +153,10 @@ class Camera(ABC):
             await self.clock.sleep(due_s - elapsed_s(self.clock))
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:  # noqa: ARG002 - part of the contract
-        """Save the current pose as a preset. A preset of the same name is replaced.
+        """Save the current pose as a preset. An existing preset with the same name is replaced.
 
         Raises:
-            InputError: The name is empty, too long, or has characters that cannot be printed.
+            InputError: The name is empty or too long, or contains unprintable characters.
             CameraError: The camera cannot save presets.
         """
         check_preset_name(name)
@@ -174,9 +174,9 @@ class Camera(ABC):
         raise CameraError(f"{self.info.name} cannot remove presets.")
 
     control_lock: ControlLock | None = None
-    """The lock of ``control``.
+    """The lock that ``control`` acquires.
 
-    For a camera that other programs can reach, the code that opens it sets a lock that works across processes.
+    If other programs can reach the camera, the code that opens it sets a lock that works across processes.
     """
 
     @asynccontextmanager
@@ -202,8 +202,8 @@ class Camera(ABC):
 
     @contextmanager
     def hold_time(self) -> Iterator[None]:
-        """Return a context that holds the time of a simulated world, so that a sweep sees a single instant.
+        """Return a context that freezes the time of a simulated world, so that all frames of a sweep show the same instant.
 
-        Real time cannot be held.
+        For a real camera it has no effect.
         """
         yield

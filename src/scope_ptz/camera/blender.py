@@ -32,13 +32,13 @@ class BlenderCamera(Camera):
         worker: The running worker, with the scene loaded.
         scene: The scene's viewpoints and presets.
         viewpoint: The viewpoint of the camera; by default, that of the home preset.
-        samples: Cycles samples for each pixel. Packs are baked with 16.
+        samples: Cycles samples per pixel. Packs are baked with 16.
         clock: The scene's clock.
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
-        optics: Fields of view by zoom; the default is the simulated camera's, an AXIS M5075-G.
-        limits: Limits of motion; the default is the simulated camera's.
-        has_truth: Whether frames state their origin, so that the ground truth of a pack applies to them.
+        optics: The lens; the default is that of the simulated camera, an AXIS M5075-G.
+        limits: Limits of motion; the default is those of the simulated camera.
+        has_truth: Whether frames record their origin, so that the ground truth of a pack can be applied to them.
     """
 
     clock: SceneClock
@@ -130,10 +130,10 @@ class BlenderCamera(Camera):
         self._motion.halt(await self.pose(), self.clock.elapsed_s())
 
     async def _image(self, viewpoint: str, view: Perspective, time_s: float) -> NDArray[np.uint8]:
-        """Render a view, or return the last picture if nothing has changed since."""
+        """Render a view, or return the last picture if nothing has changed since it was rendered."""
         key = (viewpoint, view, time_s)
         if self._last is None or self._last[0] != key:
-            # A render takes seconds. A cancelled render is abandoned, and ends when the worker is closed.
+            # Rendering takes seconds. A cancelled render is abandoned; it ends when the worker is closed.
             self._last = key, await to_thread.run_sync(self._render, viewpoint, view, time_s, abandon_on_cancel=True)
         return self._last[1]
 

@@ -1,4 +1,4 @@
-"""Optional capabilities of a camera, beyond moving to a pose and taking a picture, and checks of their arguments."""
+"""A camera's optional capabilities, beyond moving to a pose and taking a picture, and argument checks for them."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from scope_ptz.camera.lens import FocusAction, IrisAction
 from scope_ptz.errors import InputError
 
 MAX_PRESET_NAME = 31
-"""The longest preset name in characters, which is the limit of AXIS cameras."""
+"""Maximum length of a preset name in characters. It is the limit of AXIS cameras."""
 
 MAX_DRIVE_TIMEOUT_S = 10.0
-"""The longest time, in seconds, that a camera moves without another command."""
+"""Maximum time in seconds that a driven camera keeps moving without another command."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ def check_preset_name(name: str) -> None:
     """Check the name of a new preset.
 
     Raises:
-        InputError: The name is empty, too long, or has non-printable characters.
+        InputError: The name is empty or too long, or contains unprintable characters.
     """
     if not name.strip() or name != name.strip() or not name.isprintable() or len(name) > MAX_PRESET_NAME:
         raise InputError(

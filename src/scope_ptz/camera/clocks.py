@@ -1,4 +1,4 @@
-"""The clock of a camera, and the clock of cameras in the real world."""
+"""The interface of a camera's clock, and the clock of real cameras."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ class Clock(Protocol):
     def now_s(self) -> float: ...
 
     async def sleep(self, seconds: float) -> None:
-        """Wait for a duration of the camera's world, in seconds."""
+        """Wait for a number of seconds of the camera's world."""
         ...
 
 
 def elapsed_s(clock: Clock) -> float:
-    """Return seconds that pass at their own pace, also while scene time is stopped or has another speed."""
+    """Return the elapsed seconds of a clock, which advance even if scene time is stopped or runs at another speed."""
     return float(getattr(clock, "elapsed_s", clock.now_s)())
 
 
 class WallClock:
-    """A clock for cameras in the real world. It starts at zero and follows the wall clock."""
+    """A clock for real cameras. It starts at zero and runs in real time."""
 
     def __init__(self) -> None:
         self._started_s = monotonic()

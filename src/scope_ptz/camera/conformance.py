@@ -35,20 +35,20 @@ class CameraConformance(LensConformance, ABC):
     angle_tolerance_deg: float = 0.05
     zoom_tolerance: float = 0.02
     field_tolerance: float = 0.02
-    """Allowed difference between a frame's field of view and the zoom table, as a share."""
+    """Allowed relative difference between a frame's field of view and the zoom table."""
     same_picture_mean_difference: float = 2.0
-    """Allowed mean difference (of 255) between two pictures of one pose, for noise and moving things."""
+    """Allowed mean difference (out of 255) between two pictures of one pose, to allow for noise and moving objects."""
     driving_s: float = 0.5
-    """Duration of drives in seconds of the camera's clock."""
+    """Duration of a drive, in seconds on the camera's clock."""
     stopping_s: float = 0.5
-    """Allowed time from the end of a drive until the camera is stationary."""
+    """Seconds allowed from the end of a drive until the camera is stationary."""
 
     @abstractmethod
     def camera(self) -> AbstractAsyncContextManager[Camera]:
         """Open a camera and release it afterwards."""
 
     async def findings(self) -> dict[str, str]:
-        """Run all checks and return name and reason of each failure."""
+        """Run all checks. Return the reason for each failure, by the name of the check."""
         failed = {}
         for name in sorted(n for n in dir(self) if n.startswith("test_")):
             try:
@@ -61,7 +61,7 @@ class CameraConformance(LensConformance, ABC):
         async with self.camera() as camera:
             info = camera.info
             limits = info.limits
-            expect(bool(info.name), "the camera has no name")
+            expect(bool(info.name), "the camera's name is empty")
             expect(limits.min_pan_deg < limits.max_pan_deg, "pan limits are not in order")
             expect(limits.min_tilt_deg < limits.max_tilt_deg, "tilt limits are not in order")
             expect(0 < limits.min_zoom <= limits.max_zoom, "zoom limits are not in order")
@@ -91,7 +91,7 @@ class CameraConformance(LensConformance, ABC):
             expect(turn(moved.pose, arrival.pose) > 5.0, "a positive pan did not turn right")
             expect(moved.pose.tilt_deg - arrival.pose.tilt_deg > 3.0, "a positive tilt did not turn up")
 
-    async def test_clamps_and_says_so(self) -> None:
+    async def test_clamps_and_reports_it(self) -> None:
         async with self.camera() as camera:
             limits = camera.info.limits
             centre = middle(camera.info)
@@ -103,7 +103,7 @@ class CameraConformance(LensConformance, ABC):
                 (Pose(centre.pan_deg, centre.tilt_deg, limits.min_zoom / 3), "zoom"),
             ):
                 arrival = await camera.move(target)
-                expect(arrival.clamped == (axis,), f"{target}: clamped should be {(axis,)}, is {arrival.clamped}")
+                expect(arrival.clamped == (axis,), f"{target}: clamped should be {(axis,)}, not {arrival.clamped}")
                 self._expect_at(arrival.pose, limits.clamp(target)[0], camera.info)
 
     async def test_pan_stops_or_wraps(self) -> None:
@@ -115,7 +115,7 @@ class CameraConformance(LensConformance, ABC):
                 arrival = await camera.move(target)
                 expected, clamped = limits.clamp(target)
                 self._expect_at(arrival.pose, expected, camera.info)
-                expect(arrival.clamped == clamped, f"pan {beyond}: clamped should be {clamped}, is {arrival.clamped}")
+                expect(arrival.clamped == clamped, f"pan {beyond}: clamped should be {clamped}, not {arrival.clamped}")
 
     async def test_frame_carries_its_geometry(self) -> None:
         async with self.camera() as camera:
@@ -123,7 +123,10 @@ class CameraConformance(LensConformance, ABC):
             for target in poses(info):
                 arrival = await camera.move(target)
                 frame = await camera.frame()
-                expect((frame.width, frame.height) == (info.frame_width, info.frame_height), "the frame's size is not as announced")
+                expect(
+                    (frame.width, frame.height) == (info.frame_width, info.frame_height),
+                    "the frame's size differs from that in info",
+                )
                 expect(not frame.image.flags.writeable, "a frame's image must be read-only")
                 self._expect_at(frame.pose, arrival.pose, info)
                 field = info.optics.hfov_deg(frame.pose.zoom)
@@ -136,7 +139,7 @@ class CameraConformance(LensConformance, ABC):
                 )
                 towards = view.directions((0.5, 0.5))
                 aim = Perspective(frame.pose.pan_deg, frame.pose.tilt_deg, 30.0, 10, 10).directions((0.5, 0.5))
-                expect(float(towards @ aim) > math.cos(math.radians(0.1)), "the middle of the frame is not where the pose points")
+                expect(float(towards @ aim) > math.cos(math.radians(0.1)), "the pose does not point at the middle of the frame")
 
     async def test_one_pose_gives_one_picture(self) -> None:
         async with self.camera() as camera:
@@ -150,7 +153,7 @@ class CameraConformance(LensConformance, ABC):
                 again = await camera.frame()
             same = float(np.abs(first.image.astype(float) - again.image).mean())
             differs = float(np.abs(first.image.astype(float) - other.image).mean())
-            expect(same <= self.same_picture_mean_difference, f"back at {there} the picture differs by {same:.2f} of 255")
+            expect(same <= self.same_picture_mean_difference, f"back at {there}, the picture differs by {same:.2f} out of 255")
             expect(differs > same, "a move does not change the picture")
 
     async def test_presets_are_stable_and_reachable(self) -> None:
@@ -224,9 +227,9 @@ class CameraConformance(LensConformance, ABC):
             await camera.stop()
             stopped = await camera.pose()
             if top.pan_dps:
-                expect(turn(stopped, start) < -1.0, f"driven left from {start}, it is at {stopped}")
+                expect(turn(stopped, start) < -1.0, f"after driving left from {start}, it is at {stopped}")
             if top.tilt_dps:
-                expect(stopped.tilt_deg > start.tilt_deg + 0.5, f"driven up from {start}, it is at {stopped}")
+                expect(stopped.tilt_deg > start.tilt_deg + 0.5, f"after driving up from {start}, it is at {stopped}")
             await camera.clock.sleep(self.driving_s)
             self._expect_at(await camera.pose(), stopped, camera.info)
 
@@ -239,7 +242,7 @@ class CameraConformance(LensConformance, ABC):
             await camera.drive(top.pan_dps / 4, timeout_s=self.driving_s / 2)
             await camera.clock.sleep(self.driving_s / 2 + self.stopping_s)
             ended = await camera.pose()
-            expect(turn(ended, start) > 0.5, f"driven right from {start}, it is at {ended}")
+            expect(turn(ended, start) > 0.5, f"after driving right from {start}, it is at {ended}")
             await camera.clock.sleep(self.driving_s)
             self._expect_at(await camera.pose(), ended, camera.info)
 
@@ -253,7 +256,7 @@ class CameraConformance(LensConformance, ABC):
             await camera.clock.sleep(math.log2(limits.max_zoom / start.zoom) / top.zoom_rate + self.stopping_s)
             closest = await camera.pose()
             await camera.stop()
-            expect(closest.zoom > 1.2 * start.zoom, f"driven to zoom in from {start}, it is at {closest}")
+            expect(closest.zoom > 1.2 * start.zoom, f"after zooming in from {start}, it is at {closest}")
             expect(closest.zoom <= limits.max_zoom * (1 + self.zoom_tolerance), f"it is at {closest}, beyond its zoom limit")
             self._expect_at(closest, Pose(start.pan_deg, start.tilt_deg, closest.zoom), camera.info)
 
@@ -342,7 +345,7 @@ class CameraConformance(LensConformance, ABC):
             expect(second.time_s >= first.time_s, "frames go back in time")
 
     def _expect_at(self, pose: Pose, expected: Pose, info: CameraInfo) -> None:
-        expect(self._is_at(pose, expected, info), f"the camera is at {pose}, it should be at {expected}")
+        expect(self._is_at(pose, expected, info), f"the camera is at {pose}, but should be at {expected}")
 
     def _is_at(self, pose: Pose, expected: Pose, info: CameraInfo) -> bool:
         pan_off = abs(turn(pose, expected)) if info.limits.pan_endless else abs(pose.pan_deg - expected.pan_deg)

@@ -10,16 +10,16 @@ from scope_ptz.geometry import Pose, wrap_pan_deg
 
 
 def poses(info: CameraInfo) -> list[Pose]:
-    """Return four poses well within the limits and far from each other."""
+    """Return four poses that are well within the limits and far from each other."""
     limits = info.limits
-    shares = ((0.5, 0.6, 0.0), (0.8, 0.4, 0.7), (0.2, 0.8, 0.3), (0.55, 0.2, 1.0))
+    fractions = ((0.5, 0.6, 0.0), (0.8, 0.4, 0.7), (0.2, 0.8, 0.3), (0.55, 0.2, 1.0))
     return [
         Pose(
             limits.min_pan_deg + pan * (limits.max_pan_deg - limits.min_pan_deg),
             limits.min_tilt_deg + tilt * (limits.max_tilt_deg - limits.min_tilt_deg),
             limits.min_zoom + zoom * (limits.max_zoom - limits.min_zoom),
         )
-        for pan, tilt, zoom in shares
+        for pan, tilt, zoom in fractions
     ]
 
 
@@ -31,7 +31,7 @@ def middle(info: CameraInfo) -> Pose:
 
 
 def turn(pose: Pose, since: Pose) -> float:
-    """Return the angle in degrees by which the camera has turned right."""
+    """Return the angle in degrees by which the camera has turned to the right since a pose."""
     return wrap_pan_deg(pose.pan_deg - since.pan_deg)
 
 

@@ -1,4 +1,4 @@
-"""One controller at a time: a lock that holds within a process and, for a camera on the network, between processes."""
+"""A lock that allows one controller at a time, within a process and, for network cameras, across processes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def user_name() -> str:
     """Return the name of the user that runs this process.
 
-    For an account without a name, as in some containers, it is the user number.
+    If the account has no name, as in some containers, return the user number.
     """
     try:
         return getpass.getuser()
@@ -35,7 +35,7 @@ class Holder:
 
     Attributes:
         name: Name of the controller, such as "console: anna".
-        process: User, process number and machine.
+        process: The user, process number and machine.
         since: When control was taken, as an ISO 8601 time in UTC.
     """
 
@@ -65,8 +65,8 @@ class ControlLock:
 
     Args:
         camera: The camera's name, for messages.
-        key: Identifies the device, such as its address and channel. Locks with the same key and folder exclude each other
-            between processes; None excludes only users of this object.
+        key: Identifies the device, for example by its address and channel. Locks with the same key and folder exclude each
+            other across processes; None excludes only other users of this object.
         folder: The folder of the lock files. It is required with a key.
     """
 

@@ -27,9 +27,9 @@ class _Driving:
 
 
 class HeadMotion:
-    """The current command of a head, and the pose that follows from it.
+    """The current command of a motorised head, and the pose that results from it.
 
-    Times are seconds on one clock, which the caller reads. Every command replaces the one before it.
+    Times are seconds on one clock, which the caller reads. Every command replaces the previous one.
 
     Args:
         head: The motors.
@@ -39,23 +39,27 @@ class HeadMotion:
 
     def __init__(self, head: Head, limits: Limits, pose: Pose) -> None:
         self._head, self._limits = head, limits
-        # One attribute, so that another thread that reads a pose never sees half of a command.
+        # A single attribute, so that another thread that reads a pose never sees half a command.
         self._current: tuple[_Move | _Driving, float] = _Move(head, pose, pose), 0.0
         self.commands = 0
-        """Number of commands so far. It shows whether another command has replaced an earlier one."""
+        """Number of commands so far. A change means that another command has replaced an earlier one."""
 
-    def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0, zoom_share: float | None = None) -> None:
-        """Start towards a pose within the limits, from where the head is, at a share of its top speeds.
+    def move(self, pose: Pose, now_s: float, *, speed_fraction: float = 1.0, zoom_fraction: float | None = None) -> None:
+        """Start moving from the current pose to a pose, which must be within the limits.
 
-        ``zoom_share`` is the share for zoom if it differs from the share for pan and tilt.
+        Args:
+            pose: The target pose.
+            now_s: The current time.
+            speed_fraction: Fraction of the top speeds at which the axes move.
+            zoom_fraction: Fraction of the top speed for zoom, if it differs from that for pan and tilt.
         """
-        head = self._head if speed_share == 1.0 else self._head.at_speed(speed_share)
-        if zoom_share is not None:
-            head = replace(head, zoom=self._head.at_speed(zoom_share).zoom)
+        head = self._head if speed_fraction == 1.0 else self._head.at_speed(speed_fraction)
+        if zoom_fraction is not None:
+            head = replace(head, zoom=self._head.at_speed(zoom_fraction).zoom)
         self._replace(_Move(head, self.pose(now_s), pose), now_s)
 
     def drive(self, velocity: Velocity, now_s: float, timeout_s: float) -> None:
-        """Accelerate to a velocity and brake after the timeout."""
+        """Accelerate to a velocity, and brake after the timeout."""
         self._replace(_Driving(self.pose(now_s), self.velocity(now_s), velocity, timeout_s), now_s)
 
     def brake(self, now_s: float) -> None:
@@ -80,7 +84,7 @@ class HeadMotion:
         self._replace(_Move(self._head, pose, pose), now_s)
 
     def pose(self, now_s: float) -> Pose:
-        """Return the pose at a time, which lies at or after the last command."""
+        """Return the pose at a time, which must not be before the last command."""
         command, since_s = self._current
         time_s = now_s - since_s
         if isinstance(command, _Move):
@@ -91,7 +95,7 @@ class HeadMotion:
         return Pose(wrap_pan_deg(reached.pan_deg), reached.tilt_deg, reached.zoom) if self._limits.pan_endless else reached
 
     def velocity(self, now_s: float) -> Velocity:
-        """Return the velocity of a driven head. A move to a pose reports none: the next command starts from rest."""
+        """Return the velocity of a driven head; zero during a move to a pose, so that the next command starts from rest."""
         command, since_s = self._current
         if isinstance(command, _Move):
             return Velocity()
@@ -106,17 +110,17 @@ class HeadMotion:
 
     @property
     def end(self) -> Pose | None:
-        """The pose that the current move leads to; None for a driven head."""
+        """The target of the current move; None for a driven head."""
         command, _ = self._current
         return command.end if isinstance(command, _Move) else None
 
     def driven_at(self, now_s: float) -> Velocity:
-        """Return the commanded velocity of a driven head; zero after its timeout, and for a move to a pose."""
+        """Return the commanded velocity of a driven head; zero after its timeout, and during a move to a pose."""
         command, since_s = self._current
         return command.target if isinstance(command, _Driving) and now_s - since_s < command.hold_s else Velocity()
 
     def ends_s(self) -> float:
-        """Return the time at which the current command ends, with the settling of a move to a pose."""
+        """Return the time at which the current command ends. For a move to a pose, this includes the settling time."""
         command, since_s = self._current
         if isinstance(command, _Move):
             return since_s + command.head.duration_s(command.start, command.end)
@@ -130,7 +134,7 @@ class HeadMotion:
         return now_s < self.ends_s()
 
     def _driven(self, command: _Driving, time_s: float) -> tuple[tuple[float, float], ...]:
-        """Return distance and speed of pan, tilt and zoom (in octaves)."""
+        """Return the distance and speed of pan, tilt and zoom (in octaves) since a command began."""
         head, speed, target = self._head, command.speed, command.target
         return (
             head.pan.driven(speed.pan_dps, target.pan_dps, command.hold_s, time_s),

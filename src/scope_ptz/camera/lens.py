@@ -8,7 +8,7 @@ from typing import Literal, get_args
 from scope_ptz.errors import CameraError, InputError
 
 FocusAction = Literal["auto", "manual", "once", "near", "far"]
-"""Focus all the time, hold the focus, focus once and hold (one-push), or step nearer or farther and hold."""
+"""Focus continuously, hold the focus, focus once and hold (one-push), or step nearer or farther and hold."""
 
 IrisAction = Literal["auto", "manual", "open", "close"]
 """Let the camera set the iris, hold it, or step it open or closed and hold it."""
@@ -17,7 +17,7 @@ FOCUS_ACTIONS: tuple[FocusAction, ...] = get_args(FocusAction)
 IRIS_ACTIONS: tuple[IrisAction, ...] = get_args(IrisAction)
 
 DEFAULT_STEP = 0.05
-"""Length of a step, as a share of the range."""
+"""Default length of a step, as a fraction of the range."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,20 +11,20 @@ from scope_ptz.geometry import Pose
 
 @dataclass(frozen=True, slots=True)
 class Motor:
-    """A motor: its top speed in units/s and its acceleration in units/s²."""
+    """A motor, described by its top speed in units/s and its acceleration in units/s²."""
 
     speed: float
     acceleration: float
 
     def duration_s(self, distance: float) -> float:
-        """Return the time from rest to rest."""
+        """Return the time in seconds to move a distance, from rest to rest."""
         d = abs(distance)
         if d < self.speed**2 / self.acceleration:
             return 2 * math.sqrt(d / self.acceleration)
         return d / self.speed + self.speed / self.acceleration
 
     def travelled(self, distance: float, time_s: float) -> float:
-        """Return the signed part of ``distance`` that is covered after ``time_s``."""
+        """Return how much of ``distance`` is covered after ``time_s``, with the same sign."""
         d, total = abs(distance), self.duration_s(distance)
         t = min(max(time_s, 0.0), total)
         if t >= total:
@@ -39,13 +39,13 @@ class Motor:
         return math.copysign(gone, distance)
 
     def driven(self, speed: float, target_speed: float, hold_s: float, time_s: float) -> tuple[float, float]:
-        """Return distance and speed ``time_s`` after a velocity command.
+        """Return the distance and the speed ``time_s`` after a velocity command.
 
         Args:
             speed: The speed when the command arrived.
-            target_speed: The commanded speed; the motor's top speed caps it.
-            hold_s: How long the command lasts. Then the motor brakes.
-            time_s: Time since the command.
+            target_speed: The commanded speed, which is capped at the motor's top speed.
+            hold_s: Seconds that the command lasts. Then the motor brakes.
+            time_s: Seconds since the command.
         """
         target = min(max(target_speed, -self.speed), self.speed)
         distance, speed = self._ramp(speed, target, min(time_s, hold_s))
@@ -55,11 +55,11 @@ class Motor:
         return distance, speed
 
     def braking_s(self, speed: float) -> float:
-        """Return the time until the motor has stopped."""
+        """Return the time in seconds to brake from a speed to a standstill."""
         return abs(speed) / self.acceleration
 
     def _ramp(self, speed: float, target: float, time_s: float) -> tuple[float, float]:
-        """Return distance and speed after accelerating towards a target speed and then holding it."""
+        """Return the distance and the speed after accelerating towards a target speed and then holding it."""
         ramp_s = abs(target - speed) / self.acceleration
         if time_s < ramp_s:
             reached = speed + math.copysign(self.acceleration * time_s, target - speed)
@@ -76,19 +76,19 @@ class Head:
     zoom: Motor
     settle_s: float
 
-    def at_speed(self, share: float) -> Head:
-        """Return a head whose top speeds are reduced to a share (0 to 1] of the original ones."""
-        pan, tilt, zoom = (replace(motor, speed=motor.speed * share) for motor in (self.pan, self.tilt, self.zoom))
+    def at_speed(self, fraction: float) -> Head:
+        """Return a head whose top speeds are reduced to a fraction, above 0 and at most 1, of the original ones."""
+        pan, tilt, zoom = (replace(motor, speed=motor.speed * fraction) for motor in (self.pan, self.tilt, self.zoom))
         return Head(pan, tilt, zoom, self.settle_s)
 
     def duration_s(self, start: Pose, end: Pose) -> float:
-        """Return the time until all axes have stopped and the picture has settled; 0 if nothing moves."""
+        """Return the seconds until all axes have stopped and the picture has settled; 0 if nothing moves."""
         pan, tilt, octaves = _distances(start, end)
         moving = max(self.pan.duration_s(pan), self.tilt.duration_s(tilt), self.zoom.duration_s(octaves))
         return moving + self.settle_s if moving > 0 else 0.0
 
     def at(self, start: Pose, end: Pose, time_s: float) -> Pose:
-        """Return the pose ``time_s`` after the start of a move, exactly ``end`` once all axes have arrived."""
+        """Return the pose ``time_s`` after the start of a move. Once all axes have arrived, it is exactly ``end``."""
         pan, tilt, octaves = _distances(start, end)
         if time_s >= self.duration_s(start, end) - self.settle_s:
             return end

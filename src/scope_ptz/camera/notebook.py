@@ -14,7 +14,7 @@ JPEG_QUALITY = 88
 
 
 def figure_html(image: NDArray[np.uint8], caption: str) -> str:
-    """Return an image, ``(H, W, 3)`` uint8 RGB, as an HTML figure with a caption."""
+    """Return an HTML figure that shows an image, ``(H, W, 3)`` uint8 RGB, with a caption."""
     height, width = image.shape[:2]
     scale = min(1.0, MAX_WIDTH / width)
     shown = cv2.resize(

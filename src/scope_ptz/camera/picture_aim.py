@@ -1,4 +1,4 @@
-"""The pose that brings a point of the picture to its middle."""
+"""Compute the pose that centres a point of the picture."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def check_point(x: float, y: float, zoom_factor: float) -> None:
         InputError: The point is not within the picture, or the factor is not above 0.
     """
     if not (0.0 <= x <= 1.0 and 0.0 <= y <= 1.0):
-        raise InputError(f"A point of the picture must be a pair of shares of its width and height from 0 to 1; got {x}, {y}.")
+        raise InputError(f"A point of the picture must be given as fractions of its width and height from 0 to 1; got {x}, {y}.")
     if not (zoom_factor > 0 and math.isfinite(zoom_factor)):
         raise InputError(f"The zoom factor must be above 0; got {zoom_factor}.")
 
@@ -24,16 +24,16 @@ def check_point(x: float, y: float, zoom_factor: float) -> None:
 def towards_point(
     optics: Optics, limits: Limits, size: tuple[int, int], pose: Pose, x: float, y: float, zoom_factor: float
 ) -> Pose:
-    """Return the pose that centres a point of the picture at a pose. It may be beyond the limits.
+    """Return the pose that centres a point of the picture taken at ``pose``. It may be beyond the limits.
 
     Args:
-        optics: Field of view by zoom.
-        limits: Limits of motion, for the number of full turns of pan.
+        optics: The lens.
+        limits: Limits of motion. They decide between pan angles that differ by full turns.
         size: Width and height of the picture in pixels.
         pose: The current pose.
-        x: The point from 0 (left border) to 1 (right border).
-        y: The point from 0 (top) to 1 (bottom).
-        zoom_factor: Factor of the focal length.
+        x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
+        y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
+        zoom_factor: Factor by which the focal length changes.
 
     Raises:
         InputError: The point is not within the picture, or the factor is not above 0.
@@ -47,7 +47,7 @@ def towards_point(
 def _zoom_for(optics: Optics, focal: float) -> float:
     """Return the magnification with a focal length.
 
-    Beyond the ends of the table, it is extrapolated in proportion, so that it can be clamped.
+    Beyond the ends of the table, it is extrapolated proportionally, so that the caller can clamp it.
     """
     shortest, longest = optics.focal(optics.min_zoom), optics.focal(optics.max_zoom)
     if focal > longest:

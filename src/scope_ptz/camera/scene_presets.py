@@ -1,4 +1,4 @@
-"""The presets of a scene as poses, and the preset at which a camera starts."""
+"""The presets of a scene, and the preset that is a camera's home."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ def preset_pose(preset: ScenePreset) -> Pose:
 
 
 def starting_preset(scene: SceneFile, viewpoint: str | None = None) -> ScenePreset:
-    """Return the preset that is home for a camera.
+    """Return the preset that is a camera's home.
 
     Args:
         scene: The scene.
-        viewpoint: Where the camera stands, None for the viewpoint of the scene's home preset.
+        viewpoint: Where the camera stands; None for the viewpoint of the scene's home preset.
 
     Returns:
-        The scene's home preset, or the first preset of another viewpoint. A viewpoint without presets gets one straight ahead.
+        The scene's home preset or, for another viewpoint, its first preset. If it has none, a preset that points straight ahead.
 
     Raises:
         UnknownNameError: The scene has no such viewpoint.
@@ -38,14 +38,14 @@ def starting_preset(scene: SceneFile, viewpoint: str | None = None) -> ScenePres
 
 
 class ScenePresets:
-    """The presets of one simulated camera: those of its scene, and those that were saved since it was opened.
+    """The presets of one simulated camera: those of its scene, and those saved since it was opened.
 
     Args:
         scene: The scene.
-        viewpoint: Where the camera stands, None for the viewpoint of the scene's home preset.
+        viewpoint: Where the camera stands; None for the viewpoint of the scene's home preset.
 
     Attributes:
-        home: The preset that is home.
+        home: The camera's home preset.
     """
 
     def __init__(self, scene: SceneFile, viewpoint: str | None = None) -> None:
@@ -67,15 +67,15 @@ class ScenePresets:
         return self._presets[name]
 
     def save(self, name: str, description: str, viewpoint: str, pose: Pose) -> PresetInfo:
-        """Save a pose. A preset of the same name is replaced.
+        """Save a pose as a preset. An existing preset with the same name is replaced.
 
         Raises:
-            InputError: The name is empty, too long, or has characters that cannot be printed.
-            CameraError: The preset of this name is home.
+            InputError: The name is empty or too long, or contains unprintable characters.
+            CameraError: The preset with this name is the home preset.
         """
         check_preset_name(name)
         if name == self.home.name:
-            raise CameraError(f"The preset '{name}' is home and cannot be replaced. Choose another name.")
+            raise CameraError(f"The preset '{name}' is the home preset and cannot be replaced. Choose another name.")
         # Names in scene files are kebab-case. Operators may choose any name, so it is not validated again.
         self._presets[name] = ScenePreset.model_construct(
             name=name, viewpoint=viewpoint, description=description, pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom
@@ -87,8 +87,8 @@ class ScenePresets:
 
         Raises:
             UnknownNameError: There is no such preset.
-            CameraError: The preset is home.
+            CameraError: The preset is the home preset.
         """
         if self.find(name).name == self.home.name:
-            raise CameraError(f"The preset '{name}' is home and cannot be removed.")
+            raise CameraError(f"The preset '{name}' is the home preset and cannot be removed.")
         del self._presets[name]

@@ -1,4 +1,4 @@
-"""A simulated camera: it shows the stored sphere of a viewpoint and moves like a motorised head."""
+"""A simulated camera, which renders views of a viewpoint's stored panorama and moves like a motorised head."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ TICK_S = 0.05
 """Interval, in seconds, at which a moving camera checks for a new command."""
 
 CUT_S = 0.5
-"""Time, in seconds, of a switch to another optical centre, like a switch between two cameras of an installation."""
+"""Time, in seconds, to switch to another viewpoint, like switching between two cameras of an installation."""
 
 
 _RENDERING: RunVar[CapacityLimiter] = RunVar("scope_ptz_rendering")
 
 
 def _rendering() -> CapacityLimiter:
-    """Return the limit on pictures that are rendered at the same time: with more, all would be late."""
+    """Return the limit on concurrent rendering. Without a limit, many simultaneous requests would all be late."""
     try:
         return _RENDERING.get()
     except LookupError:
@@ -42,11 +42,10 @@ def _rendering() -> CapacityLimiter:
 
 
 class SimulatedCamera(Camera):
-    """An AXIS M5075-G in a scene, or the camera that a scene was captured from. Many cameras can share one scene.
+    """An AXIS M5075-G in a scene, or the camera from which a scene was captured. Many cameras can share one scene.
 
-    Moves take as long on the given clock as those of a real head. In evaluations, only scene time passes; in interactive use, they
-    also take
-    real time.
+    On the given clock, moves take as long as those of a real head. In evaluations only scene time passes; in interactive use moves
+    also take real time.
 
     Args:
         scene: The scene.
@@ -72,7 +71,7 @@ class SimulatedCamera(Camera):
         self.clock = clock or SceneClock()
         self._scene = scene
         self._presets = ScenePresets(scene.file, viewpoint)
-        # Only the name: opening a viewpoint would release the layers of another one, and a camera that only moves needs none.
+        # Only the name is stored. Opening a viewpoint would release another one's layers, and a camera that only moves needs none.
         self._viewpoint = self._presets.home.viewpoint
         self._info = CameraInfo(
             name=f"{_device_name(scene)} in {scene.file.title}",
@@ -101,7 +100,7 @@ class SimulatedCamera(Camera):
         return self._presets
 
     def prefetch(self) -> Prefetch:
-        """Read the current viewpoint in the background, so that no later frame from there has to wait for a file."""
+        """Read the current viewpoint's files in the background, so that later frames do not have to wait for them."""
         return Prefetch(self._scene.viewpoint(self._viewpoint), self._info.frame_width, self._info.optics, self._info.limits)
 
     async def pose(self) -> Pose:
@@ -140,7 +139,7 @@ class SimulatedCamera(Camera):
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
     async def stop(self) -> None:
-        """Stop any motion immediately: a simulated head needs no braking distance."""
+        """Stop any motion immediately. A simulated head has no braking distance."""
         self._motion.halt(self._pose_now(), self.clock.elapsed_s())
 
     @contextmanager
@@ -163,7 +162,7 @@ class SimulatedCamera(Camera):
     async def _run(self, end: Pose) -> None:
         """Move until the picture has settled or another command arrives. A cancelled move stops where it is.
 
-        While time is held, moves take no time: a watched sweep takes only as long as its pictures.
+        While time is frozen, moves take no time, so a sweep that someone watches takes only as long as its pictures.
         """
         motion = self._motion
         if self.clock.held:

@@ -1,4 +1,4 @@
-"""A camera spec: a camera in text form, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
+"""A camera spec: the text that selects a camera, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class CameraSpec:
-    """A parsed camera spec. Camera factories, those of plug-ins included, receive one.
+    """A parsed camera spec, which camera factories, including those of plug-ins, receive.
 
     Attributes:
         scheme: The camera type, in lower case: ``sim``, ``blender``, or the name of a plug-in.
-        address: What follows the scheme, without leading slashes and without options.
-        options: ``NAME=VALUE`` pairs after a question mark: ``blender:yard.blend?samples=4``.
+        address: The text after the scheme, without leading slashes and options.
+        options: The ``NAME=VALUE`` pairs after a question mark, as in ``blender:yard.blend?samples=4``.
         name: The name of the camera in ``scope.yaml``; empty if it is not named there.
     """
 

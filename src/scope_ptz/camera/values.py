@@ -20,17 +20,17 @@ class CameraInfo:
     """Information about a camera that is known before it moves.
 
     Attributes:
-        name: The camera's name, as traces show it.
+        name: The camera's name, which traces record.
         limits: Limits of pan, tilt and zoom.
-        optics: Field of view by zoom.
+        optics: The lens, which relates zoom to field of view.
         frame_width: Width of a frame in pixels.
         frame_height: Height of a frame in pixels.
-        simulated: Whether the pictures are computed.
-        capabilities: Further capabilities of the camera.
+        simulated: Whether the pictures are rendered rather than taken by a real camera.
+        capabilities: The camera's optional capabilities.
         rendering: Version of the simulator's rendering; None for other cameras.
         assumed: Values that the driver assumes until they are measured, such as "field of view".
-        firmware: Version of the device's firmware, "" if it reports none.
-        dry_run: Whether commands are only reported, so that every frame shows the view at the start.
+        firmware: Version of the device's firmware; empty if it reports none.
+        dry_run: Whether commands are only reported and not carried out, so that every frame shows the initial view.
     """
 
     name: str
@@ -46,13 +46,13 @@ class CameraInfo:
     dry_run: bool = False
 
     def towards(self, pose: Pose, x: float, y: float, zoom_factor: float = 1.0) -> Pose:
-        """Return the pose that centres a point of the picture at a pose. It may be beyond the limits.
+        """Return the pose that centres a point of the picture taken at ``pose``. It may be beyond the limits.
 
         Args:
-            pose: Where the camera is.
-            x: The point from 0 (left border) to 1 (right border).
-            y: The point from 0 (top) to 1 (bottom).
-            zoom_factor: Factor of the focal length.
+            pose: The current pose.
+            x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
+            y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
+            zoom_factor: Factor by which the focal length changes.
 
         Raises:
             InputError: The point is not within the picture, or the factor is not above 0.
@@ -83,7 +83,7 @@ class Frame:
         hfov_deg: Horizontal field of view in degrees.
         time_s: Time of exposure on the camera's clock, in seconds.
         projection: The mapping between pixels and directions.
-        origin: Where a simulated frame comes from, None for real cameras.
+        origin: Where a simulated frame comes from; None for real cameras.
     """
 
     image: NDArray[np.uint8]
@@ -131,7 +131,7 @@ class Arrival:
     Attributes:
         pose: The pose reached.
         clamped: The axes that a limit stopped.
-        limited_by: The reason, as a noun phrase, why the camera stopped early, if it was not a limit of the device.
+        limited_by: Why the camera stopped early, as a noun phrase, if the reason was not a limit of the device; otherwise empty.
     """
 
     pose: Pose

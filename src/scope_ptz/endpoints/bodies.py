@@ -1,4 +1,4 @@
-"""Read the replies of a server: limit their size, decode them, and make them safe to store and to print."""
+"""Read the replies of a server: limit their size, decode them, and make them safe to store and print."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 _MAX_QUOTED_BYTES = 80
-"""Bytes of an unreadable body that the error message quotes."""
+"""Maximum number of bytes of an unreadable body that the error message quotes."""
 
 _JSON_TYPE = re.compile(r"^(application|text)/([\w.+-]+\+)?json$")
 _UNSAFE = re.compile("[\\x00-\\x08\\x0b\\x0c\\x0e-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
@@ -24,7 +24,7 @@ _UNSAFE_ESCAPE = re.compile(rb"\\u(00[0189]|[dD][89a-fA-F])|\\[bf]|[\x00-\x08\x0
 
 
 def content_type(response: Response) -> str:
-    """Return the media type in lower case; empty if the server sent none."""
+    """Return the media type of a response in lower case; empty if the server sent none."""
     return str(response.headers.get("content-type", "")).partition(";")[0].strip().lower()
 
 
@@ -34,14 +34,14 @@ def is_json(media_type: str) -> bool:
 
 
 def wrong_type(media_type: str, endpoint: Endpoint, status: int) -> ServerFailure:
-    """Return the failure for a reply of the wrong content type."""
+    """Return the failure for a reply with the wrong content type."""
     return ServerFailure(
         FailureKind.WRONG_CONTENT_TYPE, where=endpoint.url, status=status, detail=f"content type {media_type or 'missing'}"[:100]
     )
 
 
 def too_large(endpoint: Endpoint, status: int) -> ServerFailure:
-    """Return the failure for a reply above ``MAX_BODY_BYTES``."""
+    """Return the failure for a reply larger than ``MAX_BODY_BYTES``."""
     return ServerFailure(FailureKind.TOO_LARGE, where=endpoint.url, status=status, detail=f"over {MAX_BODY_BYTES // 2**20} MB")
 
 
@@ -89,7 +89,7 @@ def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
     if not body.strip():
         raise ServerFailure(FailureKind.EMPTY, where=endpoint.url, status=status, detail="an empty body")
     try:
-        # Not strict, because some servers leave raw line breaks in strings.
+        # Parsing is not strict, because some servers leave raw line breaks in strings.
         data: Any = json.loads(scrub(body.decode("utf-8"), endpoint.secret), strict=False)
     except (ValueError, RecursionError) as error:
         detail = f"{_json_error(error)} in '{one_line_excerpt(body[:_MAX_QUOTED_BYTES].decode(errors='replace'), endpoint.secret)}'"

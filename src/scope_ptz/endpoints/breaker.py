@@ -19,13 +19,13 @@ UNAVAILABLE = frozenset(
     }
 )
 UNAVAILABLE_STATUS = frozenset({502, 503, 504})
-"""Failures and status codes that show that the server, or the connection to it, is not working."""
+"""Failures (``UNAVAILABLE``) and status codes that show that the server, or the connection to it, is not working."""
 
 
 class Breaker:
-    """A circuit breaker. After ``threshold`` consecutive failures of an unavailable server it is open, and no request may be sent.
+    """A circuit breaker. It opens after ``threshold`` consecutive failures of the server and then blocks requests.
 
-    After ``pause_s`` seconds it permits one request. If that request fails too, the pause doubles, up to ``max_pause_s``.
+    After ``pause_s`` seconds it permits one request as a probe. If that fails too, the pause doubles, up to ``max_pause_s``.
     """
 
     def __init__(
@@ -79,5 +79,5 @@ class Breaker:
         self._probing = False
 
     def abandoned(self) -> None:
-        """Report a cancelled request, which gives no information about the server."""
+        """Report a cancelled request, which says nothing about the state of the server."""
         self._probing = False

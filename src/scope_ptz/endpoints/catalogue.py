@@ -1,4 +1,4 @@
-"""A server's list of models, and the base address of its API."""
+"""A server's list of models, and the base URL of its API."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ async def served_models(endpoint: Endpoint) -> tuple[str, ...]:
 
 
 async def find_api(endpoint: Endpoint) -> tuple[Endpoint, tuple[str, ...]]:
-    """Return the endpoint and the models that it lists. If the list exists only under ``/v1``, return that endpoint instead.
+    """Return the endpoint and the models that it lists. If only the URL with ``/v1`` has a list, return the endpoint with that URL.
 
     Raises:
         ServerFailure: Neither address has a list of models.

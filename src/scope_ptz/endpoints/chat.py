@@ -24,7 +24,7 @@ __all__ = ["ChatClient", "ChatReply", "RawToolCall"]
 EVENT_STREAM = "text/event-stream"
 UNKNOWN_FIELD_STATUS = 422  # the status with which strict servers reject unknown request fields
 DRAIN_S = 0.1
-"""Time limit for draining a finished stream, so that its connection can be reused."""
+"""Seconds to drain a finished stream, so that its connection can be reused."""
 
 
 class ChatClient:
@@ -73,7 +73,7 @@ class ChatClient:
         return await self.caller.call(lambda: self._exchange(content, streaming))
 
     async def _post_streamed(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """Stream a reply, and request token counts at its end.
+        """Stream a reply, and ask the server to send token counts at its end.
 
         If the server rejects ``stream_options``, repeat the request without it, and omit it from later requests.
         """

@@ -26,7 +26,7 @@ class RawToolCall(BaseModel):
 
 
 class ChatReply(BaseModel):
-    """A reply of a chat model.
+    """A chat model's reply.
 
     Attributes:
         reasoning: The reasoning that the server returned in a separate field.
@@ -178,7 +178,7 @@ def _object_of(value: Any) -> dict[str, Any] | None:
 
 
 def _is_object(arguments: str) -> bool:
-    """Return whether arguments are a complete JSON object, so that a following chunk with a name is another call."""
+    """Return whether arguments are a complete JSON object. If they are, a later chunk with a name begins another call."""
     try:
         return isinstance(json.loads(arguments), dict)
     except (ValueError, RecursionError):

@@ -19,13 +19,13 @@ Verdict = Literal["ok", "partly", "failed"]
 FATAL_FAILURES = frozenset(
     {FailureKind.REFUSED, FailureKind.DNS, FailureKind.TLS, FailureKind.CONNECT_TIMEOUT, FailureKind.UNAUTHORISED}
 )
-"""Failures after which no further check can succeed."""
+"""Kinds of failure after which no further check can succeed."""
 _GREETING = [
     {"role": "system", "content": "You answer in one short sentence."},
     {"role": "user", "content": "Say hello."},
 ]
 UNKNOWN_MODEL_CHECK = "an unknown model name"
-"""The last check, which runs only if the server is reachable."""
+"""Name of the last check, which runs only if the server is reachable."""
 _NO_MODEL = "no-model-has-this-name"
 
 
@@ -128,4 +128,4 @@ async def _check_unknown_model(endpoint: Endpoint) -> Finding:
         return "partly", f"the error does not state that the model is unknown: {failure}"
     finally:
         await client.close()
-    return "partly", f"'{reply.model or 'a model'}' answered to an unknown model name; check that it is the right model"
+    return "partly", f"'{reply.model or 'a model'}' answered a request for an unknown model; check that it is the right model"

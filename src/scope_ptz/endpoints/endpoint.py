@@ -11,7 +11,7 @@ from scope_ptz.errors import ConfigError
 
 MAX_KEY_CHARS = 8192
 MAX_BODY_BYTES = 8 * 1024 * 1024
-"""Maximum size of the body of a reply. Larger replies are rejected."""
+"""Maximum size of a reply's body in bytes. Larger replies are rejected."""
 
 
 class Timeouts(BaseModel):
@@ -19,7 +19,7 @@ class Timeouts(BaseModel):
 
     Attributes:
         connect_s: Limit for connecting.
-        first_byte_s: Limit for the wait until the reply begins, and for each pause within the reply.
+        first_byte_s: Limit for the wait until the reply begins, and for each pause during the reply.
         total_s: Limit for a call with all its retries.
     """
 
@@ -33,7 +33,8 @@ class Timeouts(BaseModel):
     def within(cls, total_s: float) -> Timeouts:
         """Return timeouts for a call that may take ``total_s`` in total.
 
-        Up to half of a long limit may pass before the reply begins, because slow machines need that for the first token.
+        If the limit is long, up to half of it may pass before the reply begins, because slow machines need that long for the first
+        token.
         """
         default = cls()
         return cls(
@@ -47,11 +48,11 @@ class Endpoint(BaseModel):
     """A model server and the model to use on it.
 
     Attributes:
-        url: The base address, including ``/v1`` for OpenAI-compatible servers.
+        url: The base URL, including ``/v1`` for OpenAI-compatible servers.
         model: The model's name on the server; empty for servers with one model.
         key: The API key, which is never shown.
         timeouts: The timeouts of requests.
-        retries: The maximum number of retries of a call.
+        retries: The maximum number of retries per call.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
@@ -74,7 +75,7 @@ class Endpoint(BaseModel):
 
     @property
     def secret(self) -> str:
-        """The key in clear text; empty if there is none. Use it only for request headers and for removing the key from texts."""
+        """The key in clear text; empty if there is none. Use it only in request headers and to remove the key from texts."""
         return self.key.get_secret_value() if self.key is not None else ""
 
     @property
@@ -99,9 +100,7 @@ def validate_url(url: str) -> str:
         shown = _without_secrets(url)
         raise ConfigError(f"'{shown}' is not the address of a model server. Give a full address, such as http://127.0.0.1:8000/v1.")
     if parts.username is not None or parts.password is not None:
-        raise ConfigError(
-            f"The address of {parts.hostname} contains a password or user name. Use the variable for the key instead."
-        )
+        raise ConfigError(f"The address of {parts.hostname} contains a user name or password. Set the key's variable instead.")
     if parts.query or parts.fragment:
         raise ConfigError(
             f"The address {_without_secrets(url)} contains a query or fragment. Remove everything from ? or # onwards."

@@ -9,10 +9,10 @@ DONE = b"[DONE]"
 
 
 class Events:
-    """A parser that returns the data of events from bytes that arrive in arbitrary pieces.
+    """A parser that extracts the data of events from bytes that arrive in arbitrary pieces.
 
-    As the standard requires, line ends are LF, CR or CRLF, comments and other fields are skipped, the data lines of an event are
-    joined, and a byte order mark is ignored. In addition, the blank line after an event or the last line end may be missing.
+    As the standard requires, lines end with LF, CR or CRLF, comments and other fields are skipped, the data lines of an event are
+    joined, and a byte order mark is ignored. In addition, the blank line after an event or the final line ending may be missing.
     """
 
     def __init__(self) -> None:
@@ -21,7 +21,7 @@ class Events:
         self._start_read = False
 
     def feed(self, piece: bytes) -> list[bytes]:
-        """Return the events that a piece completes."""
+        """Add a piece, and return the data of the events that it completes."""
         text = self._incomplete + piece
         if not self._start_read:
             if codecs.BOM_UTF8.startswith(text):
@@ -35,7 +35,7 @@ class Events:
         return [event for line in lines for event in self._line(line)]
 
     def end(self) -> list[bytes]:
-        """Return the remaining events at the end of the stream."""
+        """End the stream, and return the data of the remaining events."""
         last_line, self._incomplete = self._incomplete.strip(b"\r").removeprefix(codecs.BOM_UTF8), b""
         return [*self._line(last_line), *self._line(b"")]
 

@@ -13,7 +13,8 @@ from scope_ptz.errors import ScopeError
 
 MAX_DETAIL_CHARS = 300
 MIN_SCRUBBED_CHARS = 6
-"""Shorter keys ("none", "EMPTY") are not removed from texts: they are placeholders, and may be ordinary words."""
+"""Keys with fewer characters, such as "none" or "EMPTY", are placeholders. They are not removed from texts, because they may be
+ordinary words."""
 
 
 class FailureKind(StrEnum):
@@ -141,12 +142,12 @@ class ServerFailure(ScopeError):  # noqa: N818 - the name matches FailureKind
 
 
 def count_failures(attempts: Iterable[Attempt]) -> dict[str, int]:
-    """Count the failures of each kind, including failures before a successful retry."""
+    """Return the number of failures of each kind, including failures that a retry overcame."""
     return dict(Counter(attempt.kind.value for attempt in attempts if attempt.kind is not None))
 
 
 def scrub(text: str, secret: str) -> str:
-    """Return a server's message without the key, which some servers echo."""
+    """Return a server's message with the key masked, because some servers echo it."""
     if len(secret) >= MIN_SCRUBBED_CHARS and secret in text:
         return text.replace(secret, "***")
     return text
@@ -156,7 +157,7 @@ _API_KEY = re.compile(r"\b(Bearer\s+|sk-)[\w.~+/=-]{6,}", re.IGNORECASE)
 
 
 def one_line_excerpt(text: str, secret: str) -> str:
-    """Return a server's message on one line, truncated, without anything that looks like a key."""
+    """Return a server's message on one line, truncated, with everything that looks like a key masked."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text[:4000]).split())
     line = _API_KEY.sub(r"\1***", scrub(line, secret))
     return line if len(line) <= MAX_DETAIL_CHARS else line[: MAX_DETAIL_CHARS - 1] + "…"

@@ -30,16 +30,16 @@ RETRYABLE = frozenset(
         FailureKind.MALFORMED,
     }
 )
-"""Failures after which a call is retried. A wrong key, path, request or content type would only fail again."""
+"""Kinds of failure after which a call is retried. With a wrong key, path, request or content type, a retry would fail again."""
 
 FIRST_PAUSE_S = 0.5
 MAX_PAUSE_S = 8.0
 MAX_RETRY_AFTER_S = 30.0
-"""If a server requests a longer pause, the call fails."""
+"""Longest pause in seconds that a server may request. If it requests a longer one, the call fails."""
 
 
 class Caller:
-    """Retries calls to one endpoint. All calls to the endpoint, including concurrent ones, should share one caller."""
+    """Makes calls to one endpoint, with retries. All calls to the endpoint, including concurrent ones, should share one caller."""
 
     def __init__(
         self,
@@ -121,7 +121,7 @@ class Caller:
         return failure
 
     def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
-        """Return the pause before the next attempt; None if there is no further attempt."""
+        """Return the pause in seconds before the next attempt; None if no further attempt is made."""
         if failure.kind not in RETRYABLE or attempts > self.endpoint.retries:
             return None
         jitter_s = self.rng.uniform(0.0, min(MAX_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))
@@ -131,7 +131,7 @@ class Caller:
         return requested_s + 0.1 * jitter_s if requested_s <= MAX_RETRY_AFTER_S else None
 
     def _retry_time_s(self, failure: ServerFailure) -> float:
-        """Return the seconds that another attempt needs. A server that sent nothing may again need the full timeout."""
+        """Return the seconds to reserve for another attempt. A server that sent nothing may need the full timeout again."""
         return self.endpoint.timeouts.first_byte_s if failure.kind is FailureKind.FIRST_BYTE_TIMEOUT else 0.0
 
     def _circuit_open(self, wait_s: float) -> ServerFailure:

@@ -1,4 +1,4 @@
-"""Read the configuration that a model server reports, such as version, context length, precision and memory."""
+"""Read the configuration that a model server reports, such as its version, context length, precision and memory use."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from httpx2 import AsyncClient
 
 PATHS = ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/metrics", "/v1/stats")
-"""Paths under which servers report their configuration. Most servers have the first two. The others belong to llama.cpp (props),
+"""Paths under which servers report their configuration. Most servers have the first two. The others are those of llama.cpp (props),
 Ollama (ps), SGLang (server info), vLLM (metrics) and Moondream Station (stats).
 """
 _FIELDS = re.compile(
@@ -32,7 +32,7 @@ _MAX_FACTS = 40  # further fields are ignored
 
 
 async def serving_facts(endpoint: Endpoint) -> dict[str, str]:
-    """Return the server's configuration by path and field. Paths that fail are omitted."""
+    """Return the server's configuration, keyed by path and field. Paths that fail are omitted."""
     from scope_ptz.endpoints.transport import make_client
 
     quick_endpoint = endpoint.model_copy(update={"timeouts": QUICK_TIMEOUTS})
@@ -74,7 +74,7 @@ def _labels(labels: str) -> Iterator[tuple[str, str]]:
 
 
 def _nested_fields(content: Any, depth: int) -> Iterator[tuple[str, str]]:
-    """Yield the fields of interest in nested JSON, to a limited depth."""
+    """Yield the names and values of the relevant fields in nested JSON, down to a limited depth."""
     if depth > 4:
         return
     if isinstance(content, Mapping):
@@ -89,7 +89,7 @@ def _nested_fields(content: Any, depth: int) -> Iterator[tuple[str, str]]:
 
 
 def memory_gb(facts: Mapping[str, str]) -> float | None:
-    """Return the GB of memory that the model uses, as reported by Ollama or SGLang; None for other servers."""
+    """Return the memory that the model uses in GB, as reported by Ollama or SGLang; None for other servers."""
     by_name = {key.split(" ", 1)[1]: value for key, value in facts.items()}
     try:
         if "size_vram" in by_name:

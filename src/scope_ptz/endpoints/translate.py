@@ -21,7 +21,7 @@ _OVERFLOW = re.compile(
     r"|exceed\w*[^.]{0,40}(context|number of tokens|token limit)|reduce the length|tokens to keep from the initial prompt",
     re.IGNORECASE,
 )
-"""Context overflow messages of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and others, which share no error code."""
+"""Matches context overflow messages of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and others, which share no error code."""
 
 _NO_CREDIT = re.compile(r"insufficient_quota|billing|payment|credits?\b", re.IGNORECASE)
 
@@ -114,7 +114,7 @@ def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint:
 
 
 def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> ServerFailure | None:
-    """Return the failure for an error message in a reply with a success status; None if the reply contains no error."""
+    """Return the failure for an error message in a reply with a success status; None if the reply is not an error."""
     if not body.get("error") and body.get("object") != "error" and not _is_only_message(body):
         return None
     parsed = _ErrorBody(json.dumps(body))
@@ -139,7 +139,7 @@ def _is_only_message(body: dict[str, Any]) -> bool:
 
 
 class _ErrorBody:
-    """An error body.
+    """The parsed body of an error reply.
 
     Attributes:
         message: The messages in the usual fields; if there are none, the body without markup.

@@ -64,7 +64,7 @@ def _create_client(endpoint: Endpoint, hooks: dict[str, list[Callable[..., Any]]
 
 
 class _LimitedBody(httpx2.AsyncByteStream):
-    """A response body that raises ``ServerFailure`` above its size limit, even when the library reads it."""
+    """A response body that raises ``ServerFailure`` when it exceeds its size limit, even if the library itself reads it."""
 
     def __init__(self, stream: httpx2.AsyncByteStream, response: httpx2.Response, endpoint: Endpoint) -> None:
         compressed = response.headers.get("content-encoding", "identity") != "identity"

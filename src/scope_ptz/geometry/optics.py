@@ -13,7 +13,7 @@ Axis = Literal["pan", "tilt", "zoom"]
 
 @dataclass(frozen=True, slots=True)
 class Optics:
-    """The zoom curve as a table of ``(magnification, horizontal field of view in degrees)``, widest first.
+    """A lens, described by its zoom curve: a table of ``(magnification, horizontal field of view in degrees)``, widest first.
 
     Between the rows, focal length (1 / tan(hfov / 2)) is interpolated linearly in magnification, which is close to real zoom
     curves. No formula fits all lenses: an AXIS M5075-G is rated 5x, but the ratio of its longest and shortest focal lengths is 5.8.
@@ -39,7 +39,7 @@ class Optics:
         return [1.0 / math.tan(math.radians(h) / 2) for _, h in self.table]
 
     def focal(self, zoom: float) -> float:
-        """Return the focal length in units of half the image width: 1 / tan(hfov / 2)."""
+        """Return the focal length at a magnification, in units of half the image width: 1 / tan(hfov / 2)."""
         import numpy as np  # imported here, so that this module can be imported without NumPy
 
         return float(np.interp(zoom, [z for z, _ in self.table], self._focals()))
@@ -49,7 +49,7 @@ class Optics:
         return math.degrees(2 * math.atan(1.0 / self.focal(zoom)))
 
     def zoom_for_focal(self, focal: float) -> float:
-        """Return the magnification with the given focal length (in half widths), clamped to the table."""
+        """Return the magnification with the given focal length (in units of half the image width), clamped to the table."""
         import numpy as np
 
         return float(np.interp(focal, self._focals(), [z for z, _ in self.table]))
@@ -89,7 +89,7 @@ class Limits:
         return Pose(pan, tilt, zoom), tuple(clamped)
 
     def at_stop(self, pose: Pose, axis: Axis) -> bool:
-        """Return whether a pose is at either limit of an axis."""
+        """Return whether a pose is at either limit of an axis; always False for endless pan."""
         value, low, high = {
             "pan": (pose.pan_deg, self.min_pan_deg, self.max_pan_deg),
             "tilt": (pose.tilt_deg, self.min_tilt_deg, self.max_tilt_deg),
@@ -113,5 +113,5 @@ def _clamped(value: float, low: float, high: float) -> float:
 AXIS_M5075_G = Optics(
     ((1.0, 71.0), (1.5, 48.1), (2.0, 35.9), (2.5, 28.5), (3.0, 23.6), (3.5, 20.2), (4.0, 17.6), (4.5, 15.6), (5.0, 14.0))
 )
-"""Optics of the AXIS M5075-G. The fields of view at the wide and tele ends are from its data sheet; the rows between them
-are interpolated on a smooth curve, not measured."""
+"""Optics of the AXIS M5075-G. The fields of view at the wide and tele ends come from its data sheet. The rows between them
+are interpolated along a smooth curve, not measured."""

@@ -1,6 +1,6 @@
-"""Projections between points of a picture and directions, for perspective views and panoramas.
+"""Projections between image points and directions, for perspective views and panoramas.
 
-Points are normalised to [0, 1] with the origin at the top-left corner of the picture, not at the centre of its first pixel: the
+Points are normalised to [0, 1] with the origin at the top-left corner of the image, not at the centre of its first pixel: the
 centre of pixel ``i`` of ``n`` is at ``(i + 0.5) / n``. Arrays of points have shape ``(..., 2)``, arrays of directions ``(..., 3)``.
 """
 
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 
 class Projection(Protocol):
-    """The mapping between the pixels of a picture and directions around the camera."""
+    """The mapping between image points and directions around the camera."""
 
     @property
     def width(self) -> int: ...
@@ -28,13 +28,13 @@ class Projection(Protocol):
     def height(self) -> int: ...
 
     @property
-    def reach_deg(self) -> float:
-        """Largest angle between the centre of the picture and any of its pixels, in degrees."""
+    def max_off_axis_deg(self) -> float:
+        """Largest angle between the direction of the image centre and that of any pixel, in degrees."""
         ...
 
     @property
-    def density(self) -> float:
-        """Pixels per radian at the centre of the picture, measured vertically."""
+    def pixels_per_radian(self) -> float:
+        """Pixels per radian at the centre of the image, measured vertically."""
         ...
 
     def directions(self, points: ArrayLike) -> Floats:
@@ -42,7 +42,7 @@ class Projection(Protocol):
         ...
 
     def points(self, directions: ArrayLike) -> Floats:
-        """Return normalised points (..., 2) of directions (..., 3), NaN for directions behind the lens."""
+        """Return normalised points (..., 2) of directions (..., 3); NaN for directions behind the camera."""
         ...
 
 
@@ -67,11 +67,11 @@ class Perspective:
         return math.degrees(2 * math.atan(self.height / 2 / self.focal_px))
 
     @property
-    def reach_deg(self) -> float:
+    def max_off_axis_deg(self) -> float:
         return math.degrees(math.atan(math.hypot(self.width, self.height) / 2 / self.focal_px))
 
     @property
-    def density(self) -> float:
+    def pixels_per_radian(self) -> float:
         return self.focal_px
 
     def directions(self, points: ArrayLike) -> Floats:
@@ -105,11 +105,11 @@ class Equirectangular:
     height: int
 
     @property
-    def reach_deg(self) -> float:
+    def max_off_axis_deg(self) -> float:
         return 180.0
 
     @property
-    def density(self) -> float:
+    def pixels_per_radian(self) -> float:
         return self.height / math.radians(self.top_tilt_deg - self.bottom_tilt_deg)
 
     def directions(self, points: ArrayLike) -> Floats:

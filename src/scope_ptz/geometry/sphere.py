@@ -20,7 +20,7 @@ def direction(pan_deg: ArrayLike, tilt_deg: ArrayLike) -> Floats:
 
 
 def pan_tilt_deg(vectors: ArrayLike) -> tuple[Floats, Floats]:
-    """Return pan in (-180, 180] and tilt in [-90, 90], in degrees, of non-zero vectors ``(..., 3)``."""
+    """Return the pan in (-180, 180] and the tilt in [-90, 90] of non-zero vectors ``(..., 3)``, in degrees."""
     v = np.asarray(vectors, dtype=np.float64)
     pan = np.degrees(np.arctan2(v[..., 0], v[..., 1]))
     tilt = np.degrees(np.arctan2(v[..., 2], np.hypot(v[..., 0], v[..., 1])))
@@ -35,7 +35,7 @@ def angle_between_deg(a: ArrayLike, b: ArrayLike) -> Floats:
 
 
 def _cross(u: Floats, v: Floats) -> Floats:
-    """Return cross products (..., 3). Small arrays take a quarter of the time of ``np.cross``."""
+    """Return cross products (..., 3). For small arrays this is four times as fast as ``np.cross``."""
     found = np.empty(np.broadcast_shapes(u.shape, v.shape))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         np.subtract(u[..., j] * v[..., k], u[..., k] * v[..., j], out=found[..., i])
@@ -46,7 +46,7 @@ def _cross(u: Floats, v: Floats) -> Floats:
 def camera_axes(pan_deg: float, tilt_deg: float) -> Floats:
     """Return the right, up and forward axes of a view as the rows of a read-only (3, 3) matrix.
 
-    The matrix times a direction gives the direction's coordinates in the view.
+    The product of the matrix and a direction gives the direction's coordinates in the view.
     """
     p, t = np.radians(pan_deg), np.radians(tilt_deg)
     sp, cp, st, ct = np.sin(p), np.cos(p), np.sin(t), np.cos(t)

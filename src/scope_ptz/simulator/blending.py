@@ -70,7 +70,7 @@ class Outlines:
         size = np.array([view.width, view.height])
         apart_deg = angle_between_deg(self._middles, view.directions((0.5, 0.5)))
         small_deg = math.degrees(SMALL_PX / view.focal_px)
-        for k in np.flatnonzero((apart_deg <= view.reach_deg + self._reach_deg) & (self._reach_deg < small_deg)):
+        for k in np.flatnonzero((apart_deg <= view.max_off_axis_deg + self._reach_deg) & (self._reach_deg < small_deg)):
             points = view.points(self._outlines[k]) * size
             if not np.isnan(points).any() and np.ptp(points, axis=0).max() <= SMALL_PX:
                 cv2.fillConvexPoly(mask, cv2.convexHull(np.rint(points).astype(np.int32)), 255)

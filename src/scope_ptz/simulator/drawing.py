@@ -51,7 +51,7 @@ class ActorPatch:
 def actor_patch(viewpoint: Viewpoint, projection: Projection, actor: ActorInView) -> ActorPatch | None:
     """Return the visible part of an actor in a view, or None if it is not visible."""
     choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
-    if angle_between_deg(actor.offset_m, projection.directions((0.5, 0.5))) > projection.reach_deg + choice.reach_deg(
+    if angle_between_deg(actor.offset_m, projection.directions((0.5, 0.5))) > projection.max_off_axis_deg + choice.reach_deg(
         actor.offset_m
     ):
         return None
@@ -180,7 +180,7 @@ class _Layer:
         """Return the sprite's (h, w, 4) premultiplied colour in the part of a view that a grid covers."""
         colour = viewpoint.sprites.colour(self.sheet, self.sprite)
         height, width = colour.shape[:2]
-        shrink = projection.density / self.density
+        shrink = projection.pixels_per_radian / self.density
         if shrink < MIN_SHRINK:
             size = max(1, round(width * shrink)), max(1, round(height * shrink))
             colour = viewpoint.sprites.shrunk_colour(self.sheet, self.sprite, *size)
@@ -201,7 +201,7 @@ def _place(layers: Sequence[_Layer], projection: Projection) -> Place | None:
     rays = np.stack([layer.outline() for layer in layers])
     middles = rays.mean(axis=1)
     reach_deg = angle_between_deg(rays, middles[:, None]).max(axis=1)
-    near = angle_between_deg(middles, projection.directions((0.5, 0.5))) <= reach_deg + projection.reach_deg
+    near = angle_between_deg(middles, projection.directions((0.5, 0.5))) <= reach_deg + projection.max_off_axis_deg
     if not near.any():
         return None
     outlines = projection.points(rays[near])

@@ -105,4 +105,4 @@ def _sharpened_depth(
 
 def _texel_px(viewpoint: Viewpoint, projection: Projection) -> float:
     """Return the size of a texel of the depth layer in pixels of a view, at least 1."""
-    return max(1.0, projection.density / (viewpoint.manifest.depth.width / (2 * math.pi)))
+    return max(1.0, projection.pixels_per_radian / (viewpoint.manifest.depth.width / (2 * math.pi)))

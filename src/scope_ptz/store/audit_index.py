@@ -16,14 +16,14 @@ from scope_ptz.store.rows import AuditRow
 from scope_ptz.store.schema import AUDIT, AUDIT_FILES
 
 MAX_READ_BYTES = 4_000_000
-"""Maximum number of bytes that are read at a time."""
+"""Maximum number of bytes to read at a time."""
 
 
 def index_audit_log(database: Database, path: Path) -> int:
     """Index the lines that were appended to an audit log since the previous call.
 
-    Invalid lines are skipped. An incomplete last line is left for the next call. A file that has become shorter was replaced, so
-    it is indexed from its beginning.
+    Invalid lines are skipped. An incomplete last line is left for the next call. A file that has become shorter must have been
+    replaced, so it is indexed from its beginning.
 
     Returns:
         Number of new entries.
@@ -89,7 +89,7 @@ def _file(connection: Connection, path: Path) -> tuple[int, int]:
 
 
 def _entry(line: bytes) -> dict[str, Any] | None:
-    """Return a line of an audit log as a row; None if it is damaged."""
+    """Convert a line of an audit log to a row. Return None if the line is damaged."""
     try:
         fields = json.loads(line)
         time_s = datetime.fromisoformat(fields.pop("time")).timestamp()

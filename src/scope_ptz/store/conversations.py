@@ -1,4 +1,4 @@
-"""Conversations: instructions that belong together, with their camera and owner."""
+"""Conversations: sequences of related instructions, each with a camera and an owner."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def remove_conversation(database: Database, key: str, *, owner: str) -> None:
 
 
 def runs_of_conversation(database: Database, key: str, *, limit: int = 20) -> list[str]:
-    """Return the ids of the last finished runs of a conversation, the oldest first."""
+    """Return the ids of the most recent finished runs of a conversation, the oldest first."""
     query = select(RUNS.c.id).where(RUNS.c.conversation == key, RUNS.c.kind == "instruction", RUNS.c.ended.is_not(None))
     with database.reading() as connection:
         ids = connection.execute(query.order_by(RUNS.c.started.desc(), RUNS.c.number.desc()).limit(limit)).scalars().all()

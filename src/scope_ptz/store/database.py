@@ -18,7 +18,7 @@ from scope_ptz.store.migrations import migrate
 FILE_NAME = "store.sqlite"
 
 BUSY_S = 5.0
-"""Seconds that a command waits for another process that writes."""
+"""Seconds to wait while another process writes."""
 
 
 class Database:
@@ -26,7 +26,7 @@ class Database:
 
     Args:
         path: The file. It is created if needed, and migrated to the newest version.
-        busy_s: Seconds to wait for another process that writes.
+        busy_s: Seconds to wait while another process writes.
 
     Raises:
         OutputError: The file cannot be written.
@@ -89,7 +89,7 @@ def _engine(path: Path, busy_s: float) -> Engine:
 
     @event.listens_for(engine, "connect")
     def set_up(connection: sqlite3.Connection, _: Any) -> None:
-        # sqlite3 would begin transactions too late for readers, and without a lock for writers. `begin` below begins them instead.
+        # sqlite3 itself would begin transactions too late for readers and without a lock for writers, so `begin` below begins them.
         connection.isolation_level = None
         cursor = connection.cursor()
         for pragma in ("journal_mode = WAL", "synchronous = NORMAL", "foreign_keys = ON"):

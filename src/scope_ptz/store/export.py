@@ -1,4 +1,4 @@
-"""Export runs as data, as folders, or as conversations for fine-tuning a planner."""
+"""Export runs as JSON data, as run folders, or as conversations for fine-tuning a planner."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def export_runs(database: Database, root: Path, runs: Iterable[str], out: Path, 
 
 
 def write_atomically(out: Path, write: Callable[[IO[bytes]], int]) -> int:
-    """Write a file, which replaces an older one only when it is complete, and return the number of runs in it.
+    """Write a file and return the number of runs in it. An existing file is replaced only when the new one is complete.
 
     Raises:
         OutputError: The file cannot be written.
@@ -99,7 +99,7 @@ def _ratings(database: Database, run_id: str) -> list[dict[str, str]]:
     return [{"run": run_id, "rating": "good" if each.rating > 0 else "bad", "note": each.comment} for each in rated[-1:]]
 
 
-def _data_line(database: Database, root: Path, run_id: str) -> dict[str, Any]:  # noqa: ARG001 - the signature of all formats
+def _data_line(database: Database, root: Path, run_id: str) -> dict[str, Any]:  # noqa: ARG001 - all formats share this signature
     return run_data(database, run_id)
 
 
@@ -130,7 +130,7 @@ def _chat_line(database: Database, root: Path, run_id: str) -> dict[str, Any] | 
 
 
 def chat_conversation(trace: Trace) -> dict[str, Any]:
-    """Convert a run to a conversation of a chat model: system prompt, instruction, tool calls, their results, and the answer."""
+    """Convert a run to a chat model's conversation: system prompt, instruction, tool calls, their results, and the answer."""
     from scope_ptz.planner.chat.chat_messages import build_messages
     from scope_ptz.planner.chat.prompts import load_prompt
     from scope_ptz.tools.registry import schemas
@@ -147,7 +147,7 @@ def chat_conversation(trace: Trace) -> dict[str, Any]:
 
 
 def exchanges_of(trace: Trace) -> tuple[Exchange, ...]:
-    """Convert the steps of a recorded run to a planner's history."""
+    """Convert the steps of a recorded run to the history that a planner receives."""
     thoughts = {each.step: getattr(each.decision, "thought", "") for each in trace.decisions}
     steps: dict[int, list[Any]] = {}
     for call in trace.calls:

@@ -24,10 +24,10 @@ def add_feedback(
     Args:
         database: The database.
         run_id: The run.
-        rating: 1 for good, -1 for bad, 0 for a comment alone.
+        rating: 1 for good, -1 for bad, 0 for a comment without a rating.
         comment: The comment; may be empty.
         actor: The person who gives the feedback.
-        position: The number of the call that it is about, counted from 0; None for the whole run.
+        position: The index of the call that it is about, counted from 0; None for the whole run.
 
     Raises:
         UnknownNameError: There is no such run, or no such call.
@@ -67,15 +67,15 @@ def feedback_on(database: Database, run_id: str) -> list[FeedbackRow]:
 
 
 def remove_feedback(database: Database, feedback_id: int, *, actor: str | None = None) -> None:
-    """Remove one entry of feedback.
+    """Remove one feedback entry.
 
     Args:
         database: The database.
         feedback_id: The id of the entry.
-        actor: The person who must have given it; None for anyone.
+        actor: Remove the entry only if this person gave it; None removes it whoever gave it.
 
     Raises:
-        UnknownNameError: There is no such feedback of this person.
+        UnknownNameError: There is no such entry, or another person gave it.
     """
     conditions = [FEEDBACK.c.id == feedback_id]
     if actor is not None:

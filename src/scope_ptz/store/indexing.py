@@ -1,4 +1,4 @@
-"""Index run folders in the database. A folder that cannot be read is reported and not changed."""
+"""Index run folders in the database. A folder that cannot be read is reported and left unchanged."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class IndexReport:
         updated: Number of runs whose trace has changed.
         removed: Number of runs that were removed from the index because their folder no longer exists.
         missing: Number of runs without a folder that stay in the index because they have feedback.
-        damaged: Names of folders that cannot be read, with the reason.
+        damaged: Why each unreadable folder cannot be read, by folder name.
     """
 
     added: int = 0
@@ -83,7 +83,7 @@ def index_run(database: Database, folder: Path) -> None:
 
 
 def _folders(root: Path) -> Iterator[tuple[str, int]]:
-    """Yield names of run folders with the size of their trace."""
+    """Yield the names of run folders, each with the size of its trace in bytes."""
     try:
         entries = os.scandir(root)
     except FileNotFoundError:
@@ -129,7 +129,7 @@ def _remove_missing(database: Database, gone: list[str], report: IndexReport) ->
 
 
 def _contents(folder: Path, trace_bytes: int) -> tuple[dict[str, Any], list[dict[str, Any]], list[dict[str, Any]]]:
-    """Return the rows of a run folder."""
+    """Return the database rows for a run folder: the run, its steps, and its frames."""
     trace = read_trace(folder)
     request, started, ended = read_request(folder), trace.started, trace.ended
     # The duration of a run without a recorded end is the sum of its steps.
@@ -187,7 +187,7 @@ def _step(position: int, call: Called) -> dict[str, Any]:
 
 
 def folder_bytes(folder: Path) -> int:
-    """Return the size of all files in a run folder in bytes. Files that are deleted in the meantime are not counted."""
+    """Return the total size of the files in a run folder in bytes. Files that are deleted in the meantime are not counted."""
     total = 0
     for parent, _, files in os.walk(folder):
         for name in files:

@@ -12,16 +12,16 @@ def words_of(text: str) -> list[str]:
 
 
 def has_words(instruction: str, answer: str, words: str) -> int:
-    """Return 1 if two texts contain all words, otherwise 0. It is an SQL function.
+    """Return 1 if two texts together contain all words, otherwise 0. This is registered as an SQL function.
 
     Args:
         instruction: The first text.
         answer: The second text.
-        words: The words, separated by spaces. The last one may be the beginning of a word.
+        words: The words, separated by spaces. The last one may be incomplete.
     """
     text = _plain(f"{instruction}\n{answer}")
     *whole, beginning = words.split(" ")
-    # A substring search rules out most texts. It is ten times as fast as splitting them into words.
+    # A substring search rules out most texts. It is ten times as fast as splitting the texts into words.
     if beginning not in text or not all(word in text for word in whole):
         return 0
     found = set(re.findall(r"[^\W_]+", text))

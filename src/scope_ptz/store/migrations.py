@@ -1,4 +1,4 @@
-"""Migrations of the store's tables. A released migration must never be changed; every change of the tables is a new migration."""
+"""Migrations of the store's tables. Never change a released migration; add a new one."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ END
 """
 
 MIGRATIONS: tuple[str, ...] = (_FIRST,)
-"""SQL scripts; number N migrates version N to version N + 1. Each statement ends with a semicolon at the end of a line."""
+"""SQL scripts; the script at index N migrates version N to N + 1. Each statement ends with a semicolon at the end of a line."""
 
 
 def migrate(connection: Connection) -> None:

@@ -20,7 +20,7 @@ MAX_PAGE = 500
 """Maximum number of runs on a page."""
 
 MAX_COUNT = 500
-"""Matching runs are counted up to this number, because an exact count of many runs is slow."""
+"""Matching runs are counted only up to this number, because counting many runs exactly is slow."""
 
 _COMMON = 1_000
 """Words that occur in at least this many runs are matched run by run, from the newest, without the full-text index."""
@@ -49,11 +49,11 @@ def list_runs(database: Database, chosen: RunFilter, *, limit: int = 50, after: 
     Args:
         database: The database.
         chosen: The filter.
-        limit: Length of the page, at most ``MAX_PAGE``.
+        limit: Maximum number of runs on the page, at most ``MAX_PAGE``.
         after: The cursor ``next`` of the previous page.
 
     Raises:
-        InputError: The cursor or the limit is wrong.
+        InputError: The cursor or the limit is invalid.
     """
     if not 1 <= limit <= MAX_PAGE:
         raise InputError(f"A page must have 1 to {MAX_PAGE} runs; got {limit}.")
@@ -107,7 +107,7 @@ def run_number(connection: Connection, run_id: str) -> int:
 
 
 def distinct_values(database: Database) -> dict[str, list[str]]:
-    """Return the values of the columns ``camera``, ``planner``, ``perception`` and ``outcome``, for menus."""
+    """Return the distinct values of the columns ``camera``, ``planner``, ``perception`` and ``outcome``, for menus."""
     values: dict[str, list[str]] = {}
     with database.reading() as connection:
         for name in ("camera", "planner", "perception", "outcome"):
@@ -122,7 +122,7 @@ def distinct_values(database: Database) -> dict[str, list[str]]:
 
 
 def moment(seconds: float) -> datetime:
-    """Convert a time of the database, in seconds since 1970, to UTC."""
+    """Convert a stored time, in seconds since 1970, to a UTC datetime."""
     return datetime.fromtimestamp(seconds, UTC)
 
 
@@ -148,7 +148,7 @@ def _conditions(connection: Connection, chosen: RunFilter) -> list[ColumnElement
 
 
 def _contains(connection: Connection, given: str) -> ColumnElement[bool]:
-    """Return the condition that a run contains all words of a text. The last one may be the beginning of a word."""
+    """Return the condition that a run contains all words of a text. The last word may be incomplete."""
     words = words_of(given)
     if not words:
         return false()  # the text contains no words

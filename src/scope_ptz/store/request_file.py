@@ -17,7 +17,7 @@ class RunRequest(BaseModel):
     """The request that started a run.
 
     Attributes:
-        kind: Whether it was an instruction, a dry run, or a tool call by a person.
+        kind: The kind of the run: an instruction, a dry run, or a tool call by a person.
         camera: The camera's name at its site; empty if it has none.
         conversation: The id of its conversation; None if it has none.
         actor: The client that sent it; empty if unknown.
@@ -44,7 +44,7 @@ class RunRequest(BaseModel):
 
 
 def read_request(folder: Path) -> RunRequest:
-    """Return the request of a run folder. Runs that were not started through a server have a default request."""
+    """Return the request in a run folder. Runs that were not started through a server have a default request."""
     try:
         with (folder / FILE_NAME).open("rb") as file:
             return RunRequest.model_validate_json(file.read(MAX_BYTES))

@@ -20,7 +20,7 @@ MAX_RUN_S = 24 * 3600.0
 
 @dataclass(frozen=True, slots=True)
 class Retention:
-    """Limits on the runs that are kept. A run that exceeds any limit is removed; None means no limit.
+    """Limits on the runs to keep. Runs that exceed any limit are removed; None means no limit.
 
     Attributes:
         max_age_s: Maximum age in seconds.
@@ -79,7 +79,7 @@ def prune(database: Database, root: Path, retention: Retention, *, dry_run: bool
 
 
 def keep(database: Database, run_id: str, *, kept: bool = True) -> None:
-    """Set whether a run is exempt from ``prune``.
+    """Mark a run as exempt from ``prune``, or remove the mark.
 
     Raises:
         UnknownNameError: There is no such run.

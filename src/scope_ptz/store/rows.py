@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 RunKind = Literal["instruction", "tool", "dry_run"]
-"""The kind of a run: an instruction, a tool call by a person, or an instruction whose moves were only reported."""
+"""The kind of a run: an instruction, a tool call by a person, or a dry run, which reports moves without making them."""
 
 UNFINISHED = "unfinished"
 """The outcome of a run whose end is not recorded: it is still running, or its program was killed."""
@@ -29,7 +29,7 @@ class RunRow(Row):
         conversation: The id of its conversation; None if it has none.
         actor: The client that requested it; empty if unknown.
         calls: Number of tool calls.
-        tools_s: Seconds spent in the loop and the tools themselves.
+        tools_s: Seconds spent in the agent loop and in the tools themselves.
         kept: Whether it is exempt from ``prune``.
         thumbs_up: Number of good ratings.
         thumbs_down: Number of bad ratings.
@@ -67,7 +67,7 @@ class RunRow(Row):
 
     @property
     def tools_s(self) -> float:
-        """Seconds spent in the loop and the tools themselves."""
+        """Seconds spent in the agent loop and in the tools themselves."""
         return max(0.0, self.total_s - self.planner_s - self.perception_s - self.camera_s - self.render_s)
 
 
@@ -90,7 +90,7 @@ class StepRow(Row):
 
 
 class FrameRow(Row):
-    """A picture of a run: its path in the run folder, and the position of the call that took it; None for the first view."""
+    """A picture of a run: its path in the run folder, and the position of the call that took it (None for the first view)."""
 
     name: str
     position: int | None

@@ -18,12 +18,12 @@ from scope_ptz.store.rows import RunFilter
 class RunStore:
     """The runs in a folder, with an index in its file ``store.sqlite``.
 
-    The run folders are the primary data. A deleted database can be rebuilt from them, without feedback, conversations and the marks
-    of runs that are kept. The modules ``feedback`` and ``conversations`` operate on ``database``.
+    The run folders are the primary data. A deleted database can be rebuilt from them, except for feedback, conversations
+    and the marks of runs to keep. The modules ``feedback`` and ``conversations`` operate on ``database``.
 
     Args:
         root: The runs folder. It is created if needed.
-        busy_s: Seconds to wait for another process that writes to the database.
+        busy_s: Seconds to wait while another process writes to the database.
 
     Raises:
         OutputError: The database cannot be written.

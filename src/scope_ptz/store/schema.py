@@ -10,7 +10,7 @@ RUNS = Table(
     "runs",
     metadata,
     Column("number", Integer, primary_key=True),
-    Column("id", String, nullable=False, unique=True),  # name of the run folder
+    Column("id", String, nullable=False, unique=True),  # the name of the run folder
     Column("kind", String, nullable=False),
     Column("conversation", String),
     Column("actor", String, nullable=False),
@@ -36,7 +36,7 @@ RUNS = Table(
     Column("input_tokens", Integer, nullable=False),
     Column("output_tokens", Integer, nullable=False),
     Column("kept", Integer, nullable=False, default=0),
-    Column("trace_bytes", Integer, nullable=False),  # size of the indexed trace; a different size means that the trace has changed
+    Column("trace_bytes", Integer, nullable=False),  # size of the indexed trace; a different size on disk means that it has changed
     Column("folder_bytes", Integer, nullable=False),
 )
 
@@ -44,7 +44,7 @@ STEPS = Table(
     "steps",
     metadata,
     Column("run", Integer, ForeignKey("runs.number", ondelete="CASCADE"), primary_key=True),
-    Column("position", Integer, primary_key=True),  # number of the call in the run, from 0
+    Column("position", Integer, primary_key=True),  # index of the call in the run, from 0
     Column("step", Integer, nullable=False),
     Column("tool", String, nullable=False),
     Column("arguments", Text, nullable=False),  # JSON
@@ -64,7 +64,7 @@ FRAMES = Table(
     metadata,
     Column("run", Integer, ForeignKey("runs.number", ondelete="CASCADE"), primary_key=True),
     Column("name", String, primary_key=True),  # path in the run folder
-    Column("position", Integer),  # number of the call that took it; null for the first view
+    Column("position", Integer),  # index of the call that took it; null for the first view
 )
 
 FEEDBACK = Table(
@@ -72,7 +72,7 @@ FEEDBACK = Table(
     metadata,
     Column("id", Integer, primary_key=True),
     Column("run", Integer, ForeignKey("runs.number", ondelete="CASCADE"), nullable=False),
-    Column("position", Integer),  # number of the call that it is about; null for the whole run
+    Column("position", Integer),  # index of the call that it is about; null for the whole run
     Column("rating", Integer, nullable=False),
     Column("comment", Text, nullable=False),
     Column("actor", String, nullable=False),
@@ -96,7 +96,7 @@ AUDIT_FILES = Table(
     metadata,
     Column("number", Integer, primary_key=True),
     Column("path", String, nullable=False, unique=True),
-    Column("offset", Integer, nullable=False),  # number of bytes that are indexed
+    Column("offset", Integer, nullable=False),  # number of bytes indexed so far
 )
 
 AUDIT = Table(

@@ -149,7 +149,7 @@ class VirtualDevice:
         reachable, _ = self.limits.clamp(pose)
         here = self.pose()
         stuck = {_STUCK_FIELDS[axis]: getattr(here, _STUCK_FIELDS[axis]) for axis in self._faults.stuck}
-        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_fraction, zoom_share=zoom_fraction)
+        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_fraction=speed_fraction, zoom_fraction=zoom_fraction)
 
     def drive(self, velocity: Velocity, *, timeout_s: float | None = None, sent_s: float | None = None) -> bool:
         """Move continuously. The command is dropped if it was sent before the last ``stop`` and arrived after it.

@@ -111,7 +111,7 @@ def test_an_evaluation_killed_twice_loses_and_repeats_nothing(
 
 def test_the_same_evaluation_cannot_run_twice_concurrently(tmp_path: Path) -> None:
     with exclusive(tmp_path, "one"):
-        with pytest.raises(InputError, match="running already"), exclusive(tmp_path, "one"):
+        with pytest.raises(InputError, match="already running"), exclusive(tmp_path, "one"):
             pass
         with exclusive(tmp_path, "another"):
             pass

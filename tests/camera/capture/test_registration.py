@@ -149,4 +149,4 @@ def test_a_placed_frame_is_the_view_of_its_pose() -> None:
     assert np.allclose(placed.directions(points), view.directions(points))
     assert np.allclose(placed.points(view.directions(points)), points)
     assert angle_between_deg(ray(placed.upright), direction(30.0, -20.0)) < 1e-9
-    assert placed.reach_deg == pytest.approx(view.reach_deg)
+    assert placed.max_off_axis_deg == pytest.approx(view.max_off_axis_deg)

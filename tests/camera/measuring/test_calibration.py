@@ -66,7 +66,7 @@ async def test_right_camera_is_confirmed(scene: Scene) -> None:
 async def test_inverted_axis_is_proven(scene: Scene, pan: float, tilt: float, axis: str) -> None:
     found = await calibrate(WronglyBuiltCamera(scene, pan=pan, tilt=tilt), zooms=2)
     assert (found.pan.inverted, found.tilt.inverted) == (pan < 0, tilt < 0)
-    assert any(f"The {axis} is inverted" in text for text in found.contradictions)
+    assert any(f"{axis.capitalize()} is inverted" in text for text in found.contradictions)
     assert found.pan.scale == pytest.approx(pan, abs=0.01)
     assert found.tilt.scale == pytest.approx(tilt, abs=0.01)
 

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from scope_ptz.camera.network.errors import PictureNotStillError, PositionNotReachedError
-from scope_ptz.camera.network.settling import Settling, motion_share, wait_for_still_picture, wait_until_stationary
+from scope_ptz.camera.network.settling import Settling, moving_fraction, wait_for_still_picture, wait_until_stationary
 from scope_ptz.geometry import Pose
 
 pytestmark = pytest.mark.anyio
@@ -36,33 +36,33 @@ def _with_actor(image: NDArray[np.uint8], left: int) -> NDArray[np.uint8]:
 
 @pytest.mark.parametrize("noise", [0.0, 4.0, 8.0])
 def test_a_still_camera_is_still(noise: float) -> None:
-    share = motion_share(_scene(noise=noise, seed=1), _scene(noise=noise, seed=2))
+    share = moving_fraction(_scene(noise=noise, seed=1), _scene(noise=noise, seed=2))
     assert share is not None
     assert share < 0.1
 
 
 def test_actors_are_not_taken_for_a_turn() -> None:
-    share = motion_share(_with_actor(_scene(noise=3, seed=1), 100), _with_actor(_scene(noise=3, seed=2), 500))
+    share = moving_fraction(_with_actor(_scene(noise=3, seed=1), 100), _with_actor(_scene(noise=3, seed=2), 500))
     assert share is not None
     assert 0.05 < share < 0.5
 
 
 def test_a_changed_brightness_is_no_motion() -> None:
-    share = motion_share(_scene(), _scene(brighter=20))
+    share = moving_fraction(_scene(), _scene(brighter=20))
     assert share is not None
     assert share < 0.1
 
 
 @pytest.mark.parametrize(("shift_px", "zoom"), [(4.0, 1.0), (30.0, 1.0), (0.0, 1.03), (-6.0, 1.0)])
 def test_a_turn_and_a_zoom_are_motion(shift_px: float, zoom: float) -> None:
-    share = motion_share(_scene(noise=3, seed=1), _scene(shift_px, zoom=zoom, noise=3, seed=2))
+    share = moving_fraction(_scene(noise=3, seed=1), _scene(shift_px, zoom=zoom, noise=3, seed=2))
     assert share is not None
     assert share > 0.5
 
 
 def test_a_wall_cannot_tell() -> None:
     wall = np.full((720, 1280, 3), 120, np.uint8)
-    assert motion_share(wall, wall) is None
+    assert moving_fraction(wall, wall) is None
 
 
 def _poses(poses: Iterable[Pose]) -> Callable[[], Awaitable[Pose]]:

@@ -122,4 +122,4 @@ def box_directions(box_deg: tuple[float, float, float, float], per_side: int = 5
 
 def density_px_deg(observation: Observation) -> float:
     """Return the pixels per degree at the centre of the image."""
-    return observation.projection.density * math.pi / 180
+    return observation.projection.pixels_per_radian * math.pi / 180

@@ -112,7 +112,7 @@ def shown_by(task: Task, observation: Observation) -> Iterator[EvidenceView]:
 
 def _is_as_narrow(view: EvidenceView, observation: Observation) -> bool:
     """Return whether an image shows little more than the reference view. A wider image may contain more things to count."""
-    return observation.swept or observation.projection.reach_deg <= 1.1 * _reach_deg(view)
+    return observation.swept or observation.projection.max_off_axis_deg <= 1.1 * _reach_deg(view)
 
 
 def _reach_deg(view: EvidenceView) -> float:

@@ -35,7 +35,7 @@ class AxisCamera(NetworkCamera):
     Args:
         client: The connection.
         device: The device's properties and capabilities.
-        pictures: Its pictures.
+        pictures: The source of its pictures.
         settling: The criteria for when it counts as settled.
     """
 
@@ -45,8 +45,8 @@ class AxisCamera(NetworkCamera):
             name, device.limits, device.optics, pictures.width, pictures.height, simulated=False,
             capabilities=device.capabilities, firmware=device.firmware,
         )  # fmt: skip
-        after_death = StopProcess(client.http, stop_device, {"channel": client.channel})
-        super().__init__(info, pictures, settling, after_death)
+        watchdog = StopProcess(client.http, stop_device, {"channel": client.channel})
+        super().__init__(info, pictures, settling, watchdog)
         self._client, self._device = client, device
         self._lens = AxisLens(name, client, device.capabilities, settling.poll_s)
         self._zoom_driven = False
@@ -76,11 +76,11 @@ class AxisCamera(NetworkCamera):
             width: Width of a frame in pixels.
             height: Height of a frame in pixels.
             stream: The transport of ``frames``.
-            rtsp_port: Port of the RTSP server; None for the one that the device reports.
+            rtsp_port: Port of the RTSP server; None for the port that the device reports.
             latency_s: Seconds from the exposure of a streamed frame to its arrival.
             fields_deg: Horizontal fields of view at the widest and the closest zoom, instead of those that the device reports.
-            measured_fields: Rows of (share of the zoom range, horizontal field of view in degrees) that were measured, widest
-                first. ``fields_deg`` takes precedence over them, and they take precedence over the device's values.
+            measured_fields: Measured rows of (fraction of the zoom range, horizontal field of view in degrees), widest first.
+                They take precedence over the device's values, and ``fields_deg`` takes precedence over them.
             settling: The criteria for when the camera counts as settled.
 
         Raises:
@@ -116,7 +116,7 @@ class AxisCamera(NetworkCamera):
         try:
             return await self._go(partial(self._client.command, requests.go_to_preset(self._client.channel, name)))
         except VapixError:
-            await self._find_preset(name)  # it may have been removed since
+            await self._find_preset(name)  # it may have been removed in the meantime
             raise
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:  # noqa: ARG002 - devices keep names only
@@ -145,7 +145,7 @@ class AxisCamera(NetworkCamera):
         zoom_units = self._device.zoom.to_units(pose.zoom)
         await self._client.command(requests.absolute(self._client.channel, pose.pan_deg, pose.tilt_deg, zoom_units))
 
-    def _centring(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:
+    def _centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:
         if "AreaZoom" not in self._device.supported:
             return None
         optics = self._info.optics
@@ -170,7 +170,7 @@ class AxisCamera(NetworkCamera):
             self._zoom_driven = bool(zoom)
 
     async def _send_stop(self) -> None:
-        """Send the stop of every axis. A device may refuse one of the commands, but not all."""
+        """Send the stop commands for all axes. A device may refuse some of them, but not all."""
         self._zoom_driven, refused = False, []
         for request in requests.stop(self._client.channel):
             try:
@@ -200,12 +200,12 @@ class AxisCamera(NetworkCamera):
             "zoom": (reached.zoom, target.zoom, scale.to_zoom(reported.min_zoom_units), scale.to_zoom(reported.max_zoom_units)),
         }
         stopped: list[Axis] = []
-        for axis, (at, wanted, low, high) in bounds.items():
-            allowed = tolerance.zoom_tolerance * wanted if axis == "zoom" else tolerance.angle_tolerance_deg
-            off = abs(wrap_pan_deg(at - wanted)) if axis == "pan" else abs(at - wanted)
+        for axis, (at, requested, low, high) in bounds.items():
+            allowed = tolerance.zoom_tolerance * requested if axis == "zoom" else tolerance.angle_tolerance_deg
+            off = abs(wrap_pan_deg(at - requested)) if axis == "pan" else abs(at - requested)
             if off <= allowed:
                 continue
-            at_limit = (wanted > high and abs(at - high) <= allowed) or (wanted < low and abs(at - low) <= allowed)
+            at_limit = (requested > high and abs(at - high) <= allowed) or (requested < low and abs(at - low) <= allowed)
             if not at_limit:
                 reason = f"The {axis} motor may be blocked, or somebody else moved the camera."
                 raise self._not_reached(reached, target, reason)
@@ -223,20 +223,20 @@ class AxisCamera(NetworkCamera):
 
 
 def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
-    """Stop all motion of a device, on a separate connection. It blocks.
+    """Stop all motion of a device, over a separate connection. The call blocks.
 
     Args:
         http: The device.
-        details: The ``channel``.
+        details: The video channel, under the key ``channel``.
 
     Raises:
-        CameraError: The stop did not arrive.
+        CameraError: The stop command did not reach the device.
     """
     http.send_blocking(requests.PTZ_PATH, tuple(request.query for request in requests.stop(details["channel"])))
 
 
 def _zoom_speed(rate: float, capabilities: Capabilities) -> int:
-    """Return the zoom speed of -100 to 100. VAPIX reports no rates, so 100 is assumed to be the top speed."""
+    """Return the zoom speed, from -100 to 100, for a rate. VAPIX reports no rates, so 100 is assumed to be the top speed."""
     top = capabilities.top_speed.zoom_rate
     if not rate or not top:
         return 0

@@ -1,4 +1,4 @@
-"""A VAPIX client: sends requests and returns replies, and keeps control of the device's queue."""
+"""A VAPIX client. It sends requests, returns replies, and holds control in the device's control queue."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp, DeviceReply
 
 NOT_HERE = (404, 405, 501)
-"""HTTP statuses that mean that the device has no such interface."""
+"""HTTP status codes that mean that the device lacks the requested interface."""
 
 
 class DeviceControlHeldError(ControlHeldError):
-    """Another client has control of the device, by the device's own queue."""
+    """Another client has control of the device, according to the device's own control queue."""
 
     def __init__(self, camera: str, place: QueuePlace) -> None:
         wait = f"about {place.seconds} s" if place.seconds >= 0 else "an unknown time"
         # VAPIX reports the place in the queue, but no names.
         CameraError.__init__(
             self,
-            f"{camera} is controlled by another client of its control queue (this client would be number {place.place}, "
+            f"{camera} is controlled by another client in its control queue (this client would be number {place.place}, "
             f"after {wait}). Wait, or ask them to release it.",
         )
         self.holder = None
@@ -46,7 +46,7 @@ class VapixClient:
     def __init__(self, http: DeviceHttp, channel: int = 1) -> None:
         self.http, self.channel = http, channel
         self.queueing = False
-        """Whether the control queue is on, so that commands need control."""
+        """Whether the device's control queue is on, so that commands require control."""
         self._control_until_s = 0.0
 
     @property
@@ -57,7 +57,7 @@ class VapixClient:
         """Send a request.
 
         Raises:
-            CameraError: The device cannot be reached, or has no such interface.
+            CameraError: The device cannot be reached, or lacks the interface.
         """
         reply = await self.http.get(request.path, request.query, repeat=request.repeat, accept=NOT_HERE)
         if reply.status in NOT_HERE:
@@ -65,7 +65,7 @@ class VapixClient:
         return reply
 
     async def command(self, request: VapixRequest) -> None:
-        """Send a command that moves the camera or changes it, with control of the queue.
+        """Take control if the device requires it, and send a command that moves or changes the camera.
 
         Raises:
             VapixError: The device refuses the command.
@@ -75,15 +75,15 @@ class VapixClient:
         check_done((await self.send(request)).body)
 
     async def position(self) -> Position:
-        """Read the position."""
+        """Read the current position."""
         return parse_position((await self.send(requests.query(self.channel, "position"))).body)
 
     async def presets(self) -> dict[int, str]:
-        """Read the names of the presets by number."""
+        """Read the names of the presets, by preset number."""
         return parse_presets((await self.send(requests.query(self.channel, "presetposcam"))).body)
 
     async def take_control(self) -> None:
-        """Take control if the device has its control queue on, and keep it.
+        """Take or renew control if the device's control queue is on.
 
         Raises:
             ControlHeldError: Another client has control. This client leaves the queue.
@@ -93,7 +93,7 @@ class VapixClient:
         try:
             place = parse_queue((await self.send(requests.control_queue(self.channel, "request"))).body)
         except VapixError as error:
-            raise CameraError(f"The control queue of the camera at {self.address} assigns no place. {error}") from None
+            raise CameraError(f"The control queue of the camera at {self.address} did not assign a place. {error}") from None
         if place.place != 1:
             await self.drop_control()
             raise DeviceControlHeldError(f"The camera at {self.address}", place)
@@ -101,7 +101,7 @@ class VapixClient:
         self._control_until_s = monotonic() + left_s / 2
 
     async def drop_control(self) -> None:
-        """Give control back, or leave the queue."""
+        """Release control, or leave the queue."""
         if not self.queueing:
             return
         self._control_until_s = 0.0
@@ -110,4 +110,4 @@ class VapixClient:
         except CameraSignInError:
             raise
         except CameraError:
-            return  # the queue forgets a client that is silent
+            return  # the queue drops a client that sends nothing

@@ -15,34 +15,34 @@ from scope_ptz.errors import CameraError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics
 
 KNOWN_OPTICS = {"AXIS M5075-G": AXIS_M5075_G}
-"""Optics of models by product name, for devices that do not report their field angles."""
+"""Lenses by product name, for devices that do not report their field of view."""
 
 RTSP_PORT = 554
 """The standard port of RTSP servers."""
 
 DEFAULT_SPEEDS = ((1.0, 1.0), (100.0, 100.0))
-"""Assumed for devices without a speed table: 100 is 100 degrees per second."""
+"""Speed table assumed for devices that have none: a speed of 100 is 100 degrees per second."""
 
 DEFAULT_ZOOM_RATE = 1.0
-"""Assumed top speed of the zoom in octaves per second; VAPIX reports none."""
+"""Assumed top speed of the zoom in octaves per second, because VAPIX reports none."""
 
 
 @dataclass(frozen=True, slots=True)
 class AxisDevice:
-    """An AXIS device, as described by its replies.
+    """The properties and capabilities of an AXIS device, read from its replies.
 
     Attributes:
-        model: Product name, empty if it reports none.
+        model: Product name; empty if it reports none.
         limits: Limits in degrees and magnification.
-        optics: Field of view by magnification.
-        zoom: Zoom positions and magnification.
-        speeds: Speeds and degrees per second.
+        optics: The lens, which relates magnification to field of view.
+        zoom: The relation between zoom positions and magnifications.
+        speeds: The relation between the device's speeds and degrees per second.
         capabilities: Its capabilities beyond moving to a pose.
         supported: Names of the functions whose ``PTZ.Support`` parameter is true, such as ``AutoFocus``.
         queueing: Whether its control queue is on.
         locked: Whether its position is locked.
-        sizes: Picture sizes that it announces, width and height; empty if it announces none.
-        firmware: Version of its firmware, empty if it reports none.
+        sizes: Picture sizes that it reports, as (width, height); empty if it reports none.
+        firmware: Version of its firmware; empty if it reports none.
     """
 
     model: str
@@ -66,11 +66,11 @@ async def read_device(
     Args:
         client: The connection.
         fields_deg: Horizontal fields of view at the widest and the closest zoom, instead of those that the device reports.
-        measured: Rows of (share of the zoom range, horizontal field of view in degrees) that were measured, widest first.
-            They are used if they reach from one end of the zoom to the other.
+        measured: Measured rows of (fraction of the zoom range, horizontal field of view in degrees), widest first.
+            They are used if they cover the whole zoom range.
 
     Raises:
-        NotACameraError: It is not an AXIS camera, or it has no pan, tilt and zoom.
+        NotACameraError: It is not an AXIS camera with pan, tilt and zoom.
         CameraError: It cannot be reached, refuses the account, or reports no field of view.
     """
     channel = client.channel
@@ -116,7 +116,7 @@ async def read_rtsp_port(client: VapixClient) -> int:
 
 
 def _capabilities(supported: frozenset[str], speeds: SpeedScale) -> Capabilities:
-    """Return the capabilities. A device without ``PTZ.Support`` parameters is assumed to support continuous moves and presets."""
+    """Return a device's capabilities. Without ``PTZ.Support`` parameters, continuous moves and presets are assumed to work."""
     silent = not supported
     top = Velocity(
         speeds.top_dps if silent or "ContinuousPan" in supported else 0.0,
@@ -148,7 +148,7 @@ async def _parameters(client: VapixClient, group: str) -> dict[str, str]:
 
 
 async def _table(client: VapixClient, group: str, attribute: str) -> tuple[tuple[float, float], ...]:
-    """Return a calibration table; empty if the device has none, as with older firmware."""
+    """Return a calibration table; empty if the device has none, for example because its firmware is old."""
     request = requests.attributes(client.channel, "zoom" if group == "zoom" else "speed")
     try:
         rows = parse_table((await client.send(request)).body, client.channel, attribute, group)
@@ -164,7 +164,7 @@ def _fields(model: str, reported: DeviceLimits) -> tuple[float, float]:
     if (optics := KNOWN_OPTICS.get(model)) is not None:
         return optics.table[0][1], optics.table[-1][1]
     raise CameraError(
-        "The camera does not report its field of view. Give it in degrees: ?hfov_wide=...&hfov_tele=..., from the data sheet."
+        "The camera does not report its field of view. Give the values from its data sheet in degrees: ?hfov_wide=...&hfov_tele=..."
     )
 
 
@@ -177,7 +177,7 @@ def _limits_in_degrees(reported: DeviceLimits, zoom: ZoomScale) -> Limits:
 
 
 def _sizes(text: str) -> tuple[tuple[int, int], ...]:
-    """Return the sizes of ``1920x1080,1280x720,...``."""
+    """Parse sizes in the form ``1920x1080,1280x720,...``."""
     pairs = (part.strip().partition("x") for part in text.split(","))
     return tuple(
         (int(w), int(h)) for w, _, h in pairs if w.isdecimal() and h.isdecimal() and 0 < int(w) <= 20000 and 0 < int(h) <= 20000

@@ -1,4 +1,4 @@
-"""Focus and iris of an AXIS camera."""
+"""Control the focus and iris of an AXIS camera."""
 
 from __future__ import annotations
 
@@ -14,46 +14,46 @@ if TYPE_CHECKING:
     from scope_ptz.camera.capabilities import Capabilities
 
 RANGE_UNITS = 9998
-"""Length of the ranges of focus and iris, whose positions are 1 to 9999."""
+"""Size of the ranges of focus and iris, whose positions go from 1 to 9999."""
 
 
 def focus_actions(supported: frozenset[str]) -> tuple[FocusAction, ...]:
-    """Return the focus actions of a device, by the names of its ``PTZ.Support`` parameters."""
+    """Return the focus actions of a device, given the names of its true ``PTZ.Support`` parameters."""
     automatic: tuple[FocusAction, ...] = ("auto", "manual", "once") if "AutoFocus" in supported else ()
     steps: tuple[FocusAction, ...] = ("near", "far") if "RelativeFocus" in supported else ()
     return automatic + steps
 
 
 def iris_actions(supported: frozenset[str]) -> tuple[IrisAction, ...]:
-    """Return the iris actions of a device, by the names of its ``PTZ.Support`` parameters."""
+    """Return the iris actions of a device, given the names of its true ``PTZ.Support`` parameters."""
     automatic: tuple[IrisAction, ...] = ("auto", "manual") if "AutoIris" in supported else ()
     steps: tuple[IrisAction, ...] = ("open", "close") if "RelativeIris" in supported else ()
     return automatic + steps
 
 
 class AxisLens:
-    """Focus and iris of one channel.
+    """The focus and iris of one channel.
 
     Args:
         name: The camera's name, for error messages.
         client: The connection.
         capabilities: The device's capabilities.
-        poll_s: Seconds between two readings while the focus moves.
+        poll_s: Interval, in seconds, at which the focus is read while it moves.
     """
 
     def __init__(self, name: str, client: VapixClient, capabilities: Capabilities, poll_s: float) -> None:
         self._name, self._client, self._capabilities, self._poll_s = name, client, capabilities, poll_s
 
     async def state(self) -> LensState:
-        """Read focus and iris."""
+        """Read the state of focus and iris."""
         position = await self._client.position()
-        return LensState(position.autofocus, _share(position.focus_units), position.autoiris, _share(position.iris_units))
+        return LensState(position.autofocus, _fraction(position.focus_units), position.autoiris, _fraction(position.iris_units))
 
     async def set_focus(self, action: FocusAction, step: float = DEFAULT_STEP) -> LensState:
         """Set the focus and return when it has settled. A step turns autofocus off first, because autofocus would undo the step.
 
         Raises:
-            InputError: The action or the step is wrong.
+            InputError: The action or the step is invalid.
             CameraError: The device does not offer the action, refuses it, or does not answer.
         """
         offered, channel = self._capabilities.focus, self._client.channel
@@ -74,7 +74,7 @@ class AxisLens:
         """Set the iris. A step turns the automatic iris off first.
 
         Raises:
-            InputError: The action or the step is wrong.
+            InputError: The action or the step is invalid.
             CameraError: The device does not offer the action, refuses it, or does not answer.
         """
         offered, channel = self._capabilities.iris, self._client.channel
@@ -89,9 +89,9 @@ class AxisLens:
         await self._client.command(request)
 
 
-def _steps(share: float) -> int:
-    return max(1, round(share * RANGE_UNITS))
+def _steps(fraction: float) -> int:
+    return max(1, round(fraction * RANGE_UNITS))
 
 
-def _share(units: float | None) -> float | None:
+def _fraction(units: float | None) -> float | None:
     return None if units is None else min(max((units - 1) / RANGE_UNITS, 0.0), 1.0)

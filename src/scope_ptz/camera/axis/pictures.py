@@ -1,4 +1,4 @@
-"""Pictures of an AXIS camera over VAPIX and RTSP."""
+"""Pictures from an AXIS camera over VAPIX and RTSP."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ StreamKind = Literal["mjpeg", "rtsp"]
 """The transport of live frames."""
 
 SMALL_WIDTH = 320
-"""Minimum width in pixels of the pictures that are compared for settling."""
+"""Minimum width in pixels of the pictures that are compared to detect when the camera has settled."""
 
 
 class AxisPictures(DevicePictures):
-    """The pictures of one channel.
+    """Pictures from one channel.
 
     Args:
         client: The connection.
@@ -36,7 +36,7 @@ class AxisPictures(DevicePictures):
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
         sizes: Picture sizes that the device reports.
-        stream: How live frames are transported.
+        stream: The transport of live frames.
         rtsp_port: Port of the RTSP server.
         latency_s: Seconds from the exposure of a streamed frame to its arrival.
     """

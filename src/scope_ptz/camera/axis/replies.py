@@ -1,4 +1,4 @@
-"""VAPIX replies: text and JSON from a device, parsed and checked. Nothing in them is trusted."""
+"""Parse and check VAPIX replies, which are text or JSON. Nothing in them is trusted."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from scope_ptz.camera.network.errors import CameraReplyError
 from scope_ptz.errors import CameraError
 
 MAX_SHOWN = 120
-"""Maximum number of characters of a device's error message that are quoted."""
+"""Maximum number of characters to quote from a device's error message."""
 
 _PRESET = re.compile(r"presetposno(\d{1,6})=(.*)")
 _ANCHOR = re.compile(r'name="(-?\d{1,9})"')
 
 
 class VapixError(CameraError):
-    """The device understood the request and refuses it."""
+    """The device understood the request but refused it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """The position that the device reports: pan and tilt in degrees, the rest in its own units. None means not reported."""
+    """A position that the device reports: pan and tilt in degrees, other values in the device's units, None if not reported."""
 
     pan_deg: float
     tilt_deg: float
@@ -36,7 +36,7 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class DeviceLimits:
-    """The limits of a device; None for those that it does not report. Field angles are tenths of a degree."""
+    """The limits of a device; None for those that it does not report. Field angles are in tenths of a degree."""
 
     min_pan_deg: float
     max_pan_deg: float
@@ -53,8 +53,8 @@ class QueuePlace:
     """A place in the control queue.
 
     Attributes:
-        place: 1 has control, 2 and above wait, 0 is not in the queue.
-        seconds: Time left with control, or until control; -1 if it cannot be estimated.
+        place: The place: 1 has control, 2 and above are waiting, and 0 means not in the queue.
+        seconds: Seconds of control left, or seconds until control; -1 if unknown.
         poll_s: Seconds after which the place must be renewed.
     """
 
@@ -131,7 +131,7 @@ def parse_limits(body: bytes) -> DeviceLimits:
 
 
 def parse_presets(body: bytes) -> dict[int, str]:
-    """Parse the reply to ``query=presetposcam``: names by number, in the order of the numbers."""
+    """Parse the reply to ``query=presetposcam``. Return preset names by number, in numerical order."""
     found: dict[int, str] = {}
     for line in text_of(body).splitlines():
         if (match := _PRESET.fullmatch(line.strip())) and match.group(2).strip():
@@ -140,7 +140,7 @@ def parse_presets(body: bytes) -> dict[int, str]:
 
 
 def parse_table(body: bytes, channel: int, attribute: str, key: str) -> tuple[tuple[float, float], ...]:
-    """Parse a calibration table of ``query=attributes&format=json``.
+    """Parse a calibration table from the reply to ``query=attributes&format=json``.
 
     Args:
         body: The reply.
@@ -149,7 +149,7 @@ def parse_table(body: bytes, channel: int, attribute: str, key: str) -> tuple[tu
         key: The column next to ``value``: ``zoom`` or ``speed``.
 
     Returns:
-        Rows of (device value, physical value) that rise in both columns; empty if the device has no such table.
+        Rows of (device value, physical value), increasing in both columns; empty if the device has no such table.
     """
     text = text_of(body)
     try:
@@ -168,7 +168,7 @@ def parse_table(body: bytes, channel: int, attribute: str, key: str) -> tuple[tu
 
 
 def parse_queue(body: bytes) -> QueuePlace:
-    """Parse the reply of the control queue.
+    """Parse a reply from the control queue.
 
     Raises:
         VapixError: The device refuses the request, for example because the queue is full.
@@ -181,7 +181,7 @@ def parse_queue(body: bytes) -> QueuePlace:
 
 
 def check_done(body: bytes) -> None:
-    """Raise VapixError if a command was refused. Success has no body."""
+    """Raise ``VapixError`` if a command was refused. The reply to a successful command is empty."""
     if body.strip():
         text_of(body)
 

@@ -1,4 +1,4 @@
-"""VAPIX requests: paths and queries, built from checked values. This module sends nothing.
+"""Build VAPIX requests, which are paths and queries, from checked values. This module sends nothing.
 
 Sources: the pan/tilt/zoom, video streaming and parameter management chapters of the VAPIX library.
 """
@@ -25,12 +25,12 @@ _REFUSED_IN_PRESET_NAMES = '"<>~:'
 
 @dataclass(frozen=True, slots=True)
 class VapixRequest:
-    """A request.
+    """A VAPIX request.
 
     Attributes:
         path: The path on the device.
-        query: Names and values, not yet encoded.
-        repeat: Whether sending it twice has the same effect as sending it once.
+        query: Query parameters, not yet URL-encoded.
+        repeat: Whether the request may be repeated because sending it twice has the same effect as sending it once.
     """
 
     path: str
@@ -39,20 +39,20 @@ class VapixRequest:
 
 
 def absolute(channel: int, pan_deg: float, tilt_deg: float, zoom_units: int) -> VapixRequest:
-    """Move to an absolute position. Angles are degrees, zoom is in units of the device (1 to 19999)."""
+    """Move to an absolute position. Angles are in degrees; zoom is in the device's units (1 to 19999)."""
     _check_finite(pan_deg=pan_deg, tilt_deg=tilt_deg)
     query = {"pan": _number(_within(pan_deg, 180.0)), "tilt": _number(_within(tilt_deg, 180.0))}
     return _ptz(channel, **query, zoom=str(min(max(zoom_units, 1), 19999)))
 
 
 def centre(channel: int, x: float, y: float, percent: int, size: tuple[int, int]) -> VapixRequest:
-    """Bring a point of the picture to its middle.
+    """Centre a point of the picture, and optionally zoom.
 
     Args:
         channel: The video channel.
-        x: The point from 0 (left border) to 1 (right border).
-        y: The point from 0 (top) to 1 (bottom).
-        percent: The focal length afterwards, in percent of the current one.
+        x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
+        y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
+        percent: The resulting focal length as a percentage of the current one.
         size: Width and height in pixels of the picture to which the request's coordinates refer.
     """
     width, height = size
@@ -62,12 +62,12 @@ def centre(channel: int, x: float, y: float, percent: int, size: tuple[int, int]
 
 
 def continuous_pan_tilt(channel: int, pan: int, tilt: int, *, proportional: bool = False) -> VapixRequest:
-    """Move at a velocity of -100 to 100.
+    """Pan and tilt continuously, at velocities from -100 to 100.
 
     Args:
         channel: The video channel.
-        pan: Positive to the right.
-        tilt: Positive upwards.
+        pan: Velocity of pan, positive to the right.
+        tilt: Velocity of tilt, positive upwards.
         proportional: Whether the device scales velocities with the zoom by default; the request turns this off.
     """
     extra = {"proportionalspeed": "disabled"} if proportional else {}
@@ -75,12 +75,12 @@ def continuous_pan_tilt(channel: int, pan: int, tilt: int, *, proportional: bool
 
 
 def continuous_zoom(channel: int, zoom: int) -> VapixRequest:
-    """Zoom at a velocity of -100 to 100, positive to zoom in."""
+    """Zoom continuously, at a velocity from -100 to 100, positive to zoom in."""
     return _ptz(channel, continuouszoommove=str(_speed(zoom)))
 
 
 def stop(channel: int) -> tuple[VapixRequest, ...]:
-    """Stop continuous motion of all axes, and moves to a position."""
+    """Stop all axes, whether they move continuously or to a position."""
     return continuous_pan_tilt(channel, 0, 0), continuous_zoom(channel, 0), _ptz(channel, move="stop")
 
 
@@ -98,7 +98,7 @@ def save_preset(channel: int, name: str) -> VapixRequest:
     """Save the current position as a preset.
 
     Raises:
-        InputError: The device does not allow the name.
+        InputError: AXIS cameras do not allow the name.
     """
     check_preset_name(name)
     if found := sorted(set(name) & set(_REFUSED_IN_PRESET_NAMES)):
@@ -142,7 +142,7 @@ def attributes(channel: int, group: Literal["zoom", "speed"]) -> VapixRequest:
 
 
 def control_queue(channel: int, action: Literal["request", "drop", "query"]) -> VapixRequest:
-    """Request, drop or query PTZ control."""
+    """Request PTZ control, drop it, or ask who is in the queue."""
     return VapixRequest(QUEUE_PATH, {"camera": _channel(channel), "control": action})
 
 
@@ -152,19 +152,19 @@ def parameters(group: str) -> VapixRequest:
 
 
 def snapshot(channel: int, width: int, height: int, *, compression: int = 15) -> VapixRequest:
-    """Take one JPEG picture. ``compression`` is 0 (best) to 100."""
+    """Take one JPEG picture. ``compression`` goes from 0 (best quality) to 100."""
     query = {"camera": _channel(channel), "resolution": f"{width}x{height}", "compression": str(compression)}
     return VapixRequest(SNAPSHOT_PATH, query)
 
 
 def mjpeg(channel: int, width: int, height: int, rate_hz: float, *, compression: int = 25) -> VapixRequest:
-    """Open a motion JPEG stream of at most ``rate_hz`` pictures per second."""
+    """Open a Motion JPEG stream of at most ``rate_hz`` pictures per second."""
     picture = snapshot(channel, width, height, compression=compression)
     return VapixRequest(MJPEG_PATH, {**picture.query, "fps": str(min(max(math.ceil(rate_hz), 1), 60))})
 
 
 def rtsp_path(channel: int, width: int, height: int, rate_hz: float) -> str:
-    """Return path and query of an H.264 stream."""
+    """Return the path and query of an H.264 stream."""
     rate = min(max(math.ceil(rate_hz), 1), 60)
     return f"{RTSP_PATH}?camera={_channel(channel)}&videocodec=h264&resolution={width}x{height}&fps={rate}"
 
@@ -190,7 +190,7 @@ def _within(value: float, limit: float) -> float:
 
 
 def _number(value: float) -> str:
-    """Return a number without an exponent, which devices cannot parse, and without a negative zero."""
+    """Format a number without an exponent, which devices cannot parse, and without a negative zero."""
     return f"{value:.4f}".rstrip("0").rstrip(".").replace("-0", "0", 1) if abs(value) < 5e-5 else f"{value:.4f}"
 
 

@@ -1,4 +1,4 @@
-"""Units of AXIS devices: zoom positions to magnification, and speeds of -100 to 100 to degrees per second."""
+"""Convert the units of AXIS devices: zoom positions to magnifications, and speeds from -100 to 100 to degrees per second."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from scope_ptz.geometry import Optics
 
 OPTICAL_END_UNITS = 9999.0
-"""Zoom positions above this one are digital."""
+"""The highest optical zoom position. Higher positions are digital zoom."""
 
 
 @dataclass(frozen=True, slots=True)
 class ZoomScale:
-    """Zoom positions and magnifications as a table, both rising. Between the rows, it is linear.
+    """A table of zoom positions and magnifications, both increasing, with linear interpolation between the rows.
 
     Attributes:
         table: Rows of (zoom position, magnification).
@@ -23,7 +23,7 @@ class ZoomScale:
 
     def __post_init__(self) -> None:
         if len(self.table) < 2 or any(b[0] <= a[0] or b[1] <= a[1] for a, b in zip(self.table, self.table[1:], strict=False)):
-            raise ValueError("a zoom scale needs two or more rows that rise")
+            raise ValueError("a zoom scale needs two or more increasing rows")
 
     @property
     def min_zoom(self) -> float:
@@ -48,7 +48,7 @@ class ZoomScale:
 
 @dataclass(frozen=True, slots=True)
 class SpeedScale:
-    """Speeds of 1 to 100 and degrees per second as a table, both rising.
+    """A table of device speeds from 1 to 100 and degrees per second, both increasing.
 
     Attributes:
         table: Rows of (speed, degrees per second).
@@ -62,7 +62,7 @@ class SpeedScale:
         return self.table[-1][1]
 
     def to_speed(self, dps: float) -> int:
-        """Return the speed of -100 to 100 for a velocity. Every velocity except 0 moves the camera."""
+        """Return the device speed, from -100 to 100, for a velocity. Every velocity except 0 moves the camera."""
         import numpy as np
 
         if dps == 0:
@@ -77,7 +77,7 @@ def zoom_scale(
     """Return the zoom scale of a device.
 
     Args:
-        rows: Its own table, empty if it has none.
+        rows: The device's own table; empty if it has none.
         min_units: The lowest zoom position.
         max_units: The highest zoom position.
         widest: Horizontal field of view in degrees at the widest zoom, for a device without a table.
@@ -92,11 +92,11 @@ def zoom_scale(
 
 
 def optics_of(scale: ZoomScale, fields: tuple[tuple[float, float], ...]) -> Optics:
-    """Return the optics: between the known fields of view the focal length grows linearly with magnification.
+    """Return the optics. Between the known fields of view, the focal length grows linearly with magnification.
 
     Args:
         scale: The zoom scale.
-        fields: Rows of (share of the range of magnification, horizontal field of view in degrees), from share 0 to share 1.
+        fields: Rows of (fraction of the range of magnification, horizontal field of view in degrees), from fraction 0 to 1.
     """
     span = scale.max_zoom - scale.min_zoom
-    return Optics(tuple((scale.min_zoom + share * span, hfov_deg) for share, hfov_deg in fields))
+    return Optics(tuple((scale.min_zoom + fraction * span, hfov_deg) for fraction, hfov_deg in fields))

@@ -1,10 +1,10 @@
-"""Joint adjustment of the poses of a capture: find the rotations and fields of view that best explain all matches.
+"""Bundle adjustment of a capture: find the rotations and fields of view that best explain all matches.
 
 The camera turns about its optical centre, so a match between two frames means that two rays have the same direction. The unknowns
-are a small rotation of each frame and a factor on the focal length of each zoom. Matches determine them relative to each other. The
-reported poses determine the absolute orientation. They are assumed to have an independent error per frame and a slow drift that
-begins at zero. This is a bundle adjustment with rotations only (Brown and Lowe, "Automatic panoramic image stitching using
-invariant features", 2007), solved by Gauss-Newton steps with Huber weights.
+are a small rotation of each frame and a factor on the focal length at each zoom level. The matches determine the poses relative to
+each other, and the reported poses determine the absolute orientation. Reported poses are assumed to have an independent error per
+frame and a slow drift that starts at zero. This is a bundle adjustment with rotations only (Brown and Lowe,
+"Automatic panoramic image stitching using invariant features", 2007), solved by Gauss-Newton steps with Huber weights.
 """
 
 from __future__ import annotations
@@ -36,15 +36,16 @@ MATCH_SIGMA_PX = 0.7
 """Assumed standard error of the position of a feature, in pixels."""
 
 REJECT_PX = 2.5
-"""Matches that are farther than this from the first solution are excluded from the second one."""
+"""Matches whose error in the first solution exceeds this many pixels are excluded from the second one."""
 
 MAX_PAUSE_S = 60.0
-"""A longer time between two frames counts as an interruption of the capture."""
+"""Maximum seconds between two frames that count towards the drift. A longer pause is an interruption of the capture."""
 
 SAME_FIELD = 0.004
-"""Frames whose focal lengths differ by less than this share get the same correction."""
+"""Frames whose focal lengths differ by less than this fraction share one correction."""
 
 STEPS = 6
+"""Maximum number of Gauss-Newton steps per solution."""
 
 Floats = NDArray[np.float64]
 
@@ -54,10 +55,10 @@ class Adjustment:
     """The result of an adjustment.
 
     Attributes:
-        axes: Right, up and forward of each frame, as the rows of (3, 3) matrices.
+        axes: The right, up and forward axes of each frame, as the rows of a (3, 3) matrix.
         focal_px: Focal length of each frame in pixels.
         registered: Whether each frame has enough matches to determine its pose.
-        residual_px: Root mean square distance of the matches, in pixels of the coarser frame; None without matches.
+        residual_px: Root mean square error of the matches, in pixels of the coarser frame; None without matches.
         matches: Number of matches that were used.
     """
 
@@ -73,10 +74,10 @@ def adjust(views: Sequence[Perspective], matches: Sequence[PairMatches], times_s
 
     Args:
         views: The frames at their reported poses, in the order in which they were taken.
-        matches: Matches of pairs of frames.
+        matches: Matches between pairs of frames.
         times_s: The time at which each frame was taken, for the drift; None for equal intervals.
     """
-    problem = _Problem(views, _shares(np.array(range(len(views)) if times_s is None else times_s, np.float64)))
+    problem = _Problem(views, _progress(np.array(range(len(views)) if times_s is None else times_s, np.float64)))
     used = list(matches)
     for _ in range(2):
         for _ in range(STEPS):
@@ -101,7 +102,7 @@ class _Problem:
     of view (the logarithm of a factor on the focal length), and two for the drift of pan and tilt over the capture, in radians.
     """
 
-    def __init__(self, views: Sequence[Perspective], shares: Floats) -> None:
+    def __init__(self, views: Sequence[Perspective], progress: Floats) -> None:
         self.views = list(views)
         self.axes = [camera_axes(view.pan_deg, view.tilt_deg) for view in views]
         self.groups, count = _focal_groups([view.focal_px for view in views])
@@ -110,9 +111,9 @@ class _Problem:
         self.drift = np.zeros(2)
         self.drift_sigma = np.full(2, math.radians(DRIFT_SIGMA_DEG))
         # A drift of pan rotates about the vertical, clockwise from above; a drift of tilt rotates about the frame's right axis.
-        self._shares = shares
+        self._progress = progress
         self._whole_bases = [np.column_stack([(0.0, 0.0, -1.0), axes[0]]) for axes in self.axes]
-        self.drift_bases = [share * basis for share, basis in zip(shares, self._whole_bases, strict=True)]
+        self.drift_bases = [part * basis for part, basis in zip(progress, self._whole_bases, strict=True)]
 
     def focals(self) -> Floats:
         """Return the focal length of each frame in pixels."""
@@ -155,7 +156,7 @@ class _Problem:
         np.add.at(right, columns, -np.einsum("nki,nk->i", weighted, residuals))
 
     def _add_priors(self, normal: Floats, right: Floats) -> None:
-        """Add the priors: ``turn - basis @ drift``, the drift and the focal factors are small."""
+        """Add the priors, which keep ``turn - basis @ drift``, the drift and the focal factors small."""
         n, g = len(self.views), len(self.log_factor)
         weight = 1 / math.radians(POSE_SIGMA_DEG) ** 2
         last = slice(3 * n + g, 3 * n + g + 2)
@@ -175,11 +176,11 @@ class _Problem:
         right[middle] -= self.log_factor / FOCAL_SIGMA**2
 
     def drop_insignificant_drift(self) -> None:
-        """Ignore a drift that errors of individual poses can explain. This makes the absolute orientation more accurate."""
+        """Set a drift to zero if errors of individual poses can explain it. This makes the absolute orientation more accurate."""
         count = len(self.views)
         # The components of each turn along a drift of pan and a drift of tilt over the whole capture.
         parts = np.array([basis.T @ turn for basis, turn in zip(self._whole_bases, self.turns, strict=True)]).reshape(count, 2)
-        noise = np.std(parts - self._shares[:, None] * self.drift, axis=0)
+        noise = np.std(parts - self._progress[:, None] * self.drift, axis=0)
         standard_error = noise * math.sqrt(12 / max(count, 1))
         self.drift_sigma[np.abs(self.drift) < SIGNIFICANT * standard_error] = math.radians(1e-4)
 
@@ -198,7 +199,7 @@ class _Problem:
         return inliers
 
     def residual_px(self, matches: Sequence[PairMatches]) -> float | None:
-        """Return the root mean square distance of matches in pixels; None without matches."""
+        """Return the root mean square error of matches in pixels; None without matches."""
         if not matches:
             return None
         focals = self.focals()
@@ -207,7 +208,7 @@ class _Problem:
 
 
 def rotation_matrix(vector: Floats) -> Floats:
-    """Return the (3, 3) rotation by a vector (3,) whose length is the angle in radians (Rodrigues)."""
+    """Return the (3, 3) rotation matrix of a rotation vector (3,), whose length is the angle in radians (Rodrigues)."""
     angle = float(np.linalg.norm(vector))
     if angle < 1e-12:
         return np.eye(3)
@@ -221,8 +222,8 @@ def turn_deg(a: Floats, b: Floats) -> float:
     return math.degrees(2 * math.asin(min(1.0, float(np.linalg.norm(a - b)) / (2 * math.sqrt(2)))))
 
 
-def _shares(times_s: Floats) -> Floats:
-    """Return the share of the capture time at which each frame was taken, from 0 to 1. Pauses count at most ``MAX_PAUSE_S``."""
+def _progress(times_s: Floats) -> Floats:
+    """Return when each frame was taken, from 0 (start of the capture) to 1 (end). A pause counts as at most ``MAX_PAUSE_S``."""
     steps = np.clip(np.diff(times_s, prepend=times_s[:1]), 0.0, MAX_PAUSE_S)
     passed = np.cumsum(steps)
     return np.asarray(passed / passed[-1] if len(passed) and passed[-1] > 0 else np.zeros(len(passed)), np.float64)

@@ -1,4 +1,4 @@
-"""Choose close-ups where the wide pictures have the finest detail, such as signs and small distant objects."""
+"""Choose close-ups where the wide pictures show the finest detail, such as signs and small distant objects."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STRONG_EDGE = 24.0
 """Minimum local contrast of an edge that counts, on a scale of 0 to 255. Noise and fine texture stay below it."""
 
 HORIZON_DEG, FALL_DEG = -4.0, 22.0
-"""Centre and width of the weight of detail by tilt, in degrees. Distant objects, which look small, are near the horizon."""
+"""Centre and width, in degrees of tilt, of the weight of detail. Distant objects, which look small, are near the horizon."""
 
 Floats = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def _view(info: CameraInfo, pose: Pose) -> Perspective:
 
 
 def _detail_map(session: CaptureSession) -> NDArray[np.float32]:
-    """Return the weighted share of strong, fine edges in each cell, as (180, 360): rows from the zenith, columns from pan -180."""
+    """Return the weighted fraction of strong, fine edges per cell, as (180, 360): rows from the zenith, columns from pan -180."""
     sums, counts = np.zeros((180, 360)), np.zeros((180, 360))
     widest = max((shot.hfov_deg for shot in session.shots), default=0.0)
     for shot in session.shots:

@@ -1,7 +1,7 @@
 """Compose a picture from overlapping frames: match their tone, remove moving objects, and blend them in two bands.
 
 Large structures are blended over the whole overlap, which hides the edges of frames. Fine detail comes from the frame whose centre
-is nearest, so that small errors of a pose do not blur it (Brown and Lowe, 2007). Where three or more frames show a direction, those
+is nearest, so that small pose errors do not blur it (Brown and Lowe, 2007). Where three or more frames show a direction, those
 that differ from the median contain a moving object and are excluded.
 """
 
@@ -28,21 +28,21 @@ BLOCK = (192, 384)
 
 MARGIN_PX = 24  # margin around a block, so that neighbouring blocks detect the same moving objects
 LOW_SCALE = 8  # the low band has one value per 8 x 8 pixels of a frame
-SHARE_SCALE = 4  # weights have one value per 4 x 4 pixels of a frame
+WEIGHT_SCALE = 4  # weights have one value per 4 x 4 pixels of a frame
 COARSE_PX = 4  # weights and low bands are evaluated at every fourth pixel of a block
 NEGLIGIBLE = 2e-3  # a frame whose weight is below this in a whole block adds no detail to it
 MOVED = 14.0
 """Difference from the median after smoothing, on a scale of 0 to 255, above which a frame shows a moving object."""
 
 MIXED_CELLS, MIXED_MOVED = 2.5, 20.0
-"""Smoothing, in cells of the coarsest frame, and maximum difference for the comparison of frames of different zooms. Such frames
+"""Smoothing, in cells of the coarsest frame, and maximum difference when frames with different zooms are compared. Such frames
 never look exactly the same."""
 
 SHARP_POWER, SOFT_POWER = 12, 2
 """Exponents of the weight, which decreases from the centre of a frame to its edge: for fine detail, and for large structures."""
 
-FINE_SHARE = 0.8
-"""Minimum density of a fine frame, relative to the densest one. Coarse frames only vote, and fill the rest of the picture."""
+MIN_FINE_DENSITY = 0.8
+"""Minimum density of a fine frame, relative to the densest one. Coarser frames only vote, and fill the rest of the picture."""
 
 FINE_EDGE = 0.06
 """Weight of fine frames below which coarse frames replace them."""
@@ -66,12 +66,12 @@ class FramePicture:
     Attributes:
         image: Array of shape ``(H, W, 3)``, RGB, in the common tone.
         low: The low band of the image, reduced by ``LOW_SCALE`` in both directions.
-        share: The weight, reduced by ``SHARE_SCALE``: 1 in the centre, 0 at the edge and at hidden parts.
+        weight: The weight, reduced by ``WEIGHT_SCALE``: 1 in the centre, 0 at the edge and at hidden parts.
     """
 
     image: Picture
     low: Floats
-    share: Floats
+    weight: Floats
 
 
 def frame_picture(image: Picture, hidden: Mask | None, gain: NDArray[np.float64]) -> FramePicture:
@@ -80,7 +80,7 @@ def frame_picture(image: Picture, hidden: Mask | None, gain: NDArray[np.float64]
     height, width = image.shape[:2]
     low = cv2.resize(toned, (max(1, width // LOW_SCALE), max(1, height // LOW_SCALE)), interpolation=cv2.INTER_AREA)
     low = cv2.GaussianBlur(low.astype(np.float32), (0, 0), 1.0, borderType=cv2.BORDER_REPLICATE)
-    rows, columns = max(1, height // SHARE_SCALE), max(1, width // SHARE_SCALE)
+    rows, columns = max(1, height // WEIGHT_SCALE), max(1, width // WEIGHT_SCALE)
     y, x = ((np.arange(n) + 0.5) / n for n in (rows, columns))
     share = (np.minimum(y, 1 - y)[:, None] * 2) * (np.minimum(x, 1 - x)[None, :] * 2)
     if hidden is not None:
@@ -107,7 +107,7 @@ class Composer:
     def __init__(self, frames: Sequence[PlacedFrame], read: Callable[[int], FramePicture]) -> None:
         self._frames, self._read = frames, read
         self._middles = np.array([frame.axes[2] for frame in frames]).reshape(-1, 3)
-        self._reach_deg = np.array([frame.reach_deg for frame in frames])
+        self._reach_deg = np.array([frame.max_off_axis_deg for frame in frames])
         self._pictures: OrderedDict[int, FramePicture] = OrderedDict()
 
     def compose(
@@ -120,8 +120,8 @@ class Composer:
 
         Args:
             projection: The projection of the picture.
-            chosen: The numbers of the frames to use.
-            progress: Called with the number of finished blocks and the number of all blocks.
+            chosen: The indices of the frames to use.
+            progress: Called with the number of finished blocks and the total number of blocks.
 
         Returns:
             The picture, (H, W, 3) RGB, and the mask (H, W) of the pixels that a frame shows.
@@ -147,7 +147,7 @@ class Composer:
         layers = [layer for k in self._near(rays, chosen) if (layer := self._layer(k, grid, rays)) is not None]
         if not layers:
             return
-        image, found = _blended(layers, projection.density)
+        image, found = _blended(layers, projection.pixels_per_radian)
         top, left = rows.start - whole[0].start, columns.start - whole[1].start
         inner = slice(top, top + rows.stop - rows.start), slice(left, left + columns.stop - columns.start)
         part, shown = image[inner], found[inner]
@@ -155,7 +155,7 @@ class Composer:
         seen[rows, columns] = shown
 
     def _near(self, rays: NDArray[np.float64], chosen: Sequence[int]) -> list[int]:
-        """Return the numbers of the frames that may show some of the directions."""
+        """Return the indices of the frames that may show some of the directions."""
         indices = np.array(chosen, dtype=np.int64)
         middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
         reach = float(angle_between_deg(rays, middle).max())
@@ -172,7 +172,7 @@ class Composer:
         inside = np.all((spots >= 0) & (spots <= (size - 1).astype(np.float32)), axis=-1)
         coarse = spots[_every(spots.shape[0])[:, None], _every(spots.shape[1])[None, :]] + np.float32(0.5)
         pixels = self._pixels(index)
-        share = _look_up(pixels.share, coarse / SHARE_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_CONSTANT)
+        share = _look_up(pixels.weight, coarse / WEIGHT_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_CONSTANT)
         if not share.any() or not inside.any():
             return None
         low = _look_up(pixels.low, coarse / LOW_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_REPLICATE)
@@ -189,14 +189,14 @@ class Composer:
 
 @dataclass(frozen=True, slots=True)
 class _Layer:
-    """A frame in a block of ``(H, W)`` pixels.
+    """A frame, resampled to a block of ``(H, W)`` pixels.
 
     Attributes:
         image: The frame.
         spots: The frame's pixel coordinates for each pixel of the block, ``(H, W, 2)``.
         inside: Whether the frame shows each pixel, ``(H, W)``.
         low: Its low band on the coarse grid, ``(H / 4, W / 4, 3)``.
-        share: Its weight on the coarse grid, ``(H / 4, W / 4)``.
+        weight: Its weight on the coarse grid, ``(H / 4, W / 4)``.
         focal_px: Its focal length in pixels, which is its density in pixels per radian.
     """
 
@@ -204,12 +204,12 @@ class _Layer:
     spots: Floats
     inside: Mask
     low: Floats
-    share: Floats
+    weight: Floats
     focal_px: float
 
 
 def _blended(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
-    """Blend layers. Return the picture (H, W, 3) and the mask (H, W) of the pixels that any layer shows.
+    """Blend the layers of a block. Return the picture (H, W, 3) and the mask (H, W) of the pixels that any layer shows.
 
     Args:
         layers: The layers of a block.
@@ -217,10 +217,10 @@ def _blended(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
     """
     densest = max(layer.focal_px for layer in layers)
     trust, disputed = _votes(layers, density)
-    fine = [layer.focal_px >= FINE_SHARE * densest for layer in layers]
-    shares = [layer.share * weight for layer, weight in zip(layers, trust, strict=True)]
-    peaked = [share**SHARP_POWER + MIN_WEIGHT * (layer.share > 0) for share, layer in zip(shares, layers, strict=True)]
-    wide = [share**SOFT_POWER + MIN_WEIGHT * (layer.share > 0) for share, layer in zip(shares, layers, strict=True)]
+    fine = [layer.focal_px >= MIN_FINE_DENSITY * densest for layer in layers]
+    shares = [layer.weight * weight for layer, weight in zip(layers, trust, strict=True)]
+    peaked = [share**SHARP_POWER + MIN_WEIGHT * (layer.weight > 0) for share, layer in zip(shares, layers, strict=True)]
+    wide = [share**SOFT_POWER + MIN_WEIGHT * (layer.weight > 0) for share, layer in zip(shares, layers, strict=True)]
     best = np.max([share for share, good in zip(shares, fine, strict=True) if good], axis=0)
     peaked, wide = _by_fineness(peaked, fine, best), _by_fineness(wide, fine, best)
     # Where frames disagree, the low band comes from one frame too, because a mixture would show ghosts.
@@ -233,7 +233,7 @@ def _blended(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
     total, shown = np.zeros((height, width), np.float32), np.zeros((height, width), bool)
     details = np.zeros_like(picture)
     for layer, weight in zip(layers, peaked, strict=True):
-        shown |= layer.inside & (_enlarged(layer.share, height, width) > 0)
+        shown |= layer.inside & (_enlarged(layer.weight, height, width) > 0)
         if weight.max() < NEGLIGIBLE:
             continue
         amount = _enlarged(weight, height, width) * layer.inside
@@ -245,7 +245,7 @@ def _blended(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
 
 
 def _by_fineness(weights: Sequence[Floats], fine: Sequence[bool], best: Floats) -> list[Floats]:
-    """Normalise weights to the sum 1. Coarse frames get weight only where the fine frames have little or none."""
+    """Normalise weights so that they sum to 1. Coarse frames get weight only where the fine frames have little or none."""
     totals = {
         kind: sum((weight for weight, good in zip(weights, fine, strict=True) if good is kind), np.zeros_like(best))
         for kind in (True, False)
@@ -259,15 +259,15 @@ def _by_fineness(weights: Sequence[Floats], fine: Sequence[bool], best: Floats) 
 
 
 def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floats]:
-    """Return the trust in each layer, and the disagreement of the trusted layers, on the coarse grid, from 0 to 1."""
-    shape = layers[0].share.shape
+    """Return the trust in each layer and the disagreement between trusted layers, from 0 to 1 on the coarse grid."""
+    shape = layers[0].weight.shape
     if len(layers) == 1:
         return [np.ones(shape, np.float32)], np.zeros(shape, np.float32)
     coarsest = min(layer.focal_px for layer in layers)
-    mixed = max(layer.focal_px for layer in layers) > coarsest / FINE_SHARE
+    mixed = max(layer.focal_px for layer in layers) > coarsest / MIN_FINE_DENSITY
     cells, limit = (MIXED_CELLS, MIXED_MOVED) if mixed else (1.0, MOVED)
     greys = np.stack([_smoothed(layer.low @ GREY, layer.focal_px, coarsest, density, cells) for layer in layers])
-    absent = np.stack([layer.share <= 0.02 for layer in layers])
+    absent = np.stack([layer.weight <= 0.02 for layer in layers])
     greys = np.where(absent, np.nan, greys)
     order = np.sort(greys, axis=0)  # NaN comes last
     count = (~absent).sum(axis=0)
@@ -295,14 +295,14 @@ def _at(stack: Floats, index: NDArray[np.int64]) -> Floats:
 
 
 def _grown(away: Floats, limit: float) -> Mask:
-    """Return the mask of the connected areas in which a difference exceeds a third of a limit, and the limit somewhere."""
+    """Return the mask of the connected areas whose differences all exceed a third of a limit and somewhere exceed the limit."""
     _, labels = cv2.connectedComponents((away > limit / 3).astype(np.uint8))
     above = np.unique(labels[away > limit])
     return np.isin(labels, above[above > 0])
 
 
 def _spread(mask: Mask) -> Floats:
-    """Return a mask, enlarged and with soft edges, as values from 0 to 1."""
+    """Enlarge a mask and soften its edges. Return values from 0 to 1."""
     if not mask.any():
         return np.zeros(mask.shape, np.float32)
     grown = cv2.dilate(mask.astype(np.float32), np.ones((7, 7), np.uint8))
@@ -315,7 +315,7 @@ def _look_up(picture: Floats, spots: NDArray[np.floating], kind: int, border: in
 
 
 def _every(length: int) -> NDArray[np.int64]:
-    """Return the rows or columns of the coarse grid, one in the middle of every four."""
+    """Return the rows or columns of the coarse grid: the middle one of every four."""
     return np.minimum(np.arange(-(-length // COARSE_PX)) * COARSE_PX + COARSE_PX // 2, length - 1)
 
 

@@ -34,7 +34,7 @@ def hidden_in(settings: CaptureSettings, shot: Shot, image: NDArray[np.uint8]) -
 
 
 def kept_out(settings: CaptureSettings, projection: Projection) -> Mask | None:
-    """Return the mask (H, W) of the pixels of a pack's picture that are in or near a keep-out region; None if there are none."""
+    """Return the mask (H, W) of the pixels of a pack's picture that are in or near a keep-out region; None if none are."""
     return hidden_pixels(projection, tuple(_enlarged(region) for region in settings.keep_out))
 
 
@@ -49,7 +49,7 @@ def _enlarged(region: Region) -> Region:
 
 
 def _black_corners(image: NDArray[np.uint8]) -> Mask:
-    """Return the mask of the black areas in the corners, which result from turning a frame upright."""
+    """Return the mask of the black areas in the corners, which remain after a frame is turned upright."""
     height, width = image.shape[:2]
     black = np.zeros((height + 2, width + 2), np.uint8)
     dark = (image.max(axis=2) <= 2).astype(np.uint8)

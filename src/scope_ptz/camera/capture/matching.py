@@ -13,18 +13,18 @@ from scope_ptz.geometry import Perspective, angle_between_deg
 from scope_ptz.geometry.sphere import camera_axes
 
 GATE_DEG = 3.0
-"""Maximum angle in degrees between matching features at the reported poses. It limits the error of the poses."""
+"""Maximum angle in degrees between matching features, according to the reported poses. Larger pose errors are not found."""
 
 MAX_FEATURES = 1000
 RATIO = 0.85  # Lowe's ratio test, among the features within the gate
 MIN_INLIERS = 12
-"""Minimum number of matches of a pair of frames. Fewer may agree by chance."""
+"""Minimum number of matches between two frames. Fewer may agree by chance."""
 
 AGREEMENT_PX = 4.0
 """Maximum distance in pixels at which a match agrees with a rotation. It allows for errors of the field of view."""
 
 MAX_MATCHES = 80  # per pair; more matches do not improve the precision
-MIN_OVERLAP = 0.15  # minimum overlap of a pair, as a share of the smaller frame
+MIN_OVERLAP = 0.15  # minimum overlap of a pair, as a fraction of the smaller frame
 _HYPOTHESES = 96
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """Features of a frame: points (n, 2) in pixels from its centre, right and up positive, and SIFT descriptors (n, 128)."""
+    """Features of a frame: points (n, 2) in pixels from its centre, with right and up positive, and SIFT descriptors (n, 128)."""
 
     points: Floats
     descriptors: NDArray[np.float32]
@@ -71,7 +71,9 @@ def overlapping_pairs(views: Sequence[Perspective]) -> list[tuple[int, int]]:
     pairs = []
     for i, view in enumerate(views):
         apart = angle_between_deg(middles[i + 1 :], middles[i])
-        for j in (i + 1 + np.flatnonzero(apart < view.reach_deg + np.array([v.reach_deg for v in views[i + 1 :]]))).tolist():
+        for j in (
+            i + 1 + np.flatnonzero(apart < view.max_off_axis_deg + np.array([v.max_off_axis_deg for v in views[i + 1 :]]))
+        ).tolist():
             small, large = (i, j) if view.hfov_deg <= views[j].hfov_deg else (j, i)
             points = views[large].points(rays[small])
             if np.mean(np.all((points > 0) & (points < 1), axis=-1)) >= MIN_OVERLAP:
@@ -87,7 +89,7 @@ def match_frames(
     Args:
         views: The frames, at their reported poses.
         features: A function that returns the features of frame ``i``.
-        progress: Called with the number of finished pairs and the number of all pairs.
+        progress: Called with the number of finished pairs and the total number of pairs.
     """
     pairs = overlapping_pairs(views)
     result = []
@@ -100,7 +102,7 @@ def match_frames(
 
 
 def world_directions(view: Perspective, points_px: Floats) -> Floats:
-    """Return the directions (n, 3) of pixels, given relative to the centre of a frame, at its reported pose."""
+    """Return the directions (n, 3) of pixels of a frame at its reported pose. Pixels are relative to the frame's centre."""
     rays = np.column_stack([points_px, np.full(len(points_px), view.focal_px)])
     return np.asarray((rays / np.linalg.norm(rays, axis=1, keepdims=True)) @ camera_axes(view.pan_deg, view.tilt_deg))
 
@@ -133,7 +135,7 @@ def _seen_by(view: Perspective, rays: Floats) -> NDArray[np.int64]:
 
 
 def _mutual_best(likeness: NDArray[np.float32]) -> NDArray[np.int64]:
-    """Return the rows and columns (n, 2) that are each other's best match and pass the ratio test."""
+    """Return the pairs of row and column (n, 2) that are each other's best match and pass the ratio test."""
     best = likeness.argmax(axis=1)
     rows = np.arange(len(likeness))
     top = likeness[rows, best]

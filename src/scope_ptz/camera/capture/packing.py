@@ -30,15 +30,16 @@ VIEWPOINT = "camera"
 """Name of the viewpoint of a captured scene."""
 
 BASE_DENSITY = 1.27
-"""Density of the panorama relative to the centre of a wide frame. It makes views as sharp as the frames."""
+"""Density of the panorama relative to the centre of a wide frame. With this value, views are as sharp as the frames."""
 
-WIDE_SHARE = 1.15
+MAX_WIDE_DENSITY = 1.15
 """Maximum density of the frames in the panorama, relative to the widest frames. Denser frames become tiles."""
 
 BASE_QUALITY, TILE_QUALITY = 90, 86
 BASE_SHARPENING, TILE_SHARPENING, SHARPENING_SIGMA_PX = 0.6, 0.2, 0.8
-"""Amounts and radius of the unsharp mask that is applied before pictures are stored. It compensates for two resamplings: of the
-frames, and later of a view. With these amounts, the Laplacian variance of views is closest to that of the captured frames."""
+"""Amounts and radius of the unsharp mask that is applied before pictures are stored. It compensates for resampling twice: the
+frames into the pack, and later the pack into a view. With these amounts, the Laplacian variance of views is closest to that of the
+captured frames."""
 
 SEEN_STEP = 4  # the mask of seen pixels is reduced by this factor in both directions
 
@@ -54,7 +55,7 @@ class WrittenScene:
         folder: The scene's folder.
         file: The content of its ``scene.json``.
         tiles: Number of sharper tiles.
-        left_out_presets: Presets of the camera outside the captured range.
+        left_out_presets: Names of the camera's presets outside the captured range.
     """
 
     folder: Path
@@ -70,7 +71,7 @@ def write_scene(session: CaptureSession, registration: Registration, folder: Pat
         session: The capture.
         registration: The registration of the capture.
         folder: The scene's folder, which must not exist yet. Its name becomes the name of the scene.
-        steps: Called with the name of a phase, the number of finished steps, and the number of all its steps.
+        steps: Called with the name of a phase, its number of finished steps, and its total number of steps.
 
     Raises:
         OutputError: The folder cannot be written, or a stored frame is damaged.
@@ -96,7 +97,7 @@ def _write(session: CaptureSession, registration: Registration, fresh: Path, nam
     limits = Limits(*settings.pan_range_deg, *settings.tilt_range_deg, *settings.zoom_range, pan_endless=settings.pan_endless)
     painter = _Painter(session, registration)
     widest_px = min(place.focal_px for place in registration.placed)
-    wide = [k for k, place in enumerate(registration.placed) if place.focal_px <= WIDE_SHARE * widest_px]
+    wide = [k for k, place in enumerate(registration.placed) if place.focal_px <= MAX_WIDE_DENSITY * widest_px]
     width = 64 * math.ceil(2 * math.pi * widest_px * BASE_DENSITY / 64)
     panorama = Panorama.of(width, reachable_band(limits, optics))
     base, seen = painter.paint(panorama.projection, wide, BASE_SHARPENING, lambda done, total: steps("Panorama", done, total))
@@ -150,7 +151,7 @@ class _Painter:
         """Return the picture of a tile around a zoomed frame. Wide frames help to detect moving objects, and fill the corners."""
         placed = self._registration.placed
         middle = placed[index].axes[2]
-        like = [k for k, other in enumerate(placed) if 0.87 <= other.focal_px / placed[index].focal_px <= WIDE_SHARE]
+        like = [k for k, other in enumerate(placed) if 0.87 <= other.focal_px / placed[index].focal_px <= MAX_WIDE_DENSITY]
         nearest = sorted(wide, key=lambda k: -float(placed[k].axes[2] @ middle))[:3]
         return self.paint(view, sorted({*like, *nearest}), TILE_SHARPENING)[0]
 
@@ -231,9 +232,9 @@ def _captured(settings: CaptureSettings, started_at: str, limits: Limits, optics
 def _unseen_share(
     limits: Limits, optics: Optics, settings: CaptureSettings, panorama: Panorama, seen: NDArray[np.bool_]
 ) -> float:  # fmt: skip
-    """Return the share of the directions in reach of the camera at its widest zoom that no frame shows."""
+    """Return the fraction of the directions that the camera can show at its widest zoom but that no frame shows."""
     whole, pans = panorama.projection, np.arange(-179.0, 180.0, 2.0)
-    # Each direction is viewed from the nearest pose. Whether the frame shows it depends only on the angle between the two.
+    # Each direction is viewed from the nearest pose. Whether that view shows it depends only on the angle between them.
     turns = np.array([wrap_pan_deg(pan - limits.clamp(Pose(limits.aim_pan_deg(pan)))[0].pan_deg) for pan in pans.tolist()])
     total = missing = 0.0
     for tilt in np.arange(-89.0, 90.0, 2.0).tolist():

@@ -1,4 +1,4 @@
-"""A frame at its adjusted position on the sphere."""
+"""Frames at their adjusted positions on the sphere."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class PlacedFrame:
     height: int
 
     @property
-    def reach_deg(self) -> float:
-        """Largest angle between the centre of the frame and any of its pixels, in degrees."""
+    def max_off_axis_deg(self) -> float:
+        """Largest angle between the direction of the frame's centre and that of any pixel, in degrees."""
         return math.degrees(math.atan(math.hypot(self.width, self.height) / 2 / self.focal_px))
 
     @property
@@ -50,7 +50,7 @@ class PlacedFrame:
         return np.asarray(local @ self.axes / np.linalg.norm(local, axis=-1, keepdims=True))
 
     def points(self, directions: ArrayLike) -> Floats:
-        """Return normalised points (..., 2) of directions (..., 3), NaN for directions behind the lens."""
+        """Return normalised points (..., 2) of directions (..., 3); NaN for directions behind the camera."""
         local = np.asarray(directions, dtype=np.float64) @ self.axes.T
         depth = np.where(local[..., 2] > 0.05, local[..., 2], np.nan)
         x = 0.5 + self.focal_px * local[..., 0] / depth / self.width

@@ -12,22 +12,22 @@ from scope_ptz.errors import InputError
 from scope_ptz.geometry import Limits, Perspective, Pose, direction
 
 OVERLAP = 0.45
-"""Share of a frame that its neighbour also shows. With this value, most directions are in at least three frames, so that moving
+"""Fraction of a frame that its neighbour also shows. With this value, most directions are in at least three frames, so that moving
 objects can be detected."""
 
 MAX_OVERLAP = 0.8
 WHOLE_CIRCLE_DEG = 340.0
-"""Minimum pan range that is swept as a full circle, in degrees. Frames at both ends then overlap each other."""
+"""Minimum pan range, in degrees, that is swept as a full circle. The frames at its two ends overlap."""
 
 EXTREME_REACH = 0.7
-"""Share of the way from the centre to the outer edge up to which frames of the highest and the lowest row overlap."""
+"""How far frames of the highest and lowest rows overlap, as a fraction of the way from the centre to the outer edge."""
 
 MAX_FRAMES = 5000
 
 
 @dataclass(frozen=True, slots=True)
 class Ranges:
-    """The captured part of a camera's range, in degrees; None for the whole range of an axis."""
+    """The part of a camera's range to capture, in degrees; None for the whole range of an axis."""
 
     pan_deg: tuple[float, float] | None = None
     tilt_deg: tuple[float, float] | None = None
@@ -70,13 +70,13 @@ def whole_circle(limits: Limits) -> bool:
 
 
 def plan_poses(info: CameraInfo, limits: Limits, zoom: float, overlap: float = OVERLAP) -> list[Pose]:
-    """Return poses whose frames cover everything that the camera shows within limits at a zoom, in rows of alternating direction.
+    """Return poses whose frames cover everything that the camera can show within limits at a zoom. Rows alternate in direction.
 
     Args:
         info: The camera.
         limits: The range of poses to cover.
         zoom: The magnification.
-        overlap: Share of a frame that the next one also shows, from 0.05 to ``MAX_OVERLAP``.
+        overlap: Fraction of a frame that the next one also shows, from 0.05 to ``MAX_OVERLAP``.
 
     Raises:
         InputError: The overlap is out of range, or there would be more than ``MAX_FRAMES`` frames.
@@ -109,9 +109,8 @@ def _pans(limits: Limits, step_deg: float, row: int) -> list[float]:
         count = max(3, math.ceil(360.0 / step_deg - 1e-9))
         low = limits.min_pan_deg if not limits.pan_endless else -180.0
         high = limits.max_pan_deg if not limits.pan_endless else 180.0
-        shift = (
-            0.25 if row % 2 == 0 else 0.75
-        )  # alternate rows are shifted, so that the corners of frames lie on the centres of others
+        # Alternate rows are shifted, so that the corners of frames lie on the centres of others.
+        shift = 0.25 if row % 2 == 0 else 0.75
         return [min(max(-180.0 + (k + shift) * 360.0 / count, low), high) for k in range(count)]
     span = limits.max_pan_deg - limits.min_pan_deg
     count = math.ceil(span / step_deg - 1e-9) + 1

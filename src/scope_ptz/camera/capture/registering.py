@@ -29,9 +29,9 @@ class Registration:
         shots: The frames.
         placed: The adjusted position of each frame.
         gains: The gain of each frame and colour channel, ``(n, 3)``.
-        registered: Whether the picture of each frame determined its pose; otherwise, the reported pose is used.
+        registered: Whether the pose of each frame was determined from its picture; otherwise, the reported pose is used.
         corrections_deg: Angle between the reported and the adjusted orientation of each frame.
-        residual_px: Root mean square distance of the matches in pixels; None without matches.
+        residual_px: Root mean square error of the matches in pixels; None without matches.
         matches: Number of matches.
     """
 
@@ -58,7 +58,7 @@ def register(session: CaptureSession, steps: Steps) -> Registration:
 
     Args:
         session: The capture.
-        steps: Called with the name of a phase, the number of finished steps, and the number of all its steps.
+        steps: Called with the name of a phase, its number of finished steps, and its total number of steps.
 
     Raises:
         OutputError: A stored frame is missing or damaged.
@@ -89,11 +89,11 @@ def register(session: CaptureSession, steps: Steps) -> Registration:
 
 
 def measured_optics(optics: Optics, factors: list[tuple[float, float]]) -> Optics:
-    """Return a zoom table that is corrected with measured focal lengths.
+    """Return a zoom table corrected with measured focal lengths.
 
     Args:
         optics: The reported table.
-        factors: Magnifications with the ratio of measured to reported focal length; empty if nothing was measured.
+        factors: Pairs of magnification and the ratio of measured to reported focal length; empty if nothing was measured.
     """
     if not factors:
         return optics
@@ -101,7 +101,7 @@ def measured_optics(optics: Optics, factors: list[tuple[float, float]]) -> Optic
     means = [float(np.mean([factor for other, factor in factors if other == zoom])) for zoom in zooms]
     focals = [optics.focal(zoom) * float(np.interp(zoom, zooms, means)) for zoom, _ in optics.table]
     if sorted(set(focals)) != focals:
-        return optics  # measurements at neighbouring zooms contradict each other
+        return optics  # measurements at neighbouring zoom levels contradict each other
     table = [
         (zoom, math.degrees(2 * math.atan(1 / focal))) for (zoom, _), focal in zip(optics.table, focals, strict=True)
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""The unfinished capture on disk: its settings, frames and poses, so that the same command can resume it."""
+"""An unfinished capture on disk, with its settings, frames and poses, which the same command can resume."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class CaptureSettings(_Stored):
         zoom_table: Rows of magnification and reported horizontal field of view in degrees.
         zooms: Magnifications at which the whole range is captured, in addition to the widest one.
         close_ups: Maximum number of close-ups.
-        overlap: Share of a frame that the next one also shows.
+        overlap: Fraction of a frame that the next one also shows.
         keep_out: Regions that must not be shown.
-        masks: Hidden rectangles of the frames.
+        masks: Rectangles that are hidden in every frame.
         rolled: Whether frames were turned upright and have black corners.
     """
 
@@ -104,7 +104,7 @@ class CaptureSession:
     Args:
         folder: The folder. It is created if needed.
         settings: The settings of the capture.
-        started_at: The time at which it began, in ISO 8601 and UTC. A resumed capture keeps its original time.
+        started_at: The time at which it began, in UTC as ISO 8601. A resumed capture keeps its original time.
 
     Raises:
         OutputError: The folder contains a capture with other settings, or cannot be read or written.
@@ -141,7 +141,7 @@ class CaptureSession:
         return sum(not shot.file for shot in self._shots.values())
 
     def find(self, key: str) -> Shot | None:
-        """Return the frame of a key; None if it has not been taken yet."""
+        """Return the frame with a key; None if it has not been taken yet."""
         return self._shots.get(key)
 
     def add(self, key: str, frame: Frame, preset: str = "") -> Shot:
@@ -164,7 +164,7 @@ class CaptureSession:
         self._next_number += 1
         encoded, content = cv2.imencode(".png", cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_PNG_COMPRESSION, 1])
         if not encoded:
-            raise CameraError("A frame of the camera cannot be encoded.")
+            raise CameraError("A frame from the camera cannot be encoded.")
         self._write(name, content.tobytes())
         shot = Shot(
             key=key,
@@ -202,7 +202,7 @@ class CaptureSession:
         try:
             return [Pose(*map(float, row)) for row in json.loads(path.read_text(encoding="utf-8"))]
         except (OSError, ValueError, TypeError):
-            return None  # they are chosen again
+            return None  # the close-ups are chosen again
 
     def store_close_ups(self, poses: Sequence[Pose]) -> None:
         """Store the poses of close-ups."""

@@ -1,4 +1,4 @@
-"""Take the frames of a capture: presets, sweeps, and close-ups where the picture has fine detail."""
+"""Take the frames of a capture: presets, sweeps, and close-ups of areas with fine detail."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.geometry import Limits, Pose
 
 CLOSE_UP_ZOOM = 4.0
-"""Magnification of close-ups, or the maximum magnification of the camera if that is less."""
+"""Magnification of close-ups. If the camera's maximum magnification is lower, that is used instead."""
 
 CLOSE_UPS = 40
 """Default maximum number of close-ups."""
 
 RETURN_S = 30.0
-"""Maximum number of seconds in which a failed or cancelled capture returns the camera to its original pose."""
+"""Seconds within which a failed or cancelled capture must return the camera to its original pose."""
 
 ATTEMPTS, RETRY_S = 3, 2.0
 """Maximum number of attempts to take a picture when the camera fails, and seconds between attempts."""
@@ -38,7 +38,7 @@ HOME = "home"
 """Key of the frame at the camera's home position."""
 
 Progress = Callable[[str, int, int], None]
-"""A function that is called with the name of a phase, the number of finished steps, and the number of all its steps."""
+"""A function that is called with the name of a phase, its number of finished steps, and its total number of steps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +46,10 @@ class CaptureOptions:
     """The options of a capture.
 
     Attributes:
-        ranges: The captured part of the camera's range.
+        ranges: The part of the camera's range to capture.
         zooms: Magnifications at which the whole range is captured, in addition to the widest one.
         close_ups: Maximum number of close-ups of areas with fine detail.
-        overlap: Share of a frame that the next one also shows.
+        overlap: Fraction of a frame that the next one also shows.
     """
 
     ranges: Ranges = field(default_factory=Ranges)
@@ -109,11 +109,11 @@ def limits_of(settings: CaptureSettings) -> Limits:
 
 @dataclass(frozen=True, slots=True)
 class PlannedSweep:
-    """A sweep of a capture.
+    """A planned sweep of a capture.
 
     Attributes:
         zoom: Its magnification.
-        pictures: Its number of pictures.
+        pictures: The number of its pictures.
     """
 
     zoom: float
@@ -121,7 +121,7 @@ class PlannedSweep:
 
 
 def planned_sweeps(camera: Camera, settings: CaptureSettings) -> list[PlannedSweep]:
-    """Return the sweeps of a capture, in their order. Close-ups are not included, because they depend on the pictures."""
+    """Return the sweeps of a capture in order. Close-ups are not included, because they depend on the pictures."""
     limits = limits_of(settings)
     zooms = (limits.min_zoom, *settings.zooms)
     return [PlannedSweep(zoom, len(plan_poses(camera.info, limits, zoom, settings.overlap))) for zoom in zooms]
@@ -143,12 +143,12 @@ async def take_frames(
         camera: The camera.
         session: The capture, which stores the frames.
         progress: Called after every frame.
-        holder: The name under which the camera is controlled, which other clients see.
+        holder: The name that other clients see as the camera's controller.
         presets: The presets to copy to the scene; None for all.
 
     Raises:
         ControlHeldError: Another client controls the camera.
-        CameraError: The camera fails. Frames that were taken before stay stored.
+        CameraError: The camera fails. Frames that were already taken remain stored.
         OutputError: A frame cannot be stored.
     """
     async with camera.control(holder), _returning(camera):

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scope_ptz.camera.capture.placing import PlacedFrame
 
 CELL_PX = 24
-"""Size of the cells in pixels whose means are compared. Small errors of the pose hardly change the means."""
+"""Size in pixels of the cells whose means are compared. Small pose errors hardly change the means."""
 
 DARK, BRIGHT = 12.0, 243.0
 """Range of usable values, from 0 to 255. Values outside it may be clipped by the sensor."""
@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 
 
 def cells_of(image: NDArray[np.uint8], hidden: NDArray[np.bool_] | None) -> NDArray[np.float32]:
-    """Return the means of a picture's cells (rows, columns, 3), NaN where a cell is hidden or clipped."""
+    """Return the means of a picture's cells (rows, columns, 3); NaN where a cell is hidden or clipped."""
     height, width = image.shape[:2]
     size = max(4, width // CELL_PX), max(4, height // CELL_PX)
     means = cv2.resize(image, size, interpolation=cv2.INTER_AREA).astype(np.float32)
@@ -61,7 +61,7 @@ def gains(frames: Sequence[PlacedFrame], cells: Sequence[NDArray[np.float32]], p
 
 
 def _log_ratio(one: PlacedFrame, two: PlacedFrame, cells_1: NDArray[np.float32], cells_2: NDArray[np.float32]) -> Floats | None:
-    """Return the median log ratio (3,) of the cells of two frames in the same directions; None for too few cells."""
+    """Return the median log ratio (3,) of the cells of two frames in the same directions; None if there are too few cells."""
     rows, columns = cells_1.shape[:2]
     points = np.stack(np.meshgrid((np.arange(columns) + 0.5) / columns, (np.arange(rows) + 0.5) / rows), axis=-1)
     there = two.points(one.directions(points))

@@ -12,7 +12,7 @@ from scope_ptz.errors import OutputError
 
 
 class AuditLog:
-    """A file with one JSON object per line. Lines are only ever appended, each in one write, so processes can share the file.
+    """A file with one JSON object per line. Each line is appended in a single write, so processes can share the file.
 
     Args:
         path: The file. Its folder is created if needed.

@@ -20,7 +20,7 @@ HELD_BACK_UNKNOWN = "the dry run: only the camera knows the pose there"
 class DryRunCamera(CameraWrapper):
     """A camera whose commands are reported but not executed.
 
-    ``pose`` returns where the camera would be. Frames are real and carry their real pose, because the camera stays where it is.
+    ``pose`` returns the pose that the camera would have. Frames are real and keep their real pose, as the camera does not move.
     Every ``Arrival`` names the dry run as its limit, so that tool results and traces show it.
 
     Args:

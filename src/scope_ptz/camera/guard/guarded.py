@@ -15,7 +15,7 @@ from scope_ptz.camera.capabilities import Velocity, check_drive
 from scope_ptz.camera.clocks import elapsed_s
 from scope_ptz.camera.guard.audit import AuditLog
 from scope_ptz.camera.guard.masking import masked
-from scope_ptz.camera.guard.motion_sums import advanced, capped, changes, joined, scaled, velocity_fields
+from scope_ptz.camera.guard.motion_math import advanced, capped, changes, merged_axes, scaled, velocity_fields
 from scope_ptz.camera.guard.rules import CameraRules, nearest_outside
 from scope_ptz.camera.guard.wrapper import CameraWrapper
 from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
@@ -23,12 +23,12 @@ from scope_ptz.errors import CameraError, ConfigError
 from scope_ptz.geometry import Axis, Limits, Pose, wrap_pan_deg
 
 STOPPING_S = 0.4
-"""Time, in seconds, that a driven camera is assumed to need for reaction and braking."""
+"""Seconds that a driven camera is assumed to need to react and brake."""
 
 _STEP_S = 0.02
 
-_SHARES = (1.0, 0.5, 0.25, 0.1, 0.04)
-"""Shares of the requested velocity that are tried near a limit or a keep-out region."""
+_SPEED_FACTORS = (1.0, 0.5, 0.25, 0.1, 0.04)
+"""Factors on the requested velocity, tried in order near a limit or a keep-out region."""
 
 
 class KeepOutError(CameraError):
@@ -36,9 +36,9 @@ class KeepOutError(CameraError):
 
 
 class GuardedCamera(CameraWrapper):
-    """A camera that obeys its site's rules: it never aims beyond them, and its frames hide masked regions.
+    """A camera that obeys its site's rules. It never aims where they forbid, and its frames hide masked regions.
 
-    A move beyond a rule ends at the nearest permitted pose, and its ``Arrival`` names the rule.
+    A move that a rule forbids ends at the nearest permitted pose, and its ``Arrival`` names the rule.
 
     Args:
         camera: The wrapped camera.
@@ -61,7 +61,7 @@ class GuardedCamera(CameraWrapper):
 
     @property
     def rules(self) -> CameraRules:
-        """The rules that the camera keeps."""
+        """The rules that the camera obeys."""
         return self._rules
 
     def record_instruction(self, instruction: str) -> None:
@@ -77,7 +77,7 @@ class GuardedCamera(CameraWrapper):
         await self._wait_for_turn()
         self._record("move", target=target, requested=pose)
         arrival = await self._carried_out(self.inner.move(target))
-        return Arrival(arrival.pose, joined(clamped, arrival.clamped), limited_by or arrival.limited_by)
+        return Arrival(arrival.pose, merged_axes(clamped, arrival.clamped), limited_by or arrival.limited_by)
 
     async def go_to_preset(self, name: str) -> Arrival:
         await self._wait_for_turn()
@@ -100,7 +100,7 @@ class GuardedCamera(CameraWrapper):
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         """Move at constant velocities for as long as the rules permit, at most ``timeout_s``.
 
-        An axis that a soft limit stops is not driven. Near a limit or a keep-out region the camera is driven more slowly and for
+        An axis at a soft limit is not driven beyond it. Near a limit or a keep-out region, the camera is driven more slowly and for
         a shorter time, so that it stops before it gets there.
 
         Raises:
@@ -109,8 +109,8 @@ class GuardedCamera(CameraWrapper):
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
         here = await self.inner.pose()
         requested = capped(Velocity(pan_dps, tilt_dps, zoom_rate), self.inner.info.capabilities.top_speed)
-        for share in _SHARES:
-            velocity = self._free_axes(here, scaled(requested, share))
+        for factor in _SPEED_FACTORS:
+            velocity = self._free_axes(here, scaled(requested, factor))
             free_s = self._free_time_s(here, velocity, timeout_s)
             if velocity != Velocity() and free_s > 0.0:
                 self._record("drive", velocity=velocity, timeout_s=round(free_s, 3))
@@ -118,11 +118,11 @@ class GuardedCamera(CameraWrapper):
                 return
         self._record("drive", velocity=Velocity(), timeout_s=0.0)
         await self.inner.stop()
-        if region := self._rules.region_at(advanced(here, scaled(requested, _SHARES[-1]), STOPPING_S + _STEP_S)):
+        if region := self._rules.region_at(advanced(here, scaled(requested, _SPEED_FACTORS[-1]), STOPPING_S + _STEP_S)):
             raise KeepOutError(f"The camera cannot be driven into the keep-out region '{region.name}'. It has stopped.")
 
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
-        """Centre a point of the picture. Use the device's own command if the rules permit the resulting pose."""
+        """Centre a point of the picture. The device's own command is used if the rules permit the resulting pose."""
         here = await self.inner.pose()
         target = self.info.towards(here, x, y, zoom_factor)
         permitted, clamped, _ = self.permitted(target)
@@ -182,15 +182,15 @@ class GuardedCamera(CameraWrapper):
         if outside is None:
             raise KeepOutError(f"The pose {target} aims at the keep-out region '{region.name}'. Choose another direction.")
         axes: list[Axis] = [axis for axis, moved in changes(target, outside) if moved]
-        return outside, joined(clamped, axes), f"the keep-out region '{region.name}'"
+        return outside, merged_axes(clamped, axes), f"the keep-out region '{region.name}'"
 
     async def _corrected(self, arrival: Arrival) -> Arrival:
-        """Move away from the pose of a device preset if the rules do not permit it."""
+        """Move to the nearest permitted pose if the rules forbid the pose that a device's own command reached."""
         target, clamped, limited_by = self.permitted(arrival.pose)
         if not clamped:
             return arrival
         moved = await self._carried_out(self.inner.move(target))
-        return Arrival(moved.pose, joined(arrival.clamped, clamped), limited_by)
+        return Arrival(moved.pose, merged_axes(arrival.clamped, clamped), limited_by)
 
     async def _carried_out(self, command: Any) -> Arrival:
         """Await a move and record how it ended."""
@@ -205,7 +205,7 @@ class GuardedCamera(CameraWrapper):
         return arrival
 
     async def _adjusted(self, command: Awaitable[LensState]) -> LensState:
-        """Await a command of the lens and record how it ended."""
+        """Await a lens command and record how it ended."""
         try:
             state = await command
         except BaseException as error:
@@ -225,7 +225,7 @@ class GuardedCamera(CameraWrapper):
             await self.clock.sleep(left_s)
 
     def _free_axes(self, here: Pose, velocity: Velocity) -> Velocity:
-        """Return the velocity without axes that would leave the limits before they can stop."""
+        """Return a velocity, with the axes set to zero that would pass a limit before they could stop."""
         stopped = self._beyond(advanced(here, velocity, STOPPING_S + _STEP_S))
         return Velocity(
             0.0 if "pan" in stopped else velocity.pan_dps,
@@ -234,11 +234,11 @@ class GuardedCamera(CameraWrapper):
         )
 
     def _beyond(self, pose: Pose) -> set[Axis]:
-        """Return the axes on which a pose is beyond a rule. The device itself stops at its own limits."""
+        """Return the axes on which a pose is beyond the soft limits, excluding those that the device itself stops."""
         return set(self._limits.clamp(pose)[1]) - set(self.inner.info.limits.clamp(pose)[1])
 
     def _free_time_s(self, here: Pose, velocity: Velocity, timeout_s: float) -> float:
-        """Return the time in seconds for which the camera can be driven without passing a limit or entering a keep-out region."""
+        """Return how many seconds the camera can be driven without passing a limit or entering a keep-out region."""
         if not self._rules.keep_out and self._limits == self.inner.info.limits:
             return timeout_s
         time_s = 0.0

@@ -14,7 +14,7 @@ from scope_ptz.geometry import Projection, direction
 
 _STEP_DEG = 0.5
 _GRID = 4
-"""Regions are drawn on a grid of every fourth pixel and grown by one cell, so that no visible pixel of a region is missed."""
+"""Regions are drawn on a grid of every fourth pixel and enlarged by one cell, so that no pixel of a region stays visible."""
 
 
 def masked(frame: Frame, regions: tuple[Region, ...], masks: tuple[PixelMask, ...]) -> Frame:
@@ -31,7 +31,7 @@ def masked(frame: Frame, regions: tuple[Region, ...], masks: tuple[PixelMask, ..
 def hidden_pixels(
     projection: Projection, regions: tuple[Region, ...], masks: tuple[PixelMask, ...] = ()
 ) -> NDArray[np.bool_] | None:
-    """Return which pixels of a picture show a region or lie under a mask, as (H, W); None if no pixel does."""
+    """Return the mask (H, W) of the pixels that show a region or lie under a pixel mask; None if no pixel does."""
     hidden = _in_regions(projection, regions) if regions else None
     if not masks:
         return hidden
@@ -44,7 +44,7 @@ def hidden_pixels(
 
 
 def _in_regions(projection: Projection, regions: tuple[Region, ...]) -> NDArray[np.bool_] | None:
-    """Return which pixels show a region, as (H, W); None if no pixel does."""
+    """Return the mask (H, W) of the pixels that show a region; None if no pixel does."""
     width, height = projection.width, projection.height
     xs = np.append(np.arange(0, width, _GRID), width) / width
     ys = np.append(np.arange(0, height, _GRID), height) / height
@@ -65,7 +65,7 @@ def _in_regions(projection: Projection, regions: tuple[Region, ...]) -> NDArray[
 
 
 def _add_outline(nodes: NDArray[np.uint8], projection: Projection, region: Region) -> None:
-    """Mark the grid cells under a region's outline, so that a region smaller than a cell is hidden, too."""
+    """Mark the grid cells under a region's outline, so that a region smaller than a cell is hidden too."""
     left, right = region.pan_deg[0], region.pan_deg[0] + region.width_deg
     bottom, top = region.tilt_deg
     along = np.linspace(left, right, max(2, int((right - left) / _STEP_DEG) + 1))

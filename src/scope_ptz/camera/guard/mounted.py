@@ -1,4 +1,4 @@
-"""A camera whose base hangs from a ceiling or leans: its poses and pictures are turned upright."""
+"""A camera whose base hangs from a ceiling or leans. Its poses and pictures are converted to upright ones."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _LEVEL_DEG = 0.05
 
 
 class MountedCamera(CameraWrapper):
-    """A camera in the frame of the world: pan turns about the vertical, and tilt 0 is the horizon.
+    """A camera in world coordinates: pan turns about the vertical, and tilt 0 is the horizon.
 
     Args:
-        camera: The camera in its own frame.
+        camera: The camera in its own coordinates.
         mounting: How its base is mounted.
     """
 
@@ -40,7 +40,7 @@ class MountedCamera(CameraWrapper):
 
     @property
     def info(self) -> CameraInfo:
-        """Facts about the camera. With a leaning base the tilt limits are those that hold at every pan."""
+        """Information about the camera. If the base leans, the tilt limits are those that hold at every pan."""
         info = self.inner.info
         own = info.limits
         tilts = (-own.max_tilt_deg, -own.min_tilt_deg) if self._ceiling else (own.min_tilt_deg, own.max_tilt_deg)
@@ -68,7 +68,7 @@ class MountedCamera(CameraWrapper):
         return self._world_arrival(await self.inner.go_home())
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
-        """Drive the device's own axes, with the signs of the world. If the base leans, they are not exactly pan and tilt."""
+        """Drive the device's own axes, with signs as in world coordinates. If the base leans, they are not exactly pan and tilt."""
         sign = -1.0 if self._ceiling else 1.0
         await self.inner.drive(sign * pan_dps, sign * tilt_dps, zoom_rate, timeout_s=timeout_s)
 
@@ -81,7 +81,7 @@ class MountedCamera(CameraWrapper):
                 yield self._world_frame(frame)
 
     def world_pose(self, device: Pose) -> Pose:
-        """Return a pose of the device in the coordinates of the world."""
+        """Convert a pose of the device to world coordinates."""
         pan, tilt = pan_tilt_deg(self._to_world @ direction(device.pan_deg, device.tilt_deg))
         return Pose(float(pan), float(tilt), device.zoom)
 
@@ -106,7 +106,7 @@ class MountedCamera(CameraWrapper):
 
 
 def _rolled(image: NDArray[np.uint8], roll_deg: float) -> NDArray[np.uint8]:
-    """Return a picture turned clockwise about its centre. Corners without content are black."""
+    """Rotate a picture clockwise about its centre. Corners without content become black."""
     if abs(roll_deg) < _LEVEL_DEG:
         return image
     if abs(abs(roll_deg) - 180.0) < _LEVEL_DEG:

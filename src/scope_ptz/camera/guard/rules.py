@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
 
 Degrees = Annotated[float, Field(ge=-360.0, le=360.0, allow_inf_nan=False)]
-Share = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+Fraction = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
 
 class _Rules(BaseModel):
@@ -17,12 +17,12 @@ class _Rules(BaseModel):
 
 
 class Region(_Rules):
-    """A rectangle of pan and tilt, such as the windows of a neighbour. Pan may run through 180: from 170 to -170.
+    """A rectangle of pan and tilt, such as the windows of a neighbour. The pan range may cross 180, for example from 170 to -170.
 
     Attributes:
         name: Its name, for messages.
-        pan_deg: From left to right, clockwise.
-        tilt_deg: From bottom to top.
+        pan_deg: The left and right edges; the region extends clockwise from left to right.
+        tilt_deg: The bottom and top edges.
     """
 
     name: str = Field(min_length=1, max_length=60)
@@ -43,18 +43,18 @@ class Region(_Rules):
         return (self.pan_deg[1] - self.pan_deg[0]) % 360.0 or 360.0
 
     def contains(self, pan_deg: float, tilt_deg: float) -> bool:
-        """Return whether a direction lies inside, edges excluded."""
+        """Return whether a direction lies inside the region; its edges are outside."""
         turn = (pan_deg - self.pan_deg[0]) % 360.0
         return self.tilt_deg[0] < tilt_deg < self.tilt_deg[1] and (self.width_deg == 360.0 or 0.0 < turn < self.width_deg)
 
 
 class PixelMask(_Rules):
-    """A rectangle of every frame, in shares of its width and height from the top left."""
+    """A rectangle in every frame, as fractions of the frame's width and height from the top left."""
 
-    left: Share
-    top: Share
-    right: Share
-    bottom: Share
+    left: Fraction
+    top: Fraction
+    right: Fraction
+    bottom: Fraction
 
     @model_validator(mode="after")
     def _in_order(self) -> PixelMask:
@@ -64,7 +64,7 @@ class PixelMask(_Rules):
 
 
 class SoftLimits(_Rules):
-    """Limits within those of the device. None keeps the device's own limit."""
+    """Limits that narrow those of the device. None keeps the device's own limit."""
 
     min_pan_deg: Degrees | None = None
     max_pan_deg: Degrees | None = None
@@ -73,7 +73,7 @@ class SoftLimits(_Rules):
     max_zoom: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
 
     def within(self, device: Limits) -> Limits:
-        """Return the device's limits, narrowed. A pan limit makes endless pan limited.
+        """Return the device's limits, narrowed by these. With a pan limit, an endless pan is no longer endless.
 
         Raises:
             ValueError: A minimum is not below its maximum.
@@ -105,8 +105,8 @@ class CameraRules(_Rules):
         soft_limits: Limits inside those of the device.
         keep_out: Regions that no frame shows and at which the camera is never aimed.
         masks: Rectangles of the picture that are black in every frame, such as a text overlay.
-        dead_zone_deg: Turns smaller than this are not executed, which reduces wear on the motors. Zooming is never ignored.
-        min_interval_s: Shortest time between two moves. A move that comes earlier waits.
+        dead_zone_deg: Turns smaller than this are not made, which reduces wear on the motors. Zooming is never skipped.
+        min_interval_s: Minimum time between two moves. A move that is requested earlier waits.
     """
 
     soft_limits: SoftLimits = SoftLimits()
@@ -116,7 +116,7 @@ class CameraRules(_Rules):
     min_interval_s: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
 
     def region_at(self, pose: Pose) -> Region | None:
-        """Return the keep-out region at which a pose aims, None if it aims at none."""
+        """Return the keep-out region at which a pose aims; None if it aims at none."""
         return next((region for region in self.keep_out if region.contains(pose.pan_deg, pose.tilt_deg)), None)
 
 
@@ -133,9 +133,9 @@ class Mounting(_Rules):
 
 
 def nearest_outside(pose: Pose, regions: tuple[Region, ...], limits: Limits) -> Pose | None:
-    """Return the permitted pose nearest to a pose inside a region: on the region's edge, within the limits, and in no region.
+    """Return the permitted pose that is nearest to a pose inside a region.
 
-    None if there is no such pose on an edge of the region that contains it.
+    It lies on an edge of the region, within the limits, and in no other region. Return None if there is no such pose.
     """
     region = next((r for r in regions if r.contains(pose.pan_deg, pose.tilt_deg)), None)
     if region is None:

@@ -1,4 +1,4 @@
-"""A camera that passes every call to another one; guards override what they change."""
+"""A camera that delegates every call to another one; guards override the methods that they change."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class CameraWrapper(Camera):
     ``centre_on`` is not delegated. It uses ``pose`` and ``move``, so that guards that override these also affect it.
 
     Args:
-        camera: The wrapped camera. Closing the wrapper closes it.
+        camera: The wrapped camera. It is closed with the wrapper.
     """
 
     def __init__(self, camera: Camera) -> None:

@@ -1,1 +1,1 @@
-"""Measuring a camera from its own pictures: rotations, fields of view, latency and settling, and the profile that keeps them."""
+"""Measure a camera from its own pictures (rotations, fields of view, latency and settling), and store the results in a profile."""

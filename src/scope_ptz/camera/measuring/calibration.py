@@ -1,4 +1,4 @@
-"""Calibration of a camera from its own pictures: signs and response of pan and tilt, fields of view, latency, settling."""
+"""Calibrate a camera from its own pictures: the signs and scales of pan and tilt, fields of view, latency and settling."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from anyio import to_thread
 
 from scope_ptz.camera.measuring import registration as r
 from scope_ptz.camera.measuring.registration import Matches, RegistrationError
-from scope_ptz.camera.network.settling import motion_share
+from scope_ptz.camera.network.settling import moving_fraction
 from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Pose, wrap_pan_deg
 
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 
 ANGLE_TOLERANCE = 0.03
 FIELD_TOLERANCE = 0.05
-"""Shares by which a measurement may differ from the device's value before it counts as a contradiction."""
+"""Relative differences between a measurement and the device's value above which the measurement counts as a contradiction."""
 
 TILT_ZERO_TOLERANCE_DEG = 3.0
-"""Degrees by which the horizon of the pictures may differ from a tilt of 0."""
+"""Maximum difference, in degrees, between the horizon in the pictures and a reported tilt of 0."""
 
-PLACES_DEG = (0.0, 60.0, -60.0, 120.0)
-"""Turns from the start at which the measurement is tried until a place has enough detail."""
+PAN_OFFSETS_DEG = (0.0, 60.0, -60.0, 120.0)
+"""Pan offsets from the start pose, tried in order until one shows enough detail."""
 
-_SMALL, _LARGE = 0.12, 0.35  # turns as shares of the field of view: for the sign, and for the perspective
+_SMALL, _LARGE = 0.12, 0.35  # turns as fractions of the field of view: a small one for the sign, a large one for the focal length
 _SHOTS, _RUNS = 5, 3
 
 Progress = Callable[[str], None]
@@ -42,10 +42,10 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class AxisResponse:
-    """The response of the picture to a commanded turn.
+    """The response of an axis to a commanded turn, as seen in the pictures.
 
     Attributes:
-        scale: Degrees that the camera actually turns for each degree that it reports; negative if it turns the other way.
+        scale: Degrees that the camera actually turns per degree that it reports; negative if it turns the other way.
         inverted: Whether it turns the other way.
     """
 
@@ -58,17 +58,17 @@ class AxisResponse:
 
 @dataclass(frozen=True, slots=True)
 class FieldOfView:
-    """A field of view at a zoom.
+    """The field of view at a zoom level.
 
     Attributes:
         zoom: Magnification that the camera reports.
-        share: Its share of the camera's zoom range, 0 to 1.
-        stated_deg: Horizontal field of view by the camera's own table, in degrees.
-        measured_deg: Horizontal field of view by the pictures, in degrees.
+        position: Where the zoom lies in the camera's range, from 0 (widest) to 1 (closest).
+        stated_deg: Horizontal field of view according to the camera's own table, in degrees.
+        measured_deg: Horizontal field of view as measured from the pictures, in degrees.
     """
 
     zoom: float
-    share: float
+    position: float
     stated_deg: float
     measured_deg: float
 
@@ -83,10 +83,10 @@ class Calibration:
         tilt_offset_deg: The actual tilt in degrees at a reported tilt of 0.
         fields: Fields of view, widest first.
         snapshot_s: Median seconds to take a picture.
-        move_s: Median seconds of a move of 20 degrees, until the driver reports arrival.
-        settling_s: Median seconds from then until the picture has settled.
+        move_s: Median seconds from the start of a move of 20 degrees until the driver reports arrival.
+        settling_s: Median seconds from the reported arrival until the picture has settled.
         residual_px: Typical error of the registration in pixels.
-        contradictions: Sentences about values that the pictures contradict.
+        contradictions: Sentences about reported values that the pictures contradict.
     """
 
     pan: AxisResponse
@@ -105,17 +105,17 @@ async def calibrate(
 ) -> Calibration:
     """Measure a camera, and return it to its initial pose.
 
-    Moving objects do no harm as long as most of the picture is static. The time of a simulated world is held.
+    Moving objects are no problem as long as most of the picture is static. A simulated world is paused.
 
     Args:
         camera: The camera. Nobody else may move it.
-        zooms: Number of zooms at which the field of view is measured.
-        assumed: Values that the driver only assumes, which a measurement replaces instead of contradicting: "pan range",
-            "tilt range", "field of view".
+        zooms: Number of zoom levels at which the field of view is measured.
+        assumed: Values that the driver only assumes: "pan range", "tilt range" or "field of view". A measurement replaces them,
+            so a difference is not reported as a contradiction.
         progress: Receives a sentence about each step.
 
     Raises:
-        RegistrationError: No place has enough detail.
+        RegistrationError: No direction shows enough detail.
         CameraError: The camera fails.
     """
     start = await camera.pose()
@@ -129,8 +129,8 @@ async def calibrate(
 async def _calibrate(camera: Camera, start: Pose, zooms: int, assumed: tuple[str, ...], progress: Progress) -> Calibration:
     snapshot_s = await _snapshot_s(camera)
     failure = RegistrationError("The camera has no room to turn.")
-    for place_deg in PLACES_DEG:
-        base = _base(camera, start, place_deg)
+    for offset_deg in PAN_OFFSETS_DEG:
+        base = _base(camera, start, offset_deg)
         progress(f"Looking for detail at pan {base.pan_deg:.0f}.")
         try:
             with camera.hold_time():
@@ -159,16 +159,16 @@ class _Response:
 
 
 async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response:
-    """Measure how the picture turns at the widest zoom, with the focal length from the pictures alone."""
+    """Measure how pan and tilt respond at the widest zoom. The focal length is measured from the pictures alone."""
     stated = camera.info.optics.hfov_deg(base.zoom)
-    centre, here = await _look(camera, base)
+    centre, here = await _move_and_take(camera, base)
     focal = r.focal_px(stated, centre.shape[1])
     rough = []
     for pan_deg, tilt_deg in ((_SMALL * stated, 0.0), (0.0, _vertical(camera, base, _SMALL * stated / 2))):
         pair, turned = await _turned(camera, base, centre, here, pan_deg, tilt_deg)
         found = r.rotation(pair, focal)
         rough.append(found.angle_deg / (abs(turned) or 1.0))
-    # The second turns are chosen so that the pictures overlap well for any size of a commanded degree.
+    # The second turns are chosen so that the pictures overlap well however far the camera really turns per commanded degree.
     pan_deg = min(_LARGE * stated / max(rough[0], 0.05), 3 * _LARGE * stated)
     tilt_deg = _vertical(camera, base, min(_LARGE * stated * 0.5 / max(rough[1], 0.05), 60.0))
     pairs = [await _turned(camera, base, centre, here, *turn) for turn in ((pan_deg, 0.0), (-pan_deg, 0.0), (0.0, tilt_deg))]
@@ -179,13 +179,13 @@ async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response
     # If the camera looks up or down, a turn about the vertical also rolls the picture.
     seen_tilt = math.degrees(math.atan2(right.roll_deg - left.roll_deg, right.right_deg - left.right_deg))
     seen_tilt = seen_tilt if pan > 0 else math.degrees(math.atan2(left.roll_deg - right.roll_deg, left.right_deg - right.right_deg))
-    progress(f"Pan turns {pan:+.3f} and tilt {tilt:+.3f} degrees for each degree.")
+    progress(f"Pan turns {pan:+.3f} and tilt {tilt:+.3f} degrees per reported degree.")
     residual = statistics.mean(each.residual_px for each in (right, left, up))
     return _Response(pan, tilt, seen_tilt - tilt * here.tilt_deg, focal, residual)
 
 
 async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, progress: Progress) -> tuple[FieldOfView, ...]:
-    """Measure the field of view at zooms from the widest to the closest one, by turns of a known angle."""
+    """Measure the field of view at zoom levels from the widest to the closest, by turning through known angles."""
     limits, optics = camera.info.limits, camera.info.optics
     width = camera.info.frame_width
     fields = [FieldOfView(limits.min_zoom, 0.0, optics.hfov_deg(limits.min_zoom), r.hfov_deg(response.focal_px, width))]
@@ -198,19 +198,19 @@ async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, p
         stated = optics.hfov_deg(zoom)
         expected = min(stated * correction, fields[-1].measured_deg)
         at = Pose(base.pan_deg, base.tilt_deg, zoom)
-        for share in (0.25, 0.06):  # the second pass is for a table that is far off
+        for fraction in (0.25, 0.06):  # the second pass is for a zoom table that is far off
             try:
-                centre, here = await _look(camera, at)
-                pair, turned = await _turned(camera, at, centre, here, share * expected / abs(response.pan), 0.0)
+                centre, here = await _move_and_take(camera, at)
+                pair, turned = await _turned(camera, at, centre, here, fraction * expected / abs(response.pan), 0.0)
                 focal = r.focal_for_angle(pair, turned * response.pan)
                 break
             except RegistrationError:
-                if share < 0.1:
+                if fraction < 0.1:
                     raise
         measured = r.hfov_deg(focal, width)
         correction = measured / stated
         fields.append(FieldOfView(zoom, (zoom - limits.min_zoom) / (limits.max_zoom - limits.min_zoom), stated, measured))
-        progress(f"At {zoom:.2f}x the picture is {measured:.2f} degrees wide; stated are {stated:.2f}.")
+        progress(f"At {zoom:.2f}x the picture is {measured:.2f} degrees wide; the camera states {stated:.2f}.")
     return tuple(fields)
 
 
@@ -224,7 +224,7 @@ async def _snapshot_s(camera: Camera) -> float:
 
 
 async def _settling(camera: Camera, base: Pose) -> tuple[float, float]:
-    """Return the median seconds of a move, and from its reported arrival until the picture has settled."""
+    """Return the median seconds that a move takes, and the median seconds from its reported arrival until the picture settles."""
     moves, settlings = [], []
     for run in range(_RUNS):
         started_s = camera.clock.now_s()
@@ -234,16 +234,16 @@ async def _settling(camera: Camera, base: Pose) -> tuple[float, float]:
         still_s, before = arrived_s, (await camera.frame()).image
         for _ in range(20):
             frame = await camera.frame()
-            share = motion_share(before, frame.image)
-            if share is None or share < 0.5:
+            fraction = moving_fraction(before, frame.image)
+            if fraction is None or fraction < 0.5:
                 break
             still_s, before = camera.clock.now_s(), frame.image
         settlings.append(still_s - arrived_s)
     return statistics.median(moves), statistics.median(settlings)
 
 
-async def _look(camera: Camera, pose: Pose) -> tuple[NDArray[np.uint8], Pose]:
-    """Move and take a picture. Return it with the pose that the camera states."""
+async def _move_and_take(camera: Camera, pose: Pose) -> tuple[NDArray[np.uint8], Pose]:
+    """Move and take a picture. Return it with the pose that the camera reports."""
     arrival = await camera.move(pose)
     return (await camera.frame()).image, arrival.pose
 
@@ -251,8 +251,8 @@ async def _look(camera: Camera, pose: Pose) -> tuple[NDArray[np.uint8], Pose]:
 async def _turned(
     camera: Camera, base: Pose, centre: NDArray[np.uint8], here: Pose, pan_deg: float, tilt_deg: float
 ) -> tuple[Matches, float]:
-    """Turn from a base along one axis. Return the matches with the base's picture, and the stated turn in degrees."""
-    image, there = await _look(camera, Pose(base.pan_deg + pan_deg, base.tilt_deg + tilt_deg, base.zoom))
+    """Turn from a base pose along one axis. Return the matches with the base's picture, and the reported turn in degrees."""
+    image, there = await _move_and_take(camera, Pose(base.pan_deg + pan_deg, base.tilt_deg + tilt_deg, base.zoom))
     turned = wrap_pan_deg(there.pan_deg - here.pan_deg) if pan_deg else there.tilt_deg - here.tilt_deg
     if abs(turned) < 0.2 * abs(pan_deg or tilt_deg):
         raise CameraError(f"{camera.info.name} was commanded to turn but reports that it did not. Its motor may be blocked.")
@@ -272,7 +272,7 @@ def _base(camera: Camera, start: Pose, turn_deg: float) -> Pose:
 
 
 def _vertical(camera: Camera, base: Pose, size_deg: float) -> float:
-    """Return a turn of tilt, in the direction with more room."""
+    """Return a tilt change towards the side with more room."""
     up, down = camera.info.limits.max_tilt_deg - base.tilt_deg, base.tilt_deg - camera.info.limits.min_tilt_deg
     return min(size_deg, up) if up > down else -min(size_deg, down)
 
@@ -284,14 +284,14 @@ def _contradictions(
     for name, words, response in (("pan", ("right", "left"), pan), ("tilt", ("up", "down"), tilt)):
         if response.inverted:
             found.append(
-                f"The {name} is inverted: when it is commanded to turn {words[0]}, the picture turns {words[1]}. "
+                f"{name.capitalize()} is inverted: when commanded to turn {words[0]}, the view turns {words[1]}. "
                 f"Correct the direction in the camera's settings, and check whether it is mounted upside down."
             )
         elif f"{name} range" not in assumed and abs(response.scale - 1) > ANGLE_TOLERANCE:
-            found.append(f"The {name} turns {response.scale:.3f} degrees for each degree that the camera states.")
+            found.append(f"{name.capitalize()} turns {response.scale:.3f} degrees for each degree that the camera reports.")
     if "tilt range" not in assumed and not tilt.inverted and abs(tilt_offset_deg) > TILT_ZERO_TOLERANCE_DEG:
         found.append(
-            f"Where the camera states a tilt of 0, it looks {tilt_offset_deg:+.1f} degrees from the horizon. "
+            f"When the camera reports a tilt of 0, it points {tilt_offset_deg:+.1f} degrees from the horizon. "
             "Level the camera or its mount."
         )
     if "field of view" not in assumed:

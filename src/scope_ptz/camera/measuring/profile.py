@@ -1,4 +1,4 @@
-"""The profile of a camera: its probe and calibration, stored as JSON in the configuration folder."""
+"""Camera profiles: the results of probing and calibrating a camera, stored as JSON in the configuration folder."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class _Record(BaseModel):
 
 
 class MeasuredField(_Record):
-    """A field of view: magnification and its share of the zoom range, and horizontal degrees as stated and as measured."""
+    """A field of view: the magnification, its position in the zoom range (0 to 1), and the stated and measured angles."""
 
     zoom: float = Field(gt=0)
     share: float = Field(ge=0, le=1)
@@ -51,12 +51,12 @@ class CalibrationRecord(_Record):
 
     @property
     def pan_deg(self) -> tuple[float, float] | None:
-        """Real pan in degrees at the ends of the assumed range; None if the range was not assumed."""
+        """Actual pan in degrees at the ends of the assumed range; None if the range was not assumed."""
         return None if "pan range" not in self.replaces else _scaled(self.pan_range_deg, self.pan_scale, 0.0)
 
     @property
     def tilt_deg(self) -> tuple[float, float] | None:
-        """Real tilt in degrees at the ends of the assumed range; None if the range was not assumed."""
+        """Actual tilt in degrees at the ends of the assumed range; None if the range was not assumed."""
         return None if "tilt range" not in self.replaces else _scaled(self.tilt_range_deg, self.tilt_scale, self.tilt_offset_deg)
 
 
@@ -90,7 +90,7 @@ class CameraProfile(_Record):
 
     Attributes:
         version: Version of the format.
-        camera: Where the camera is, such as ``onvif 10.0.0.7:80``.
+        camera: The camera's driver and address, such as ``onvif 10.0.0.7:80``.
         probe: The values that it reports.
         calibration: The measurements.
     """
@@ -104,7 +104,7 @@ class CameraProfile(_Record):
 def record_of(
     calibration: Calibration, pan_range_deg: tuple[float, float], tilt_range_deg: tuple[float, float], assumed: tuple[str, ...]
 ) -> CalibrationRecord:
-    """Return a calibration as it is stored."""
+    """Convert a calibration to the record that is stored."""
     return CalibrationRecord(
         measured_at=now(),
         pan_scale=calibration.pan.scale,
@@ -113,7 +113,7 @@ def record_of(
         pan_range_deg=pan_range_deg,
         tilt_range_deg=tilt_range_deg,
         fields=tuple(
-            MeasuredField(zoom=each.zoom, share=each.share, stated_deg=each.stated_deg, measured_deg=each.measured_deg)
+            MeasuredField(zoom=each.zoom, share=each.position, stated_deg=each.stated_deg, measured_deg=each.measured_deg)
             for each in calibration.fields
         ),
         snapshot_s=calibration.snapshot_s,
@@ -126,7 +126,7 @@ def record_of(
 
 
 def now() -> str:
-    """Return the time in UTC as ISO 8601."""
+    """Return the current time in UTC as ISO 8601."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
@@ -150,7 +150,7 @@ def load_profile(folder: Path, camera: str) -> CameraProfile | None:
     except (OSError, ValidationError) as error:
         raise PackError(f"The camera profile {path} cannot be read. Delete it and measure the camera again.") from error
     if found.version != VERSION or found.camera != camera:
-        raise PackError(f"The camera profile {path} is of another version or camera. Delete it and measure the camera again.")
+        raise PackError(f"The camera profile {path} belongs to another version or camera. Delete it and measure the camera again.")
     return found
 
 

@@ -1,7 +1,7 @@
-"""The rotation of a camera between two overlapping pictures, from matched features.
+"""Measure the rotation of a camera between two overlapping pictures, from matched features.
 
-A camera that turns about its optical centre maps one picture to the other by its focal length and a rotation. Both follow from
-the pictures alone when the rotation is large enough; with a known focal length or a known angle, the other one follows.
+When a camera turns about its optical centre, its focal length and rotation map one picture to the other. If the rotation is large
+enough, both can be computed from the pictures alone. If one of them is known, the other can be computed from smaller rotations.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ class RegistrationError(CameraError):
 
 @dataclass(frozen=True, slots=True)
 class Matches:
-    """Points of one direction in two pictures of a camera that turned between them.
+    """Points that show the same directions in two pictures of a camera that turned between them.
 
     Attributes:
-        first: Array of shape ``(N, 2)``: pixels from the picture's centre, right and up positive.
+        first: Array of shape ``(N, 2)``: pixels from the picture's centre, with right and up positive.
         second: The same directions in the second picture.
         width: Width of the pictures in pixels.
     """
@@ -51,10 +51,10 @@ class Rotation:
     """The rotation of a camera between two pictures.
 
     Attributes:
-        right_deg: Degrees to the right, about the camera's own upward axis.
-        up_deg: Degrees upwards, about its own axis to the right.
+        right_deg: Degrees to the right, about the camera's own up axis.
+        up_deg: Degrees upwards, about its own right axis.
         roll_deg: Degrees about its line of sight.
-        residual_px: Root mean square distance of the matches from the model, in pixels.
+        residual_px: Root mean square error of the matches, in pixels.
     """
 
     right_deg: float
@@ -64,12 +64,12 @@ class Rotation:
 
     @property
     def angle_deg(self) -> float:
-        """The angle of the whole rotation."""
+        """The angle of the whole rotation in degrees."""
         return math.hypot(self.right_deg, self.up_deg, self.roll_deg)
 
 
 def match(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> Matches:
-    """Match features of two pictures. Matches on moving objects are rejected.
+    """Match features between two pictures. Matches on moving objects are rejected.
 
     Args:
         first: A picture, ``(H, W, 3)`` uint8 RGB.
@@ -102,7 +102,7 @@ def match(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> Matches:
 
 
 def rotation(matches: Matches, focal_px: float) -> Rotation:
-    """Return the rotation that maps the matches onto each other, at a focal length in pixels."""
+    """Return the rotation that best maps the matches onto each other, given the focal length in pixels."""
     one, two = _directions(matches.first, focal_px), _directions(matches.second, focal_px)
     u, _, vt = np.linalg.svd(two.T @ one)
     turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt  # maps directions of the first picture to those of the second
@@ -118,8 +118,8 @@ def rotation(matches: Matches, focal_px: float) -> Rotation:
 def focal_from(pairs: list[Matches]) -> float:
     """Return the focal length in pixels that explains all pairs best.
 
-    The pairs must differ by a large part of the field of view: the focal length follows from perspective, which a small turn does
-    not show.
+    Each pair must be a turn by a large part of the field of view, because the focal length is computed from perspective, which a
+    small turn does not show.
     """
     width = pairs[0].width
     fields = np.geomspace(4.0, 130.0, 48)
@@ -140,14 +140,14 @@ def focal_for_angle(matches: Matches, angle_deg: float) -> float:
         RegistrationError: No focal length gives the angle.
     """
     low, high = matches.width / 2 / math.tan(math.radians(160.0) / 2), matches.width / 2 / math.tan(math.radians(0.5) / 2)
-    wanted = abs(angle_deg)
-    if not rotation(matches, low).angle_deg > wanted > rotation(matches, high).angle_deg:
+    target_deg = abs(angle_deg)
+    if not rotation(matches, low).angle_deg > target_deg > rotation(matches, high).angle_deg:
         raise RegistrationError(
             "No focal length explains the motion between the pictures. Check that the camera turned and that the scene has detail."
         )
     for _ in range(60):
         middle = math.sqrt(low * high)
-        if rotation(matches, middle).angle_deg > wanted:
+        if rotation(matches, middle).angle_deg > target_deg:
             low = middle
         else:
             high = middle
@@ -155,7 +155,7 @@ def focal_for_angle(matches: Matches, angle_deg: float) -> float:
 
 
 def hfov_deg(focal_px: float, width: int) -> float:
-    """Return the horizontal field of view in degrees."""
+    """Return the horizontal field of view in degrees for a focal length in pixels."""
     return math.degrees(2 * math.atan(width / 2 / focal_px))
 
 
@@ -175,7 +175,7 @@ def _directions(points: NDArray[np.float64], focal: float) -> NDArray[np.float64
 
 
 def _rotation_vector(turn: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return axis times angle in radians, by the right-hand rule in axes right, up, forward taken as x, y, z."""
+    """Return the axis times the angle in radians. The right-hand rule applies, with right, up and forward as x, y and z."""
     axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
     sine = float(np.linalg.norm(axis))
     angle = math.atan2(sine, (float(np.trace(turn)) - 1) / 2)
@@ -184,17 +184,17 @@ def _rotation_vector(turn: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _minimum(function: Callable[[float], float], low: float, high: float) -> float:
     """Return the argument that minimises a function of one number, by golden-section search."""
-    share = (math.sqrt(5) - 1) / 2
-    left, right = high - share * (high - low), low + share * (high - low)
+    golden = (math.sqrt(5) - 1) / 2
+    left, right = high - golden * (high - low), low + golden * (high - low)
     at_left, at_right = function(left), function(right)
     for _ in range(40):
         if at_left < at_right:
             high, right, at_right = right, left, at_left
-            left = high - share * (high - low)
+            left = high - golden * (high - low)
             at_left = function(left)
         else:
             low, left, at_left = left, right, at_right
-            right = low + share * (high - low)
+            right = low + golden * (high - low)
             at_right = function(right)
     return (low + high) / 2
 

@@ -13,16 +13,16 @@ if TYPE_CHECKING:
 _IDENTIFIERS = re.compile(
     r"(?:\d{1,3}\.){3}\d{1,3}(?::\d+)?"  # IPv4 addresses
     r"|(?:[0-9A-Fa-f]{2}[:-]){5}[0-9A-Fa-f]{2}"  # MAC addresses
-    r"|\b(?=[0-9A-Fa-f]*\d)[0-9A-Fa-f]{12}\b"  # the same without separators, which are the serial numbers of AXIS
+    r"|\b(?=[0-9A-Fa-f]*\d)[0-9A-Fa-f]{12}\b"  # the same without separators, which is the form of AXIS serial numbers
     r"|\S+@\S+"
 )
 
 
 def report_text(probe: ProbeRecord, calibration: CalibrationRecord | None = None) -> str:
-    """Return a report as Markdown: a row of the table of tested devices, and the details as JSON.
+    """Return a report as Markdown: a row for the table of tested devices, and the details as JSON.
 
-    It contains only selected fields. Presets are counted, because their names may reveal places. These fields contain no
-    addresses, accounts or serial numbers. If a device puts one into its model name, it is redacted.
+    It contains only selected fields, which hold no addresses, accounts or serial numbers. If a device puts one into its model name,
+    it is redacted. Presets are only counted, because their names may reveal places.
 
     Args:
         probe: The values that the camera reports.

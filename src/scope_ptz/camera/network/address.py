@@ -1,4 +1,4 @@
-"""The address of a device, and how addresses that the device returns are pinned to it."""
+"""The address of a device. Addresses that the device returns are pinned to it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class DeviceAddress:
 
     @property
     def base_url(self) -> str:
-        """The start of every URL of the device, without a slash at the end."""
+        """The base URL of the device, without a trailing slash."""
         return f"{'https' if self.tls else 'http'}://{self.host}:{self.port}"
 
     def __str__(self) -> str:
@@ -46,7 +46,7 @@ class DeviceAddress:
             return self.host.lower() == "localhost"
 
     def has_origin(self, scheme: str, host: str, port: int | None) -> bool:
-        """Return whether scheme, host and port are those of this address."""
+        """Return whether a scheme, host and port are those of this address."""
         mine = "https" if self.tls else "http"
         port = port or (443 if scheme == "https" else 80)
         return (scheme, host.strip("[]").lower(), port) == (mine, self.host.strip("[]").lower(), self.port)
@@ -86,11 +86,11 @@ def parse_address(text: str, *, tls: bool = False) -> tuple[str, DeviceAddress]:
     """Parse ``user@host[:port]``.
 
     Args:
-        text: The address. The user may be missing.
-        tls: Whether the connection is encrypted; it decides the default port.
+        text: The address. The user is optional.
+        tls: Whether the connection is encrypted, which determines the default port.
 
     Returns:
-        The user name, "" if there is none, and the address.
+        The user name (empty if there is none) and the address.
 
     Raises:
         InputError: The host or the port is invalid, or there is a password. The message does not repeat the text.

@@ -29,30 +29,30 @@ STOP_CHECKS = 40
 """Number of position readings after a stop before the stop is sent again."""
 
 MAX_OFF_CENTRE = 0.05
-"""Maximum error of a centred point, as a share of the picture's width, and maximum relative error of the zoom."""
+"""Maximum error of a centred point, as a fraction of the picture's width, and maximum relative error of the zoom."""
 
 Command = Callable[[], Awaitable[None]]
-"""Sends a command to the device."""
+"""A function that sends a command to the device."""
 
 
 class NetworkCamera(Camera):
-    """A camera on the network. A driver implements the sending of commands; this class sends them and waits for their effect.
+    """A camera on the network. Drivers implement how commands are sent; this class decides when, and waits for their effect.
 
-    Every command gets a number. A command with an outdated number has been replaced: it is not sent, or no longer waited for.
+    Every command gets a number. If a newer command exists, an older one is not sent, or its effect is no longer awaited.
 
     Args:
         info: The camera's properties and capabilities.
-        pictures: Its pictures.
+        pictures: The source of its pictures.
         settling: The criteria for when it counts as settled.
-        after_death: Watchdog process that stops it if this program is killed.
+        watchdog: The process that stops the camera if this program is killed.
     """
 
-    def __init__(self, info: CameraInfo, pictures: DevicePictures, settling: Settling, after_death: StopProcess) -> None:
+    def __init__(self, info: CameraInfo, pictures: DevicePictures, settling: Settling, watchdog: StopProcess) -> None:
         self.clock = WallClock()
         self._info, self._pictures, self._settling = info, pictures, settling
         self._commands = self._sent = 0
         self._sending: anyio.CancelScope | None = None
-        self._watch = DriveWatch(info.name, self._send_stop_blocking, after_death=after_death)
+        self._watch = DriveWatch(info.name, self._send_stop_blocking, watchdog=watchdog)
 
     @property
     def info(self) -> CameraInfo:
@@ -60,23 +60,23 @@ class NetworkCamera(Camera):
 
     @abstractmethod
     async def _start_move(self, pose: Pose) -> None:
-        """Send a move to a pose within the limits."""
+        """Send the command that moves the camera to a pose, which is within the limits."""
 
     @abstractmethod
     async def _start_home(self) -> None:
-        """Send a move to the home position."""
+        """Send the command that moves the camera to its home position."""
 
     @abstractmethod
     async def _start_drive(self, number: int, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
-        """Send velocities by ``_send``, with the number of the command."""
+        """Send velocities with ``_send``, which takes the number of the command."""
 
     @abstractmethod
     async def _send_stop(self) -> None:
-        """Send the stop of every axis."""
+        """Send the commands that stop all axes."""
 
     @abstractmethod
     def _send_stop_blocking(self) -> None:
-        """Send the stop of every axis from a thread, on a separate connection, and return when it is acknowledged."""
+        """Stop all axes from a thread, over a separate connection, and return when the device has acknowledged it."""
 
     @abstractmethod
     async def _disconnect(self) -> None:
@@ -85,19 +85,19 @@ class NetworkCamera(Camera):
     def _check_may_move(self) -> None:
         """Raise ``CameraError`` if the device is known to refuse moves."""
 
-    def _centring(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:  # noqa: ARG002 - for drivers
-        """Return the device's own command that centres a point of its picture; None if it has none.
+    def _centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:  # noqa: ARG002 - for drivers
+        """Return the device's own command that centres a point of the picture; None if the device has none.
 
         Args:
-            here: The pose now.
-            target: The pose that the command leads to, by the camera's optics.
-            x: The point from 0 (left border) to 1 (right border).
-            y: The point from 0 (top) to 1 (bottom).
+            here: The current pose.
+            target: The pose that the command should reach, computed from the camera's optics.
+            x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
+            y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
         """
         return None
 
     async def _explain_miss(self, reached: Pose, target: Pose) -> tuple[Axis, ...]:
-        """Return the axes that were stopped by a limit that the device did not report before.
+        """Return the axes that stopped at a limit that the device had not reported before.
 
         Raises:
             PositionNotReachedError: No limit explains the camera's position.
@@ -118,21 +118,21 @@ class NetworkCamera(Camera):
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
         """Centre a point of the picture with the device's own command, and check the resulting pose.
 
-        The device knows its lens best. If the pose is still wrong, the camera is moved to the pose that its optics give.
+        The device knows its lens best. If the resulting pose is wrong, the camera is moved to the pose computed from its optics.
         """
         here = await self.pose()
-        wanted = self._info.towards(here, x, y, zoom_factor)
-        target, clamped = self._info.limits.clamp(wanted)
-        command = None if clamped else self._centring(here, target, x, y)
+        requested = self._info.towards(here, x, y, zoom_factor)
+        target, clamped = self._info.limits.clamp(requested)
+        command = None if clamped else self._centring_command(here, target, x, y)
         if command is None:
-            return await self.move(wanted)
+            return await self.move(requested)
         reached = await self._travel(command, None)
         if reached is None:
             return Arrival(await self.pose())
         optics = self._info.optics
         off_deg = float(angle_between_deg(direction(reached.pan_deg, reached.tilt_deg), direction(target.pan_deg, target.tilt_deg)))
         near = off_deg <= MAX_OFF_CENTRE * optics.hfov_deg(target.zoom) and abs(reached.zoom / target.zoom - 1) <= MAX_OFF_CENTRE
-        return Arrival(reached) if near else await self.move(wanted)
+        return Arrival(reached) if near else await self.move(requested)
 
     async def go_home(self) -> Arrival:
         return await self._go(self._start_home)
@@ -178,8 +178,8 @@ class NetworkCamera(Camera):
         """Stop any motion and return when the camera is stationary.
 
         Raises:
-            CameraError: The stop did not arrive, or the camera does not stop. A driven camera is still stopped by the dead man's
-                switch as soon as it can be reached.
+            CameraError: The stop command did not reach the camera, or the camera does not stop. The dead man's switch still stops a
+                driven camera as soon as it can be reached.
         """
         number = self._next()
         if self._sending is not None:
@@ -187,7 +187,7 @@ class NetworkCamera(Camera):
         try:
             for _ in range(3):
                 await self._send_stop()
-                if await self._stands() or self._commands != number:
+                if await self._has_stopped() or self._commands != number:
                     if self._commands == number:
                         self._watch.disarm()
                     return
@@ -206,7 +206,7 @@ class NetworkCamera(Camera):
                 await self._disconnect()
 
     async def _go(self, start: Command) -> Arrival:
-        """Go to a pose that only the device knows."""
+        """Go to a pose that only the device knows, such as a preset."""
         reached = await self._travel(start, None)
         return Arrival(await self.pose() if reached is None else reached)
 
@@ -226,7 +226,7 @@ class NetworkCamera(Camera):
             if await self._send(number, start):
                 reached = await wait_until_stationary(self.pose, self._settling, target, superseded)
                 if not superseded():
-                    await wait_for_still_picture(lambda: self._pictures.small(reached), self._settling, superseded)
+                    await wait_for_still_picture(lambda: self._pictures.settling_picture(reached), self._settling, superseded)
                     return None if superseded() else reached
         except BaseException:
             if not superseded():
@@ -255,7 +255,7 @@ class NetworkCamera(Camera):
         self._commands += 1
         return self._commands
 
-    async def _stands(self) -> bool:
+    async def _has_stopped(self) -> bool:
         before = await self.pose()
         for _ in range(STOP_CHECKS):
             await anyio.sleep(self._settling.poll_s)

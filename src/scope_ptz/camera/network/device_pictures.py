@@ -1,4 +1,4 @@
-"""Pictures of a device: snapshots, small pictures for settling, and live frames with the pose at exposure."""
+"""Pictures from a device: snapshots, small pictures to detect when the camera has settled, and live frames with their poses."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
     from scope_ptz.camera.clocks import Clock
 
 RETRIES = 3
-"""Number of times that a damaged snapshot is retaken."""
+"""Maximum number of times that a damaged snapshot is retaken."""
 
 FROZEN_PATIENCE_S = 2.0
-"""Seconds that a picture may lag behind the motors, as with an encoder that freezes it during a move."""
+"""Seconds that the picture may lag behind the motors, for example because the encoder freezes it during a move."""
 
 
 class DevicePictures(ABC):
-    """The pictures of one channel of a device. A driver implements the taking of a snapshot and the opening of a stream.
+    """Pictures from one channel of a device. Drivers implement taking a snapshot and opening a stream.
 
     Args:
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
-        small: Width and height of the pictures that are compared for settling.
+        small: Width and height of the pictures that are compared to detect when the camera has settled.
         latency_s: Seconds from the exposure of a streamed frame to its arrival.
     """
 
@@ -46,7 +46,7 @@ class DevicePictures(ABC):
 
     @abstractmethod
     async def take_once(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
-        """Take a snapshot, and return bytes that are the same for the same picture, and its pixels.
+        """Take a snapshot. Return bytes that are identical for identical pictures, and the pixels.
 
         Raises:
             PictureError: The picture is damaged or has the wrong size.
@@ -79,8 +79,8 @@ class DevicePictures(ABC):
                 return _frame(image, pose, info, asked_at + exposed_s - asked_s)
             await anyio.sleep(0.1)
 
-    async def small(self, pose: Pose) -> NDArray[np.uint8]:
-        """Take a small picture while the camera is stationary. Wait if the picture lags behind the motors.
+    async def settling_picture(self, pose: Pose) -> NDArray[np.uint8]:
+        """Take a small picture while the camera reports no motion. Wait if the picture lags behind the motors.
 
         Raises:
             PictureError: The picture is damaged or frozen.
@@ -88,7 +88,7 @@ class DevicePictures(ABC):
         give_up_s = monotonic() + FROZEN_PATIENCE_S
         while True:
             data, image = await self._take(*self._small)
-            # All black pictures are equal. Taking a picture reports the fault later; the move itself has succeeded.
+            # Black pictures are all identical, so they would look frozen. The next snapshot reports the fault.
             if is_black(image) or not self._frozen_small.lags(data, pose, give_up_s):
                 return image
             await anyio.sleep(0.1)
@@ -117,7 +117,7 @@ class DevicePictures(ABC):
                     continue
                 due_s = max(due_s + 1.0 / rate_hz, monotonic())
                 yield _frame(picture.image, pose, info, exposed_s + offset_s)
-                give_up_s = monotonic() + FROZEN_PATIENCE_S  # counted from the consumer's return
+                give_up_s = monotonic() + FROZEN_PATIENCE_S  # counted from when the consumer asks for the next frame
         finally:
             with anyio.CancelScope(shield=True):
                 await poses.close()

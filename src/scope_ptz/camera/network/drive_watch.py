@@ -13,22 +13,22 @@ from scope_ptz.camera.network.stop_process import StopProcess
 from scope_ptz.errors import CameraError
 
 LONGEST_PAUSE_S = 2.0
-"""Longest pause, in seconds, between two attempts to stop a camera."""
+"""Maximum pause, in seconds, between two attempts to stop a camera."""
 
 _LOG = logging.getLogger(__name__)
 
 
 class DriveWatch:
-    """Sends a stop when a drive is not renewed in time, and when the process ends.
+    """Stops a camera when a drive is not renewed in time, and when the process exits.
 
     It runs in a thread with a separate connection, so it works even if the event loop is busy, blocked or closed. The thread
-    exists only while the camera is driven. If the process ends, ``after_death`` stops the camera. Nothing stops it if the
+    exists only while the camera is being driven. If the process is killed, ``watchdog`` stops the camera. Nothing stops it if the
     machine loses power.
 
     Args:
         name: The camera's name, for the log.
-        send_stop: Sends the stop and returns when the camera has acknowledged it. It runs in the thread.
-        after_death: Watchdog process that stops the camera if this process is killed; None for none.
+        send_stop: Sends the stop command and returns when the camera has acknowledged it. It is called in the thread.
+        watchdog: The process that stops the camera if this process is killed; None if there is none.
         retry_s: Seconds between the first two attempts while the camera cannot be reached. Later pauses are longer, up to 2 s.
         give_up_s: Seconds after which no further attempt is made.
     """
@@ -38,11 +38,11 @@ class DriveWatch:
         name: str,
         send_stop: Callable[[], None],
         *,
-        after_death: StopProcess | None = None,
+        watchdog: StopProcess | None = None,
         retry_s: float = 0.25,
         give_up_s: float = 600.0,
     ) -> None:
-        self._name, self._send_stop, self._after_death = name, send_stop, after_death
+        self._name, self._send_stop, self._watchdog = name, send_stop, watchdog
         self._retry_s, self._give_up_s = retry_s, give_up_s
         self._condition = threading.Condition()
         self._deadline_s: float | None = None
@@ -51,14 +51,14 @@ class DriveWatch:
 
     @property
     def armed(self) -> bool:
-        """Whether the camera may be moving at a velocity."""
+        """Whether the camera may be in a continuous move."""
         return self._deadline_s is not None
 
     def arm(self, timeout_s: float) -> None:
-        """Send a stop after the timeout, unless ``arm`` or ``disarm`` is called before. Call it before the drive is sent."""
+        """Send a stop after the timeout, unless ``arm`` or ``disarm`` is called first. Call it before the drive is sent."""
         with self._condition:
-            if self._after_death is not None:
-                self._after_death.arm()
+            if self._watchdog is not None:
+                self._watchdog.arm()
             self._deadline_s = monotonic() + timeout_s
             if self._thread is None:
                 self._thread = threading.Thread(target=self._watch, name=f"drive watch {self._name}", daemon=True)
@@ -80,28 +80,28 @@ class DriveWatch:
                 self._condition.notify_all()
 
     def join(self, timeout_s: float = 5.0) -> None:
-        """Wait until the thread has ended, which it does when the camera has stopped. It blocks."""
+        """Wait until the thread has ended, which it does when the camera has stopped. The call blocks."""
         if (thread := self._thread) is not None:
             thread.join(timeout_s)
 
     def close(self, timeout_s: float = 5.0) -> None:
-        """Stop the camera if it is driven, and release everything. It blocks.
+        """Stop the camera if it is being driven, and release all resources. The call blocks.
 
-        If the camera cannot be reached within the time limit, ``after_death`` keeps trying.
+        If the camera cannot be reached within the time limit, ``watchdog`` continues to try.
         """
         self.stop_now()
         self.join(timeout_s)
-        if self._after_death is not None:
+        if self._watchdog is not None:
             with self._condition:
                 self._handed_over = True
                 self._condition.notify_all()
             self.join(timeout_s)
-            self._after_death.close()
+            self._watchdog.close()
 
     def _stopped(self) -> None:
         self._deadline_s = None
-        if self._after_death is not None:
-            self._after_death.disarm()
+        if self._watchdog is not None:
+            self._watchdog.disarm()
 
     def _watch(self) -> None:
         pause_s = self._retry_s

@@ -1,4 +1,4 @@
-"""The errors of cameras on a network. Each message tells the user what to do, and none contains a password.
+"""The errors of network cameras. Each message tells the user what to do, and none contains a password.
 
 CameraError
 ├── CameraUnreachableError   nothing answers at the address, or the connection breaks
@@ -19,7 +19,7 @@ from typing import Literal
 from scope_ptz.errors import CameraError
 
 PictureFault = Literal["truncated", "damaged", "size", "black", "frozen", "stalled"]
-"""The fault of a picture or of a stream."""
+"""The type of fault in a picture or stream."""
 
 
 class CameraUnreachableError(CameraError):
@@ -43,14 +43,14 @@ class NotACameraError(CameraError):
 
 
 class ForeignAddressError(CameraError):
-    """A reply of the camera refers to another host. Credentials are never sent there."""
+    """A reply from the camera refers to another host. Credentials are never sent there."""
 
 
 class PictureError(CameraError):
     """A picture is damaged, black, frozen, or has an unexpected size.
 
     Attributes:
-        fault: The fault of the picture.
+        fault: What is wrong with the picture.
     """
 
     def __init__(self, message: str, fault: PictureFault) -> None:

@@ -1,4 +1,4 @@
-"""HTTP to one device: sign-in, time limits, retries of reads, and errors with instructions for the user."""
+"""An HTTP client for one device, with sign-in, time limits, retries of reads, and errors that tell the user what to do."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from scope_ptz.camera.network.trust import PinnedContext
 from scope_ptz.errors import CameraError
 
 MAX_BODY_BYTES = 32 * 2**20
-"""Maximum size of a reply in bytes. A 4K JPEG has about 4 MB."""
+"""Maximum size of a reply in bytes. A 4K JPEG is about 4 MB."""
 
 BACKOFF_S = (0.15, 0.4)
 """Pauses, in seconds, before a read is retried."""
@@ -41,10 +41,10 @@ class DeviceTimeouts:
 
 @dataclass(frozen=True, slots=True)
 class DeviceReply:
-    """A reply. ``body`` is untrusted, because it comes from the device.
+    """A reply from a device. Its body is untrusted.
 
     Attributes:
-        status: HTTP status; 2xx, or one of the statuses that the caller accepts.
+        status: HTTP status: 2xx, or one that the caller accepts.
         content_type: Media type without parameters, in lower case.
         body: The body.
     """
@@ -61,7 +61,7 @@ class DeviceHttp:
         address: The device.
         credentials: The account.
         timeouts: Time limits.
-        verify: How the certificate is checked.
+        verify: Whether to verify the certificate, or the TLS context that verifies it.
     """
 
     def __init__(
@@ -114,8 +114,8 @@ class DeviceHttp:
         Args:
             path: The path on the device.
             parameters: The query.
-            repeat: Whether the request may be sent again after a lost connection. Relative commands may not.
-            accept: Statuses besides 2xx that are returned instead of raised.
+            repeat: Whether the request may be sent again after a lost connection. Relative commands must not be.
+            accept: Status codes besides 2xx that are returned instead of raised as errors.
 
         Raises:
             CameraError: One of the errors of ``camera.network.errors``.
@@ -163,17 +163,17 @@ class DeviceHttp:
                 yield response.headers.get("content-type", ""), response.aiter_raw()
 
     def send_blocking(self, path: str, queries: tuple[Mapping[str, str], ...], *, timeout_s: float = 2.0) -> None:
-        """Send GET requests from a thread, on a separate connection. It works even if the event loop is blocked.
+        """Send GET requests from a thread, over a separate connection. This works even if the event loop is blocked.
 
         Raises:
-            CameraError: A request failed. The requests before it were received.
+            CameraError: A request failed. The device received the requests before it.
         """
         with connection_errors(self.address), self._blocking_client(timeout_s) as client:
             for query in queries:
                 check_status(self.address, client.get(path, params=query), ())
 
     def post_blocking(self, path: str, content: bytes, headers: Mapping[str, str], *, timeout_s: float = 2.0) -> None:
-        """Post a message from a thread, on a separate connection.
+        """Post a message from a thread, over a separate connection.
 
         Raises:
             CameraError: The request failed.
@@ -182,7 +182,7 @@ class DeviceHttp:
             check_status(self.address, client.post(path, content=content, headers=dict(headers)), ())
 
     def _blocking_client(self, timeout_s: float) -> httpx2.Client:
-        # Use a new sign-in: that of the event loop counts its requests and is not thread-safe.
+        # The sign-in is new, because that of the event loop counts its requests and is not thread-safe.
         return httpx2.Client(
             base_url=self.address.base_url, auth=PinnedSignIn(self.address, self.credentials), timeout=timeout_s,
             cookies=self._client.cookies, follow_redirects=False, trust_env=False, verify=self._verify,
@@ -195,9 +195,9 @@ class DeviceHttp:
 
 @contextmanager
 def connection_errors(address: DeviceAddress) -> Iterator[None]:
-    """Return a context that turns failures of the transport into camera errors.
+    """Return a context that converts transport errors to camera errors.
 
-    The original error is dropped: its request carries headers and its text may carry an address with credentials.
+    The original error is dropped, because its request contains headers, and its text may contain an address with credentials.
     """
     try:
         yield
@@ -230,7 +230,7 @@ def connection_errors(address: DeviceAddress) -> Iterator[None]:
 
 
 def check_status(address: DeviceAddress, response: httpx2.Response, accept: tuple[int, ...]) -> None:
-    """Raise the camera error of a status that is neither 2xx nor accepted."""
+    """Raise the matching camera error if a status is neither 2xx nor accepted."""
     status = response.status_code
     if response.is_success or status in accept:
         return

@@ -1,4 +1,4 @@
-"""Waiting for the focus of a device."""
+"""Wait until the focus of a device has settled."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import anyio
 from scope_ptz.camera.lens import LensState
 from scope_ptz.errors import CameraError
 
-STANDING_READINGS = 6
-"""Number of consecutive equal positions after which the focus has settled."""
+SETTLED_READINGS = 6
+"""Number of consecutive equal readings after which the focus has settled."""
 
 BLIND_S = 2.0
-"""Seconds that a device without a focus position is given to focus."""
+"""Seconds to wait for a device that does not report its focus position."""
 
 TIMEOUT_S = 15.0
 
@@ -23,7 +23,7 @@ async def wait_until_focused(read: Callable[[], Awaitable[LensState]], poll_s: f
     """Wait until the focus has settled, and return the state of the lens.
 
     Args:
-        read: Reads the lens.
+        read: Reads the state of the lens.
         poll_s: Seconds between two readings.
 
     Raises:
@@ -37,6 +37,6 @@ async def wait_until_focused(read: Callable[[], Awaitable[LensState]], poll_s: f
         await anyio.sleep(poll_s)
         before, state = state, await read()
         equal = equal + 1 if state.focus == before.focus else 0
-        if equal >= STANDING_READINGS:
+        if equal >= SETTLED_READINGS:
             return state
     raise CameraError(f"The focus still moves after {TIMEOUT_S:g} s. Set it to manual, or check that nobody else is moving it.")

@@ -1,4 +1,4 @@
-"""Motion JPEG: pictures from a ``multipart/x-mixed-replace`` body."""
+"""Parse Motion JPEG: extract pictures from a ``multipart/x-mixed-replace`` body."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def boundary_of(content_type: str) -> bytes:
     found = _BOUNDARY.search(content_type)
     if not content_type.lower().startswith("multipart/") or found is None:
         raise CameraReplyError("The camera's MJPEG stream is not multipart. Use ?stream=rtsp, or check its model and firmware.")
-    # Some devices announce the boundary with its dashes and some without.
+    # Some devices report the boundary with its dashes, and some without.
     return b"--" + found.group(1).encode("latin-1", "replace").lstrip(b"-")
 
 
@@ -49,7 +49,7 @@ class MjpegParser:
         """Add bytes and return the pictures that are complete.
 
         Raises:
-            PictureError: A part is longer than a picture can be, or its header has no end.
+            PictureError: A part is too large for a picture, or its header has no end.
         """
         self._buffer += chunk
         pictures = []
@@ -59,7 +59,7 @@ class MjpegParser:
         return pictures
 
     def _next(self) -> bytes | None:
-        """Return the next part, empty if it has none; None if more bytes are needed."""
+        """Return the content of the next part, which may be empty; None if more bytes are needed."""
         if not self._in_part and not self._read_header():
             return None
         buffer = self._buffer

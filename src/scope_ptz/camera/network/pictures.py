@@ -1,4 +1,4 @@
-"""JPEG pictures of a device: decoding with checks, and detection of black and frozen pictures."""
+"""Decode and check JPEG pictures from a device, and detect black and frozen ones."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from scope_ptz.geometry import Pose
 
 BLACK_LEVEL = 6
-"""A picture is black if no pixel is brighter than this. The noise of a sensor in the dark is brighter."""
+"""A picture is black if no pixel is brighter than this. Even the sensor noise in the dark is brighter."""
 
 FROZEN_TURN_DEG = 1.0
 """A picture is frozen if it is bit-identical after a turn of more than this many degrees."""
 
-STANDING_DEG = 0.05
-"""Two successive pictures have the same pose if their poses differ by less than this."""
+STATIONARY_DEG = 0.05
+"""The camera is stationary if the poses of two successive pictures differ by less than this many degrees."""
 
 _START, _END = b"\xff\xd8", b"\xff\xd9"
 
@@ -32,7 +32,7 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
     """Decode a JPEG picture.
 
     Args:
-        data: The file.
+        data: The content of the JPEG file.
         width: The expected width in pixels; None for any.
         height: The expected height in pixels; None for any.
 
@@ -40,7 +40,7 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
         Array of shape ``(H, W, 3)``, uint8, RGB.
 
     Raises:
-        PictureError: The picture is truncated, damaged, or of another size.
+        PictureError: The picture is truncated, damaged, or has the wrong size.
     """
     from PIL import Image, UnidentifiedImageError
 
@@ -65,12 +65,12 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
 
 
 def is_black(image: NDArray[np.uint8]) -> bool:
-    """Return whether a picture shows nothing at all."""
+    """Return whether a picture is entirely black."""
     return bool(image.max() <= BLACK_LEVEL) if image[::8, ::8].max() <= BLACK_LEVEL else False
 
 
 def check_not_black(image: NDArray[np.uint8]) -> None:
-    """Raise PictureError if a picture shows nothing at all."""
+    """Raise ``PictureError`` if a picture is entirely black."""
     if is_black(image):
         raise PictureError("The picture of the camera is black. Check its lens cover, its iris and the light.", "black")
 
@@ -78,40 +78,40 @@ def check_not_black(image: NDArray[np.uint8]) -> None:
 class FrozenCheck:
     """Detects a picture that stays the same although the camera turns.
 
-    Pictures of a scene at rest may be the same, so a picture is compared with one of another pose. Only poses of a
-    stationary camera count: during a move, a picture and a pose may belong to slightly different moments.
+    Pictures of a static scene may be identical, so only pictures at different poses are compared. Only poses of a stationary camera
+    count, because during a move, a picture and a pose may belong to slightly different moments.
     """
 
     def __init__(self) -> None:
         self._digest = b""
-        self._stood_at: Pose | None = None
+        self._stationary_at: Pose | None = None
         self._last: Pose | None = None
 
     def is_frozen(self, data: bytes, pose: Pose) -> bool:
-        """Return whether a picture was seen before, while the camera was stationary at a clearly different pose.
+        """Return whether the same picture was taken before, while the camera was stationary at a clearly different pose.
 
         Args:
             data: The picture's bytes: a JPEG file, or pixels.
             pose: The pose at which it was taken.
         """
         digest = hashlib.blake2b(data, digest_size=16).digest()
-        is_standing = self._last is not None and _turn_deg(self._last, pose) < STANDING_DEG
+        is_stationary = self._last is not None and _turn_deg(self._last, pose) < STATIONARY_DEG
         self._last = pose
         if digest != self._digest:
-            self._digest, self._stood_at = digest, None
-        elif is_standing and self._stood_at is None:
-            self._stood_at = pose
-        elif is_standing and self._stood_at is not None:
-            return _turn_deg(self._stood_at, pose) > FROZEN_TURN_DEG
+            self._digest, self._stationary_at = digest, None
+        elif is_stationary and self._stationary_at is None:
+            self._stationary_at = pose
+        elif is_stationary and self._stationary_at is not None:
+            return _turn_deg(self._stationary_at, pose) > FROZEN_TURN_DEG
         return False
 
     def lags(self, data: bytes, pose: Pose, give_up_s: float) -> bool:
-        """Return whether a picture still shows another pose, as with an encoder that freezes it during a move.
+        """Return whether a picture still shows an earlier pose, for example because the encoder freezes it during a move.
 
         Args:
             data: The picture's bytes.
             pose: The pose at which it was taken.
-            give_up_s: The time on ``time.monotonic`` from which such a picture is an error.
+            give_up_s: The time on ``time.monotonic`` after which such a picture is an error.
 
         Raises:
             PictureError: The picture is still frozen after ``give_up_s``.
@@ -124,6 +124,6 @@ class FrozenCheck:
 
 
 def _turn_deg(first: Pose, second: Pose) -> float:
-    """Return the largest turn of an axis in degrees. A zoom of 10% counts as a degree."""
+    """Return the largest change of any axis in degrees. A zoom change of 10% counts as one degree."""
     pan = abs((second.pan_deg - first.pan_deg + 180) % 360 - 180)
     return max(pan, abs(second.tilt_deg - first.tilt_deg), 10 * abs(second.zoom / first.zoom - 1))

@@ -12,14 +12,14 @@ from time import monotonic
 from scope_ptz.geometry import Pose, wrap_pan_deg
 
 MAX_SAMPLES = 128
-"""Maximum number of readings, about six seconds."""
+"""Maximum number of readings to keep, which is about six seconds."""
 
 POLL_S = 0.05
-"""Seconds between two readings. At 400 degrees per second squared, a straight line between them is off by 0.13 degrees at most."""
+"""Seconds between two readings. At 400 degrees/s², linear interpolation between them is off by at most 0.13 degrees."""
 
 
 class PoseTrack:
-    """Readings of the position with their times, newest last. Times are seconds on a single clock and never decrease."""
+    """Readings of the pose with their times, newest last. Times are seconds on a single clock and never decrease."""
 
     def __init__(self) -> None:
         self._samples: deque[tuple[float, Pose]] = deque(maxlen=MAX_SAMPLES)
@@ -40,7 +40,7 @@ class PoseTrack:
             self._samples.append((time_s, pose))
 
     def at(self, time_s: float) -> Pose:
-        """Return the pose at a time, interpolated between the readings around it; outside the readings, the nearest one.
+        """Return the pose at a time, interpolated between readings. Before the first and after the last reading, return that one.
 
         Raises:
             ValueError: There is no reading.
@@ -54,22 +54,22 @@ class PoseTrack:
         if index == len(times):
             return self._samples[-1][1]
         (before_s, before), (after_s, after) = self._samples[index - 1], self._samples[index]
-        share = (time_s - before_s) / (after_s - before_s)
-        pan_deg = before.pan_deg + share * wrap_pan_deg(after.pan_deg - before.pan_deg)
+        fraction = (time_s - before_s) / (after_s - before_s)
+        pan_deg = before.pan_deg + fraction * wrap_pan_deg(after.pan_deg - before.pan_deg)
         return Pose(
             pan_deg
             if before.pan_deg <= pan_deg <= after.pan_deg or after.pan_deg <= pan_deg <= before.pan_deg
             else wrap_pan_deg(pan_deg),
-            before.tilt_deg + share * (after.tilt_deg - before.tilt_deg),
-            before.zoom * (after.zoom / before.zoom) ** share,
+            before.tilt_deg + fraction * (after.tilt_deg - before.tilt_deg),
+            before.zoom * (after.zoom / before.zoom) ** fraction,
         )
 
 
 class PosePoller:
-    """Reads the position repeatedly while a stream is open. ``close`` it with the stream.
+    """Reads the pose repeatedly while a stream is open. Close it with the stream.
 
     Args:
-        read_pose: Reads the position.
+        read_pose: Reads the pose.
     """
 
     def __init__(self, read_pose: Callable[[], Awaitable[Pose]]) -> None:
@@ -79,10 +79,10 @@ class PosePoller:
         self._task = asyncio.get_running_loop().create_task(self._poll())
 
     async def at(self, time_s: float) -> Pose | None:
-        """Return the pose at a time on ``time.monotonic``; None if it lies before the first reading.
+        """Return the pose at a time on ``time.monotonic``; None if the time is before the first reading.
 
         Raises:
-            CameraError: The position cannot be read.
+            CameraError: The pose cannot be read.
         """
         while self._track.newest_s < time_s:
             if self._failure is not None:

@@ -1,4 +1,4 @@
-"""RTSP video, read by PyAV in a thread."""
+"""RTSP streams, which PyAV reads in a thread."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class RtspStream(LiveStream):
     """H.264 or H.265 over RTSP. Every frame is decoded, and the newest one is kept.
 
     Args:
-        url: The stream, without credentials.
+        url: The stream's URL, without credentials.
         credentials: The account; None if the stream needs none.
         width: Expected width in pixels.
         height: Expected height in pixels.
@@ -82,8 +82,10 @@ class RtspStream(LiveStream):
             await self._changed.wait()
         picture, self._newest = self._newest, None
         if (size := picture.image.shape[1::-1]) != self._size:
-            wanted = "{}x{}".format(*self._size)
-            raise PictureError(f"The stream has {size[0]}x{size[1]} pixels instead of {wanted}. Change the stream's size.", "size")
+            expected = "{}x{}".format(*self._size)
+            raise PictureError(
+                f"The stream has {size[0]}x{size[1]} pixels instead of {expected}. Change the stream's size.", "size"
+            )
         return picture
 
     async def close(self) -> None:

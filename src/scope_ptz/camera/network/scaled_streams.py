@@ -1,4 +1,4 @@
-"""Live pictures of devices that do not stream in frame size: scaled video, or a sequence of snapshots."""
+"""Live pictures from devices that do not stream at the frame size: scaled video, or a sequence of snapshots."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class SnapshotStream(LiveStream):
 
 
 class ScaledStream(LiveStream):
-    """A stream whose pictures are scaled to the size of frames."""
+    """A stream whose pictures are scaled to the frame size."""
 
     def __init__(self, stream: LiveStream, width: int, height: int) -> None:
         self._stream, self._width, self._height = stream, width, height
@@ -50,7 +50,7 @@ def scaled(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint
     """Return a picture scaled to another size with the same aspect ratio.
 
     Raises:
-        PictureError: The picture has another aspect ratio.
+        PictureError: The picture's aspect ratio differs from that of the requested size.
     """
     import cv2
     import numpy as np

@@ -23,9 +23,9 @@ class Settling:
 
     Attributes:
         angle_tolerance_deg: Allowed difference between the requested and the reached angle.
-        zoom_tolerance: Allowed difference between the requested and the reached zoom, as a share.
+        zoom_tolerance: Allowed relative difference between the requested and the reached zoom.
         poll_s: Seconds between two readings of the position.
-        start_s: Seconds after which a camera that has not started to move will not move.
+        start_s: Seconds after which a camera that has not started to move is assumed not to move.
         timeout_s: Seconds after which a move has failed.
         picture_interval_s: Seconds between the pictures that are compared.
         picture_timeout_s: Seconds after which a picture that keeps moving is an error.
@@ -40,7 +40,7 @@ class Settling:
     picture_timeout_s: float = 4.0
 
     def near(self, pose: Pose, target: Pose) -> bool:
-        """Return whether a pose is the target, within the tolerances."""
+        """Return whether a pose equals the target within the tolerances."""
         return (
             abs(wrap_pan_deg(pose.pan_deg - target.pan_deg)) <= self.angle_tolerance_deg
             and abs(pose.tilt_deg - target.tilt_deg) <= self.angle_tolerance_deg
@@ -48,7 +48,7 @@ class Settling:
         )
 
     def farthest(self, pose: Pose, target: Pose) -> Axis:
-        """Return the axis that is farthest from its target, in tolerances."""
+        """Return the axis that is farthest from its target, measured in multiples of its tolerance."""
         off: dict[Axis, float] = {
             "pan": abs(wrap_pan_deg(pose.pan_deg - target.pan_deg)) / self.angle_tolerance_deg,
             "tilt": abs(pose.tilt_deg - target.tilt_deg) / self.angle_tolerance_deg,
@@ -77,8 +77,8 @@ async def wait_until_stationary(
     Args:
         read_pose: Reads the position.
         settling: The criteria.
-        target: Where the camera should go; None if it is unknown, as for a preset.
-        superseded: Whether another command has replaced this one. In that case, any stationary position counts.
+        target: The pose to reach; None if it is unknown, as for a preset.
+        superseded: Returns whether another command has replaced this one. If so, any stationary position counts.
 
     Raises:
         PositionNotReachedError: The camera is still moving at the time limit.
@@ -113,19 +113,19 @@ _NOISE = 1.5
 _SHIFT_PX = 0.25
 
 
-def motion_share(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> float | None:
-    """Return the share of the textured tiles that moved between two pictures.
+def moving_fraction(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> float | None:
+    """Return the fraction of the textured tiles that moved between two pictures.
 
     A tile has moved when it differs by more than noise and by more than its own texture would at a shift of a quarter of a pixel
-    (of 320). A change of the overall brightness does not count. People and vehicles cover
-    few tiles, but a turning camera moves all of them.
+    (of 320). A change of the overall brightness does not count. People and vehicles
+    cover few tiles, but a turning camera moves all of them.
 
     Args:
         first: A picture, ``(H, W, 3)`` uint8 RGB.
         second: A picture of the same size.
 
     Returns:
-        The share, 0 to 1; None if there is too little texture to tell.
+        The fraction, from 0 to 1; None if there is too little texture to tell.
     """
     one, two = _reduced(first), _reduced(second)
     difference = _tiles(two - one)
@@ -153,8 +153,8 @@ async def wait_for_still_picture(
     while not superseded():
         await anyio.sleep(settling.picture_interval_s)
         now = await take()
-        share = motion_share(before, now)
-        if share is None or share < 0.5:
+        fraction = moving_fraction(before, now)
+        if fraction is None or fraction < 0.5:
             return
         if monotonic() - started_s > settling.picture_timeout_s:
             raise PictureNotStillError(
@@ -171,6 +171,6 @@ def _reduced(image: NDArray[np.uint8]) -> NDArray[np.float32]:
 
 
 def _tiles(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return an array of shape ``(tiles, 20, 20)``."""
+    """Split values into tiles. Return an array of shape ``(tiles, 20, 20)``."""
     rows, columns = GRID[1] // _TILE, GRID[0] // _TILE
     return values.reshape(rows, _TILE, columns, _TILE).swapaxes(1, 2).reshape(-1, _TILE, _TILE)

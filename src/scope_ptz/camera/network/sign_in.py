@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class PinnedSignIn(httpx2.Auth):
-    """Digest sign-in for one host and port. Basic is used only over TLS, because it reveals the password to the network.
+    """Digest sign-in for one host and port. Basic sign-in is used only over TLS, because it reveals the password to the network.
 
     Args:
         address: The device.
@@ -26,7 +26,7 @@ class PinnedSignIn(httpx2.Auth):
         self._address = address
         self._digest = httpx2.DigestAuth(credentials.user, credentials.password)
         self._basic = httpx2.BasicAuth(credentials.user, credentials.password)
-        self._basic_wanted = False
+        self._basic_required = False
 
     def auth_flow(self, request: httpx2.Request) -> Generator[httpx2.Request, httpx2.Response, None]:
         url = request.url
@@ -34,7 +34,7 @@ class PinnedSignIn(httpx2.Auth):
             raise ForeignAddressError(
                 f"A request to a host other than {self._address} was refused, because credentials are sent only to the camera."
             )
-        if self._basic_wanted:
+        if self._basic_required:
             yield from self._basic.auth_flow(request)
             return
         flow = self._digest.auth_flow(request)
@@ -58,7 +58,7 @@ class PinnedSignIn(httpx2.Auth):
             raise CameraSignInError(
                 f"The camera at {self._address} accepts only passwords in clear text. Allow digest authentication, or add ?tls=on."
             )
-        self._basic_wanted = True
+        self._basic_required = True
         yield from self._basic.auth_flow(request)
 
 

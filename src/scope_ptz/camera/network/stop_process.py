@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 StopFunction = Callable[["DeviceHttp", Mapping[str, Any]], None]
-"""A function of a module that stops a device. It blocks, and raises ``CameraError`` if the stop did not arrive."""
+"""A module-level function that stops a device. It blocks, and raises ``CameraError`` if the command did not reach the device."""
 
 GIVE_UP_S = 600.0
-"""Seconds after which the process stops trying to reach a camera."""
+"""Seconds after which the process gives up trying to reach a camera."""
 
 _LONGEST_PAUSE_S = 2.0
 _ARMED, _SAFE = b"armed\n", b"safe\n"
@@ -38,8 +38,8 @@ class StopProcess:
 
     Args:
         http: The device.
-        stop: Stops it.
-        details: What ``stop`` needs in addition to the connection; the values must be JSON.
+        stop: The function that stops the device.
+        details: The values that ``stop`` needs in addition to the connection. They must be JSON-serialisable.
     """
 
     def __init__(self, http: DeviceHttp, stop: StopFunction, details: Mapping[str, Any]) -> None:
@@ -55,7 +55,7 @@ class StopProcess:
         self._armed = True
 
     def disarm(self) -> None:
-        """Record that the camera is stationary, so that it need not be stopped when this program ends."""
+        """Record that the camera is stationary, so that it does not have to be stopped when this program ends."""
         if self._armed:
             self._armed = False
             self._say(_SAFE)
@@ -75,7 +75,7 @@ class StopProcess:
             process.wait()
 
     def _started(self) -> subprocess.Popen[bytes]:
-        # The order contains the password, so it goes through the pipe: other users can read command lines.
+        # The order contains the password, so it is sent through the pipe, because other users can read command lines.
         order = {
             "device": self._http.described(),
             "function": [self._stop.__module__, self._stop.__qualname__],
@@ -95,7 +95,7 @@ class StopProcess:
         return process
 
     def _say(self, line: bytes) -> None:
-        # If the process was ended by someone, the camera is as safe as without it.
+        # If someone has ended the process, the camera is no less safe than without it.
         with suppress(OSError):
             assert self._process is not None  # noqa: S101 - started before
             assert self._process.stdin is not None  # noqa: S101 - it is a pipe
@@ -117,7 +117,7 @@ def main() -> None:
 
 
 def carry_out(order: Mapping[str, Any], *, give_up_s: float = GIVE_UP_S) -> bool:
-    """Stop a camera, with retries until the stop arrives. Return whether it did."""
+    """Stop a camera, and retry until the command reaches it. Return whether it did."""
     from scope_ptz.camera.network.http import DeviceHttp
 
     module, name = order["function"]

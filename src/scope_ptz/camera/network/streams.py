@@ -1,4 +1,4 @@
-"""Live pictures of a device: the newest one wins, and a stalled or broken stream is opened again."""
+"""Live pictures from a device. Only the newest one is kept, and a stalled or broken stream is reopened."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ GIVE_UP_S = 15.0
 
 @dataclass(frozen=True, slots=True)
 class LivePicture:
-    """A picture of a stream.
+    """A picture from a stream.
 
     Attributes:
         image: Array of shape ``(H, W, 3)``, uint8, RGB.
-        data: Bytes that are the same for the same picture.
+        data: Bytes that are identical for identical pictures.
         arrived_s: When its last byte arrived, on ``time.monotonic``.
     """
 
@@ -49,11 +49,11 @@ class LivePicture:
 
 
 class LiveStream(ABC):
-    """A stream of pictures. ``close`` it when it is no longer needed."""
+    """A stream of pictures. Close it when it is no longer needed."""
 
     @abstractmethod
     async def next(self) -> LivePicture:
-        """Wait for a picture that was not returned yet, and return the newest one.
+        """Wait for a picture that has not been returned yet, and return the newest one.
 
         Raises:
             CameraError: The stream is lost, or its pictures are damaged.
@@ -96,7 +96,7 @@ class MjpegStream(LiveStream):
         self._failure: Exception | None = None
         self.reconnects = 0
         """Number of times that the stream was reopened."""
-        # A task without a task group: the stream outlives the call that opens it, and a failure waits for ``next``.
+        # The task has no task group, because the stream outlives the call that opens it. ``next`` raises its failure.
         self._task = asyncio.get_running_loop().create_task(self._read())
 
     async def next(self) -> LivePicture:
@@ -148,7 +148,7 @@ class MjpegStream(LiveStream):
     _last_s = 0.0
 
     async def _read_once(self, last_s: float) -> float:
-        """Read one connection to its end. Return when the last picture arrived."""
+        """Read one connection to its end. Return the time at which the last picture arrived."""
         async with self._http.stream(self._path, self._parameters) as (content_type, chunks):
             parser = MjpegParser(boundary_of(content_type))
             iterator = aiter(chunks)

@@ -37,19 +37,19 @@ class PinnedContext(ssl.SSLContext):
 
 
 def trust_fingerprint(address: DeviceAddress, fingerprint: str, *, timeout_s: float = 5.0) -> PinnedContext:
-    """Return a TLS context that accepts only the certificate with a fingerprint. It blocks for one connection.
+    """Return a TLS context that accepts only the certificate with a fingerprint. The call blocks while it connects.
 
-    The certificate is fetched, compared, and then becomes the only one that the context trusts. Another certificate in a later
-    connection is therefore refused by the TLS handshake, before any credentials are sent.
+    The certificate is fetched, compared, and then becomes the only one that the context trusts. If a later
+    connection presents another certificate, the TLS handshake therefore fails before any credentials are sent.
 
     Args:
         address: The device.
         fingerprint: SHA-256 of the certificate in hexadecimal, with or without colons.
-        timeout_s: Time limit of the connection.
+        timeout_s: Time limit for the connection in seconds.
 
     Raises:
         CertificateError: The device presents another certificate.
-        CameraUnreachableError: The device does not answer, or speaks no TLS.
+        CameraUnreachableError: The device does not answer, or does not use TLS.
     """
     try:
         shown = ssl.get_server_certificate((address.host.strip("[]"), address.port), timeout=timeout_s)

@@ -35,7 +35,7 @@ class OnvifCamera(NetworkCamera):
     Args:
         client: The connection.
         device: The device's properties and capabilities.
-        pictures: Its pictures.
+        pictures: The source of its pictures.
         lens: Its focus and iris.
         settling: The criteria for when it counts as settled.
     """
@@ -50,8 +50,8 @@ class OnvifCamera(NetworkCamera):
             simulated=False, capabilities=replace(device.capabilities, focus=lens.focus_actions, iris=lens.iris_actions),
             assumed=device.assumed, firmware=device.firmware,
         )  # fmt: skip
-        after_death = StopProcess(client.http, stop_device, {"profile": device.ptz_profile})
-        super().__init__(info, pictures, settling, after_death)
+        watchdog = StopProcess(client.http, stop_device, {"profile": device.ptz_profile})
+        super().__init__(info, pictures, settling, watchdog)
 
     @classmethod
     async def open(
@@ -75,11 +75,11 @@ class OnvifCamera(NetworkCamera):
             http: The device.
             credentials: The account.
             mapping: Configured or measured values.
-            assume: Whether to assume values that are neither reported nor known, as for a measurement.
+            assume: Whether to assume values that are neither reported nor known, which is useful before they are measured.
             profile: Token or name of the ONVIF profile; by default, a suitable one.
             width: Width of a frame in pixels; by default that of the device's pictures.
             height: Height of a frame in pixels; by default that of the device's pictures.
-            stream: How ``frames`` are transported.
+            stream: The transport of ``frames``.
             rtsp_port: Port of the RTSP server, instead of the reported one.
             latency_s: Seconds from the exposure of a streamed frame to its arrival.
             settling: The criteria for when the camera counts as settled.
@@ -116,7 +116,7 @@ class OnvifCamera(NetworkCamera):
         try:
             return await self._go(lambda: self._presets.go_to(token))
         except OnvifFaultError:
-            await self._presets.token(name)  # it may have been removed since
+            await self._presets.token(name)  # it may have been removed in the meantime
             raise
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:  # noqa: ARG002 - devices keep names only
@@ -140,8 +140,8 @@ class OnvifCamera(NetworkCamera):
     async def _start_move(self, pose: Pose) -> None:
         await self._motors.move(pose)
 
-    def _centring(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:
-        return self._motors.centring(here, target, x, y)
+    def _centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:
+        return self._motors.centring_command(here, target, x, y)
 
     async def _start_home(self) -> None:
         await self._motors.go_home()

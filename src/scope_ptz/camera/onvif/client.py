@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.credentials import Credentials
     from scope_ptz.camera.network.http import DeviceHttp
 
-ADDS_UP = ("ContinuousMove", "RelativeMove", "SetPreset", "RemovePreset")
+NOT_RETRIED = ("ContinuousMove", "RelativeMove", "SetPreset", "RemovePreset")
 """Operations that are not retried after a lost connection."""
 
 _STOP_HEADERS = {"Content-Type": "application/soap+xml; charset=utf-8"}
@@ -75,8 +75,8 @@ class OnvifClient:
     async def call(self, service: str, operation: str, **arguments: Any) -> Any:
         """Call an operation and return its reply.
 
-        After a lost connection, idempotent operations are retried. If a sign-in fails that worked before, it is retried after
-        reading the clock again.
+        After a lost connection, idempotent operations are retried. If a sign-in that worked before fails, it is retried after
+        the clock is read again.
 
         Args:
             service: ``devicemgmt``, ``media`` or ``ptz``.
@@ -87,7 +87,7 @@ class OnvifClient:
             CameraError: One of the errors of ``camera.network.errors`` or ``camera.onvif.faults``.
         """
         once = partial(self._signed_in_call, service, operation, arguments)
-        return await (once() if operation in ADDS_UP else _repeated(once))
+        return await (once() if operation in NOT_RETRIED else _repeated(once))
 
     async def prepare_stop(self, profile: str) -> None:
         """Prepare the connection for ``stop_blocking``."""
@@ -95,10 +95,10 @@ class OnvifClient:
         self._stop_service = await self.make_service("ptz")
 
     def stop_blocking(self) -> None:
-        """Stop pan, tilt and zoom from a thread, on a separate connection.
+        """Stop pan, tilt and zoom from a thread, over a separate connection.
 
         Raises:
-            CameraError: The stop did not arrive, or is refused.
+            CameraError: The stop command did not reach the device, or was refused.
         """
         service = self._stop_service  # with separate time stamps, because those of the event loop are not thread-safe
         with soap_errors(self.address, "Stop"):
@@ -124,7 +124,7 @@ class OnvifClient:
             if not self._signed_in:
                 raise
             self._signed_in = False
-            await self.connect()  # the clock of the device may have been set, as after a reboot
+            await self.connect()  # the device's clock may have changed, for example after a reboot
             reply = await self._call(service, operation, arguments)
         self._signed_in = True
         return reply
@@ -165,7 +165,7 @@ class OnvifClient:
 
 
 async def _repeated(call: Callable[[], Awaitable[Any]]) -> Any:
-    """Call a function, and retry it after a lost connection. Each call creates a message with a new login."""
+    """Call a function, and retry it after a lost connection. Each call sends a new message with a new login."""
     for pause_s in BACKOFF_S:
         try:
             return await call()
@@ -180,7 +180,7 @@ async def _close(camera: Any) -> None:
 
 
 async def _service_of(client: OnvifClient, camera: Any, name: str, *_: Any, **__: Any) -> Any:
-    """Return a service of a camera. It is created at the first call."""
+    """Return a service of a camera. It is created on the first call."""
     key = (name.lower(), None)
     if key not in camera.services:
         camera.services[key] = await client.make_service(key[0], camera)
@@ -188,14 +188,14 @@ async def _service_of(client: OnvifClient, camera: Any, name: str, *_: Any, **__
 
 
 def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
-    """Stop all motion of a device, from a process that has no connection to it yet. It blocks.
+    """Stop all motion of a device, from a process that has no connection to it yet. The call blocks.
 
     Args:
         http: The device.
-        details: Token of the ``profile`` with the motors.
+        details: The token of the profile that controls the motors, under the key ``profile``.
 
     Raises:
-        CameraError: The stop did not arrive.
+        CameraError: The stop command did not reach the device.
     """
 
     async def connected() -> OnvifClient:

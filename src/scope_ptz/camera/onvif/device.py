@@ -31,27 +31,27 @@ ENDLESS_DEG = 359.5
 
 @dataclass(frozen=True, slots=True)
 class OnvifDevice:
-    """An ONVIF device.
+    """The properties and capabilities of an ONVIF device.
 
     Attributes:
         manufacturer: Its manufacturer.
         model: Its model.
-        firmware: Its firmware.
-        ptz_profile: Token of the profile by which it is moved.
+        firmware: Version of its firmware.
+        ptz_profile: Token of the profile through which it is moved.
         picture_profile: Token of the profile whose pictures are taken.
         width: Width of the stream in pixels.
         height: Height of the stream in pixels.
-        moves_in: The space of absolute moves.
-        reports_in: The spaces in which it may report positions, by name; "" for a position without one.
+        moves_in: The coordinate space of absolute moves.
+        reports_in: The spaces in which it may report positions, by URI; the key "" is for positions that name no space.
         zoom: The space of zoom positions.
         velocity: The generic velocity space of pan and tilt; None if they cannot be driven.
         zoom_velocity: The generic velocity space of the zoom; None if it cannot be driven.
-        fov_translation: The space of turns by shares of the picture; None if it has none.
+        fov_translation: The space of relative turns in fractions of the field of view; None if it has none.
         zoom_translation: The generic space of relative zoom; None if it has none.
         video_source: Token of the video source, for focus and iris.
         timeout_s: Shortest and longest timeout of a continuous move.
         limits: Limits of motion.
-        capabilities: Its further capabilities.
+        capabilities: Its optional capabilities, without focus and iris.
         assumed: Names of the values that are neither reported, configured nor measured.
     """
 
@@ -142,10 +142,10 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
     )
 
 
-def choose_profiles(profiles: Any, where: str, width: int, wanted: str = "") -> tuple[Any, Any]:
-    """Return the profile to move the camera by, and the one to take pictures from.
+def choose_profiles(profiles: Any, where: str, width: int, requested: str = "") -> tuple[Any, Any]:
+    """Return the profile through which to move the camera, and the one from which to take pictures.
 
-    Only profiles with a PTZ configuration move the camera, and some devices have it on the sub stream only. Pictures come from
+    Only profiles with a PTZ configuration can move the camera, and on some devices only the sub stream has one. Pictures come from
     the smallest profile of the same video source that is wide enough.
 
     Raises:
@@ -155,10 +155,12 @@ def choose_profiles(profiles: Any, where: str, width: int, wanted: str = "") -> 
     moving = [each for each in profiles if getattr(each, "PTZConfiguration", None) is not None]
     if not moving:
         raise CameraError(f"The camera at {where} has no ONVIF profile with PTZ. It may have no motors, or PTZ is off.")
-    if wanted:
-        named = [each for each in profiles if wanted in (each.token, each.Name)]
+    if requested:
+        named = [each for each in profiles if requested in (each.token, each.Name)]
         if not named:
-            raise CameraError(f"The camera at {where} has no profile '{wanted[:40]}'. It has: {', '.join(map(_name, profiles))}.")
+            raise CameraError(
+                f"The camera at {where} has no profile '{requested[:40]}'. It has: {', '.join(map(_name, profiles))}."
+            )
         return (named[0] if named[0] in moving else moving[0]), named[0]
     ptz = moving[0]
     pictured = [
@@ -174,7 +176,7 @@ def choose_profiles(profiles: Any, where: str, width: int, wanted: str = "") -> 
 
 
 async def _options(client: OnvifClient, configuration: Any) -> tuple[Any, Ends]:
-    """Return the spaces, and the range of timeouts in seconds."""
+    """Return the spaces of a PTZ configuration, and the range of timeouts in seconds."""
     try:
         options = await client.call("ptz", "GetConfigurationOptions", ConfigurationToken=configuration.token)
         if options.Spaces is not None and options.Spaces.AbsolutePanTiltPositionSpace:
@@ -217,12 +219,12 @@ def _zoom_space(stated: tuple[StatedSpace, ...], mapping: OnvifMapping, assumed:
     if space is None:  # a fixed lens still needs a table of two rows
         return ZoomSpace(spaces.ZOOM_GENERIC, ((0.0, 1.0, fields[0][1]), (1.0, 1.0001, fields[0][1] * 0.9999)), moves=False)
     low, high = space.x
-    rows = tuple((low + share * (high - low), zoom, hfov) for share, zoom, hfov in zoom_rows(fields, mapping.zoom_max))
+    rows = tuple((low + fraction * (high - low), zoom, hfov) for fraction, zoom, hfov in zoom_rows(fields, mapping.zoom_max))
     return ZoomSpace(space.uri, rows)
 
 
 def _limits(moves_in: PanTiltSpace, zoom: ZoomSpace, configuration: Any, known: dict[str, PanTiltSpace]) -> Limits:
-    """Return the limits of the space, restricted to those of the configuration."""
+    """Return the limits of the position space, narrowed to those of the configuration."""
     pan, tilt = sorted(moves_in.pan.values), sorted(moves_in.tilt.values)
     endless = pan[1] - pan[0] >= ENDLESS_DEG
     narrowed = getattr(configuration, "PanTiltLimits", None)

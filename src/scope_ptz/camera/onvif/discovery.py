@@ -59,7 +59,7 @@ async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port:
 
     Args:
         interfaces: IPv4 addresses of this machine's interfaces; by default, all that are found, and loopback.
-        wait_s: How long to wait for answers, in seconds.
+        wait_s: Seconds to wait for answers.
         port: The UDP port of the devices.
 
     Raises:
@@ -104,7 +104,7 @@ def local_addresses() -> tuple[str, ...]:
 
 
 def parse_match(data: bytes, sender: str) -> list[FoundDevice]:
-    """Return the devices of an answer; none if the datagram is not an answer.
+    """Return the devices that an answer describes; none if the datagram is not an answer.
 
     Args:
         data: The datagram.
@@ -169,7 +169,7 @@ def _open(interface: str) -> socket.socket:
 
 
 def _parse_address(text: str) -> tuple[str, int, bool] | None:
-    """Return host, port and whether it is HTTPS; None for anything but an HTTP address."""
+    """Return the host, the port, and whether the address is HTTPS; None if it is not an HTTP address."""
     try:
         parts = urlsplit(text)
         port = parts.port

@@ -1,4 +1,4 @@
-"""Convert SOAP faults and unreadable replies to camera errors with instructions for the user."""
+"""Convert SOAP faults and unreadable replies to camera errors that tell the user what to do."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.address import DeviceAddress
 
 _SIGN_IN = ("NotAuthorized", "FailedAuthentication", "InvalidSecurity", "FailedCheck")
-_MAX_REASON = 200  # maximum number of characters that are quoted from a device's message
+_MAX_REASON = 200  # maximum number of characters to quote from a device's message
 
 
 class OnvifFaultError(CameraError):
-    """The device refuses a request.
+    """The device refused a request.
 
     Attributes:
         codes: The fault's code and subcodes, without prefixes.
@@ -33,7 +33,7 @@ class OnvifFaultError(CameraError):
 
 
 class NotOfferedError(OnvifFaultError):
-    """The device does not have the operation."""
+    """The device does not support the operation."""
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Focus and iris of an ONVIF device, through its Imaging service."""
+"""Control the focus and iris of an ONVIF device through its Imaging service."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class LensOptions:
 
 
 class OnvifLens:
-    """Focus and iris of one video source.
+    """The focus and iris of one video source.
 
     The driver assumes that positive distances focus farther away, and that the iris is open at the end of its range nearer to 0 dB.
 
@@ -69,7 +69,7 @@ class OnvifLens:
             self._iris_scale = LinearScale(options.iris_db, (1.0, 0.0) if low_is_open else (0.0, 1.0))
 
     async def state(self, name: str = "") -> LensState:
-        """Read focus and iris.
+        """Read the state of focus and iris.
 
         Args:
             name: The camera's name, for the error message.
@@ -94,11 +94,11 @@ class OnvifLens:
 
         Args:
             action: The focus action.
-            step: Length of a step as a share of the range.
-            poll_s: Seconds between two readings while the focus moves.
+            step: Length of a step as a fraction of the range.
+            poll_s: Interval, in seconds, at which the focus is read while it moves.
 
         Raises:
-            CameraError: The device refuses, or does not answer.
+            CameraError: The device refuses the request, or does not answer.
         """
         if action in ("auto", "once"):
             await self._set_mode("Focus", "AutoFocusMode", "AUTO")
@@ -116,7 +116,7 @@ class OnvifLens:
         """Set the iris.
 
         Raises:
-            CameraError: The device refuses, or does not answer.
+            CameraError: The device refuses the request, or does not answer.
         """
         if action in ("auto", "manual"):
             await self._set_mode("Exposure", "Mode", action.upper())
@@ -129,19 +129,19 @@ class OnvifLens:
         )
         return await self.state()
 
-    async def _step(self, share: float) -> dict[str, Any]:
-        """Return a focus move by a share of the range: relative if the device supports it, otherwise to a position."""
+    async def _step(self, fraction: float) -> dict[str, Any]:
+        """Return a focus move by a fraction of the range: relative if the device supports it, otherwise absolute."""
         distances, positions = self._options.distances, self._options.positions
         if distances is not None and distances[0] < 0 < distances[1]:
             span = distances[1] if positions is None else min(positions[1] - positions[0], distances[1])
-            return {"Relative": {"Distance": max(share * span, distances[0])}}
+            return {"Relative": {"Distance": max(fraction * span, distances[0])}}
         here = await self._focus_position()
         if here is None or self._focus_scale is None:
             raise CameraError("The camera does not report its focus, so it cannot be moved by a step.")
-        return {"Absolute": {"Position": self._focus_scale.to_units(_within(here + share))}}
+        return {"Absolute": {"Position": self._focus_scale.to_units(_within(here + fraction))}}
 
     async def _set_mode(self, group: str, field: str, mode: str, **values: float) -> None:
-        """Change one group of the settings. Its other values are sent as the device reports them."""
+        """Change one group of the settings. Its other values are sent back as the device reports them."""
         settings = getattr(await self._call("GetImagingSettings"), group, None)
         if settings is None:
             settings = {field: mode, **values}
@@ -152,7 +152,7 @@ class OnvifLens:
         await self._call("SetImagingSettings", ImagingSettings={group: settings}, ForcePersistence=False)
 
     async def _focus_position(self) -> float | None:
-        """Return the focus position as a share of its range; None if the device reports none."""
+        """Return the focus position as a fraction of its range; None if the device reports none."""
         if self._focus_scale is None:
             return None
         try:
@@ -191,5 +191,5 @@ def _is_auto(mode: object) -> bool | None:
     return None if mode is None else str(mode) == "AUTO"
 
 
-def _within(share: float) -> float:
-    return min(max(share, 0.0), 1.0)
+def _within(fraction: float) -> float:
+    return min(max(fraction, 0.0), 1.0)

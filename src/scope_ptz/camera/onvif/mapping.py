@@ -1,4 +1,4 @@
-"""Values that ONVIF does not report but a driver needs: degrees of generic spaces, fields of view, and speeds."""
+"""Values that a driver needs but ONVIF does not report: the angles of generic spaces, fields of view, and speeds."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from scope_ptz.geometry import AXIS_M5075_G, Optics
 
 ASSUMED_PAN_DEG = (-180.0, 180.0)
 ASSUMED_TILT_DEG = (-90.0, 90.0)
-"""The angles that the ends of the generic space mean on most devices. A driver uses them only to measure the actual angles."""
+"""The angles at the ends of the generic space on most devices. A driver uses them only to measure the actual angles."""
 
 ASSUMED_FIELDS_DEG = (60.0, 6.0)
 ASSUMED_SPEED = Velocity(60.0, 60.0, 0.5)
-"""Assumed top speeds of a device without measured ones.
+"""Top speeds that are assumed for a device without measured ones.
 
-If they are wrong, continuous moves are slower or faster; stops do not depend on them.
+If they are wrong, continuous moves are slower or faster than requested. Stops do not depend on them.
 """
 
 
@@ -28,7 +28,7 @@ class OnvifMapping:
     Attributes:
         pan_deg: Pan in degrees at the low and the high end of the generic space.
         tilt_deg: The same for tilt.
-        fields: Rows of (share of the zoom range from 0 to 1, horizontal field of view in degrees), widest first.
+        fields: Rows of (fraction of the zoom range, horizontal field of view in degrees), widest first.
         zoom_max: Magnification at the end of the zoom range; by default the ratio of the focal lengths.
         top_speed: Velocities at the ends of the generic velocity spaces.
     """
@@ -56,19 +56,19 @@ def known_mapping(model: str) -> OnvifMapping:
 
 
 def zoom_rows(fields: tuple[tuple[float, float], ...], zoom_max: float | None) -> tuple[tuple[float, float, float], ...]:
-    """Return rows of (share of the zoom range, magnification, field of view).
+    """Return rows of (fraction of the zoom range, magnification, field of view in degrees).
 
-    Without a rated magnification it is the ratio of the focal lengths, so the widest zoom is 1. With it, magnification is
+    Without ``zoom_max``, the magnification is the ratio of the focal lengths, so the widest zoom is 1. With ``zoom_max``, it is
     linear in the zoom range, as on devices with a rated zoom.
     """
     first = math.tan(math.radians(fields[0][1]) / 2)
     return tuple(
         (
-            share,
-            1.0 + share * (zoom_max - 1.0) if zoom_max is not None else first / math.tan(math.radians(hfov_deg) / 2),
+            fraction,
+            1.0 + fraction * (zoom_max - 1.0) if zoom_max is not None else first / math.tan(math.radians(hfov_deg) / 2),
             hfov_deg,
         )
-        for share, hfov_deg in fields
+        for fraction, hfov_deg in fields
     )
 
 

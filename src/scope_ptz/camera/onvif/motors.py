@@ -1,4 +1,4 @@
-"""The motors of an ONVIF device: moves, velocities and positions in degrees and magnification."""
+"""Control the motors of an ONVIF device, with positions in degrees and magnification."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class OnvifMotors:
         if pan_tilt is None or pan_tilt.x is None or pan_tilt.y is None:
             raise CameraReplyError(
                 f"The camera at {self._client.address} does not report its position, so SCOPE cannot check moves. "
-                "A newer firmware may help."
+                "Newer firmware may help."
             )
         space = self._device.reports_in.get(str(pan_tilt.space or "")) or self._device.reports_in[""]
         pan_deg, tilt_deg = space.pan.to_value(float(pan_tilt.x)), space.tilt.to_value(float(pan_tilt.y))
@@ -54,7 +54,7 @@ class OnvifMotors:
         return Pose(pan_deg, tilt_deg, self._device.zoom.to_zoom(units))
 
     async def move(self, pose: Pose) -> None:
-        """Start towards a pose within the limits."""
+        """Start moving to a pose, which must be within the limits."""
         space, zoom = self._device.moves_in, self._device.zoom
         position: dict[str, Any] = {
             "PanTilt": {"x": space.pan.to_units(pose.pan_deg), "y": space.tilt.to_units(pose.tilt_deg), "space": space.uri}
@@ -63,17 +63,17 @@ class OnvifMotors:
             position["Zoom"] = {"x": zoom.to_units(pose.zoom), "space": zoom.uri}
         await self._client.call("ptz", "AbsoluteMove", ProfileToken=self._device.ptz_profile, Position=position)
 
-    def centring(self, here: Pose, target: Pose, x: float, y: float) -> Callable[[], Awaitable[None]] | None:
-        """Return the command that centres a point of the picture by a relative move in shares of the picture.
+    def centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Callable[[], Awaitable[None]] | None:
+        """Return the command that centres a point of the picture by a relative move expressed as fractions of the field of view.
 
         Args:
-            here: The pose now.
-            target: The pose that the command leads to; its zoom is used.
-            x: The point from 0 (left border) to 1 (right border).
-            y: The point from 0 (top) to 1 (bottom).
+            here: The current pose.
+            target: The pose that the command should reach; only its zoom is used.
+            x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
+            y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
 
         Returns:
-            None if the device has no such moves, or if a zoom is requested that they cannot include.
+            The command; None if the device does not support such moves, or cannot combine them with the requested zoom.
         """
         device, space = self._device, self._device.fov_translation
         if space is None or space.y is None:
@@ -92,7 +92,7 @@ class OnvifMotors:
         return send
 
     async def drive(self, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
-        """Move at velocities. The request contains a timeout unless the device refuses timeouts."""
+        """Move continuously at the given velocities. The request contains a timeout unless the device refuses timeouts."""
         top, velocity = self._device.capabilities.top_speed, {}
         if self._device.velocity is not None:
             space = self._device.velocity
@@ -123,13 +123,13 @@ class OnvifMotors:
         await self._client.call("ptz", "Stop", ProfileToken=self._device.ptz_profile, PanTilt=True, Zoom=True)
 
     async def go_home(self) -> None:
-        """Start towards the home position, without a speed, which some devices refuse."""
+        """Start moving to the home position. No speed is sent, because some devices reject it."""
         await self._client.call("ptz", "GotoHomePosition", ProfileToken=self._device.ptz_profile)
 
 
-def _at(share: float, ends: Ends) -> float:
-    """Return the number at a share of a range."""
-    return ends[0] + share * (ends[1] - ends[0])
+def _at(fraction: float, ends: Ends) -> float:
+    """Return the number at a fraction of a range."""
+    return ends[0] + fraction * (ends[1] - ends[0])
 
 
 def _speed(
@@ -137,10 +137,10 @@ def _speed(
 ) -> float:  # fmt: skip
     """Return a velocity in a generic space, whose ends are the top speeds.
 
-    The sign of an axis that counts in the opposite direction is inverted.
+    The sign is inverted for an axis whose units run in the opposite direction.
     """
     if not value or not top:
         return 0.0
     low, high = space.y if axis == "y" and space.y is not None else space.x
-    share = min(max(value / top, -1.0), 1.0) * (1.0 if counts[0] < counts[1] else -1.0)
-    return share * (high if share > 0 else -low)
+    fraction = min(max(value / top, -1.0), 1.0) * (1.0 if counts[0] < counts[1] else -1.0)
+    return fraction * (high if fraction > 0 else -low)

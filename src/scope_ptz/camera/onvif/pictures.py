@@ -1,4 +1,4 @@
-"""Pictures of an ONVIF camera: snapshots over HTTP, or frames of its RTSP stream if it has no snapshots."""
+"""Pictures from an ONVIF camera: snapshots over HTTP, or frames of its RTSP stream if it has no snapshots."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ _SETUP = {"Stream": "RTP-Unicast", "Transport": {"Protocol": "RTSP"}}
 
 
 class OnvifPictures(DevicePictures):
-    """The pictures of one profile.
+    """Pictures from one profile.
 
     Args:
         http: The device.
         credentials: The account, for RTSP.
-        snapshot_path: Path and query of a snapshot; "" if the device has none.
-        stream_url: Address of the RTSP stream without credentials; "" if the device has none.
+        snapshot_path: Path and query of a snapshot; empty if the device has none.
+        stream_url: URL of the RTSP stream without credentials; empty if the device has none.
         native: Width and height in pixels of a snapshot, or of the stream if there are no snapshots.
         stream_size: Width and height of the stream in pixels.
         width: Width of a frame in pixels; pictures are scaled to it.
         height: Height of a frame in pixels.
-        stream: How live frames are transported.
+        stream: The transport of live frames.
         latency_s: Seconds from the exposure of a streamed frame to its arrival.
     """
 
@@ -75,7 +75,7 @@ class OnvifPictures(DevicePictures):
         image = await to_thread.run_sync(lambda: decode_jpeg(body, width=self._native[0], height=self._native[1]))
         return body, scaled(image, width, height)
 
-    def open_stream(self, rate_hz: float) -> LiveStream:  # noqa: ARG002 - the device decides
+    def open_stream(self, rate_hz: float) -> LiveStream:  # noqa: ARG002 - the device chooses the rate
         if self._stream_kind == "snapshot" or not self.stream_url:
             return SnapshotStream(lambda: self.take_once(self.width, self.height))
         return ScaledStream(self._open_video(), self.width, self.height)
@@ -87,7 +87,7 @@ class OnvifPictures(DevicePictures):
             self._video = None
 
     async def _from_video(self) -> tuple[bytes, NDArray[np.uint8]]:
-        """Return the first frame that was exposed after now."""
+        """Return the first frame of the stream that is exposed after the call."""
         if self._video is None:
             self._video = self._open_video()
         asked_s = monotonic()
@@ -125,7 +125,7 @@ async def open_pictures(
         device: The device.
         width: Width of a frame in pixels; None for that of the device's pictures.
         height: Height of a frame in pixels; None for that of the device's pictures.
-        stream: How live frames are transported.
+        stream: The transport of live frames.
         rtsp_port: Port of the RTSP server, instead of the one that the device reports.
         latency_s: Seconds from the exposure of a streamed frame to its arrival.
 
@@ -152,7 +152,7 @@ async def open_pictures(
 
 
 async def _uri(client: OnvifClient, operation: str, **arguments: Any) -> str:
-    """Return an address that the device reports; "" if it has none."""
+    """Return an address that the device reports; empty if it reports none."""
     try:
         reply = await client.call("media", operation, **arguments)
     except (OnvifFaultError, CameraReplyError):

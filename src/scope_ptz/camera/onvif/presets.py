@@ -1,4 +1,4 @@
-"""Presets of an ONVIF device by name. The device addresses them by token, and some devices break the encoding of names."""
+"""Access the presets of an ONVIF device by name. The device identifies them by token, and some devices garble names."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 MAX_PRESETS = 512
-"""Maximum number of presets that are read. Some devices list hundreds of empty ones."""
+"""Maximum number of presets to read. Some devices list hundreds of empty ones."""
 
-SAVE_TRIES = 10
-"""Number of times that saving a preset is retried while the device reports that it still moves."""
+SAVE_RETRIES = 10
+"""Maximum number of retries to save a preset while the device reports that it is still moving."""
 
 
 class OnvifPresets:
@@ -34,7 +34,7 @@ class OnvifPresets:
         self._client, self._profile = client, profile
 
     async def tokens(self) -> dict[str, str]:
-        """Return tokens by name, in the order of the device. Of two presets with one name, the second gets its token appended."""
+        """Return tokens by name, in the device's order. If two presets share a name, the second name gets its token appended."""
         listed = await self._client.call("ptz", "GetPresets", ProfileToken=self._profile)
         found: dict[str, str] = {}
         for preset in list(listed or ())[:MAX_PRESETS]:
@@ -57,17 +57,17 @@ class OnvifPresets:
         return tokens[name]
 
     async def save(self, name: str) -> None:
-        """Save the current position.
+        """Save the current position as a preset.
 
         Raises:
             InputError: The name is not allowed.
-            CameraError: The device does not save it.
+            CameraError: The device did not save the preset.
         """
         check_preset_name(name)
         arguments = {"ProfileToken": self._profile, "PresetName": name}
         if (token := (await self.tokens()).get(name)) is not None:
             arguments["PresetToken"] = token
-        for left in range(SAVE_TRIES, -1, -1):
+        for left in range(SAVE_RETRIES, -1, -1):
             try:
                 await self._client.call("ptz", "SetPreset", **arguments)
                 break
@@ -89,12 +89,12 @@ class OnvifPresets:
         await self._client.call("ptz", "RemovePreset", ProfileToken=self._profile, PresetToken=await self.token(name))
 
     async def go_to(self, token: str) -> None:
-        """Start towards a preset. No speed is sent, because some devices refuse it."""
+        """Start moving to a preset. No speed is sent, because some devices reject it."""
         await self._client.call("ptz", "GotoPreset", ProfileToken=self._profile, PresetToken=token)
 
 
 def readable_name(name: object) -> str:
-    """Return a preset's name without non-printable characters. UTF-8 that was read as Latin-1 is repaired."""
+    """Return a preset's name without unprintable characters. UTF-8 that was read as Latin-1 is repaired."""
     text = str(name or "")
     with suppress(UnicodeError):  # it is already correct, or cannot be repaired
         text = text.encode("latin-1").decode("utf-8")

@@ -1,4 +1,4 @@
-"""Coordinate spaces of ONVIF as linear scales and tables: numbers of the device to degrees and magnification, and back."""
+"""ONVIF coordinate spaces: convert device units to degrees and magnification, and back, with linear scales and tables."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ class LinearScale:
     """A linear map between units of the device and values such as degrees.
 
     Attributes:
-        units: The ends of the device's range, rising.
-        values: The values at these ends; they are in falling order if the device counts in the opposite direction.
+        units: The ends of the device's range, in increasing order.
+        values: The values at these ends, in decreasing order if the device's units run in the opposite direction.
     """
 
     units: Ends
@@ -49,14 +49,14 @@ class LinearScale:
         if not (all(map(math.isfinite, (*self.units, *self.values))) and self.units[0] < self.units[1]):
             raise ValueError("a scale needs finite ends that differ")
         if self.values[0] == self.values[1]:
-            raise ValueError("the values of a scale differ at its ends")
+            raise ValueError("the values of a scale must differ at its ends")
 
     def to_value(self, units: float) -> float:
-        """Return the value at a number of the device."""
+        """Convert device units to a value."""
         return self.values[0] + (units - self.units[0]) * self._slope
 
     def to_units(self, value: float) -> float:
-        """Return the number of the device for a value, within its range."""
+        """Convert a value to device units, clamped to the device's range."""
         units = self.units[0] + (value - self.values[0]) / self._slope
         return min(max(units, self.units[0]), self.units[1])
 
@@ -76,11 +76,11 @@ class PanTiltSpace:
 
 @dataclass(frozen=True, slots=True)
 class ZoomSpace:
-    """A space of zoom positions with a table.
+    """A space of zoom positions, described by a table.
 
     Attributes:
-        uri: Its name.
-        rows: Rows of (device units, magnification, horizontal field of view in degrees). Units and magnification rise.
+        uri: The URI of the space.
+        rows: Rows of (device units, magnification, horizontal field of view in degrees), with increasing units and magnification.
         moves: Whether the device can set the zoom.
     """
 
@@ -91,23 +91,23 @@ class ZoomSpace:
     def __post_init__(self) -> None:
         pairs = list(zip(self.rows, self.rows[1:], strict=False))
         if not pairs or any(b[0] <= a[0] or b[1] <= a[1] or b[2] >= a[2] for a, b in pairs):
-            raise ValueError("a zoom space needs two or more rows, with rising magnification and falling field of view")
+            raise ValueError("a zoom space needs two or more rows, with increasing magnification and decreasing field of view")
 
     @property
     def optics(self) -> Optics:
         return Optics(tuple((zoom, hfov_deg) for _, zoom, hfov_deg in self.rows))
 
     def to_zoom(self, units: float) -> float:
-        """Return the magnification at a number of the device."""
+        """Convert device units to a magnification."""
         return _interpolated(units, [row[0] for row in self.rows], [row[1] for row in self.rows])
 
     def to_units(self, zoom: float) -> float:
-        """Return the number of the device for a magnification."""
+        """Convert a magnification to device units."""
         return _interpolated(zoom, [row[1] for row in self.rows], [row[0] for row in self.rows])
 
 
 def stated_spaces(described: Any) -> tuple[StatedSpace, ...]:
-    """Return the usable spaces of a list in a reply. Empty ranges, which some devices report, are left out."""
+    """Return the usable spaces from a list in a reply. Spaces with empty ranges, which some devices report, are omitted."""
     found = []
     for each in described or ():
         x, y = ends_of(each.XRange), ends_of(getattr(each, "YRange", None))

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 FAULT_STATUSES = (400, 403, 500)
-"""HTTP statuses of replies whose body is a SOAP fault, which is more specific than the status."""
+"""HTTP status codes of replies whose body is a SOAP fault, which is more specific than the status."""
 
 
 @dataclass(frozen=True, slots=True)
 class SoapReply:
-    """A reply, with the attributes that zeep reads."""
+    """A SOAP reply, with the attributes that zeep reads."""
 
     status_code: int
     content: bytes = field(repr=False)
@@ -44,7 +44,7 @@ class PinnedTransport:
         self._http = http
 
     async def post_xml(self, address: str, envelope: Any, headers: Mapping[str, str]) -> SoapReply:
-        """Send a message once and return the reply. Its login can be used only once, so a retry needs a new message.
+        """Send a message once and return the reply. Its login is valid only once, so a retry needs a new message.
 
         Raises:
             CameraError: One of the errors of ``camera.network.errors``.
@@ -58,7 +58,7 @@ class PinnedTransport:
 
 
 def pinned_path(http: DeviceHttp, address: str) -> str:
-    """Return path and query of an address that the device reported, rewritten to the configured host.
+    """Return the path and query of an address that the device reported, rewritten to the configured host.
 
     Raises:
         ForeignAddressError: It is not an HTTP address.
@@ -111,7 +111,7 @@ def unchanged_proxies() -> Iterator[None]:
 
 
 def _readable(body: bytes) -> bytes:
-    """Return a reply in which bytes that are not UTF-8 are replaced. Some devices break the encoding of preset names."""
+    """Return a reply with bytes replaced that are not valid UTF-8, because some devices garble preset names."""
     if b"encoding=" in body[:100] and b"utf-8" not in body[:100].lower():
         return body
     try:

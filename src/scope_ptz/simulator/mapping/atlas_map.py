@@ -43,18 +43,18 @@ def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, pa
         part = slice(0, projection.height), slice(0, projection.width)
     visible: list[VisibleTile] = []
     rest: Place | None = part
-    if projection.density > TILE_GAIN * panorama_density(atlas) and len(atlas.slots) > 1:
+    if projection.pixels_per_radian > TILE_GAIN * panorama_density(atlas) and len(atlas.slots) > 1:
         visible, rest = visible_tiles(tiles.in_view(projection), part)
     if rest == part:
-        slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
+        slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.pixels_per_radian))
         positions = panorama_map(band, slot, Grid(projection, step).inner(part), part)
     else:
         positions = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
         if rest is not None:
-            slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.density))
+            slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.pixels_per_radian))
             _within(positions, part, rest)[...] = panorama_map(band, slot, Grid(projection, step).inner(rest), rest)
     slots = [
-        atlas.ensure(1 + index, suitable_scale(atlas, tiles.views[index].focal_px, projection.density))
+        atlas.ensure(1 + index, suitable_scale(atlas, tiles.views[index].focal_px, projection.pixels_per_radian))
         for index in (tile.showing.tile for tile in visible)
     ]
     maps = tile_maps(tiles, projection, step, visible, slots)

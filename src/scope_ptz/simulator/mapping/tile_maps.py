@@ -88,7 +88,7 @@ def _positions(
     )
     left, up, focal_px, width, height, slot_width, slot_height, x, y = np.repeat(parameters, counts, axis=1)
     to_right, to_up = (np.repeat(turns[:, :, axis].T, counts, axis=1) for axis in (0, 1))
-    ahead = np.repeat(turns[:, :, 2].T * projection.density, counts, axis=1)
+    ahead = np.repeat(turns[:, :, 2].T * projection.pixels_per_radian, counts, axis=1)
     columns = np.repeat(np.array([grid.columns for grid in grids]), counts)
     row, column = np.divmod(np.arange(ends[-1]) - np.repeat(ends - counts, counts), columns)
     left += column * step

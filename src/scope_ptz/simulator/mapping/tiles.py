@@ -62,7 +62,7 @@ class Tiles:
         order = sorted(range(len(views)), key=lambda i: (-views[i].focal_px, i))
         self._order = np.array(order, dtype=np.int64)
         self._axes = np.array([camera_axes(v.pan_deg, v.tilt_deg) for v in views]).reshape(-1, 3, 3)
-        self._reach_deg = np.array([v.reach_deg for v in views])
+        self._reach_deg = np.array([v.max_off_axis_deg for v in views])
         self._results: list[tuple[Projection, list[TileInView]]] = []
         self._outlines = np.array([v.directions(OUTLINE) for v in views]).reshape(-1, len(OUTLINE), 3)
 
@@ -79,7 +79,7 @@ class Tiles:
         if not self.views:
             return []
         apart = angle_between_deg(self._axes[:, 2], projection.directions((0.5, 0.5)))
-        near = self._order[(apart <= self._reach_deg + projection.reach_deg)[self._order]]
+        near = self._order[(apart <= self._reach_deg + projection.max_off_axis_deg)[self._order]]
         size = np.array([projection.width, projection.height])
         outlines = projection.points(self._outlines[near])
         places = bounds(projection, outlines)
@@ -102,7 +102,7 @@ class Tiles:
         tile = self.views[showing.tile]
         if showing.turn is not None:
             right, up = x - projection.width / 2, projection.height / 2 - y
-            constant = showing.turn[:, 1, None] * up + showing.turn[:, 2, None] * projection.density
+            constant = showing.turn[:, 1, None] * up + showing.turn[:, 2, None] * projection.pixels_per_radian
             local = showing.turn[:, 0, None, None] * right + constant[..., None]
         else:
             points = np.stack(np.meshgrid(x / projection.width, y / projection.height), axis=-1)

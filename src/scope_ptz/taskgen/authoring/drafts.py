@@ -196,7 +196,7 @@ def evidence_view(
         items: The objects from which the answer follows.
         whole: Whether the whole view is evidence. A run must then see it with at least 60% of its resolution here.
     """
-    density = place.truth.projection.density * math.pi / 180
+    density = place.truth.projection.pixels_per_radian * math.pi / 180
     return EvidenceView(
         aim=place.aim,
         scope="full" if place.swept else "current",

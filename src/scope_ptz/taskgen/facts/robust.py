@@ -286,7 +286,7 @@ class RobustTruth:
 
     def text_item(self, text: TextSighting) -> Item:
         """Return a text as evidence: its position, and the minimum height of its capitals in a run."""
-        cap_deg = text.cap_height_px / (self.projection.density * np.pi / 180)
+        cap_deg = text.cap_height_px / (self.projection.pixels_per_radian * np.pi / 180)
         return self._item(text.text.id, text.box, text.text.text, float(cap_deg))
 
     def _item(

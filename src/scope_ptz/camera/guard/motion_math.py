@@ -15,7 +15,7 @@ def velocity_fields(velocity: Velocity) -> dict[str, float]:
 
 
 def capped(velocity: Velocity, top: Velocity) -> Velocity:
-    """Return a velocity of at most the top speed on each axis."""
+    """Return a velocity, capped at the top speed on each axis."""
 
     def cap(speed: float, limit: float) -> float:
         return math.copysign(min(abs(speed), limit), speed)
@@ -25,9 +25,9 @@ def capped(velocity: Velocity, top: Velocity) -> Velocity:
     )
 
 
-def scaled(velocity: Velocity, share: float) -> Velocity:
-    """Return a share of a velocity."""
-    return Velocity(velocity.pan_dps * share, velocity.tilt_dps * share, velocity.zoom_rate * share)
+def scaled(velocity: Velocity, factor: float) -> Velocity:
+    """Return a velocity scaled by a factor."""
+    return Velocity(velocity.pan_dps * factor, velocity.tilt_dps * factor, velocity.zoom_rate * factor)
 
 
 def advanced(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
@@ -37,12 +37,12 @@ def advanced(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
 
 
 def changes(start: Pose, end: Pose) -> tuple[tuple[Axis, bool], ...]:
-    """Return for pan and tilt whether they differ."""
+    """Return, for pan and for tilt, whether the two poses differ."""
     return ("pan", start.pan_deg != end.pan_deg), ("tilt", start.tilt_deg != end.tilt_deg)
 
 
-def joined(*axes: Any) -> tuple[Axis, ...]:
-    """Return axes of several reports once each, in the order pan, tilt, zoom."""
+def merged_axes(*axes: Any) -> tuple[Axis, ...]:
+    """Return the union of several groups of axes, in the order pan, tilt, zoom."""
     found = {axis for group in axes for axis in group}
     order: tuple[Axis, ...] = ("pan", "tilt", "zoom")
     return tuple(axis for axis in order if axis in found)
