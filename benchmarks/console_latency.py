@@ -22,7 +22,10 @@ from typing import TYPE_CHECKING, Any
 
 import httpx2
 
-from console_load import INSTRUCTIONS, Console, Pauses, chromium, in_ms, open_page, quantiles, read_page
+from console_clients.console_process import Console
+from console_clients.conversations import INSTRUCTIONS
+from console_clients.figures import Pauses, in_ms, quantiles
+from console_clients.page import chromium, open_page, read_page
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -15,16 +15,9 @@ import httpx2
 import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 
-CHROMIUM = "/usr/bin/chromium"
+from console_clients import chromium
+
 expect.set_options(timeout=30_000)  # for busy machines
-ARGUMENTS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 
 
 @pytest.fixture(scope="module")
@@ -69,10 +62,12 @@ def eventually(page: Page, holds: Callable[[], bool]) -> None:
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     """Chromium. It must not outlive the tests of this package: its event loop in this thread would make asyncio.run() fail."""
-    if not Path(CHROMIUM).exists():
-        pytest.fail(f"These tests need Chromium at {CHROMIUM}: install it with 'apt-get install chromium', as .ci/run does.")
+    if not Path(chromium.PROGRAM).exists():
+        pytest.fail(
+            f"These tests need Chromium at {chromium.PROGRAM}: install it with 'apt-get install chromium', as .ci/run does."
+        )
     with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        opened = playwright.chromium.launch(executable_path=chromium.PROGRAM, args=list(chromium.ARGUMENTS))
         yield opened
         opened.close()
 

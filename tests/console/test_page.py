@@ -147,6 +147,25 @@ def test_counted_objects_are_marked(page: Page) -> None:
         expect(page.locator(".overlay polygon")).to_have_count(0)
 
 
+@pytest.mark.parametrize(
+    "size", [(1920, 1080), (1440, 900), (1280, 720), (1100, 700), (1024, 768), (900, 700), (861, 600), (390, 844)]
+)
+def test_nothing_covers_the_stop_button(page: Page, size: tuple[int, int]) -> None:
+    """The bar below the picture has its longest contents. They must not push the button out of the window or under the panel."""
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    covering = """button => {
+        const texts = { ".readout dd": "−179.9°", ".rate": "25 frames/s", ".stage-time summary .clock": "1234:56 · 0.25×" };
+        for (const [at, text] of Object.entries(texts)) document.querySelectorAll(at).forEach(each => { each.textContent = text; });
+        document.querySelector(".stage .chip").hidden = false;
+        button.scrollIntoView();
+        const box = button.getBoundingClientRect();
+        const points = [[0.5, 0.5], [0.05, 0.5], [0.95, 0.5], [0.5, 0.05], [0.5, 0.95]];
+        const found = points.map(([x, y]) => document.elementFromPoint(box.left + x * box.width, box.top + y * box.height));
+        return found.filter(each => !button.contains(each)).map(each => each?.outerHTML.slice(0, 80) ?? "outside the window");
+    }"""
+    assert page.get_by_role("button", name="Stop", exact=True).evaluate(covering) == []
+
+
 def test_second_tab_joins_and_stops(page: Page, watched: Watched) -> None:
     other = watched.open()
     page.get_by_label("Instruction", exact=True).fill("keep panning right in 5 degree steps until you see a tram")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+import threading
 import time
+from collections.abc import AsyncGenerator
 from typing import Any
 
 import anyio
@@ -12,9 +14,12 @@ import cv2
 import httpx2
 import numpy as np
 import pytest
+from anyio import to_thread
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from scope_ptz.camera.base import Frame
+from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.serve.site.live_picture import LivePicture
 from tests.serve.serving import CAMERA, Served
 
@@ -66,6 +71,37 @@ def test_a_slow_client_gets_the_newest_frame_and_no_queue(client: httpx2.Client,
         socket.send("drawn")
         assert following["number"] >= first["number"] + 5
         assert time.time() - following["taken"] < 1.0
+
+
+def test_a_frame_that_came_before_the_acknowledgement_is_sent_if_it_is_still_the_newest(
+    client: httpx2.Client, served: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    began, second, published, ended = (threading.Event() for _ in range(4))
+
+    async def two_frames(camera: SimulatedCamera, *, rate_hz: float) -> AsyncGenerator[Frame]:
+        began.set()
+        yield await camera.frame()
+        await to_thread.run_sync(second.wait)
+        yield await camera.frame()
+        published.set()
+        await to_thread.run_sync(ended.wait)
+
+    monkeypatch.setattr(SimulatedCamera, "frames", two_frames)
+    try:
+        with watch(served) as socket:
+            facts, _ = frame_of(socket)
+            while not began.is_set():  # frames of an earlier watcher's stream
+                socket.send("drawn")
+                facts, _ = frame_of(socket)
+            second.set()
+            assert published.wait(20)
+            time.sleep(0.2)  # for the server to offer the frame to this client
+            socket.send("drawn")
+            following, _ = frame_of(socket)
+            assert following["number"] > facts["number"]
+    finally:
+        second.set()
+        ended.set()
 
 
 def test_the_state_comes_with_the_picture(client: httpx2.Client, served: Served) -> None:

@@ -125,10 +125,11 @@ class _Watcher:
                 await self._send_state()
                 if picture is None:
                     continue
-                # Frames that arrive before the acknowledgement are skipped, so that the client gets the newest one next.
+                # Frames that arrive before the acknowledgement are skipped, except the newest one, so that no time is lost.
                 if not self._acknowledged.is_set():
                     await asyncio.wait_for(self._acknowledged.wait(), ACK_TIMEOUT_S)
-                    continue
+                    if picture is not self._station.live.newest:
+                        continue
                 self._acknowledged.clear()
                 await self._socket.send_bytes(await self._message(picture))
 
