@@ -48,10 +48,10 @@ class Breaker:
         """The last failure; None after a success."""
         return self._last
 
-    def wait_s(self) -> float | None:
-        """Return the seconds until a request may be sent, or None if one may be sent now.
+    def admit(self) -> float | None:
+        """Admit a request and return None, or return the seconds until one may be sent.
 
-        If one may be sent, the caller must report its outcome with ``succeeded``, ``failed`` or ``abandoned``.
+        After an admission, the caller must report the outcome with ``succeeded``, ``failed`` or ``abandoned``.
         """
         if self._open_until is None:
             return None

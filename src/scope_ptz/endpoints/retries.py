@@ -78,7 +78,7 @@ class Caller:
 
         A failure is returned instead of raised, so that it carries no library exception, which may quote a key.
         """
-        open_for_s = self.breaker.wait_s()
+        open_for_s = self.breaker.admit()
         if open_for_s is not None:
             attempts_made.append(Attempt(kind=FailureKind.CIRCUIT_OPEN, waited_s=waited_s))
             return self._circuit_open(open_for_s)

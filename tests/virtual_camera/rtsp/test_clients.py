@@ -131,8 +131,8 @@ async def test_size_and_rate_are_chosen_in_the_address(open_device: VirtualDevic
     async with serving(open_device, rate_hz=50) as served:
         found = await to_thread.run_sync(watch, served.url(options="resolution=160x90&fps=10"))
         assert {shape for _, shape in found} == {(90, 160, 3)}
-        # A busy machine leaves frames out, and never adds any.
-        assert all(later[0] - sooner[0] > 0.075 for sooner, later in pairwise(found))
+        # A busy machine delays or omits frames. It never adds any, so eight frames cannot follow faster than the rate on average.
+        assert found[-1][0] - found[0][0] > 7 * 0.075
 
 
 @pytest.mark.parametrize("skew_s", [0.0, 3600.0])
