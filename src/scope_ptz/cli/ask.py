@@ -38,7 +38,7 @@ Next:
 
 
 class Session:
-    """The camera, perception backend and planner of one or several runs."""
+    """The camera, perception backend and planner of one or more runs."""
 
     def __init__(self, flags: SessionFlags, opened: OpenCamera, perception: Perception, planner: Planner, note: str) -> None:
         self.flags, self.perception, self.planner, self.note = flags, perception, planner, note
@@ -140,7 +140,7 @@ def _program() -> str:
 
 
 def make_filmstrip(trace: Trace) -> Path | None:
-    """Draw a run's filmstrip, unless the planner asked for clarification or refused without any call."""
+    """Draw a run's filmstrip, unless the planner asked for clarification or refused without making a call."""
     if not trace.calls and (trace.ended is None or trace.ended.outcome in ("clarification", "refused")):
         return None
     return write_filmstrip(trace)
@@ -184,7 +184,7 @@ def summary(calls: tuple[Called, ...], ended: Ended, folder: Path) -> dict[str, 
 
 
 def _no_perception() -> Perception:
-    """Return a placeholder for a camera without ground truth or a vision model. Every perception call is an error."""
+    """Return a placeholder for a camera without ground truth or a vision model. Every perception call raises an error."""
     from scope_ptz.perception.no_perception import NoPerception
 
     return NoPerception("Name a vision model with --perception; `scope models --role perception` lists them.")

@@ -24,7 +24,7 @@ def read_instructions(source: Path) -> Iterator[tuple[int, InstructionLine | Inp
     """Yield the number of each non-empty line, with its parsed content or an error.
 
     Args:
-        source: The file; "-" is the standard input.
+        source: The file; "-" means standard input.
 
     Raises:
         InputError: The file cannot be read.

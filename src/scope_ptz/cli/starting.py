@@ -32,7 +32,7 @@ def collector_paused() -> Iterator[None]:
 
 
 def prepare_help(arguments: list[str]) -> None:
-    """Import the modules that draw help pages, if help is requested.
+    """Import the modules that render help pages, if help is requested.
 
     Typer also imports Rich's modules for Markdown and tracebacks. Help pages do not use them, but importing them takes half of
     the time of ``scope --help``. Therefore, they are imported on first use.

@@ -80,8 +80,8 @@ def normalized_text(text: str, ocr: bool) -> str:
 def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnswer:
     """Parse the text that an answer reports.
 
-    This is the quoted text. Without quotes it is whatever follows "reads", "says" or "is"; otherwise it is the whole of a short
-    answer.
+    This is the quoted text. Without quotes, it is whatever follows "reads", "says" or "is". If those are
+    missing too, it is the whole answer, if that is short.
     """
     text = clean(answer)
     quotes = quotes_of(text)

@@ -85,7 +85,7 @@ class AnswerText:
     """The words of an answer that state something.
 
     Attributes:
-        words: The words, without questions and without declined or hedged clauses.
+        words: The words, without questions and without clauses that decline to answer or hedge.
         declined: Whether a clause declined to answer, as in "I cannot tell".
         hedged: Whether a clause was only a guess.
     """
@@ -134,7 +134,7 @@ class AnswerText:
         )
 
     def _is_verb(self, at: int) -> bool:
-        """Return whether "can" is the verb rather than the object."""
+        """Return whether "can" is the verb rather than the noun."""
         before, after = self.words[max(0, at - 1) : at], self.words[at + 1 : at + 2]
         return any(w.text in _BEFORE_VERB_CAN for w in before) or any(w.text in _AFTER_VERB_CAN for w in after)
 
@@ -145,7 +145,7 @@ class AnswerText:
         return any(tuple(before[-len(words) :]) == words for words in _CONTRAST_PHRASES)
 
     def is_denied(self, start: int, end: int) -> bool:
-        """Return whether the words from ``start`` to ``end`` are denied."""
+        """Return whether the words from ``start`` to ``end`` are negated."""
         return self._is_denied_before(start) or self.is_denied_after(end) or is_denied_jointly(self.words, start, end)
 
     def _is_denied_before(self, start: int) -> bool:
@@ -171,7 +171,7 @@ class AnswerText:
         return bool(ends) or (self._is_denied_before(start) and re.match(_ABSENT, after) is not None)
 
     def _continues_list(self, segment: int) -> bool:
-        """Return whether a segment continues a denied list, as in "no cars, vans or buses", which ends in "or"."""
+        """Return whether a segment continues a denied list, as in "no cars, vans or buses"."""
         clause = next(w.clause for w in self.words if w.segment == segment)
         rest = [w.text for w in self.words if w.clause == clause and w.segment >= segment]
         segment_words = [w.text for w in self.words if w.segment == segment]

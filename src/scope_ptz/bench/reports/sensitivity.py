@@ -122,7 +122,7 @@ def _max_trials(run: ReportRun) -> int:
 
 
 def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
-    """Return the section on requests that the agent should question or refuse; None if no run contains such requests."""
+    """Return the section on requests that the agent should ask about or refuse; None if no run contains such requests."""
     reacting = [(run, trials) for run in runs if (trials := _reaction_trials(run))]
     if not reacting:
         return None

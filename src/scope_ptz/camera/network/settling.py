@@ -25,7 +25,7 @@ class Settling:
         angle_tolerance_deg: Allowed difference between the requested and the reached angle.
         zoom_tolerance: Allowed relative difference between the requested and the reached zoom.
         poll_s: Seconds between two readings of the position.
-        start_s: Seconds after which a camera that has not started to move is assumed not to move.
+        start_s: Seconds to wait for a motion to start before assuming that the camera will not move.
         timeout_s: Seconds after which a move has failed.
         picture_interval_s: Seconds between the pictures that are compared.
         picture_timeout_s: Seconds after which a picture that keeps moving is an error.
@@ -116,9 +116,9 @@ _SHIFT_PX = 0.25
 def moving_fraction(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> float | None:
     """Return the fraction of the textured tiles that moved between two pictures.
 
-    A tile has moved when it differs by more than noise and by more than its own texture would at a shift of a quarter of a pixel
-    (of 320). A change of the overall brightness does not count. People and vehicles
-    cover few tiles, but a turning camera moves all of them.
+    A tile has moved if its mean change exceeds the noise level plus the change that a shift by a quarter of a pixel would cause in
+    its texture, at a picture width of 320. Changes of the overall brightness do not count. People and vehicles cover few tiles, but
+    a turning camera moves all of them.
 
     Args:
         first: A picture, ``(H, W, 3)`` uint8 RGB.

@@ -209,7 +209,7 @@ def folder_name(log: Path, sample: str) -> str:
 def write_pictures(files: SampleFiles, folder: Path) -> list[Path]:
     """Write a run's pictures into a folder and return their paths, the filmstrip first.
 
-    Pictures from an earlier session are not written again, and names that cannot be those of a run folder are skipped.
+    Pictures from an earlier session are not written again, and names that are invalid in a run folder are skipped.
     """
     from scope_ptz.agent.filmstrip import write_filmstrip
     from scope_ptz.errors import OutputError, ScopeError

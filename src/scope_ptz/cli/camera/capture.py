@@ -45,7 +45,7 @@ def capture(
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Capture a camera's surroundings as a scene: a twin of the site with pictures, but without ground truth.
+    """Capture a camera's surroundings as a scene: a digital twin of the site, made of pictures and without ground truth.
 
     The camera moves for a few minutes and then returns to its original pose. Running the same command again resumes an interrupted
     capture.

@@ -1,4 +1,4 @@
-"""The bodies of requests and replies of the API."""
+"""Request and response bodies of the API."""
 
 from __future__ import annotations
 
@@ -377,7 +377,7 @@ class SignIn(Body):
 
 
 class Me(BaseModel):
-    """The client that sends the request. ``signs_in`` is true if the server needs tokens."""
+    """The client that sends the request. ``signs_in`` is true if the server requires signing in with a token."""
 
     name: str
     role: Role

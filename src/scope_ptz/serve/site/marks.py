@@ -16,7 +16,7 @@ from scope_ptz.perception.base import Box
 ACCENT = (76, 195, 247)
 INK = (14, 19, 26)
 MAX_NUMBERS = 40
-"""Maximum number of marks with numbers. The numbers of more marks would cover the picture, so they are omitted."""
+"""Marks are numbered up to this many. The numbers of more marks would cover the picture, so all of them are omitted."""
 
 
 def call_of(trace: Trace, name: str) -> Called | None:
@@ -29,7 +29,7 @@ def call_of(trace: Trace, name: str) -> Called | None:
 
 
 def marks_of(call: Called | None, name: str) -> list[dict[str, Any]]:
-    """Return the marks of a call in a picture: its boxes in fractions of the frame, numbered from 1 in drawing order."""
+    """Return the marks of a call in a picture: its boxes as fractions of the frame, numbered from 1 in drawing order."""
     result = (call.outcome.result or {}) if call is not None else {}
     frames = list(result.get("frames") or ())
     if frames[-1:] != [name]:

@@ -128,7 +128,7 @@ class SpriteChoice:
 
 
 def _reach_m(sprite: Sprite, offset_m: Floats) -> float:
-    """Return the largest distance of a sprite's pixels from its ground point, in the plane through it across the line of sight.
+    """Return the largest distance of a sprite's pixels from its ground point, perpendicular to the line of sight.
 
     It is infinite for a sprite that reaches 90 degrees away from its ground point.
     """

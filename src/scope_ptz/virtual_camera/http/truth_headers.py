@@ -1,4 +1,4 @@
-"""The ground truth that accompanies a picture: headers of the reply or of the part, and a comment in the JPEG."""
+"""The ground truth that accompanies a picture: headers of the HTTP response or of a stream's part, and a JPEG comment."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ ADDRESSING = "http://www.w3.org/2005/08/addressing"
 MEMBER_ADDRESSING = "http://schemas.xmlsoap.org/ws/2004/08/addressing"
 
 MAX_REQUEST_BYTES = 65536
-"""Maximum size of a request in bytes. The largest common request (SetConfiguration) has about 4 kB."""
+"""Maximum size of a request in bytes. The largest common request (SetConfiguration) is about 4 kB."""
 
 _UNDERSTOOD = {SECURITY, ADDRESSING, MEMBER_ADDRESSING}
 _E = ElementMaker(namespace=ENVELOPE, nsmap={"env": ENVELOPE, "ter": ERRORS})
@@ -74,7 +74,7 @@ class Envelope:
 
 
 def parse_xml(data: bytes) -> Any:
-    """Parse untrusted XML without document types, entities and network access, and with lxml's limits on depth and size.
+    """Parse untrusted XML without document types, entities or network access, and with lxml's limits on depth and size.
 
     Raises:
         SoapFault: The document is not well-formed, or has a document type.

@@ -37,7 +37,7 @@ def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
 
 
 class RecordedChat(ChatClient):
-    """A wrapper of a chat client that records each exchange. Headers are not recorded, because they contain keys."""
+    """A wrapper around a chat client that records each exchange. Headers are not recorded, because they contain keys."""
 
     def __init__(self, client: ChatClient, exchanges: Exchanges) -> None:
         # ``super().__init__`` is not called, because it would open connections. This object uses those of ``client``.

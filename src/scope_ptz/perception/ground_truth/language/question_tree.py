@@ -13,7 +13,7 @@ Words = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Phrase:
-    """One noun phrase. ``words`` is its core ("red car", "cars parked"); the scene decides where the noun ends."""
+    """One noun phrase. ``words`` is its core ("red car", "cars parked"); matching decides where the noun ends."""
 
     words: Words
     tests: tuple[Test, ...] = ()
@@ -65,7 +65,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Has:
-    """A test for parts and clothes ("with a yellow helmet", "wearing orange vests"). ``worn`` is True for clothes."""
+    """A test for parts and clothing ("with a yellow helmet", "wearing orange vests"). ``worn`` is True for clothing."""
 
     what: Description
     worn: bool = False
@@ -80,7 +80,7 @@ class Says:
 
 @dataclass(frozen=True, slots=True)
 class Is:
-    """A test for a state in free words: "parked", "lit", "in use"."""
+    """A test for a state, as free text: "parked", "lit", "in use"."""
 
     words: Words
 
