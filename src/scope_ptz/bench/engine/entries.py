@@ -127,8 +127,8 @@ def select(
 def _sample_evenly(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
     """Sample entries evenly, and return them in their original order.
 
-    Each step takes an entry from the group (category, scene, scope) that is least represented in the sample, relative to the numbers of
-    entries with its category, its scene and its scope. Within a group, the sampled entries are evenly spaced.
+    Each step takes an entry from the group (category, scene, scope) that is least represented in the sample, relative to the
+    numbers of entries with its category, its scene and its scope. Within a group, the sampled entries are evenly spaced.
     """
     groups: dict[tuple[str, str, str], list[Entry]] = {}
     for entry in entries:
