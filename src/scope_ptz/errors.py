@@ -41,7 +41,7 @@ __all__ = [
 
 
 class RequestRecord(Protocol):
-    """A recorded request to a model server. ``kind`` is the kind of failure; None if the request succeeded."""
+    """A recorded request to a model server. ``kind`` says how the request failed; None if it succeeded."""
 
     @property
     def kind(self) -> str | None: ...

@@ -29,7 +29,7 @@ class JudgeSettings:
         key_file: File that contains the server's key; the key in SCOPE_JUDGE_KEY if None.
         timeout_s: Seconds for one judgement, including retries.
         options: Further options of the judge as ``NAME=VALUE`` strings.
-        repeats: Number of judgements of each run.
+        repeats: Number of judgements per run.
     """
 
     url: str | None = None
@@ -61,13 +61,13 @@ class EvaluationOptions:
         epochs: Number of runs of each task.
         seed: Seed for every random choice.
         agent: "scope", or ``module:Class`` of an external agent.
-        max_steps: Planner steps after which a run ends.
-        time_s: Wall-clock seconds after which a run ends; None for no limit.
+        max_steps: Number of planner steps after which a run ends.
+        time_s: Number of wall-clock seconds after which a run ends; None for no limit.
         concurrency: Number of concurrent runs; None for a default that depends on the models.
         latency: Run one task at a time, to measure latencies.
         pictures: Render and log frames.
         variant: Label that distinguishes evaluations with different settings.
-        fresh: Start a new evaluation even if there is a log of the same one.
+        fresh: Start a new evaluation even if the folder has a log of the same evaluation.
         resume: Log to resume; None for the most complete one in ``out``.
         price: Price of the planner's tokens, for the estimate and the log.
         judge: Settings of the judge that scores each run; None for no judge.
@@ -107,7 +107,7 @@ class EvaluationPlan:
         finished: Trials from the log that is resumed.
         estimate: Estimate of duration and cost.
         asks_planner_server: Whether the planner calls a model server. Otherwise planning costs nothing.
-        origin: A sentence about the log that is resumed, or about the reason for a new evaluation; may be empty.
+        origin: A sentence that names the log that is resumed, or the reason for a new evaluation; may be empty.
     """
 
     runs: int

@@ -289,7 +289,7 @@ def _check_pictures(options: EvaluationOptions, pair: ResolvedPair, planner: Pla
 
 
 def _is_built_in(pair: ResolvedPair) -> bool:
-    """Return whether planner and perception are built in. Their runs are cheap, so a resumed evaluation may repeat some of them."""
+    """Return whether planner and perception are built in. Repeating some of their cheap runs when resuming is acceptable."""
     planner, perception = pair.planner, pair.perception
     return (
         planner.name == GRAMMAR

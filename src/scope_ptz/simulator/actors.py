@@ -1,8 +1,8 @@
 """Moving actors: their positions at a scene time, and the sprites that are composited over the static world.
 
 A sprite is a rendering of an actor from the viewpoint, with the actor at one point of its path. Between two such points, the
-nearest sprite is moved to the exact direction and scaled to the exact distance. For each pixel, the depth layer determines whether
-the actor is hidden.
+sprite of the nearest point is moved to the actor's exact direction and scaled to its exact distance. For each pixel, the depth
+layer determines whether the actor is hidden.
 """
 
 from __future__ import annotations
@@ -59,13 +59,13 @@ class Appearance:
 
 @dataclass(frozen=True, slots=True)
 class ActorInView:
-    """An actor at one instant.
+    """An actor at one instant, and its position relative to a viewpoint.
 
     Attributes:
         actor: The actor.
         sheet: The sheet that contains its sprites.
         offset_m: The actor's ground point (3,) relative to the optical centre, in camera coordinates.
-        path_s: The actor's path time in seconds.
+        path_s: Path time in seconds; see ``PathPosition``.
         phase: The phase of a walker's stride, 0 to 1.
     """
 
@@ -81,7 +81,7 @@ class PathPosition:
     """The position of an actor on its path.
 
     Attributes:
-        path_s: Path time in seconds.
+        path_s: Path time in seconds: the scene time since the actor last began its path, which repeats.
         walked_m: Distance from the start of the path, along the path.
         position_m: Ground point (3,) in world coordinates.
     """
@@ -108,7 +108,10 @@ def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appea
 
 
 def composited_appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
-    """Return everything that is composited over the static world: actors, and the held objects of a scene variation."""
+    """Return everything that is composited over the static world, farthest first.
+
+    This includes the actors and, in a scene variation, the held objects: actors that stand still in that variation.
+    """
     moving = ((actor, time_s) for actor in scene.file.actors)
     return _appearances_of(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 

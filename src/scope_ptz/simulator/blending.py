@@ -33,9 +33,9 @@ JOINT_PX = 12.0
 """Adjoining tiles fade into each other over this many pixels. They overlap by about 28 pixels."""
 
 SHARP_FRACTION = 0.7
-"""A tile adjoins another without a soft border if its sharpness is at least this fraction of the other's."""
+"""A tile fades over only a few pixels where it adjoins a tile whose pixel density is at least this fraction of its own."""
 
-COARSE_PX = 4  # side of the cells in which the distance from less sharp areas is computed
+COARSE_PX = 4  # side, in pixels, of the cells in which the distance from less sharp areas is computed
 
 DETAIL_FADE_PX = 28.0
 """Texts and small objects near the border stay sharp. The tile fades over this many pixels around them."""
@@ -47,7 +47,7 @@ TONE_CELL_PX = 32
 """Size of the cells whose mean tones are matched. Details smaller than a cell are preserved."""
 
 MAX_TONE_SHIFT = 24.0
-"""Maximum change of tone, on a scale of 0 to 255. A larger difference means that the content differs."""
+"""Maximum change of tone, on a scale of 0 to 255. Larger differences mean different content, so they are only reduced."""
 
 MAX_CACHED_TILES = 4  # tiles with matched tone that stay in memory, because neighbouring tiles need them soon
 
@@ -55,7 +55,11 @@ Floats = NDArray[np.float32]
 
 
 class Outlines:
-    """Outlines, as arrays of (n, 3) directions, of objects that stay sharp where they are small."""
+    """Outlines of the objects that stay sharp near the border of a tile in which they are small.
+
+    Args:
+        outlines: One array of (n, 3) directions for each object.
+    """
 
     def __init__(self, outlines: Sequence[NDArray[np.float64]]) -> None:
         self._outlines = list(outlines)
@@ -84,8 +88,8 @@ class TileBlender:
         read: Reads tile ``i`` as (H, W, 3) RGB, as stored.
         tiles: Geometry of the tiles.
         band: The band of the sphere that the panorama covers.
-        keep_sharp: Returns outlines, as arrays of (n, 3) directions, of objects that stay sharp where they are small. Called when
-            the first tile is read.
+        keep_sharp: Returns the outlines of the objects that stay sharp near the border of a tile in which they are small, each as
+            an array of (n, 3) directions. Called when the first tile is read.
     """
 
     def __init__(
@@ -177,7 +181,10 @@ def _opacity(tiles: Tiles, index: int, outlines: Outlines) -> Floats:
 
 
 def _distance_to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
-    """Return the (H, W) distance of pixels from the nearest area without an equally sharp tile, exact up to ``reach_px``."""
+    """Return the (H, W) distance of pixels from the nearest area that no similarly sharp tile covers.
+
+    Distances are exact up to ``reach_px``.
+    """
     view = tiles.views[index]
     pad = COARSE_PX * math.ceil(reach_px / COARSE_PX + 1)
     width, height = view.width + 2 * pad, view.height + 2 * pad
@@ -187,7 +194,7 @@ def _distance_to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
     for showing in tiles.in_view(around):
         if showing.polygon is not None and tiles.views[showing.tile].focal_px >= SHARP_FRACTION * view.focal_px:
             cv2.fillConvexPoly(sharp, showing.polygon // COARSE_PX, 255, shift=POLYGON_SHIFT)
-    # If the whole neighbourhood is sharp, the distance transform returns a very large distance, hence the limit.
+    # If the whole neighbourhood is sharp, the distance transform returns very large distances, so they are limited to the padding.
     away = np.minimum(cv2.distanceTransform(sharp, cv2.DIST_L2, 5), pad) * np.float32(COARSE_PX)
     fine = cv2.resize(away, (sharp.shape[1] * COARSE_PX, sharp.shape[0] * COARSE_PX), interpolation=cv2.INTER_LINEAR)
     return np.asarray(fine[pad : pad + view.height, pad : pad + view.width])

@@ -146,7 +146,7 @@ class _Layer:
         sprite, then_m, now_m = weighted.sprite, weighted.aspect.offset_m, actor.offset_m
         scale = float(np.linalg.norm(then_m) / np.linalg.norm(now_m))
         focal_px = sprite.width / 2 / math.tan(math.radians(sprite.hfov_deg / 2))
-        # In the plane before a camera that looks at the ground point, the sprite is scaled and warped about its centre.
+        # In the image plane of a camera aimed at the actor's ground point, the sprite is scaled and warped about that point.
         plane = np.eye(3)
         plane[:2, :2] = np.linalg.inv(scale * warp_matrix(actor.actor, weighted.aspect, now))
         looking_now, looking_then = (camera_axes(*map(float, pan_tilt_deg(m))) for m in (now_m, then_m))

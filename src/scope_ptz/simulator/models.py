@@ -274,7 +274,8 @@ class ActorSheet(Model):
 class Manifest(Model):
     """The content of a viewpoint pack's ``manifest.json``.
 
-    ``seen`` is 255 where a captured panorama shows what the camera saw, and 0 elsewhere; None for a rendered panorama.
+    ``seen`` is a mask of the panorama of a captured scene: 255 where it shows what the camera saw, and 0 elsewhere. It is None for
+    a rendered scene.
     """
 
     format: Literal[1] = 1

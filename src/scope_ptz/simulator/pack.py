@@ -24,7 +24,7 @@ from scope_ptz.simulator.viewpoint import Viewpoint, read_json
 def find_scenes(search: Iterable[Path] = ()) -> dict[str, Path]:
     """Return the folder of each scene by name: folders with a ``scene.json`` in ``search`` and in the package.
 
-    If several folders have the same name, the first is returned. Files are not opened, so damaged scenes are listed, too.
+    If several folders have the same name, the first is returned. Files are not opened, so damaged scenes are also listed.
     """
     found: dict[str, Path] = {}
     for root in (*search, Path(str(files("scope_ptz"))) / "data" / "scenes"):
@@ -102,7 +102,7 @@ class Scene:
         recent: Releases viewpoints if too many are open. Without it, every opened viewpoint stays in memory.
         tile_bytes: Limit on the memory of each viewpoint's tiles. Beyond it, the least recently used tiles are released and read
             again when they are needed. Without it, all tiles stay in memory.
-        picture_cache: Cache on disk for decoded pictures, used by later programs. Not used with ``tile_bytes``.
+        picture_cache: Cache on disk for decoded pictures, which other processes can use. Ignored if ``tile_bytes`` is given.
 
     Raises:
         PackError: A file is missing, damaged or inconsistent.

@@ -15,7 +15,7 @@ from scope_ptz.simulator.models import Layer
 
 
 class Pictures:
-    """Reads the layers of one folder without caching them. Raises ``PackError`` for files that differ from the manifest."""
+    """Reads the layers of one folder without caching them. Raises ``PackError`` for files that do not match the manifest."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

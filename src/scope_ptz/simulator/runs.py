@@ -18,8 +18,8 @@ Floats = NDArray[np.float64]
 class Measures:
     """Measurements of every instance in an image, in ascending order of instance number.
 
-    ``pixels`` and ``solid_angle_sr`` are (n,). ``box`` (n, 4), ``middle`` (n, 2) and ``point`` (n, 2) are normalised. ``middle``
-    is the centroid, which may lie on another object; ``point`` lies on the instance itself.
+    ``pixels`` and ``solid_angle_sr`` are (n,). ``box`` (n, 4), ``middle`` (n, 2) and ``point`` (n, 2) are fractions of the image's
+    width and height. ``middle`` is the centroid, which may lie on another object; ``point`` lies on the instance itself.
     """
 
     numbers: Ints

@@ -22,7 +22,7 @@ MAX_START_S = 120.0  # latest scene time at which a variation starts, in seconds
 CLEARANCE_M = 3.0
 """Minimum distance in metres between a held object and the path of a moving one."""
 
-_HOLD_ATTEMPTS = 16  # random positions that are tried until a held object is clear of all paths
+_HOLD_ATTEMPTS = 16  # maximum number of random positions that are tried to keep held objects clear of all paths
 _PERIOD_FACTORS = (1.0, 1.5, 2.0)
 _ZOOMS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.6)
 _CLOSE_ZOOM, _FAR_TILT_DEG, _LOW_TILT_DEG = 2.0, -7.5, -17.5  # thresholds for the names of presets
@@ -42,7 +42,7 @@ class HeldObject:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """A scene file with changes. Objects in ``held`` are instances of the file instead of actors."""
+    """A changed scene file. The objects in ``held`` are listed in the file as instances instead of actors."""
 
     file: SceneFile
     held: tuple[HeldObject, ...]
@@ -82,7 +82,7 @@ def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
 
 
 def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[HeldObject]]:
-    """Delay each group of companions, hold it at a point on its path, or remove it, at random."""
+    """Randomly delay each group of companions, hold it at one point of its path, or remove it."""
     moving, held = list[SceneActor](), list[HeldObject]()
     for group in companions(actors):
         treatment = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
@@ -101,7 +101,7 @@ def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list
 
 
 def _period(actor: SceneActor, rng: random.Random) -> float:
-    """Return a period at least as long as the original one. The period of actors on a closed circuit is unchanged."""
+    """Return a random period, at least as long as the original one. Actors that never leave the scene keep their period."""
     rests_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
     longer = rng.choice(_PERIOD_FACTORS)
     return actor.period_s if rests_s < 0.1 else round(actor.period_s * longer, 3)

@@ -164,7 +164,7 @@ class Viewpoint:
         """Verify the checksum of every file and return the number of files.
 
         Raises:
-            PackError: A file is missing or differs from the manifest.
+            PackError: A file is missing or does not match the manifest.
         """
         return len([self.pictures.checked(layer) for layer in self.files()])
 
@@ -223,7 +223,7 @@ def read_json(path: Path, model: type[_File]) -> _File:
     """Read and validate a JSON file of a pack.
 
     Raises:
-        PackError: The file is missing, damaged or of a newer format.
+        PackError: The file is missing or damaged, or has a newer format.
     """
     try:
         content = json.loads(read_regular_file(path))

@@ -30,7 +30,7 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
     actors = composited_actors(scene, opened, time_s)
     atlas, still = opened.colour_atlas, opened.still_views
     if not (opened.id_atlas.in_use and atlas.in_use) or still.is_cached(projection):
-        # Render actors first: decoding instance numbers needs the most memory, and the colour is then not in memory yet.
+        # Render actors first: they need instance numbers, whose decoding takes the most memory, and colours are not in memory yet.
         patches = [actor_patch(opened, projection, actor) for actor in actors]
         image = still.get(projection, lambda: colour_view(opened, projection))
     else:

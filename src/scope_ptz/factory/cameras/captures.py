@@ -1,4 +1,7 @@
-"""Capture a twin of a camera's site: open the camera, take the frames, and write the scene. An interrupted capture resumes."""
+"""Capture the site of a camera as a scene: open the camera, take the frames and write the scene.
+
+An interrupted capture can be resumed.
+"""
 
 from __future__ import annotations
 
@@ -34,10 +37,10 @@ class CapturedScene:
         largest_correction_deg: The largest such angle; None if nothing was registered.
         residual_px: Root mean square distance of matched features in pixels; None if nothing was registered.
         focal_factor: Ratio of measured to reported focal length at the widest zoom; None if nothing was registered.
-        tiles: Number of sharper tiles.
+        tiles: Number of tiles, which are sharper than the panorama.
         unseen_share: Fraction of the directions within the camera's range that no frame shows.
         presets: The presets of the scene.
-        left_out_presets: Presets of the camera outside the captured range.
+        left_out_presets: Presets of the camera that the scene lacks, because they are outside the captured range.
         refused: Number of poses that the rules of the site did not permit.
     """
 
@@ -67,7 +70,7 @@ class CapturePlan:
         presets: The presets that would be visited, in addition to the home position.
         sweeps: The sweeps over the range.
         close_ups: Maximum number of close-ups.
-        close_up_zoom: Their magnification; None if there are none.
+        close_up_zoom: Magnification of the close-ups; None if there are none.
     """
 
     camera: str
@@ -179,7 +182,7 @@ async def _take(camera: str, work: Path, options: CaptureOptions, progress: Prog
 
 
 def _locked(folder: Path) -> ControlLock:
-    """Return a lock that keeps other programs from capturing into the same folder."""
+    """Acquire and return a lock that keeps other programs from capturing into the same folder."""
     lock = ControlLock(f"The capture of {folder}", f"capture {folder.resolve()}", load_settings().cache_dir / "control")
     lock.acquire(_actor())
     return lock

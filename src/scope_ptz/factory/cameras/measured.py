@@ -25,7 +25,9 @@ def profile_name(spec: CameraSpec, address: DeviceAddress) -> str:
 
 
 def load_calibration(spec: CameraSpec, address: DeviceAddress) -> CalibrationRecord | None:
-    """Return the calibration of a camera; None if there is none. Contradictions that it found are logged as warnings.
+    """Return the calibration of a camera; None if there is none.
+
+    Differences between measured and reported values that the calibration found are logged as warnings.
 
     Raises:
         PackError: The camera's profile is damaged.
@@ -53,7 +55,7 @@ def measured_fields(calibration: CalibrationRecord | None) -> tuple[tuple[float,
 
 
 def measured_settling(calibration: CalibrationRecord | None) -> Settling:
-    """Return the criteria for when a camera has settled. They allow more time if the picture settled late in the measurement."""
+    """Return the criteria for when a camera has settled. They allow more time if its picture settled slowly in the calibration."""
     from scope_ptz.camera.network.settling import Settling
 
     default = Settling()

@@ -20,7 +20,7 @@ def named_cameras() -> dict[str, NamedCamera]:
 
 
 def audit_logs() -> list[Path]:
-    """Return the paths of the cameras' audit logs in ``scope.yaml``, without duplicates. The files need not exist.
+    """Return the paths of the audit logs that ``scope.yaml`` configures, without duplicates. The files need not exist.
 
     Raises:
         ConfigError: The file cannot be read, or its content is invalid.

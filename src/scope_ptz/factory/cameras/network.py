@@ -24,8 +24,9 @@ NETWORK_SCHEMES: tuple[str, ...] = ("axis", "onvif")
 """The schemes of drivers for network cameras."""
 
 STREAMS = {"axis": ("mjpeg", "rtsp"), "onvif": ("rtsp", "snapshot")}
+"""Values of the option ``stream`` for each scheme. The first is the default."""
 
-_NUMBERS = {"width": 10_000, "height": 10_000, "channel": 64, "rtsp_port": 65_535, "latency_ms": 10_000}
+_NUMBERS = {"width": 10_000, "height": 10_000, "channel": 64, "rtsp_port": 65_535, "latency_ms": 10_000}  # maximum values
 _DEGREES = ("hfov_wide", "hfov_tele")
 _CHOICES = {"tls": ("on", "off")}
 
@@ -84,7 +85,8 @@ async def open_network_camera(spec: CameraSpec, *, actor: str = "scope", measuri
     Args:
         spec: The camera.
         actor: Who controls the camera, as shown to other programs that request control.
-        measuring: Whether the camera is opened for a measurement. The driver may then assume values that are not known yet.
+        measuring: Whether the camera is opened to be probed or calibrated. Stored measurements are then ignored, and the driver may
+            assume values that are not known yet.
 
     Raises:
         InputError: The spec or an option is invalid, or there is no password for the account.

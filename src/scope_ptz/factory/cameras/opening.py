@@ -80,7 +80,10 @@ def _named(text: str) -> CameraSpec | None:
 
 
 def camera_names() -> tuple[str, ...]:
-    """Return the camera specs that can be opened: scenes, scenes that Blender can render live, and schemes of plug-ins."""
+    """Return the camera specs that can be opened, with placeholders such as ``axis://USER@HOST`` where an address is needed.
+
+    They are the cameras in ``scope.yaml``, scenes, scenes that Blender can render live, network cameras and cameras of plug-ins.
+    """
     from scope_ptz.blender.sources import scene_names
     from scope_ptz.simulator.pack import list_scenes
 
@@ -177,7 +180,8 @@ async def open_camera(
         realtime: Whether scene time follows the wall clock, so that a person can watch. Otherwise, moves take no wall-clock time.
         actor: Who controls the camera, as recorded in the audit log and shown to other programs that request control; the default
             is the user of the operating system.
-        measuring: Whether the camera is opened for a measurement. The driver may then assume values that are not known yet.
+        measuring: Whether the camera is opened to be probed or calibrated. Stored measurements are then ignored, and the driver may
+            assume values that are not known yet.
         dry_run: If given, commands are not executed. Instead, this function is called with a sentence about each. A simulated
             camera still starts at its preset.
 

@@ -36,7 +36,7 @@ class VirtualCameraOptions:
         time_scale: Speed of the motors, as a multiple of the real speed.
         freeze_time: Whether scene time stands still, so that actors do not move.
         latency_s: Time from exposure until a frame is sent, in seconds.
-        faults: Faults by name.
+        faults: Settings of the faults that the cameras simulate, by name.
         truth: Whether clients on this machine get the ground truth of frames.
         https: Whether the cameras serve HTTPS instead of HTTP, each with a new self-signed certificate.
         discovery: Whether the cameras answer WS-Discovery on the interface of ``host``.
@@ -67,6 +67,7 @@ def make_accounts(users: Sequence[str], settings: ScopeSettings) -> list[Account
 
     Raises:
         InputError: A name is empty or repeated, or contains characters that HTTP cannot transmit, or a role is unknown.
+        ConfigError: The configured password is empty.
     """
     from scope_ptz.virtual_camera.accounts import Account, Role
 
@@ -111,7 +112,7 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
     devices = []
     for scene_name, viewpoint in zip(options.scenes, options.viewpoints or (None,) * len(options.scenes), strict=True):
         scene = open_scene(scene_name)
-        # A clock that does not follow the wall clock stands still here, because nothing advances it: the motors do not.
+        # A frozen clock does not follow the wall clock. Nothing else advances it: the motors have their own clock.
         clock = SceneClock(scene.file.start_s, realtime=not options.freeze_time)
         device = VirtualDevice(scene, viewpoint=viewpoint, accounts=accounts, clock=clock, time_scale=options.time_scale)
         device.faults = faults

@@ -19,7 +19,7 @@ from scope_ptz.simulator.sheets.atlas import Atlas
 from scope_ptz.simulator.sheets.layout import Slot
 
 TILE_GAIN = 1.1
-"""Views that need more than this many times the panorama's density use tiles."""
+"""Views with more than this many times the panorama's pixel density use tiles."""
 
 OVERSAMPLING = 1.2
 """Minimum density of the source relative to the view. Bilinear look-up keeps the sharpness of a rendered view when the source is
@@ -94,6 +94,9 @@ def _mask(tile: VisibleTile, slot: Slot, where: Map) -> NDArray[np.uint8]:
 
 
 def _within(whole: NDArray[np.generic], place: Place, part: Place) -> NDArray:  # type: ignore[type-arg]
-    """Return the rows and columns ``part`` of an array that shows the rows and columns ``place`` of a picture."""
+    """Return the part of an array that shows the rows and columns ``part`` of a picture.
+
+    The array itself shows the rows and columns ``place`` of the picture.
+    """
     rows, columns = (slice(p.start - w.start, p.stop - w.start) for w, p in zip(place, part, strict=True))
     return whole[rows, columns]

@@ -32,7 +32,7 @@ def panorama_map(band: Band, slot: Slot, grid: Grid, part: Place | None = None) 
     for beyond, turn_px in ((x < left, slot.width), (x > right, -slot.width)):
         columns = np.flatnonzero(beyond.any(axis=0))
         if columns.size:
-            # Only columns between the nodes before and after the seam can be beyond it, so only these are shifted by a turn.
+            # Only columns between the nodes before and after the seam can be beyond it. They are shifted by the panorama's width.
             first, last = (columns[0] - 2) * grid.step - skipped, (columns[-1] + 1) * grid.step - skipped
             seam = where[:, max(0, first) : max(0, last), 0]
             seam += np.float32(turn_px) * (seam < left if turn_px > 0 else seam > right)

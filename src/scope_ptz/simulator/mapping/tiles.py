@@ -16,13 +16,13 @@ Floats = NDArray[np.float64]
 Place = tuple[slice, slice]
 """A rectangular part of an image, as slices of rows and columns."""
 
-BEHIND = 1e-6
+BEHIND = 1e-6  # points with at most this depth along the optical axis count as behind the camera
 BEHIND_POSITION = -1e3  # normalised coordinates of points behind a camera, far outside its image
-_FAR_PX = 1e5
-_INSET_PX = 1.5
+_FAR_PX = 1e5  # tiles with a corner farther away than this get no polygon
+_INSET_PX = 1.5  # distance of a polygon from the edges of its tile
 POLYGON_SHIFT = 8
 """Number of fractional bits of polygon coordinates, as passed to OpenCV."""
-_SIDE_POINTS = 8
+_SIDE_POINTS = 8  # points of an outline on each side of an image
 
 MAX_CACHED_RESULTS = 4  # enough for a view and its half-size version, for two cameras
 
@@ -32,7 +32,8 @@ class TileInView(NamedTuple):
 
     For perspective images, ``turn`` is the (3, 3) rotation from the image's axes to the tile's, and ``polygon`` is a (4, 2)
     outline at least one pixel inside the tile, in 1/256 pixels. Both are None for panoramas. ``edges`` are the (4, 3) half-planes
-    (a, b, c) of the polygon, or of ``place`` without a polygon: ``a * x + b * y + c`` is the distance inside the edge in pixels.
+    (a, b, c) of the polygon, or of ``place`` without a polygon: ``a * x + b * y + c`` is the distance from the edge in pixels,
+    positive inside.
     """
 
     tile: int

@@ -15,7 +15,10 @@ BORDER_PX = 2
 """Border around every slot in pixels: one for the bilinear neighbour, one for rounding."""
 
 HEIGHT_CLASS_PX = 32
-"""Tiles whose heights differ by less than this share shelves, so that neighbouring tiles are next to each other."""
+"""Tile heights are rounded up to a multiple of this for sorting.
+
+Tiles with the same rounded height are sorted by direction, so that neighbouring tiles lie next to each other.
+"""
 
 Size = tuple[int, int]
 """Width and height in pixels."""

@@ -1,7 +1,7 @@
 """A cache of decoded pictures on disk, so that later processes need not decode them again.
 
 A sheet of decoded pictures is a sparse file that is mapped into memory, so only the parts that a view samples are read. A list
-next to it contains the pictures that are complete. The pictures of the pack are always verified by their checksums.
+file next to it names the pictures that are complete. The pack's own picture files are still verified by checksum before use.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class PictureCache:
             return None
 
     def blob(self, name: str) -> bytes | None:
-        """Return the content that ``store_blob`` stored under a name, or None."""
+        """Return the content that ``store_blob`` stored under a name; None if there is none or it is damaged."""
         path = self._folder / (name + _BLOB)
         try:
             content = path.read_bytes()
@@ -76,7 +76,7 @@ class PictureCache:
         return content if hashlib.sha256(content).digest() == digest else None
 
     def store_blob(self, name: str, content: bytes) -> None:
-        """Store bytes under a name."""
+        """Store bytes under a name. If they cannot be written, nothing is stored."""
         path = self._folder / (name + _BLOB)
         new = path.with_suffix(f".{os.getpid()}.new")
         with suppress(OSError):

@@ -20,16 +20,16 @@ DEGREES_PER_OCTAVE = 6.0
 """A sprite rendered at half or twice the distance counts as if its viewing angle differed by this many degrees."""
 
 FADE_FRACTION = 0.12
-"""Half the width of the fade between two sprites, as a fraction of the distance between them."""
+"""Half the width of the fade between two sprites, as a fraction of the difference between them in viewing angle."""
 
 FADE_DEG = 12.0
-"""Between sprites further apart than this, the fade is proportionally shorter, because it shows both sprites at the same time."""
+"""Sprites that differ by more than this many degrees fade proportionally faster, because a picture of both looks doubled."""
 
 MAX_STRETCH = 1.25
 """Maximum factor by which a sprite is stretched or compressed to the current aspect of its actor."""
 
 STIFFNESS = 0.02
-"""Weight of the unchanged sprite in the least-squares fit, relative to the squared size of the actor in it."""
+"""Weight of the unwarped sprite in the least-squares fit of ``warp_matrix``, relative to the squared size of the actor in it."""
 
 Floats = NDArray[np.float64]
 
@@ -37,8 +37,8 @@ Floats = NDArray[np.float64]
 class Aspect(NamedTuple):
     """The position and heading of an actor in camera coordinates.
 
-    ``offset_m`` is the (3,) offset of its ground point from the optical centre in metres. ``heading`` is a (3,) unit vector on the
-    ground.
+    ``offset_m`` is the (3,) offset of its ground point from the optical centre in metres. ``heading`` is a horizontal (3,)
+    unit vector.
     """
 
     offset_m: Floats
@@ -82,14 +82,14 @@ class SpriteChoice:
         )
 
     def heading(self, path_s: float) -> Floats:
-        """Return the (3,) direction in which the actor faces at a path time, in camera coordinates."""
+        """Return the (3,) direction in which the actor faces at a given path time, in camera coordinates."""
         leg = int(np.clip(np.searchsorted(self._path[:, 0], path_s, side="right") - 1, 0, len(self._path) - 2))
         step = self._path[leg + 1, 1:3] - self._path[leg, 1:3]
         bearing = math.atan2(step[0], step[1])  # north (0) for an actor that does not move
         return np.asarray(self._rotation @ np.array([math.sin(bearing), math.cos(bearing), 0.0]))
 
     def reach_deg(self, offset_m: Floats) -> float:
-        """Return the largest angle between the actor's ground point, which lies at ``offset_m``, and any of its pixels."""
+        """Return the largest angle between the actor's ground point, which lies at ``offset_m``, and any pixel of its sprites."""
         return math.degrees(math.atan2(MAX_STRETCH * self._reach_m, float(np.linalg.norm(offset_m))))
 
     def choose(self, now: Aspect, phase: float) -> list[WeightedSprite]:
@@ -142,9 +142,9 @@ def _reach_m(sprite: Sprite, offset_m: Floats) -> float:
 def warp_matrix(actor: SceneActor, stored: Aspect, now: Aspect) -> Floats:
     """Return the (2, 2) matrix that warps a sprite about its ground point to the current aspect of its actor.
 
-    It is the least-squares linear map (right, up) from the actor's length, width and height as projected in the sprite to their
-    current projection. For example, it rotates a bicycle seen from above into its current direction. It does not change the size,
-    because the sprite is scaled by distance separately.
+    It is the linear map, in (right, up) coordinates, that best fits the projections of the actor's length, width and height in
+    the sprite to their current projections (least squares). For example, it rotates a bicycle seen from above into its current
+    direction. It does not correct the size for the distance, because the sprite is scaled separately.
     """
     width, length, height = actor.size_m
     sprite_box, current_box = (_projected(aspect, length, width, height) for aspect in (stored, now))
