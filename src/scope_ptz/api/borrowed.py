@@ -10,7 +10,7 @@ from scope_ptz.planner.base import Decision, Planner, State
 
 
 class BorrowedPlanner(Planner):
-    """A wrapper of the caller's planner. Its ``close`` does nothing, so that the caller can use the planner again."""
+    """A wrapper around the caller's planner. Its ``close`` does nothing, so that the caller can use the planner again."""
 
     def __init__(self, planner: Planner) -> None:
         self._planner = planner
@@ -28,7 +28,7 @@ class BorrowedPlanner(Planner):
 
 
 class BorrowedPerception(Perception):
-    """A wrapper of the caller's perception backend. Its ``close`` does nothing, so that the caller can use the backend again."""
+    """A wrapper around the caller's perception backend. Its ``close`` does nothing, so that the caller can use it again."""
 
     def __init__(self, perception: Perception) -> None:
         self._perception = perception

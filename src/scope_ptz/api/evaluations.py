@@ -200,16 +200,16 @@ def evaluate(
         limit: at most this many tasks, sampled evenly across the selected categories and scenes.
         epochs: number of runs of each task.
         seed: seed for every random choice.
-        max_steps: planner steps after which a run ends.
+        max_steps: number of planner steps after which a run ends.
         time_budget_s: seconds of wall-clock time after which a run ends; no limit by default.
         concurrency: number of concurrent runs; the default depends on the models.
         pictures: whether to render and log frames. Ground truth does not need frames and is faster without them.
-        fresh: start a new evaluation even if there is a log of the same one.
+        fresh: start a new evaluation even if ``out`` has a log of the same evaluation.
         planner_url: address of the planner's model server.
         planner_model: the server's name for the planner.
         perception_url: address of the vision model's server.
         perception_model: the server's name for the vision model.
-        timeout_s: seconds after which a request to a model server fails.
+        timeout_s: seconds after which a request to a model server fails, including its retries.
 
     Returns:
         The results.

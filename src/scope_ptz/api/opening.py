@@ -68,7 +68,7 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
         realtime: whether moves take as long as those of a real camera, and scene time follows the wall clock.
         dry_run: plan and report moves, but make none: every frame shows the view at the start, and the results of moves state this.
         runs_dir: folder in which each run creates a folder with its trace and pictures; by default, runs stay in memory.
-        max_steps: planner steps after which a run ends.
+        max_steps: number of planner steps after which a run ends.
         time_budget_s: seconds of wall-clock time after which a run ends; no limit by default.
         token_budget: number of planner tokens after which a run ends; no limit by default.
         planner_url: address of the planner's model server.
@@ -81,7 +81,7 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
         perception_options: additional options of the perception backend.
         reader: name of an additional backend that reads text.
         detector: name of an additional backend that detects objects.
-        timeout_s: seconds after which a request to a model server fails.
+        timeout_s: seconds after which a request to a model server fails, including its retries.
 
     Returns:
         An open session. Use it in a ``with`` statement, or call ``close`` at the end.

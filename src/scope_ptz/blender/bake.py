@@ -32,12 +32,22 @@ from scope_ptz.simulator.models import Extent, SceneActor, SceneFile, SceneViewp
 from scope_ptz.simulator.pack import Scene
 
 CHECKS, CHECK_SEED = 2, 1
-"""Number of live renders per viewpoint and zoom level (widest and zoomed in) at the end of a bake, and their seed."""
+"""Number of views that are compared with live renders at the end of a bake, and the seed for their poses.
+
+The number is per viewpoint and zoom level: widest and zoomed in.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class BakedViewpoint:
-    """The baked pack of one viewpoint: its folder, size, number of tiles, and the targets that no tile covers."""
+    """The baked pack of one viewpoint.
+
+    Attributes:
+        folder: The viewpoint folder.
+        weight_bytes: Total size of its files.
+        tiles: Number of tiles.
+        uncovered: Ids of the targets (texts and small instances) that the tiles do not cover completely.
+    """
 
     folder: Path
     weight_bytes: int
@@ -71,7 +81,7 @@ def bake(
         source: A scene of ``scope_studio.scenes``, or the path of a Python file with ``build(stage)``.
         out_dir: The scene's folder, which must have the scene's name.
         quality: The quality settings.
-        command: The command that starts the worker.
+        command: The command that starts the Blender worker.
         cache_dir: The folder for the cached parts of unfinished bakes.
         viewpoints: Names of the viewpoints to bake; None bakes all.
         progress: Called after every step.

@@ -1,4 +1,4 @@
-"""The cameras of a .blend file as the viewpoints, presets, limits and optics of one camera."""
+"""Combine the cameras of a .blend file into one pan-tilt-zoom camera, in which each of them is a viewpoint with a preset."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.geometry import Limits, Optics
 from scope_ptz.simulator.models import SceneFile, ScenePreset, SceneViewpoint
 
 ZOOM_RANGE = 5.0
-"""Minimum ratio of the highest to the lowest zoom."""
+"""Minimum ratio of the highest to the lowest zoom of the combined camera."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,5 +55,5 @@ def file_cameras(description: dict[str, Any]) -> FileCameras:
 
 
 def _half_width(hfov_deg: float) -> float:
-    """Return half the width of a picture at distance 1."""
+    """Return half the width of the plane at distance 1 that a picture shows."""
     return math.tan(math.radians(hfov_deg) / 2)

@@ -16,7 +16,10 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.simulator.models import Band, SceneActor, SceneViewpoint
 
 TURN_STEP_DEG, DISTANCE_STEP = 2.5, 1.06
-"""Maximum changes between two keyframes: the viewing angle in degrees, and the factor between the distances."""
+"""Changes after which a new keyframe is needed: of the viewing angle in degrees, and of the distance as a factor.
+
+If this gives too many keyframes, both steps are increased.
+"""
 
 GAIT_PHASES = 8  # pictures of a walker at each position
 MIN_SIDE_PX = 6.0  # actors that stay smaller at the closest zoom are not rendered
@@ -32,8 +35,8 @@ class Keyframe:
     """A picture of an actor to render: its time on the path, its gait phase, and the view.
 
     Attributes:
-        also_s: Further path times for which the pack lists the picture. They are at corners of the path. A view uses the picture
-            that is nearest in time; without these times, this could be a picture with the heading after the corner.
+        also_s: Further path times under which the pack lists the same picture: the corners of the path next to it. Without them,
+            the picture nearest in time to an actor at a corner could be one with the heading of the other leg.
     """
 
     time_s: float
@@ -101,7 +104,8 @@ class _Places:
     def distinct(self, coarseness: float) -> dict[int, list[int]]:
         """Return the indices of samples that differ visibly from the previous one, at least one for each leg of the path.
 
-        The values for the first and the last sample of a leg contain the index of the leg's start and end.
+        Each value lists further samples that share the picture: the start of the leg for the leg's first chosen sample, and the end
+        of the leg for its last one.
         """
         chosen: dict[int, list[int]] = {}
         for leg in np.unique(self.legs):
@@ -146,7 +150,7 @@ def _corners(actor: SceneActor, places: _Places, k: int, sun: Floats | None) -> 
 
 
 def _view(corners: Floats, viewpoint: SceneViewpoint, band: Band) -> Perspective | None:
-    """Return the smallest view of points; None if it leaves the band or is too small, or if the camera is too close."""
+    """Return a view that just contains all corners; None if it leaves the band or is too small, or if the camera is too close."""
     offset = corners - np.array(viewpoint.position_m)
     aim = offset.mean(axis=0)
     for _ in range(3):

@@ -28,7 +28,10 @@ SPRITE_CODING = 62
 MAX_BASE_CODING = 94
 MIN_BASE_CODING, MIN_TILE_CODING = 74, 48
 CODING_STEP = 4
-"""Encoder qualities of sprites, the base panorama and tiles, and the step by which they are reduced."""
+"""Encoder qualities: of sprites, the highest of the base panorama, and the lowest of the base panorama and of tiles.
+
+The qualities of the base panorama and of tiles are reduced in steps of ``CODING_STEP`` until the pack meets its size limit.
+"""
 
 MANIFEST_BYTES = 400_000  # bytes reserved for the manifest
 

@@ -14,7 +14,9 @@ Mask = NDArray[np.bool_]
 
 
 def ssim(a: Picture, b: Picture, mask: Mask | None = None) -> float:
-    """Return the mean structural similarity of two ``(H, W, 3)`` RGB pictures in grey, over the pixels of ``mask`` if given.
+    """Return the mean structural similarity of the grey versions of two ``(H, W, 3)`` RGB pictures.
+
+    If ``mask`` is given, only its pixels count.
 
     Wang et al., "Image quality assessment: from error visibility to structural similarity", 2004, with a uniform 7x7 window and
     sample covariance. The border, where the window does not fit, is excluded.

@@ -18,7 +18,10 @@ SHADOW_GAMMA = 0.5
 """Gamma applied to shadows, because they are rendered in linear light but drawn over display values."""
 
 FAINT = 0.04
-"""Shadows weaker than this are removed, so that the faint shade around a body does not extend to the border of its picture."""
+"""Opacity below which shadows are removed.
+
+Without this limit, the faint shade around a body would extend to the border of its picture.
+"""
 
 FEATHER_SHARE = 0.06
 """Share of a sprite's size over which the shadow fades towards the border of its picture."""

@@ -31,17 +31,23 @@ WIDE_FOCAL_PX, TELE_FOCAL_PX = 897.0, 5212.0
 """Focal lengths of a frame 1280 pixels wide, at both ends of the zoom."""
 
 SMALL_SIDE_PX = 60.0
-"""An instance is a target only if its longer side is shorter than this at the widest zoom."""
+"""An instance is a target only if its longer side is shorter than this many pixels at the widest zoom."""
 
 MIN_TELE_SIDE_PX, MIN_TELE_AREA_PX = 12.0, 70.0
-"""An instance is a target only if its shorter side and its area are at least these at the closest zoom. It can then be counted."""
+"""An instance is a target only if its shorter side and its area reach these numbers of pixels at the closest zoom.
+
+A smaller one could not be counted even there.
+"""
 
 SMALL_CAPS_PX = 20.0
-"""A text is a target only if its capitals are lower than this at the widest zoom."""
+"""A text is a target only if its capitals are lower than this many pixels at the widest zoom."""
 
 MIN_TELE_CAPS_PX = 12.0
 MAX_READING_ANGLE_DEG = 58.0
-"""A text is a target only if its capitals reach this height at the closest zoom, and its reading angle is at most this."""
+"""A text is a target only if its capitals reach this height in pixels at the closest zoom.
+
+In addition, the angle between its normal and the line of sight must be at most this many degrees.
+"""
 
 Mask = NDArray[np.bool_]
 

@@ -49,10 +49,10 @@ class PoseReport:
 
 
 def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None) -> list[tuple[str, Pose]]:
-    """Draw ``wide`` poses at the widest zoom, and ``zoomed`` poses on tiles at 2x to 5x, for all viewpoints in turn.
+    """Draw ``wide`` poses at the widest zoom, and ``zoomed`` poses at 2x to 5x that show tiles. Viewpoints take turns.
 
-    Half of the poses are at places that are hard to re-project: a sign, foliage, or the ground far below. The others are spread
-    over all pans and tilts at the widest zoom, and on random tiles when zoomed in.
+    Half of the poses show what is hard to re-project: a sign, foliage, or the ground far below. The others are spread over all
+    pans and tilts at the widest zoom, and show random tiles when zoomed in.
     """
     rng, limits = random.Random(seed), Limits()
     names = [v.name for v in scene.file.viewpoints] if viewpoints is None else viewpoints

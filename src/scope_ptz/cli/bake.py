@@ -44,7 +44,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
     """Bake a scene's packs and compare them with live renders. An interrupted bake is resumed.
 
     Returns:
-        The exit code: 1 if a pack differs too much from its scene, but always 0 for drafts.
+        The exit code: 1 if a pack differs too much from the live renders, but always 0 for drafts.
     """
     settings, console = load_settings(), Console(highlight=False)
     _check_scene_name(source)

@@ -233,7 +233,7 @@ class ModelFlags:
     ] = None
 
     def options(self, pair: str | None = None) -> ModelOptions:
-        """Return these flags as the options that ``factory.resolve_models`` accepts.
+        """Return these flags as the options that ``factory.models.resolve_models`` accepts.
 
         Args:
             pair: Name of a pair, for commands that take it as an argument.
@@ -275,7 +275,7 @@ class PairFlags(ModelFlags, _PairFlag):
     """The options of ``ModelFlags`` and ``--pair``, which comes first in the help."""
 
     def options(self, pair: str | None = None) -> ModelOptions:
-        """Return these flags as the options that ``factory.resolve_models`` accepts."""
+        """Return these flags as the options that ``factory.models.resolve_models`` accepts."""
         return super().options(pair or self.pair)
 
 

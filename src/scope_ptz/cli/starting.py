@@ -18,8 +18,8 @@ _DEFERRED = {"rich.markdown": "Markdown", "rich.traceback": "Traceback"}
 def collector_paused() -> Iterator[None]:
     """Pause the garbage collector while modules are imported.
 
-    Imports create many objects and hardly any garbage. Garbage collection during imports would take a tenth of the time of
-    ``scope ask``.
+    Imports create many objects and hardly any garbage. Otherwise, garbage collection during imports would account for
+    a tenth of the run time of ``scope ask``.
     """
     if not gc.isenabled():
         yield
@@ -34,8 +34,8 @@ def collector_paused() -> Iterator[None]:
 def prepare_help(arguments: list[str]) -> None:
     """Import the modules that render help pages, if help is requested.
 
-    Typer also imports Rich's modules for Markdown and tracebacks. Help pages do not use them, but importing them takes half of
-    the time of ``scope --help``. Therefore, they are imported on first use.
+    Typer also imports Rich's modules for Markdown and tracebacks. Help pages do not use them, but importing them takes half the
+    run time of ``scope --help``. Therefore, they are imported on first use.
     """
     if arguments and _HELP_OPTIONS.isdisjoint(arguments):
         return

@@ -14,7 +14,7 @@ def plain(text: str) -> str:
 
 
 def shortened(text: str, limit: int = MAX_SHOWN_CHARS) -> str:
-    """Truncate a text to a number of characters, and append its full length."""
+    """Truncate a text that is longer than a number of characters, and append its full length."""
     return text if len(text) <= limit else f"{text[:limit].rstrip()}… ({len(text)} characters)"
 
 

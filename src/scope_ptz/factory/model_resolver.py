@@ -234,7 +234,8 @@ def read_pair(registry: Registry, text: str) -> tuple[str, str]:
 
     Args:
         registry: The known models and pairs.
-        text: The name of a pair, ``PLANNER+PERCEPTION``, or one model that does both. Both parts may be built in or plug-ins.
+        text: The name of a pair, ``PLANNER+PERCEPTION``, or one model that does both. Either part may be built in or
+            come from a plug-in.
 
     Raises:
         UnknownNameError: A name is unknown.

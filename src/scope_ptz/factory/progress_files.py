@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.engine.entries import Entry
     from scope_ptz.bench.scoring.trials import Trial
 
-MAX_NOTES = 20
+MAX_NOTES = 20  # newest notes that the state contains
 
 
 class ProgressFiles(EvaluationProgress):

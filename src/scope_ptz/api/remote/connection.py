@@ -1,4 +1,4 @@
-"""Send requests to a server, and translate its errors to those of a camera session."""
+"""Send requests to a ``scope serve`` server, and convert its errors to the exceptions of a local session."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from scope_ptz.settings import load_settings
 
 TIMEOUT = httpx2.Timeout(30.0, connect=10.0)
 NO_TIMEOUT = httpx2.Timeout(None, connect=10.0)
-"""Timeouts of requests that carry out instructions and tools, which may take any time."""
+"""Timeouts of requests that move the camera, start a run or call a tool. The reply may take any length of time."""
 
 MAX_REPLY_BYTES = 64_000_000  # longer replies are rejected
 
@@ -40,6 +40,7 @@ _ERRORS: Mapping[str, type[ScopeError]] = {
     "not_stored": TraceError,
     "perception_failed": PerceptionError,
 }
+"""Exceptions by error code of the API. Except for ``unknown``, codes that are not listed raise ``CameraError``."""
 
 
 class RemoteNameError(UnknownNameError):
@@ -88,7 +89,7 @@ class Connection:
         await self._client.aclose()
 
     async def ask(self, method: str, path: str, body: Mapping[str, Any] | None = None, *, no_timeout: bool = False) -> Any:
-        """Send a request and return the JSON of its reply; None for an empty one.
+        """Send a request and return its reply, parsed as JSON; None if the reply is empty.
 
         Args:
             method: The HTTP method.

@@ -71,7 +71,7 @@ class RemoteSession(AsyncScope):
         try:
             await self._connection.ask("DELETE", "~/control")
         except ScopeError:
-            pass  # an unreachable server has nothing to release
+            pass  # the session can be closed even if the server does not answer
         finally:
             await self._connection.close()
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 gold_app = typer.Typer(help="Make and check gold runs: runs with one known fault each.", no_args_is_help=True)
 UNSEEN_VARIATIONS = (7, 8, 9)
-"""Variations of the scenes in the published unseen split."""
+"""Numbers of the scene variations in the published unseen split."""
 
 
 def build(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.tasks.task import Task
     from scope_ptz.simulator.pack import Scene
 
-MAX_STEPS = 200
+MAX_STEPS = 200  # number of steps after which a run ends
 
 
 def human(
@@ -72,7 +72,7 @@ class _Session:
         return self.out / task.id
 
     def _trace(self, task: Task) -> Trace | None:
-        """Return the finished run of a task, or None."""
+        """Return the trace of a finished task; None if the task is not finished."""
         from scope_ptz.agent.trace import read_trace
 
         try:
@@ -82,7 +82,7 @@ class _Session:
         return trace if trace.ended is not None else None
 
     def _do_task(self, task: Task) -> TaskLeftError | None:
-        """Let the person solve one task. The folder of an unfinished run is removed."""
+        """Let the person do one task, and return the error that ended it unfinished, if any. An unfinished run is not stored."""
         import anyio
 
         folder = self._folder(task)

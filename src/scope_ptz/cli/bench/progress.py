@@ -24,7 +24,7 @@ from scope_ptz.factory.evaluation_options import EvaluationPlan, EvaluationProgr
 
 PRINT_EVERY_S = 15.0
 """Seconds between two lines of progress if the output is not a terminal."""
-MAX_RUNNING_SHOWN = 6
+MAX_RUNNING_SHOWN = 6  # runs in progress that are named below the table
 RULE_BASED_NOTE = (
     "This is the built-in rule-based planner: a baseline and a check of the installation, not the result of a model.\n"
     "To score a model, run: scope bench run --planner-url http://HOST:PORT/v1 (scope models lists models)."

@@ -24,12 +24,15 @@ if TYPE_CHECKING:
 
 MIN_WIDTH_FOR_CATEGORIES = 160
 """Minimum terminal width, in characters, for a column per category."""
-PAIR_COLUMN_WIDTH = 36
+PAIR_COLUMN_WIDTH = 36  # minimum width, in characters, of the column with the names of pairs
 
 
 @dataclass(frozen=True, kw_only=True)
 class ServerFlags(ModelFlags):
-    """Model server options that apply to all pairs. The pairs themselves name the planner and perception."""
+    """Options for model servers that apply to all pairs.
+
+    The options of ``ModelFlags`` that name models are removed, because the pairs name them.
+    """
 
     planner: ClassVar[None] = None  # type: ignore[misc]
     perception: ClassVar[None] = None  # type: ignore[misc]

@@ -1,4 +1,4 @@
-"""``scope camera capture``: capture a twin of a site with its camera."""
+"""``scope camera capture``: capture the site of a camera as a scene."""
 
 from __future__ import annotations
 
