@@ -81,7 +81,7 @@ class PathPosition:
     """The position of an actor on its path.
 
     Attributes:
-        path_s: Path time in seconds: the scene time since the actor last began its path, which repeats.
+        path_s: Path time in seconds, which starts again at 0 after each period of the path.
         walked_m: Distance from the start of the path, along the path.
         position_m: Ground point (3,) in world coordinates.
     """

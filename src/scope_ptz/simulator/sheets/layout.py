@@ -15,9 +15,9 @@ BORDER_PX = 2
 """Border around every slot in pixels: one for the bilinear neighbour, one for rounding."""
 
 HEIGHT_CLASS_PX = 32
-"""Tile heights are rounded up to a multiple of this for sorting.
+"""If tiles are ordered by direction, their heights are first rounded up to a multiple of this.
 
-Tiles with the same rounded height are sorted by direction, so that neighbouring tiles lie next to each other.
+Tiles with the same rounded height and scale can then lie next to their neighbours in the scene.
 """
 
 Size = tuple[int, int]
@@ -55,13 +55,15 @@ class Layout(NamedTuple):
 
 
 def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[float] | None = None) -> Layout:
-    """Place the pictures on shelves of decreasing height, and widen the sheet until its height is within the limit.
+    """Place the pictures side by side on shelves, and widen the sheet until its height is within the limit.
+
+    Without ``pans_deg``, pictures are placed in order of decreasing height.
 
     Args:
         sizes: Width and height of the panorama and of each tile.
         scales: Sizes of each picture on the sheet, relative to its full size.
-        pans_deg: Pan angles of the tiles. If given, tiles are ordered by scale and direction, so that a shelf holds tiles that
-            are seen together, and the panorama has separate shelves.
+        pans_deg: Pan angles of the tiles. If given, tiles are ordered by rounded height, scale and pan, so that a shelf holds tiles
+            that are seen together, and the panorama has separate shelves.
 
     Raises:
         PackError: The pictures do not fit.
@@ -69,14 +71,14 @@ def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[f
     scaled = [[(max(1, round(w * s)), max(1, round(h * s))) for s in scales] for w, h in sizes]
     flat = [(i, k) for i, sized in enumerate(scaled) for k in range(len(sized))]
 
-    def by_decreasing_height(at: tuple[int, int]) -> tuple[float, ...]:
+    def sort_key(at: tuple[int, int]) -> tuple[float, ...]:
         i, k = at
         height = scaled[i][k][1]
         if pans_deg is None:
             return (-height,)
         return (0.0, -height) if i == 0 else (1.0, -(-height // HEIGHT_CLASS_PX), k, pans_deg[i - 1])
 
-    flat.sort(key=by_decreasing_height)
+    flat.sort(key=sort_key)
     sheet_width = max(w for sized in scaled for w, _ in sized) + 2 * BORDER_PX
     while sheet_width <= MAX_SIDE_PX:
         rows = _rows(flat, scaled, sheet_width, apart=pans_deg is not None)
