@@ -24,6 +24,7 @@ SAME = (
 
 _CONCLUDING_WORDS = frozenset({"so", "therefore", "thus", "hence", "answer", "overall", "conclusion"})
 _MARKED_NONE = ("none", "0", "zero")
+"""Marks that say that a named thing is absent, as in "bins: none"."""
 _ALL = re.compile(r"\b(all|everything|both|each|every)\b")
 
 
@@ -165,7 +166,7 @@ _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "ra
 
 
 def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
-    """Return the mentions that describe only a part of a thing or its base, such as "yellow" in "blue, with a yellow top"."""
+    """Return the mentions that describe only a part of a thing or what it stands on: "yellow" in "blue, with a yellow top"."""
     parts = list[NameMention]()
     for at, mention in enumerate(mentions):
         after = text.words[mention.end : mention.end + 1]

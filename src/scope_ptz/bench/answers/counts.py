@@ -96,7 +96,7 @@ def _wholes(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMe
 
 
 def _breakdown(text: AnswerText, numbers: Sequence[NumberMention]) -> bool | None:
-    """Return whether the numbers after a colon or in brackets add up to the first number, or differ by it.
+    """Return whether the numbers after a colon or in brackets result in the first number, as a sum or as a difference.
 
     Examples: "7: 5 bollards, 2 cones", "4 more (7 to 3)", "4 more: 7 cones, 3 bollards", "by 4: 7 cones against 3".
 

@@ -1,4 +1,4 @@
-"""Parse a written figure, such as a price. It must be the only number in the answer."""
+"""Parse an answer that should report a written figure, such as a price. The answer must state exactly one number."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
     """Parse the number in an answer and write it with as many decimals as the expected figure.
 
     Returns:
-        The figure, ``Unreadable`` if it is unclear, or None if the answer contains no plain number.
+        The figure, ``Unreadable`` if it is unclear, or None if the answer contains no number or joins letters to digits ("O.95").
     """
     figure = _FIGURE.fullmatch(expected.accepted[0])
     places = len(figure.group(1) or "") if figure else 0

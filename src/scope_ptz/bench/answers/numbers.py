@@ -16,7 +16,7 @@ _LABELS = frozenset({
     "zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "reading",
     "marked", "labelled", "saying", "view", "picture", "image", "frame",
 })  # fmt: skip
-"""Words before digits that are a label, as in "preset 3"."""
+"""Words that show that the digits after them are a label, as in "preset 3"."""
 _BARE_AFTER = frozenset({
     "are", "is", "were", "was", "in", "on", "at", "of", "and", "or", "here", "there", "visible", "altogether", "overall",
     "by", "near", "to", "from", "out", "all", "now", "currently", "seen", "mentions", "present", "so", "then", "as", "but",

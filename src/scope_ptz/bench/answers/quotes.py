@@ -55,7 +55,7 @@ def quotes_of(text: str) -> list[Quote]:
 
 
 def _close(text: str, start: int, end: int, quotes: list[Quote]) -> None:
-    """Add a closed quote and drop the quotes inside it. If it is a sentence about a text, keep the inner quotes instead."""
+    """Add a closed quote and drop the quotes inside it. If it is a sentence that itself reports a text, keep these instead."""
     within = [quote for quote in quotes if quote.start > start]
     rest = text[start + 1 : end - 1]
     for quote in within:
@@ -68,7 +68,10 @@ def _close(text: str, start: int, end: int, quotes: list[Quote]) -> None:
 
 
 def reported_quotes(quotes: list[Quote], text: str) -> list[Quote]:
-    """Return the quotes that report text from a sign. Denied readings, preset names and names of signs are left out."""
+    """Return the quotes that report text from a sign. Denied readings, preset names and names of signs are left out.
+
+    The last quote is not taken for a name: unless it is denied, it is returned.
+    """
     readings = list[Quote]()
     for number, quote in enumerate(quotes):
         before = text[quotes[number - 1].end if number else 0 : quote.start]

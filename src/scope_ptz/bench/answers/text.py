@@ -25,6 +25,8 @@ _A_OR_THE = frozenset({"a", "an", "the"})
 _ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
 _SUBJECTS = frozenset({"it", "they", "there", "i", "we", "this", "that"})
 _STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
+"""Words that end the effect of a negation before them."""
+
 _HEDGES = re.compile(
     r"\b((yes|no) if|maybe|perhaps|possibly|might|may|conceivably|i guess|just a guess|at a guess|or so|could (be|have)"
     r"(?! (found|seen|detected|made|spotted|identified|located)))\b"
@@ -178,7 +180,7 @@ class AnswerText:
         return ("or" in rest or "nor" in rest) and not (set(segment_words) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
 
     def _opens_denied_list(self, at: int) -> bool:
-        """Return whether the segment that ends at a word is denied and is more than a bare "no"."""
+        """Return whether the segment that ends at position ``at`` contains a negation and is more than a bare "no"."""
         return at > 0 and self.words[at].text not in NEGATORS and self._is_denied_before(at)
 
     def is_denied_after(self, end: int) -> bool:

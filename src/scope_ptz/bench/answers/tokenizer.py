@@ -21,6 +21,8 @@ _IDIOMS = (
     "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
     "needless to say", "as you can see", "not surprisingly", "no question", "no mistake", "even so", "even though",
 )  # fmt: skip
+"""Phrases that are removed, because the parser would misread their words, such as the "no" in "no doubt"."""
+
 _CONTRACTIONS = (
     (re.compile(r"\bcan'?t\b|\bcannot\b"), "can not"),
     (re.compile(r"\bwon't\b"), "will not"),
@@ -53,7 +55,10 @@ class Word:
 
 
 def clean(text: str) -> str:
-    """Return a text without markup and source notes, and with plain quotation marks, dashes and spaces. Its case is preserved."""
+    """Return a text without markup, and with plain quotation marks, dashes and spaces. Its case is preserved.
+
+    Notes about the source, such as "(seen by ...)", are removed too.
+    """
     text = unicodedata.normalize("NFKC", "".join(_plain_letter(letter) for letter in text))
     text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
     text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
@@ -66,7 +71,11 @@ def clean(text: str) -> str:
 
 
 def _plain_letter(letter: str) -> str:
-    """Return a character without formatting. Digits of any script become 0 to 9; superscripts and fractions are set apart."""
+    """Return a character without formatting.
+
+    Digits of any script become 0 to 9. A superscript gets a "^" before it and a fraction a space, so that they do not join the
+    digits before them.
+    """
     kind = unicodedata.category(letter)
     if kind == "Cf":
         return ""
