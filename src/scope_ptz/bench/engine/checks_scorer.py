@@ -36,7 +36,9 @@ from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.scoring.verdict import Headline
 
 CHECKS = "checks"
+"""Name of the scorer in a log."""
 TRIAL = "trial"
+"""Metadata key under which a score stores the trial."""
 _VALUES: Mapping[Headline, str] = {"correct": CORRECT, "incorrect": INCORRECT, "unscored": NOANSWER}
 
 

@@ -165,7 +165,7 @@ def _all_perception_failed(case: _Case) -> bool:
 
 
 def _was_left_unanswered(case: _Case) -> bool:
-    """Return whether only coverage failed, because perception could not answer a correct question about the right view."""
+    """Return whether, apart from the answer, only coverage failed: perception could not answer a question about the right view."""
     wrong = {check.name for check in case.verdict.checks if check.passed is False} - {"answer", "outcome"}
     observations = [replace(observation, known=True) for observation in case.episode.observations]
     return wrong == {"coverage"} and all(
@@ -174,7 +174,7 @@ def _was_left_unanswered(case: _Case) -> bool:
 
 
 def _was_misled(case: _Case) -> bool:
-    """Return whether the camera missed the target because perception located nothing or the wrong thing for a right description."""
+    """Return whether the camera missed the target because perception found nothing or the wrong thing for a right description."""
     required = case.task.behaviour.calls
     if not case.acted_wrongly or (case.verdict.failed("calls") and _missing_call(case, required, {"found"}) is not None):
         return False

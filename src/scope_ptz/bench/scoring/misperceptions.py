@@ -116,6 +116,7 @@ def _is_as_narrow(view: EvidenceView, observation: Observation) -> bool:
 
 
 def _reach_deg(view: EvidenceView) -> float:
+    """Return the angle between the centre of a view's reference frame and its corners."""
     half = math.tan(math.radians(view.hfov_deg) / 2)
     return math.degrees(math.atan(half * math.hypot(1.0, 1 / view.aspect)))
 
