@@ -21,7 +21,9 @@ _OPPOSITES = (
 _COUNTING = frozenset({"more", "most", "fewer", "fewest", "less", "least"})
 """Comparatives that may precede the noun that they count ("fewer skips")."""
 _REFERENCE_WORDS = frozenset({"than", "versus", "vs", "against"})
+"""Words that introduce the reference of a comparative."""
 _PREPOSITIONS = frozenset({"of", "from", "to"})
+"""Words that introduce the reference shortly after a comparative, as in "left of B" and "closest to B"."""
 
 
 def directions(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:

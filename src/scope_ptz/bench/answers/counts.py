@@ -159,10 +159,12 @@ def _operands(text: AnswerText, numbers: Sequence[NumberMention]) -> list[Number
 
 
 _SIGN = re.compile(r"\s*[-–+*/×·⋅÷^⁄]\s*")
+"""An arithmetic sign between two numbers."""
 _ARITHMETIC = re.compile(
     r"^((plus|minus|times|over|less|add|subtract|mod|modulo|x)|(multiplied|divided) by|(raised )?to the( power( of)?)?|"
     r"(more|fewer|less) than|short of|subtracted from|added to|plus or minus|give or take)$|\b(plus|minus|times)$"
 )
+"""Words between two numbers that make them the operands of a calculation."""
 
 
 def _names_exactly_one(text: AnswerText, unit: Sequence[str]) -> bool:

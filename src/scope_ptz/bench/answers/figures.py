@@ -12,8 +12,11 @@ from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
 
 _FIGURE = re.compile(r"[£$€]?\s*\d+(?:\.(\d+))?")
+"""A figure with or without a currency sign. The group contains its decimals."""
 _PENCE = re.compile(r"(?<![\d.,])(\d{1,2})\s?(?:p|pence)\b", re.IGNORECASE)
+"""An amount in pence, which is converted to pounds."""
 _MIXED = re.compile(r"[^\W\d_][.,]?\d|\d[.,]?[^\W\d_]")
+"""A letter joined to a digit, as in "O.95"."""
 _MEASURE = re.compile(r"(?<![\w.,])\d+(?:\.\d+)?(?:x|m|km|cm|s|st|nd|rd|th|px)\b", re.IGNORECASE)
 """Digits with a unit or an ordinal ending: 3x, 1st."""
 

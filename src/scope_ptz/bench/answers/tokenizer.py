@@ -12,11 +12,14 @@ _SPELLINGS = {
     "color": "colour", "gray": "grey", "center": "centre", "meter": "metre", "tire": "tyre", "curb": "kerb",
     "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
 }  # fmt: skip
+"""British spellings of American words."""
 _MEASURES = {"°": "degree", "deg": "degree", "%": "percent", "m": "metre", "km": "kilometre", "s": "second", "sec": "second"}
+"""Names of the units that may follow a number as signs or abbreviations."""
 _IRREGULAR = {
     "people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person",
     "loaves": "loaf", "shelves": "shelf", "leaves": "leaf", "knives": "knife",
 }  # fmt: skip
+"""Singular forms of irregular plurals."""
 _IDIOMS = (
     "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
     "needless to say", "as you can see", "not surprisingly", "no question", "no mistake", "even so", "even though",
@@ -31,9 +34,11 @@ _CONTRACTIONS = (
     (re.compile(r"\b(i|we|you|they)'(m|re|ve|d|ll)\b"), r"\1"),
     (re.compile(r"(?<=\d)\+(?!\s*\d|\w)"), " or more"),
 )
+"""Patterns of contractions and of "3+", with their replacements."""
 _WORD = re.compile(r"\d+(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?|[^\W\d_]+(?:'[^\W\d_]+)*|[°%]")
 _TAGS = re.compile(r"</?(?:b|i|u|em|strong|p|br|code|answer)\s*/?>", re.IGNORECASE)
 _LIST_NUMBER = re.compile(r"^\s*(\d{1,3})[.)]\s+", re.MULTILINE)
+"""The number of a list item at the beginning of a line."""
 _CLAUSE_END = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
 
 

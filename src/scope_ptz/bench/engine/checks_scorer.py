@@ -40,6 +40,7 @@ CHECKS = "checks"
 TRIAL = "trial"
 """Metadata key under which a score stores the trial."""
 _VALUES: Mapping[Headline, str] = {"correct": CORRECT, "incorrect": INCORRECT, "unscored": NOANSWER}
+"""Inspect's score value for each headline. A run with an infrastructure failure has no value."""
 
 
 @metric(scores="unreduced")

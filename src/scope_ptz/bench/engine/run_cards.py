@@ -15,6 +15,7 @@ from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.errors import TraceError
 
 ENGINE = "inspect-ai"
+"""Name of the package that runs evaluations."""
 CARD = "card"
 """Key in a log's metadata for the run card. Logs that Inspect's own command wrote do not have it."""
 SCOPE = "scope"

@@ -29,6 +29,7 @@ BUDGET_CHARS = 60_000
 _ECHO_CHARS = 2_000
 """Maximum length of an invalid reply that is sent back to the judge, in characters. Longer replies are shortened."""
 JudgeMessage = dict[str, Any]
+"""A chat message to a judge, in the OpenAI format."""
 
 
 class Completion(BaseModel):

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 
 NO_MODE = "none"
+"""Value of ``error_mode`` in the reply for a correct run."""
 MAX_REASON_CHARS = 1_000
 """Maximum length of a reason in characters. Longer reasons are cut."""
 _MAX_FAILED_BRACES = 100

@@ -45,6 +45,7 @@ _ENDINGS = {
     "camera_error": "the camera failed",
     "cancelled": "the run was cancelled",
 }
+"""Descriptions of the outcomes of runs."""
 
 
 def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:

@@ -19,6 +19,7 @@ SLACK_S = 0.5
 BROKEN_OUTCOMES = ("camera_error", "cancelled", "planner_error")
 """Outcomes of runs that infrastructure may have broken. The model itself may also cause a planner error."""
 PERCEPTION_TOOLS = REGISTRY.perceiving
+"""Names of the tools that call perception."""
 MOVING_NEEDS = frozenset({"move", "zoom", "preset"})
 """Needs of a task for which the camera's viewpoint or pose must change."""
 

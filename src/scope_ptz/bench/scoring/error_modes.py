@@ -36,7 +36,9 @@ class ErrorMode(StrEnum):
 
 
 _OBSERVING_TOOLS = frozenset({"count_objects", "query_answer"})
+"""Tools that only observe."""
 _MOVING_TOOLS = frozenset({"adjust_ptz", "go_to_preset", "go_home"})
+"""Tools that move the camera without searching for anything."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,3 +247,4 @@ _RULES: tuple[tuple[ErrorMode, Callable[[_Case], bool]], ...] = (
     (ErrorMode.VLM_COUNTING, _miscounted),
     (ErrorMode.VLM_QUERY, _misread),
 )
+"""The rules in their order. The first rule that applies decides; if none applies, the mode is ``REASONING``."""

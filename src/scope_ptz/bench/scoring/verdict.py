@@ -20,6 +20,7 @@ from scope_ptz.tools.registry import TOOLS
 Headline = Literal["correct", "incorrect", "unscored", "infrastructure"]
 """The categories of results. "unscored": a check could not decide; "infrastructure": a failure outside the agent."""
 MOVING_TOOLS = TOOLS.moving
+"""Names of the tools that can move the camera."""
 AGENT_FAILURES = frozenset({"empty", "context-overflow"})
 """Kinds of planner failures that count against the agent: an empty reply and a context overflow."""
 

@@ -37,6 +37,7 @@ from scope_ptz.planner.chat.schemas import plain_schemas
 from scope_ptz.tools.registry import schemas
 
 Record = Started | Decided | Called | Ended
+"""A record of a trace."""
 
 _BRIEFING: TypeAdapter[Briefing] = TypeAdapter(Briefing)
 
