@@ -41,7 +41,7 @@ _CROSS = re.compile(r"[\s:|–—-]*[❌✗✘✖]\ufe0f?")
 
 
 def is_denied_jointly(words: Sequence[Word], start: int, end: int) -> bool:
-    """Return whether a thing is denied together with other things, such as the bin in "the bin and the drum are not visible"."""
+    """Return whether a thing is denied together with things named after it: the bin in "the bin and the drum are not visible"."""
     before = {w.text for w in words[:start] if w.segment == words[start].segment}
     if (_STATING_WORDS - {"but"}).intersection(before):
         return False

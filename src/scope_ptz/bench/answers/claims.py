@@ -10,7 +10,7 @@ from scope_ptz.bench.answers.tokenizer import Word
 
 
 class Claim(Enum):
-    """The claim that an answer makes by naming a thing.
+    """What an answer claims about a thing when it names it.
 
     ``STATED``: the sentence states something about the thing; whether it is denied is determined separately. ``FOUND`` and
     ``MISSED``: the result of a search. ``NOTHING``: the thing is only searched for or asked about.

@@ -62,7 +62,7 @@ def _total(text: AnswerText, numbers: Sequence[NumberMention]) -> float | str | 
 
 
 def _single_number(text: AnswerText, unit: Sequence[str], numbers: Sequence[NumberMention]) -> float | str:
-    """Return the only number of an answer without totals, or why there is none."""
+    """Return the only number of an answer that states no total, or why there is no such number."""
     definite = _definite(numbers)
     values = {n.value for n in definite}
     if _is_denied(text, unit) and not any(n.counts_unit for n in definite):

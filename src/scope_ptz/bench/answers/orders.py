@@ -49,7 +49,15 @@ def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
 def _stated_order(
     text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention], order: list[str], start: int
 ) -> tuple[str, ...] | str:
-    """Return the stated order, or the reason why there is none."""
+    """Return the stated order, or the reason why there is none.
+
+    Args:
+        text: The answer.
+        mentions: The mentions of options in the final order.
+        ends: The mentions of the words for the ends of the order, named "first" and "last".
+        order: The options in the order in which the answer names them. It may be reversed in place.
+        start: Position of the word where the final order begins.
+    """
     than_count = sum(w.text == "than" for w in text.words[start:])
     if 0 < than_count < len(order) - 1:
         return "only some of them are compared"

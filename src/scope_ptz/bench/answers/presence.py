@@ -66,7 +66,7 @@ def _short_answers(text: AnswerText) -> set[bool]:
 
 
 def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
-    """Parse an answer as yes or no, from words such as "yes" and from statements. Contradictions are unreadable."""
+    """Parse an answer as yes or no, from words such as "yes" and from statements. A contradictory answer is unreadable."""
     verdicts = verdict_words(text) | _short_answers(text)
     if not verdicts and is_half_unclear(text, expected.affirms):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")

@@ -78,7 +78,7 @@ def same_text(one: str, other: str, *, ocr: bool) -> bool:
 
 
 def normalized_text(text: str, ocr: bool) -> str:
-    """Return a text in lower case without punctuation and spaces; with ``ocr`` look-alike characters are unified."""
+    """Return a text in lower case without punctuation and spaces. With ``ocr``, characters that look alike become the same one."""
     words = re.findall(r"[^\W_]+", re.sub(r"(?<=\w)'(?=\w)", "", clean(text).lower()))
     joined = "".join(_DIGITS.get(word, word) for word in words)
     return joined.translate(_LOOK_ALIKES) if ocr else joined

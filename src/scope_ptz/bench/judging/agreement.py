@@ -76,7 +76,7 @@ class RaterPair:
 
 @dataclass(frozen=True)
 class RaterGroup:
-    """The agreement of several raters on the runs that all of them rated.
+    """The agreement of a group of raters on the runs that all of them rated.
 
     ``title`` describes the group, such as "people". ``left_out`` is the number of runs that only some of the raters rated.
     """

@@ -103,7 +103,7 @@ class ReportRun:
 
     @property
     def task_set(self) -> tuple[str, str]:
-        """Dataset and split. Runs of one task set are comparable."""
+        """The dataset and the split. Only runs of the same task set are compared."""
         return self.evaluation.card.dataset, split_name(self.evaluation.card.split)
 
     @property
@@ -267,7 +267,7 @@ def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
 
 
 def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """Return one run per system: the run with the most scored trials. Ties are resolved by order."""
+    """Return one run per system: the run with the most scored trials, or the first of several such runs."""
     best: dict[tuple[str, str, str, str], ReportRun] = {}
     for run in runs:
         if run.system not in best or len(run.scored_trials) > len(best[run.system].scored_trials):

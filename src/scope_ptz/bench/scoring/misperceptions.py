@@ -65,7 +65,7 @@ def wrong_reads(task: Task, episode: Episode) -> bool:
 
 
 def _answers_wrongly(view: EvidenceView, observation: Observation, call: EpisodeCall) -> bool:
-    """Return whether a reply is wrong about a view. If the question names one of several things, only that thing is checked."""
+    """Return whether a reply is wrong about an evidence view. If its question names one of several things, only that is checked."""
     thing = _thing_asked_about(view, observation.asked)
     if thing is None:
         return _misreads(view.shows, call)
