@@ -29,6 +29,7 @@ Ask = Callable[[str], str]
 """Shows a prompt to the person and returns the typed line. Raises ``EOFError`` at the end of the input."""
 T = TypeVar("T")
 _FINAL_REPLIES = {"answer": "answered", "question": "clarification", "refuse": "refused"}
+"""Commands that end a task, and the outcomes that they record."""
 
 
 class TaskLeftError(Exception):

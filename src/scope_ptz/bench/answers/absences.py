@@ -14,16 +14,19 @@ _ABSENT_REMARK = re.compile(
     r"not (currently |clearly |actually )?(visible|present|seen|found|there|detected|in (view|sight))\b|"
     r"(absent|missing|none|invisible)\b"
 )
+"""Remarks that say that a list item is absent."""
 _OTHER_THINGS = (
     r"(?P<others>(?:\w+ ){0,8}?(?:"
     r"(?:and|or|nor) (?:\w+ ){1,5}?(?=(?:are|were|can|could|do)\b)|"
     r"(?:or|nor) (?:\w+ ){1,5}?(?=(?:is|was)\b)))"
 )
+"""The further things of a joint denial, such as "and the drum" in "the bin and the drum are not visible"."""
 _ARE_NOT = (
     r"\w+ (?:(?:all |both |completely )?(?:absent|missing|nowhere)\b|"
     r"not(?: (?:currently|actually|now|yet|even|be|been|\w+ly))?"
     r"(?: (?:visible|present|there|seen|found|shown|here|in (?:view|sight))|$))"
 )
+"""The verb of a denial and its predicate, such as "are not visible"."""
 _JOINT_DENIAL = re.compile(_OTHER_THINGS + _ARE_NOT)
 _STATING_WORDS = frozenset({
     "i", "we", "you", "it", "see", "sees", "saw", "seen", "find", "found", "is", "are", "was", "were", "has", "have", "shows",
@@ -34,10 +37,11 @@ _STATING_WORDS = frozenset({
 """Words that already state something about a thing. A denial that follows them is about other things."""
 
 _CROSS = re.compile(r"[\s:|–—-]*[❌✗✘✖]\ufe0f?")
+"""A cross that marks a list item as absent."""
 
 
 def is_denied_jointly(words: Sequence[Word], start: int, end: int) -> bool:
-    """Return whether a thing is denied together with other things, such as the bin in "the bin and the drum are not visible"."""
+    """Return whether a thing is denied together with things named after it: the bin in "the bin and the drum are not visible"."""
     before = {w.text for w in words[:start] if w.segment == words[start].segment}
     if (_STATING_WORDS - {"but"}).intersection(before):
         return False

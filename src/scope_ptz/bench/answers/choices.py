@@ -23,8 +23,11 @@ SAME = (
 """Wordings of equality. They also name an option that is called "same"."""
 
 _CONCLUDING_WORDS = frozenset({"so", "therefore", "thus", "hence", "answer", "overall", "conclusion"})
+"""Words that introduce the conclusion of an answer."""
 _MARKED_NONE = ("none", "0", "zero")
+"""Marks that say that a named thing is absent, as in "bins: none"."""
 _ALL = re.compile(r"\b(all|everything|both|each|every)\b")
+"""Words that refer to all options without naming them."""
 
 
 def parse_choice(expected: Choice, text: AnswerText) -> ParsedAnswer:
@@ -162,10 +165,11 @@ def _is_remark(text: AnswerText, mention: NameMention) -> bool:
 
 
 _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "rather", "actually"})
+"""Words in brackets that introduce an alternative answer rather than a remark."""
 
 
 def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
-    """Return the mentions that describe only a part of a thing or its base, such as "yellow" in "blue, with a yellow top"."""
+    """Return the mentions that describe only a part of a thing or what it stands on: "yellow" in "blue, with a yellow top"."""
     parts = list[NameMention]()
     for at, mention in enumerate(mentions):
         after = text.words[mention.end : mention.end + 1]
@@ -179,7 +183,9 @@ def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[Na
 
 
 _ATTACHED = re.compile(r"\b(with( an?| the| its)?|on an?)$")
+"""Words before a mention that show that it describes a part of a thing or what it stands on."""
 _CONNECTING_WORDS = frozenset({"and", "or", "with", "on", "in", "at", "is", "are", "but"})
+"""Words after a mention that show that it is complete: no noun follows to which it belongs ("yellow top")."""
 
 
 def is_reference(text: AnswerText, mention: NameMention) -> bool:
@@ -212,6 +218,7 @@ _DENIES_ALL = re.compile(
     r"^no (?!(information|data|results?|answers?|response|output|reply|image|idea)\b)\w+\b(?! (is|are) (missing|absent))|"
     r"\bthere (is|are) (no|not any)\b|\b(parts|see|saw|find|sees) (no|nothing)\b"
 )
+"""Denials of everything, such as "no lamps" and "there are no". Phrases such as "no data" are not denials."""
 
 
 def _denies_all(text: AnswerText) -> bool:

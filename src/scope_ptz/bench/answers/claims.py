@@ -10,7 +10,7 @@ from scope_ptz.bench.answers.tokenizer import Word
 
 
 class Claim(Enum):
-    """The claim that an answer makes by naming a thing.
+    """What an answer claims about a thing when it names it.
 
     ``STATED``: the sentence states something about the thing; whether it is denied is determined separately. ``FOUND`` and
     ``MISSED``: the result of a search. ``NOTHING``: the thing is only searched for or asked about.
@@ -60,22 +60,28 @@ _SOUGHT = re.compile(
     r"\b(try|tried|trying|attempt|attempted|need|needed|want|wanted|going|order|asked|told|instructed|wish) to "
     r"(find|locate|spot|see|detect|count|look at)\b"
 )
+"""Phrases that announce a search or a question, such as "I looked for" and "asked about"."""
 _RESULT_WORDS = frozenset({
     "found", "saw", "sees", "spotted", "detected", "but", "so", "then", "yes", "no", "however", "shows", "revealed", "identified",
 })  # fmt: skip
 """Words that end the description of a search and begin its result."""
 
 _STATING_VERBS = frozenset({"see", "find", "is", "are", "was", "were", "has", "have", "there", "reads", "says"})
+"""Verbs after a phrase of search that show that the sentence already states something."""
 _SEEN = re.compile(r"(\w+ ){0,3}?(is|are|was|were) (not )?(visible|present|found|seen|detected|there)\b")
+"""Phrases after a thing that state whether it is visible."""
 _FOUND = re.compile(
     r"(?<!not )\b(found|find|see|saw|spotted|detected|located) (it|one|them|some|both|several|two|three|four|five|six|[1-9]\d*)\b"
 )
+"""Results of a search that found something, such as "found two"."""
 _MISSED = re.compile(
     r"\b(found|find|see|saw|spotted|detected|located) (none|nothing|neither|0|zero)\b"
     r"|\bnot (find|found|see|seen|spot|detect|locate)( (it|one|any|them|either)\b| $)"
     r"|\bwithout (success|finding (it|one|any|them))|\bin vain\b|\bto no avail\b|\bthere (is|are|was|were) none\b"
 )
+"""Results of a search that found nothing, such as "found none" and "without success"."""
 _TOOL_WORDS = frozenset({"tool", "tools", "detector", "function", "query", "request", "search"})
+"""Nouns that turn the name of a thing into that of a tool or a request ("the car detector")."""
 _NO_KNOWLEDGE = re.compile(
     r"\b(no|without|not (?:have|get|got|receive|received|return|returned|give|given|provide|provided)|without any) (?:\w+ ){0,2}?"
     r"(?:information|info|data|results?|answers?|counts?|records?|knowledge|outputs?|response|reports?|details?|idea|reply|figures?|"
@@ -83,3 +89,4 @@ _NO_KNOWLEDGE = re.compile(
 )
 """Phrases that deny knowledge rather than presence, such as "no information about"."""
 _ONLY_CHECKED = re.compile(r"(has|have) (not )?(yet )?been (counted|checked|searched|queried|measured)\b")
+"""Phrases after a thing that say that it was checked, without a result."""

@@ -1,4 +1,4 @@
-"""Find comparatives ("more", "closer"): their direction, the thing that they describe, and its reference."""
+"""Find comparatives ("more", "closer"), the thing that each of them describes, and the thing that this is compared with."""
 
 from __future__ import annotations
 
@@ -16,9 +16,14 @@ _OPPOSITES = (
     ({"leftmost", "left most", "furthest left", "farthest left", "furthest to the left", "farthest to the left"},
      {"rightmost", "right most", "furthest right", "farthest right", "furthest to the right", "farthest to the right"}),
 )  # fmt: skip
+"""Pairs of sets of comparatives with opposite meanings."""
+
 _COUNTING = frozenset({"more", "most", "fewer", "fewest", "less", "least"})
+"""Comparatives that may precede the noun that they count ("fewer skips")."""
 _REFERENCE_WORDS = frozenset({"than", "versus", "vs", "against"})
+"""Words that introduce the reference of a comparative."""
 _PREPOSITIONS = frozenset({"of", "from", "to"})
+"""Words that introduce the reference shortly after a comparative, as in "left of B" and "closest to B"."""
 
 
 def directions(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
@@ -61,7 +66,7 @@ def described_thing(text: AnswerText, comparative: NameMention, things: Sequence
 
 
 def reference_of(text: AnswerText, comparative: NameMention, things: Sequence[NameMention]) -> NameMention | None:
-    """Return the reference of a comparative, such as B in "more than B", "left of B" and "compared with B"."""
+    """Return the reference of a comparative, the thing compared with: B in "more than B", "left of B" and "compared with B"."""
     for mention in (m for m in things if text.words[m.start].clause == text.words[comparative.start].clause):
         between = [w.text for w in text.words[comparative.end : mention.start]] if mention.start > comparative.end - 1 else []
         if set(between) & _REFERENCE_WORDS:

@@ -62,7 +62,7 @@ def _total(text: AnswerText, numbers: Sequence[NumberMention]) -> float | str | 
 
 
 def _single_number(text: AnswerText, unit: Sequence[str], numbers: Sequence[NumberMention]) -> float | str:
-    """Return the only number of an answer without totals, or why there is none."""
+    """Return the only number of an answer that states no total, or why there is no such number."""
     definite = _definite(numbers)
     values = {n.value for n in definite}
     if _is_denied(text, unit) and not any(n.counts_unit for n in definite):
@@ -96,7 +96,7 @@ def _wholes(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMe
 
 
 def _breakdown(text: AnswerText, numbers: Sequence[NumberMention]) -> bool | None:
-    """Return whether the numbers after a colon or in brackets add up to the first number, or differ by it.
+    """Return whether the numbers after a colon or in brackets result in the first number, as a sum or as a difference.
 
     Examples: "7: 5 bollards, 2 cones", "4 more (7 to 3)", "4 more: 7 cones, 3 bollards", "by 4: 7 cones against 3".
 
@@ -159,10 +159,12 @@ def _operands(text: AnswerText, numbers: Sequence[NumberMention]) -> list[Number
 
 
 _SIGN = re.compile(r"\s*[-–+*/×·⋅÷^⁄]\s*")
+"""An arithmetic sign between two numbers."""
 _ARITHMETIC = re.compile(
     r"^((plus|minus|times|over|less|add|subtract|mod|modulo|x)|(multiplied|divided) by|(raised )?to the( power( of)?)?|"
     r"(more|fewer|less) than|short of|subtracted from|added to|plus or minus|give or take)$|\b(plus|minus|times)$"
 )
+"""Words between two numbers that make them the operands of a calculation."""
 
 
 def _names_exactly_one(text: AnswerText, unit: Sequence[str]) -> bool:

@@ -16,7 +16,9 @@ _NONE = re.compile(
     r"|\b(found|find|see|saw|spotted|detected) (none|nothing)( (here|there|visible|in view))?$"
     r"|\bnot (any|one|a single one)( (here|there|visible|in view))?$"
 )
+"""Statements that there is nothing: "none", "nothing is visible", "not a single one". "Nothing was returned" does not match."""
 _OF_OTHERS = re.compile(r"\b(others?|else|elsewhere)\b")
+"""Words that restrict "none" to other things or places ("no others", "nothing else")."""
 
 
 def says_none(text: AnswerText) -> bool:

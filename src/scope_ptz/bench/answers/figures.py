@@ -1,4 +1,4 @@
-"""Parse a written figure, such as a price. It must be the only number in the answer."""
+"""Parse an answer that should report a written figure, such as a price. The answer must state exactly one number."""
 
 from __future__ import annotations
 
@@ -12,8 +12,11 @@ from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
 
 _FIGURE = re.compile(r"[£$€]?\s*\d+(?:\.(\d+))?")
+"""A figure with or without a currency sign. The group contains its decimals."""
 _PENCE = re.compile(r"(?<![\d.,])(\d{1,2})\s?(?:p|pence)\b", re.IGNORECASE)
+"""An amount in pence, which is converted to pounds."""
 _MIXED = re.compile(r"[^\W\d_][.,]?\d|\d[.,]?[^\W\d_]")
+"""A letter joined to a digit, as in "O.95"."""
 _MEASURE = re.compile(r"(?<![\w.,])\d+(?:\.\d+)?(?:x|m|km|cm|s|st|nd|rd|th|px)\b", re.IGNORECASE)
 """Digits with a unit or an ordinal ending: 3x, 1st."""
 
@@ -27,7 +30,7 @@ def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
     """Parse the number in an answer and write it with as many decimals as the expected figure.
 
     Returns:
-        The figure, ``Unreadable`` if it is unclear, or None if the answer contains no plain number.
+        The figure, ``Unreadable`` if it is unclear, or None if the answer contains no number or joins letters to digits ("O.95").
     """
     figure = _FIGURE.fullmatch(expected.accepted[0])
     places = len(figure.group(1) or "") if figure else 0

@@ -14,15 +14,20 @@ _SIDE = (
     r"(on|in|at|to|from) (the |its )?(far |very )?(left|right|upper|lower|top|bottom|other)( hand)?( side| half| part)?\b"
     r"(?! (left|right|corner|quarter|quadrant|of the (?!picture|image|frame|view|photo|scene)))"
 )
+"""A phrase such as "on the left side". Quarters and sides of things other than the picture are not included."""
 _AT_A_SIDE = re.compile(rf"\b{_SIDE}")
 _NOT_AT_A_SIDE = re.compile(rf"\b(not|none|nothing|neither)( of (them|these|those))?( \w+){{0,2}}? {_SIDE}")
+"""Statements that nothing is on a side, such as "none on the right"."""
 _SOME_AT_A_SIDE = re.compile(
     rf"\b(one|ones|some|several|two|three|four|five|six|[1-9]\d*|them|they|it|these|those|all)( \w+){{0,2}}? {_SIDE}"
 )
+"""Statements that something is on a side, such as "two on the left"."""
 _ONLY = re.compile(r"\b(all|only|every|each|both|entirely|exclusively|just|solely|always)\b")
+"""Words that place every instance in one half."""
 _DEFINITE = re.compile(
     r"^(\w+ly )?(is|are|was|were) ((all|only|both|located|visible|standing|found|seen|placed|situated) )*" + _SIDE
 )
+"""The rest of a statement about every instance, such as "are on the left" after "the cones"."""
 
 
 def is_half_unclear(text: AnswerText, subject: Sequence[str]) -> bool:

@@ -17,7 +17,7 @@ _BEFORE_ONE = frozenset({
 
 
 def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
-    """Return the number that begins at a word, or None, and the position after it."""
+    """Return the number that begins at position ``at``, and the position after it; (None, ``at``) if no number begins there."""
     if at >= len(words):
         return None, at
     text, after = words[at].text, [w.text for w in words[at + 1 : at + 3]]
@@ -38,7 +38,7 @@ def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
 
 
 def _number_words(words: Sequence[Word], at: int) -> tuple[float | None, int]:
-    """Return the number that consecutive number words form, or None, and the position after it."""
+    """Return the number that consecutive number words form, and the position after it; (None, ``at``) if there are none."""
     start, total, part = at, 0, 0
     while at < len(words):
         text = words[at].text

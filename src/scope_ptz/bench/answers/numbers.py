@@ -16,7 +16,7 @@ _LABELS = frozenset({
     "zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "reading",
     "marked", "labelled", "saying", "view", "picture", "image", "frame",
 })  # fmt: skip
-"""Words before digits that are a label, as in "preset 3"."""
+"""Words that show that the digits after them are a label, as in "preset 3"."""
 _BARE_AFTER = frozenset({
     "are", "is", "were", "was", "in", "on", "at", "of", "and", "or", "here", "there", "visible", "altogether", "overall",
     "by", "near", "to", "from", "out", "all", "now", "currently", "seen", "mentions", "present", "so", "then", "as", "but",
@@ -28,10 +28,15 @@ _BOUNDS = re.compile(
     r"\b(at least|at most|more than|fewer than|less than|greater than|over|under|above|below|up to|a minimum of|a maximum of|"
     r"geq|leq|gt|lt|(half|twice|double|triple|thrice|times|x)( of)?( the)?|(half|third|quarter|root|square|multiple|fraction) of)$"
 )
+"""Phrases before a number that make it a bound or a part of a calculation ("at least", "half of")."""
 _OR_MORE = re.compile(r"(\w+ ){0,4}or (more|fewer|less|so)\b|(ish|plus)\b")
+"""Phrases after a number that make it inexact ("or more", "-ish")."""
 _FRACTION = re.compile(r"(and )?a (half|third|quarter)\b|(halves|thirds|quarters|fifths|tenths|squared|cubed|factorial)\b")
+"""Phrases after a number that change its value ("and a half", "squared")."""
 _COMPARED_BEFORE = re.compile(r"(<|(?<![-=])>|[≤≥≦≧≪≫≲≳⩽⩾±≠])[=\s]*$")
+"""A comparison sign before a number, as in "<3"."""
 _COMPARED_AFTER = re.compile(r"\s*(<|>|[≤≥≦≧≪≫≲≳⩽⩾±])")
+"""A comparison sign after a number, as in "3>"."""
 _BETWEEN_NOT_AND_NUMBER = frozenset({
     "a", "an", "the", "total", "of", "exactly", "quite", "really", "just", "even", "there", "is", "are", "be", "was", "were", "to",
     "see", "seen", "count", "counted", "find", "mentions", "any", "answer", "number", "it", "that", "true", "correct", "right",
@@ -42,10 +47,12 @@ _BETWEEN_NOT_AND_NUMBER = frozenset({
 _TOTALS = re.compile(
     r"\b(total|altogether|together|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b"
 )
+"""Words that show that the numbers of a segment are totals or results."""
 
 _ANNOUNCES_TOTAL = re.compile(
     r"\b(total( [^\W\d]\w*){0,2}|difference( (is|equals|makes|being|therefore|thus))*|(final )?answer( is)?|sum( is)?)$"
 )
+"""Words directly before a number that make it a total or a result."""
 _GENERAL_NOUNS = frozenset({"object", "objects", "item", "items", "thing", "things"})
 """General words for countable things. A total of "items" is taken as a total of what the question asks about."""
 

@@ -9,6 +9,7 @@ from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.answers.tokenizer import all_wordings, plain_words, same_word
 
 _CONNECTING_WORDS = frozenset({"with", "in", "of", "on", "at", "from", "who", "carrying", "and"})
+"""Words that end the core of a name: the core of "man with a hat" is "man"."""
 _ALLOWED_BEFORE = frozenset({
     "the", "a", "an", "then", "is", "are", "and", "or", "than", "more", "most", "fewer", "fewest", "order", "so", "therefore",
     "thus", "answer", "finally", "first", "last", "second", "third", "next", "lastly", "nearest", "closest", "farthest",
@@ -60,6 +61,7 @@ def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
 
 
 _PLACE_PHRASES = frozenset({"in the middle", "on the left", "on the right", "in the centre", "in between them"})
+"""Phrases that may follow a short form, because they only state where the thing is."""
 
 
 def _unambiguous_short_forms(full_names: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:

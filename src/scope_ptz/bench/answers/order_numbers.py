@@ -12,12 +12,17 @@ from scope_ptz.bench.answers.text import AnswerText, NameMention
 _CONCLUDING_WORDS = frozenset(
     {"so", "therefore", "thus", "hence", "order", "ordering", "ranking", "ranked", "answer", "sorted", "conclusion", "from"}
 )
+"""Words that may introduce the final order. "From" counts only if "to" follows, as in "from most to fewest"."""
 _ASCENDING = frozenset({"nearest", "closest", "fewest", "smallest", "least", "lowest", "shortest"})
+"""Words for the first place of an order of rising numbers."""
 _DESCENDING = frozenset({"farthest", "furthest", "most", "largest", "biggest", "highest", "tallest"})
+"""Words for the first place of an order of falling numbers."""
 _BEFORE_NUMBER = re.compile(r"\s*([:=(|~≈]|\s[-–—]\s|→)[\s(~≈]*")
+"""Separators between a thing and its number, as in "skips: 4" and "skips (4)"."""
 _LINKING_WORDS = frozenset(
     {"is", "are", "at", "about", "approximately", "roughly", "with", "stands", "has", "have", "only", "just", "around"}
 )
+"""Words that may stand between a thing and its number, as in "the skip is about 11 m away"."""
 
 
 def final_order_start(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:

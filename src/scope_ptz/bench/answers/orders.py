@@ -18,15 +18,19 @@ from scope_ptz.bench.tasks.expected import Ordering, Relation
 _FILLERS = frozenset({
     "it", "is", "its", "on", "to", "the", "at", "in", "side", "of", "hand", "a", "bit", "slightly", "much", "them", "lies",
 })  # fmt: skip
+"""Words that name no thing. A comparative with only these words around it describes the subject ("it is slightly closer")."""
+
 _NAMING_WORDS = frozenset({
     "the", "a", "at", "preset", "view", "by", "it", "is", "answer", "i", "would", "say", "that", "definitely", "clearly",
     "one", "to", "versus", "against",
 })  # fmt: skip
+"""Words that an answer may contain besides a name and still only name a thing."""
+
 _OPPOSITE = {"forward": "backward", "backward": "forward"}
 
 
 def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
-    """Parse the order that an answer gives. It is reversed if the answer begins at the other end."""
+    """Parse the order that an answer gives. It is reversed if the answer lists the things from the last to the first."""
     all_mentions = [m for m in option_mentions(text, expected.options) if not m.denied or _is_counted_as_zero(text, m)]
     start = final_order_start(text, all_mentions, set(expected.options))
     mentions = [m for m in all_mentions if m.start >= start]
@@ -45,7 +49,15 @@ def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
 def _stated_order(
     text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention], order: list[str], start: int
 ) -> tuple[str, ...] | str:
-    """Return the stated order, or the reason why there is none."""
+    """Return the stated order, or the reason why there is none.
+
+    Args:
+        text: The answer.
+        mentions: The mentions of options in the final order.
+        ends: The mentions of the words for the ends of the order, named "first" and "last".
+        order: The options in the order in which the answer names them. It may be reversed in place.
+        start: Position of the word where the final order begins.
+    """
     than_count = sum(w.text == "than" for w in text.words[start:])
     if 0 < than_count < len(order) - 1:
         return "only some of them are compared"
@@ -72,7 +84,7 @@ def _is_counted_as_zero(text: AnswerText, mention: NameMention) -> bool:
 
 
 def _placed(text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> dict[str, str | None]:
-    """Return the option that the answer places at each end.
+    """Return the option that the answer places at each end of the order ("first" and "last").
 
     In each segment this is the option named before the word for the end ("most", "fewest"). If the segment names only one end, the
     option may also follow that word.

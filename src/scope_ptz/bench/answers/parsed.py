@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 AnswerValue = float | bool | str | frozenset[str] | tuple[str, ...] | tuple[frozenset[int], frozenset[int]]
+"""The value of an answer. Its type depends on the kind of expected answer."""
 
 
 @dataclass(frozen=True, slots=True)

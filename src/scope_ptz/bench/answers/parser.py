@@ -24,6 +24,7 @@ from scope_ptz.bench.tasks.expected import (
 )
 
 _EPSILON = 1e-9
+"""Margin for rounding errors in comparisons of numbers."""
 
 
 def parse_answer(expected: AnyExpected, answer: str) -> ParsedAnswer:

@@ -15,7 +15,9 @@ from scope_ptz.bench.answers.tokenizer import plain_words
 from scope_ptz.bench.tasks.expected import NoneThere, YesNo
 
 _YES = frozenset({"yes", "yeah", "yep", "yup", "correct", "affirmative", "true", "indeed"})
+"""Words that answer a question with yes if they stand alone."""
 _NO = frozenset({"no", "nope", "nah", "negative", "false", "incorrect"})
+"""Words that answer a question with no if they stand alone."""
 _NO_LAST = frozenset({"no", "nope", "nah"})
 """Words that express a verdict at the end of a segment: "I say no", "it is a no"."""
 
@@ -45,7 +47,9 @@ _ELLIPSIS = re.compile(
     r"^((yes|no|and|so|but|indeed|well) )*(it|they|this|that|these|those|there) (really |actually |certainly |definitely )?"
     r"(?P<verb>is|are|was|were|does|do|did|has|have)(?P<not> not)?( (the case|so|true|correct|right|actually|at all|indeed))*$"
 )
+"""Short answers that omit what they confirm or deny, such as "it is" and "they do not"."""
 _REFUTED = re.compile(r"^((and|so|but) )*(it|this|that|the (claim|statement)) (is|was) (false|untrue|incorrect|wrong)$")
+"""Statements that a claim is false."""
 
 
 def _short_answers(text: AnswerText) -> set[bool]:
@@ -62,7 +66,7 @@ def _short_answers(text: AnswerText) -> set[bool]:
 
 
 def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
-    """Parse an answer as yes or no, from words such as "yes" and from statements. Contradictions are unreadable."""
+    """Parse an answer as yes or no, from words such as "yes" and from statements. A contradictory answer is unreadable."""
     verdicts = verdict_words(text) | _short_answers(text)
     if not verdicts and is_half_unclear(text, expected.affirms):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
@@ -84,6 +88,7 @@ def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
 
 
 _CONCLUDED = re.compile(r"^(so|therefore|thus|hence|overall) (the answer is |it is )?(yes|no)$")
+"""A final segment that states the conclusion, such as "so yes"."""
 
 
 def _text_of(text: AnswerText, group: Sequence[int]) -> str:
@@ -178,8 +183,11 @@ def _limits_denial(text: AnswerText, claim: NameMention, denial: NameMention) ->
 
 
 _ANOTHER = re.compile(r"\b(an?|two|three|four|five|some|several) (\w+ ){2,}")
+"""Words before a claim that introduce another thing, such as "a van stands" in "a van stands top left"."""
 _REFERS_TO_SUBJECT = re.compile(r"\b(it|its|they|this|that|one|ones|thing|object|colour|shade|hue|tone|tint)\b")
+"""Words that refer to the subject, so that the claim after them is about it."""
 _NEW_STATEMENT_WORDS = frozenset({"it", "they", "this", "that", "but", "and", "so", "its"})
+"""Words between a denial and a claim that begin a new statement."""
 _OF_THE_SUBJECT = frozenset({
     "one", "ones", "thing", "things", "object", "item", "colour", "coloured", "shade", "in", "on", "at", "of", "and", "or",
     "is", "are", "was", "it", "they", "the", "a", "an", "to", "with", "by", "too", "also", "indeed", "overall", "then",

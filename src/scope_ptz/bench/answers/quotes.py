@@ -6,22 +6,29 @@ import re
 from dataclasses import dataclass
 
 _PLAIN = re.compile(r'"([^"]+)"|(?<!\w)\'([^\']+(?:\'\w[^\']*)*)\'(?!\w)')
+"""A text in double or single quotation marks. Used if no quotation marks can be paired by the characters next to them."""
 _READ = r"(?:reads?|says?|states?|displays?|shows?|spells?)"
 _READING_WORDS = re.compile(rf"\b{_READ}\b|\btext\b|\bwritten\b", re.IGNORECASE)
+"""Words that show that a sentence reports a text."""
 _DENIED_BEFORE = re.compile(
     r"(?:\bnot|n't|\bnever|\brather than|\binstead of)(?:\s+(?:actually|really|clearly|in fact|read|say|state|display|show|"
     r"spell|contain|bear|have|carry|the|an?|words?|text|lettering|letters|be|simply|quite|exactly|sign|anything|like))*\s*:?\s*$"
     r"|\b(?:whether|if)\b[^.,;:]{0,40}$|\b(?:should|would|ought to)\s+(?:read|say|be)\s*$",
     re.IGNORECASE,
 )
+"""Words before a quote that deny it or leave it open ("does not read", "whether it says")."""
 _PLACE_AFTER = re.compile(r"\s*(?:camera )?(?:preset|view|viewpoint|position)\b", re.IGNORECASE)
+"""Words after a quote that show that it is the name of a preset or viewpoint."""
 _PLACE_BEFORE = re.compile(
     r"\b(?:presets?|views?|viewpoint|position)(?: called| named)?\s*:?\s*$|"
     r"\b(?:moved|went|switched|turned|navigated|gone) (?:over )?to (?:the )?$",
     re.IGNORECASE,
 )
+"""Words before a quote that show that it is the name of a preset or viewpoint."""
 _INTRODUCED = re.compile(rf"\b(?:{_READ}|is|are|text|words?|and)\b\s*:?\s*$|[:,]\s*$", re.IGNORECASE)
+"""Words before a quote that introduce a reading."""
 _NAMED_AFTER = re.compile(rf"\s*(?:(?!(?:and|then|but|also|it|which|that)\b)\w+ ){{0,2}}?{_READ}\b", re.IGNORECASE)
+"""Words after a quote that show that it names a sign, as in "the 'Exit' sign reads"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +62,7 @@ def quotes_of(text: str) -> list[Quote]:
 
 
 def _close(text: str, start: int, end: int, quotes: list[Quote]) -> None:
-    """Add a closed quote and drop the quotes inside it. If it is a sentence about a text, keep the inner quotes instead."""
+    """Add a closed quote and drop the quotes inside it. If it is a sentence that itself reports a text, keep these instead."""
     within = [quote for quote in quotes if quote.start > start]
     rest = text[start + 1 : end - 1]
     for quote in within:
@@ -68,7 +75,10 @@ def _close(text: str, start: int, end: int, quotes: list[Quote]) -> None:
 
 
 def reported_quotes(quotes: list[Quote], text: str) -> list[Quote]:
-    """Return the quotes that report text from a sign. Denied readings, preset names and names of signs are left out."""
+    """Return the quotes that report text from a sign. Denied readings, preset names and names of signs are left out.
+
+    The last quote is not taken for a name: unless it is denied, it is returned.
+    """
     readings = list[Quote]()
     for number, quote in enumerate(quotes):
         before = text[quotes[number - 1].end if number else 0 : quote.start]

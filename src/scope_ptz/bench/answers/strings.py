@@ -17,7 +17,9 @@ TEXT_SEPARATOR = " / "
 """Separator between texts that are written in separate places."""
 
 _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
+"""Replaces characters with the digits that they look like."""
 _DIGITS = {word: str(number) for number, word in enumerate(SMALL_NUMBERS[:13])}
+"""Number words and the digits that they are compared as."""
 _CUES = (
     (re.compile(r"\b(?:reads?|says?|states?|displays?|spells?)\b\s*:?\s*", re.IGNORECASE), 14),
     (re.compile(r":\s+"), 14),
@@ -35,15 +37,20 @@ _WRITTEN = re.compile(
 """A sentence that begins with the text ("STOP is written on the sign")."""
 
 _LEADS = re.compile(r"^(?:the )?(?:text|words?|letters|lettering)\s+(?:that reads?\s+)?", re.IGNORECASE)
+"""Words before the reported text that do not belong to it."""
 _TRAILERS = re.compile(
     r",?\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"
     r"blue|green|yellow|dark|light|orange)\s+)*(?:letters?|lettering|capitals|sign|board|text|background|front|back|plate|door|van|car|"
     r"lorry|truck|bus|shop|wall|view|top|bottom|left|right|gantry|white|black|red|blue|green|yellow|orange)\b.*$",
     re.IGNORECASE,
 )
+"""Words after the reported text that state where or how it is written."""
 _NEXT_SENTENCE = re.compile(r"[.!]\s+(?=(?:It|This|That|The|There|I|They|In|On|At|Source|Let|Please|If|Would|You|Feel|So)\b)")
+"""The end of a sentence before another sentence that is not part of the reported text."""
 _DENIED = re.compile(r"(?:\bnot|n't|\bnever)(?: \w+)? $", re.IGNORECASE)
+"""A negation before a cue."""
 _NO_TEXT = re.compile(r"(?:there (?:is|are)|done|not)\b", re.IGNORECASE)
+"""Beginnings of prose that reports no text."""
 _FINISHED = re.compile(
     r"(?:(?:ok|okay|sure|done|finished|completed?|ready|all set)|"
     r"(?:(?:the|this|your|all|i have|i|has) )*(?:it|everything|task|request|job|action|operation|command|instruction|step|all)s?"
@@ -71,7 +78,7 @@ def same_text(one: str, other: str, *, ocr: bool) -> bool:
 
 
 def normalized_text(text: str, ocr: bool) -> str:
-    """Return a text in lower case without punctuation and spaces; with ``ocr`` look-alike characters are unified."""
+    """Return a text in lower case without punctuation and spaces. With ``ocr``, characters that look alike become the same one."""
     words = re.findall(r"[^\W_]+", re.sub(r"(?<=\w)'(?=\w)", "", clean(text).lower()))
     joined = "".join(_DIGITS.get(word, word) for word in words)
     return joined.translate(_LOOK_ALIKES) if ocr else joined

@@ -14,6 +14,7 @@ from scope_ptz.bench.answers.claims import Claim, claim_of
 from scope_ptz.bench.answers.tokenizer import Word, clean, plain_words, same_word, words_of
 
 NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
+"""Words that deny the things that are named after them."""
 _CONTRAST_PHRASES = (
     ("rather", "than"), ("instead", "of"), ("other", "than"), ("apart", "from"), ("as", "opposed", "to"), ("unlike",),
     ("except",), ("except", "for"), ("besides",), ("excluding",),
@@ -23,12 +24,17 @@ _A_OR_THE = frozenset({"a", "an", "the"})
 """Articles that are interchangeable inside a name."""
 
 _ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
+"""Words that may stand between a phrase of contrast and a name. After "and", they begin a new statement."""
 _SUBJECTS = frozenset({"it", "they", "there", "i", "we", "this", "that"})
+"""Words that begin a new statement after "and". An earlier negation does not apply to it."""
 _STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
+"""Words that end the effect of a negation before them."""
+
 _HEDGES = re.compile(
     r"\b((yes|no) if|maybe|perhaps|possibly|might|may|conceivably|i guess|just a guess|at a guess|or so|could (be|have)"
     r"(?! (found|seen|detected|made|spotted|identified|located)))\b"
 )
+"""Words that make a clause a guess."""
 _DECLINES = re.compile(
     r"\bnot (?:\w+ )?(tell|say|determine|determined|make|know|known|read|readable|compare|compared|rank|count|counted|judge|judged|"
     r"identify|identified|answer|answered|confirm|confirmed|decide|sure|certain|able|possible|legible|clear|"
@@ -38,6 +44,7 @@ _DECLINES = re.compile(
     r"|\btoo (\w+ )?(dark|blurry|blurred|small|far|distant|dim|unclear|bright|faint)\b.* to (\w+ )?"
     r"(see|tell|say|read|count|make|determine|identify|judge|be)\b"
 )
+"""Phrases that decline to answer, such as "cannot tell" and "too dark to see"."""
 
 _CORRECTED = re.compile(
     r"\b(?:correction|i mean|i meant|or rather(?! than)|(?:scratch|strike) that|make (?:that|it)(?= \w+\W*$)|i stand corrected|"
@@ -47,6 +54,7 @@ _CORRECTED = re.compile(
 """Phrases that withdraw everything before them."""
 
 _ABSENT = r"(is |are |was |were )?((now|currently|completely|entirely) )?(absent|missing|nowhere)\b"
+"""Phrases after a name that say that the thing is absent."""
 _NOT_NO = re.compile(
     r"\b(not|never) (no|without|zero|0|none)$|\bnot (true|the case|correct|right)( that)?( there (is|are|was|were))? no$"
     r"|\b(no|not|without|zero) (\w+ )?(shortage|lack|lacks|absence|want)( of)?$"
@@ -178,7 +186,7 @@ class AnswerText:
         return ("or" in rest or "nor" in rest) and not (set(segment_words) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
 
     def _opens_denied_list(self, at: int) -> bool:
-        """Return whether the segment that ends at a word is denied and is more than a bare "no"."""
+        """Return whether the segment that ends at position ``at`` contains a negation and is more than a bare "no"."""
         return at > 0 and self.words[at].text not in NEGATORS and self._is_denied_before(at)
 
     def is_denied_after(self, end: int) -> bool:

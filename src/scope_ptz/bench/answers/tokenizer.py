@@ -12,15 +12,20 @@ _SPELLINGS = {
     "color": "colour", "gray": "grey", "center": "centre", "meter": "metre", "tire": "tyre", "curb": "kerb",
     "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
 }  # fmt: skip
+"""British spellings of American words."""
 _MEASURES = {"°": "degree", "deg": "degree", "%": "percent", "m": "metre", "km": "kilometre", "s": "second", "sec": "second"}
+"""Names of the units that may follow a number as signs or abbreviations."""
 _IRREGULAR = {
     "people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person",
     "loaves": "loaf", "shelves": "shelf", "leaves": "leaf", "knives": "knife",
 }  # fmt: skip
+"""Singular forms of irregular plurals."""
 _IDIOMS = (
     "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
     "needless to say", "as you can see", "not surprisingly", "no question", "no mistake", "even so", "even though",
 )  # fmt: skip
+"""Phrases that are removed, because the parser would misread their words, such as the "no" in "no doubt"."""
+
 _CONTRACTIONS = (
     (re.compile(r"\bcan'?t\b|\bcannot\b"), "can not"),
     (re.compile(r"\bwon't\b"), "will not"),
@@ -29,9 +34,11 @@ _CONTRACTIONS = (
     (re.compile(r"\b(i|we|you|they)'(m|re|ve|d|ll)\b"), r"\1"),
     (re.compile(r"(?<=\d)\+(?!\s*\d|\w)"), " or more"),
 )
+"""Patterns of contractions and of "3+", with their replacements."""
 _WORD = re.compile(r"\d+(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?|[^\W\d_]+(?:'[^\W\d_]+)*|[°%]")
 _TAGS = re.compile(r"</?(?:b|i|u|em|strong|p|br|code|answer)\s*/?>", re.IGNORECASE)
 _LIST_NUMBER = re.compile(r"^\s*(\d{1,3})[.)]\s+", re.MULTILINE)
+"""The number of a list item at the beginning of a line."""
 _CLAUSE_END = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
 
 
@@ -53,7 +60,10 @@ class Word:
 
 
 def clean(text: str) -> str:
-    """Return a text without markup and source notes, and with plain quotation marks, dashes and spaces. Its case is preserved."""
+    """Return a text without markup, and with plain quotation marks, dashes and spaces. Its case is preserved.
+
+    Notes about the source, such as "(seen by ...)", are removed too.
+    """
     text = unicodedata.normalize("NFKC", "".join(_plain_letter(letter) for letter in text))
     text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
     text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
@@ -66,7 +76,11 @@ def clean(text: str) -> str:
 
 
 def _plain_letter(letter: str) -> str:
-    """Return a character without formatting. Digits of any script become 0 to 9; superscripts and fractions are set apart."""
+    """Return a character without formatting.
+
+    Digits of any script become 0 to 9. A superscript gets a "^" before it and a fraction a space, so that they do not join the
+    digits before them.
+    """
     kind = unicodedata.category(letter)
     if kind == "Cf":
         return ""

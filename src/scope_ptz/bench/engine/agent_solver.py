@@ -25,6 +25,7 @@ from scope_ptz.planner.base import Planner
 from scope_ptz.simulator.clock import SceneClock
 
 BUILT_IN_AGENT = "scope"
+"""Name of SCOPE's own agent loop."""
 WIDTH, HEIGHT = 1280, 720
 """Size of a frame in pixels."""
 

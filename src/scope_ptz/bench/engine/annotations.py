@@ -69,7 +69,7 @@ def _copy_labels(logs: Sequence[Path], new: Path) -> None:
 
 
 def _copy_journals(logs: Sequence[Path], new: Path) -> None:
-    """Copy the judgements of interrupted rescorings, which the logs do not contain yet."""
+    """Copy the judgements that interrupted rescorings left in journals and that the logs do not contain yet."""
     if not any(journal_file(log).is_file() for log in logs):
         return
     new_uuids, target = _sample_uuids(new), journal_file(new)

@@ -28,7 +28,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
     """Return the function that creates the Inspect task ``bench``.
 
     Args:
-        provide_context: Returns the context of an evaluation for a given seed.
+        provide_context: Returns the context of an evaluation for the given seed. It is called when Inspect creates the task.
     """
 
     @task

@@ -36,8 +36,11 @@ from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.scoring.verdict import Headline
 
 CHECKS = "checks"
+"""Name of the scorer in a log."""
 TRIAL = "trial"
+"""Metadata key under which a score stores the trial."""
 _VALUES: Mapping[Headline, str] = {"correct": CORRECT, "incorrect": INCORRECT, "unscored": NOANSWER}
+"""Inspect's score value for each headline. A run with an infrastructure failure has no value."""
 
 
 @metric(scores="unreduced")

@@ -22,6 +22,7 @@ from scope_ptz.errors import InputError, TraceError, UnknownNameError
 from scope_ptz.simulator.pack import Scene
 
 OpenScene = Callable[[str], Scene]
+"""Opens a scene, or a variation of one, by name."""
 DIGEST_CHARS = 16
 """Length of digests in logs, in hexadecimal characters."""
 
@@ -104,7 +105,7 @@ def select(
     deterministic.
 
     Raises:
-        UnknownNameError: No entry has one of the categories or scenes.
+        UnknownNameError: One of the categories or scenes matches no entry.
         InputError: The selection is empty.
     """
     for kind, names, available in (
@@ -127,8 +128,8 @@ def select(
 def _sample_evenly(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
     """Sample entries evenly, and return them in their original order.
 
-    Each step takes an entry from the group (category, scene, scope) that is least represented in the sample, relative to the
-    numbers of entries with its category, its scene and its scope. Within a group, the sampled entries are evenly spaced.
+    Each step takes one more entry from the group (category, scene, scope) that is least represented in the sample so far, relative
+    to the numbers of entries with its category, its scene and its scope. Within a group, the sampled entries are evenly spaced.
     """
     groups: dict[tuple[str, str, str], list[Entry]] = {}
     for entry in entries:

@@ -45,8 +45,8 @@ class Estimate:
         input_tokens: Input tokens of the planner.
         output_tokens: Output tokens of the planner.
         cost_usd: Cost of these tokens in US dollars.
-        measured_on: Number of earlier runs on which the estimate is based.
-        guessed: Whether the token counts are guessed from the length of the prompt.
+        measured_on: Number of earlier runs on which the estimate is based; 0 if there are none.
+        guessed: Whether the token counts are guessed from the length of the prompt, because there are no earlier runs.
     """
 
     runs: int

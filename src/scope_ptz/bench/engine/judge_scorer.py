@@ -31,7 +31,7 @@ from scope_ptz.bench.engine.trial_records import failure_at_end
 from scope_ptz.bench.judging.judge import Completion, Judge, JudgeMessage, NoReplyError
 
 FIRST_SEED = 1
-"""Seed of the first judgement by a judge of another provider. Each further judgement uses the next integer."""
+"""Seed of the first judgement by a judge of another Inspect provider than SCOPE's. Each further judgement uses the next integer."""
 
 _ROLES: dict[str, Callable[..., ChatMessage]] = {
     "system": ChatMessageSystem,

@@ -51,7 +51,10 @@ class Journal:
         return cls(journal_file(log))
 
     def find(self, sample: str, judge: str, repeat: int) -> Judgement | None:
-        """Return a judgement made with the current prompt; None if there is none or if it failed."""
+        """Return a judgement made with the current prompt; None if there is none or if it failed.
+
+        The caller writes the returned judgement to the log, so ``remove_logged`` later removes it from the file.
+        """
         judgement = self._judgements.get((sample, judge, repeat))
         if judgement is None or judgement.prompt != prompt_version() or judgement.verdict == "failed":
             return None
@@ -75,7 +78,7 @@ class Journal:
             append_line(self.path, _line(sample, judgement))
 
     def remove_logged(self) -> None:
-        """Remove the judgements that the log contains from the file. Judgements of other interrupted rescorings remain."""
+        """Remove from the file the judgements that the log now contains. Judgements of other interrupted rescorings remain."""
         if self.path is None:
             return
         lines = [_line(sample, judgement) for (sample, _, _), judgement in self._unlogged.items() if judgement.verdict != "failed"]

@@ -12,7 +12,9 @@ from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.errors import TraceError
 
 JUDGE = "judge"
+"""Name of the scorer in a log."""
 JUDGEMENT = "judgement"
+"""Metadata key under which a score stores the judgement."""
 
 
 def score_of_judgement(judgement: Judgement) -> Score:

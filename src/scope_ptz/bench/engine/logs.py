@@ -26,6 +26,7 @@ DECIDES = "decides"
 """Metadata key for the name of the judge whose verdicts count for the runs that only a judge can score."""
 HEADER, START = "header.json", "_journal/start.json"
 SUMMARIES, SUMMARY_PARTS = "summaries.json", "_journal/summaries/"
+"""Files in a log, which is a ZIP archive. The log of an unfinished evaluation contains only the ``_journal`` files of each pair."""
 
 
 def read_evaluation(path: Path) -> Evaluation:

@@ -12,6 +12,7 @@ from scope_ptz.bench.statistics.paired import holm, mcnemar_exact
 from scope_ptz.errors import InputError
 
 ALL = "all"
+"""Name of the group of all tasks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +45,15 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """The result of the gate. ``left_out`` lists the tasks that were broken or not judged in one of the evaluations."""
+    """The result of the gate.
+
+    Attributes:
+        overall: The comparison on all tasks.
+        categories: The comparisons by category.
+        left_out: The tasks without a scored run in one of the evaluations, because infrastructure broke the runs or no judge gave a
+            verdict.
+        alpha: Significance level.
+    """
 
     overall: Comparison
     categories: tuple[Comparison, ...]

@@ -48,7 +48,7 @@ async def rescore(
     concurrency: int = CONCURRENCY,
     report: Report,
 ) -> JudgementTally:
-    """Append scores to a log, and return the tally of the new judgements. The log is replaced atomically at the end.
+    """Append scores to a log, and return the counts of the new judgements by result. The log is replaced atomically at the end.
 
     Args:
         log: Log of a finished evaluation.

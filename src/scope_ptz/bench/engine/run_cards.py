@@ -15,9 +15,13 @@ from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.errors import TraceError
 
 ENGINE = "inspect-ai"
+"""Name of the package that runs evaluations."""
 CARD = "card"
+"""Key in a log's metadata for the run card. Logs that Inspect's own command wrote do not have it."""
 SCOPE = "scope"
+"""Key in a log's metadata for the facts about the tasks and the agent loop."""
 PRICE = "price_usd_per_million_tokens"
+"""Key in a card's ``sampling`` for the prices of the planner's input and output tokens."""
 AGENT_SOURCE = "agent_source"
 """Key in a card's ``sampling`` for the digest of an external agent's source."""
 
@@ -28,7 +32,7 @@ def engine_version() -> str:
 
 
 def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
-    """Return the run card of a log. If the log was written by Inspect's own command, derive the card from the header.
+    """Return the run card of a log. If Inspect's own command wrote the log, it has no card, so the card is derived from the header.
 
     Args:
         header: The header of the log.

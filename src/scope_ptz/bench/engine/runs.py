@@ -28,6 +28,7 @@ from scope_ptz.bench.scoring.trials import Evaluation, RunCard
 from scope_ptz.errors import InputError, OutputError, TraceError
 
 IDENTITY = "identity"
+"""Key in a log's metadata for the identity of the evaluation."""
 SUPERSEDED = "superseded"
 """Folder for logs whose runs have been carried over to another log."""
 
@@ -37,7 +38,7 @@ LOG_LEVEL = "error"
 
 @dataclass(frozen=True, slots=True)
 class StoredLog:
-    """A log of the requested evaluation.
+    """A log, with the state of its runs.
 
     Attributes:
         path: Path of the log.

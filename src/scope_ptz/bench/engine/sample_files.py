@@ -1,4 +1,4 @@
-"""Read the traces and pictures of single runs from logs, without importing Inspect AI. Its import takes seconds."""
+"""Read the traces and pictures of individual runs from logs, without importing Inspect AI, because its import takes seconds."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ if sys.version_info < (3, 14):
     import zipfile_zstd  # type: ignore[import-untyped,unused-ignore]  # noqa: F401 - lets zipfile read logs, which use Zstandard
 
 ATTACHMENT = "attachment://"
+"""Prefix of a reference to an attachment of the same sample."""
 _SAMPLES = "samples/"
 
 
@@ -74,7 +75,7 @@ def open_sample(path: Path, sample: str) -> SampleFiles:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Return a context that converts errors while a log is read to a ``TraceError`` with the name of the log."""
+    """Return a context manager that turns an error while a log is read into a ``TraceError`` with the path of the log."""
     try:
         yield
     except TraceError:
@@ -92,7 +93,7 @@ def reading(path: Path) -> Iterator[None]:
 def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:
     """Iterate over the samples of a log as JSON data. With ``name``, yield only the sample in ``samples/NAME.json``.
 
-    If the archive contains several files of the same name, the last one is read.
+    A log is a ZIP archive. If it contains several files of the same name, the last one is read.
     """
     with ZipFile(path) as archive:
         requested = f"{_SAMPLES}{name}.json" if name else None

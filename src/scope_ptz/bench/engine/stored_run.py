@@ -32,8 +32,8 @@ class StoredRun:
         presets: The viewpoint of each preset.
         home: The viewpoint of the home preset.
         sees: Whether the planner received frames.
-        pictures: References to pictures in the log, by their names in the trace.
-        truths: The true counts, by the index of the tool call; empty if they have not been computed.
+        pictures: References to the pictures in the sample's attachments, by their names in the trace.
+        truths: The true count for each counting call, by the index of the call; empty if they have not been computed.
     """
 
     trace: str

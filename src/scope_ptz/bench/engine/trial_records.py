@@ -19,6 +19,7 @@ from scope_ptz.bench.scoring.trials import CheckRecord, Judgement, ObservationTi
 from scope_ptz.bench.scoring.verdict import AGENT_FAILURES, score_episode
 
 _TIMED_TOOLS = ("count_objects", "query_answer")
+"""Tools whose calls are reported as perception calls with their times."""
 
 
 def trial_of(entry: Entry, stored_run: StoredRun, epoch: int, folder: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
@@ -95,7 +96,7 @@ def failure_at_end(ended: Ended | None) -> str | None:
 
 
 def _observation_times(trace: Trace) -> tuple[ObservationTime, ...]:
-    """Return the times of perception, camera and tool of each perception call."""
+    """Return how long perception, the camera and the whole call took, for each successful call of a timed tool."""
     calls = [c for c in trace.calls if c.outcome.call.name in _TIMED_TOOLS and c.outcome.error is None]
     return tuple(
         ObservationTime(

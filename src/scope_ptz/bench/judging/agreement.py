@@ -1,6 +1,7 @@
 """Measure the agreement of the raters of runs.
 
-Raters are the executable checks, judges and their repeats, people, and gold runs with known faults.
+Raters are the executable checks, the judges (each repeat is a rater), and people. For gold runs, which have a known fault or none,
+the known verdict counts as a rater.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ class Rating:
 
 @dataclass(frozen=True, slots=True)
 class RatedRun:
-    """A run to be rated. ``cluster`` is its task, because runs of one task are not independent."""
+    """A run that raters rate. ``cluster`` is its task, because runs of one task are not independent."""
 
     log: str
     sample: str
@@ -75,7 +76,7 @@ class RaterPair:
 
 @dataclass(frozen=True)
 class RaterGroup:
-    """The agreement of several raters on the runs that all of them rated.
+    """The agreement of a group of raters on the runs that all of them rated.
 
     ``title`` describes the group, such as "people". ``left_out`` is the number of runs that only some of the raters rated.
     """

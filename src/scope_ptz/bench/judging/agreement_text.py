@@ -8,6 +8,7 @@ from scope_ptz.bench.judging.agreement import AgreementReport
 from scope_ptz.bench.judging.kappa import KappaResult
 
 _DIGITS = 3
+"""Number of decimals of kappa."""
 
 
 def agreement_lines(report: AgreementReport) -> Iterator[str]:

@@ -46,7 +46,7 @@ class JudgeCase:
         final: Pose of the camera at the end.
         answer: The agent's final answer.
         outcome: How the run ended; None if it was interrupted.
-        sees: Whether the agent was shown pictures and may answer from them.
+        sees: Whether the agent itself was shown pictures, so that it may answer from them without a perception call.
         preset_viewpoints: The viewpoints of the presets; None if unknown.
     """
 

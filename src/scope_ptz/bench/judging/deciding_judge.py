@@ -1,7 +1,8 @@
 """Select the deciding judge: the judge whose verdicts count for the runs that only a judge can score.
 
-One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge that was requested by name, or
-otherwise the judge that gave the first verdict on most of the runs. Later judgements by other judges do not change the choice.
+One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge that was requested by name, if
+it has given a verdict on such a run. Otherwise it is the judge that gave the first verdict on the largest number of these runs.
+Later judgements by other judges do not change the choice.
 """
 
 from __future__ import annotations

@@ -20,6 +20,7 @@ from scope_ptz.bench.scoring.trials import Evaluation, Label
 from scope_ptz.errors import InputError
 
 SUFFIX = ".labels.jsonl"
+"""Suffix that is added to the name of a log to get the name of its file of labels."""
 
 
 class LabelRow(BaseModel):

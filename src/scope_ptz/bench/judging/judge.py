@@ -29,6 +29,7 @@ BUDGET_CHARS = 60_000
 _ECHO_CHARS = 2_000
 """Maximum length of an invalid reply that is sent back to the judge, in characters. Longer replies are shortened."""
 JudgeMessage = dict[str, Any]
+"""A chat message to a judge, in the OpenAI format."""
 
 
 class Completion(BaseModel):
@@ -59,7 +60,7 @@ class Judge:
 
     Args:
         name: Name of its model, as recorded in judgements.
-        complete: Function that completes messages.
+        complete: Function that sends messages to the judge's model and returns the reply.
         attempts: Maximum number of replies for one judgement.
         budget_chars: Maximum length of the description of a run, in characters.
     """
@@ -97,7 +98,10 @@ class _Session:
         self.requests = self.input_tokens = self.output_tokens = 0
 
     async def run(self, facts: TaskFacts, case: JudgeCase) -> Judgement:
-        """Send requests until a reply is valid, the attempts are exhausted, or the server fails."""
+        """Send requests until a reply is valid, the attempts are exhausted, or the server fails.
+
+        If the messages exceed the model's context, the description of the run is shortened. This does not use up an attempt.
+        """
         budget, problem = self.judge.budget_chars, ""
         opening = judge_messages(facts, case, budget)
         messages, replies = opening, 0

@@ -1,4 +1,7 @@
-"""The JSON schema of a judge's reply, and a strict parser. Invalid replies are rejected with an error message for the judge."""
+"""The JSON schema of a judge's reply, and a strict parser of replies.
+
+An invalid reply is rejected with an error message, which is sent to the judge.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 
 NO_MODE = "none"
+"""Value of ``error_mode`` in the reply for a correct run."""
 MAX_REASON_CHARS = 1_000
+"""Maximum length of a reason in characters. Longer reasons are cut."""
 _MAX_FAILED_BRACES = 100
 """The parser gives up after this many opening braces that do not start a valid JSON object."""
 
@@ -29,7 +34,7 @@ REPLY_SCHEMA: dict[str, Any] = {
 
 
 class JudgeReply(BaseModel):
-    """A valid verdict. It has an error mode if and only if it is "incorrect". Further fields are ignored."""
+    """A valid verdict. It has an error mode if and only if it is "incorrect". Other fields are ignored."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 

@@ -9,7 +9,9 @@ from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 VERDICTS = ("correct", "incorrect")
+"""The results of a judgement that are verdicts. The others are "unparseable" and "failed"."""
 _MAX_FAILURE_CHARS = 300
+"""Maximum length of the reason for a failure, in characters."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 
 BAR = "| "
+"""Prefix of every quoted line."""
 _LINE_ENDS = re.compile(r"\r\n|[\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029]")
 _TOKENS = re.compile(
     r"<(?=[|｜])|(?<=[|｜])>|<(?=/?(?:s|bos|eos|think|thinking|start_of_turn|end_of_turn|im_start|im_end|tool_call)\b)|\[(?=/?(?:INST|SYS)\])",

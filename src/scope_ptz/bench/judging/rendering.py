@@ -23,14 +23,17 @@ MIN_CHARS = 6_000
 """Minimum budget in characters, because a shorter description cannot be judged reliably."""
 
 _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
+"""Maximum lengths of the instruction, of the expected answer and of the final answer, in characters."""
 _RESULT_CHARS = (4_000, 1_200, 300)
 """Maximum lengths of a tool result in characters, tried in this order until all calls fit in the budget."""
 
 _NAME_CHARS, _MAX_PRESETS, _NOTE_CHARS = 60, 40, 300
+"""Maximum length of a name, maximum number of presets, and characters reserved for the note about omitted calls."""
 _OMITTED_FIELDS = frozenset({"boxes", "box", "path", "frames", "source"})
 """Fields of results that are left out, because they do not help a judge or would reveal the perception model."""
 
 _PERCEPTION_NAME = re.compile(r" ?\(seen by [^()]*\)")
+"""The note in a tool's message that names the perception model."""
 
 _ENDINGS = {
     "answered": "the agent gave a final answer",
@@ -42,6 +45,7 @@ _ENDINGS = {
     "camera_error": "the camera failed",
     "cancelled": "the run was cancelled",
 }
+"""Descriptions of the outcomes of runs."""
 
 
 def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:

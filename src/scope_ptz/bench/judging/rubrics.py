@@ -17,6 +17,7 @@ from scope_ptz.bench.judging.rendering import layout_sample
 from scope_ptz.bench.tasks.task import Category
 
 PROMPT = "judge-1"
+"""Name of the current prompt, which is also the name of its file."""
 _HEADING = re.compile(r"^# (.+)\n", re.MULTILINE)
 
 

@@ -53,7 +53,7 @@ class _ServerSupport:
     """The options that a server accepts, as learned from its replies. Copies of a ``JudgeServer`` share it.
 
     Attributes:
-        dialect: The dialect of requests.
+        dialect: The request fields and roles that the server accepts.
         format_index: Index of the first response format that was not rejected.
     """
 

@@ -37,7 +37,7 @@ class Candidate:
 
 
 def candidates(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> list[Candidate]:
-    """Return the ranked runs as candidates.
+    """Return the ranked runs as candidates, and mark those on the Pareto front.
 
     Args:
         ranked: The runs of model pairs over the same tasks.

@@ -25,6 +25,7 @@ MODE_TITLES = {
 """Titles of the error modes, in the order of the paper's table."""
 RULES_TITLE = "Incorrect trials by error mode, by the rules"
 PERCEPTION_MODES = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
+"""The error modes that are errors of perception."""
 
 
 def modes_by_rules(run: ReportRun) -> Counter[ErrorMode]:
@@ -128,7 +129,7 @@ MEANS_NOTE = (
 
 
 Oracle = tuple[IntervalEstimate | None, IntervalEstimate | None, float | None]
-"""Measured macro accuracy, macro accuracy with errors of perception counted as correct, and their fraction of all errors."""
+"""Measured macro accuracy, macro accuracy with perception errors counted as correct, and the fraction of these among all errors."""
 
 
 def _rules_oracle(run: ReportRun) -> Oracle:

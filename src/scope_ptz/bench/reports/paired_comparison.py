@@ -38,11 +38,11 @@ class PairedComparison:
         second: Label of the second run.
         shared: Number of shared tasks.
         macro: Macro accuracy of the first run minus that of the second.
-        bootstrap: Bootstrap interval of the difference.
+        bootstrap: Bootstrap interval of the difference; None with fewer than two viewpoints.
         only_first: Tasks on which the first run is better.
         only_second: Tasks on which the second run is better.
         p_mcnemar: P value of McNemar's exact test.
-        p_clustered: P value of the clustered test.
+        p_clustered: P value of the t test with clustered standard errors; None if unknown.
         smallest_detectable: The smallest true difference that the clustered test detects with 80% power; None if unknown.
     """
 

@@ -86,7 +86,7 @@ class PaperLatency(_Row):
 
 
 class PaperFigure(_Row):
-    """Another number from the paper."""
+    """A number from the paper that is in none of the other tables."""
 
     what: str
     value: str

@@ -7,7 +7,9 @@ from datetime import datetime
 from pydantic import BaseModel, ConfigDict
 
 STATE_FILE = "progress.json"
+"""The file with the current ``ProgressState``."""
 TRIALS_FILE = "trials.jsonl"
+"""The file with the finished runs, one ``Trial`` per line."""
 LOCK_FILE = "progress.lock"
 """The file that an evaluation keeps locked while it runs."""
 

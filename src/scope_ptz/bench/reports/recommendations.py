@@ -15,6 +15,7 @@ from scope_ptz.bench.statistics.clustered import proportion, proportion_differen
 from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
+"""Title of the latency columns."""
 SIZES_GB = (8, 16, 24, 48, 80, 160)
 """Common sizes of accelerator memory in GB. The last size is that of two accelerators of 80 GB."""
 

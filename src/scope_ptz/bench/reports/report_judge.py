@@ -14,8 +14,9 @@ from scope_ptz.bench.scoring.trials import Judgement, Trial
 def judge_name(runs: Sequence[ReportRun]) -> str | None:
     """Return the judge whose verdicts a report shows; None if no run was judged.
 
-    This is the judge that decides most of the trials that only a judge can score. If there are no such trials, it is the judge with
-    verdicts on the most trials. Ties are resolved by name. A judge without any verdict is selected only if there is no other judge.
+    This is the judge that decides the largest number of the trials that only a judge can score. Ties, and reports without such
+    trials, are resolved by the number of trials with a verdict by the judge, then by the number of trials that it judged, then by
+    name. A judge without any verdict is selected only if no judge has given a verdict.
     """
     deciding, with_verdict, judged = Counter[str](), Counter[str](), Counter[str]()
     for trial in (trial for run in runs for trial in run.scored_trials):

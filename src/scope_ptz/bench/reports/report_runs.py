@@ -1,4 +1,4 @@
-"""The runs of a report. Each has a label, the models of the registry that it used, and a set of tasks."""
+"""The runs of a report. Each has a label, a set of tasks, and its models as the registry describes them."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ PERSON = "person"
 MAIN_STRATA = ("core", "imported")
 """Strata whose tasks are included in accuracy."""
 FULL_PRECISION = ("fp32", "fp16", "bf16")
+"""Precisions of models that are not quantised."""
 CATEGORY_TITLES = {
     "comparative": "Comparative", "counting": "Counting", "descriptor": "Descriptor", "location": "Location",
     "multi_step_command": "Multi-step command", "multi_step_reasoning": "Multi-step reasoning", "ocr": "OCR",
@@ -69,7 +70,7 @@ class ReportRun:
 
     @property
     def ranked(self) -> bool:
-        """Whether the run is by a pair of models."""
+        """Whether the run is by a pair of models, so that rankings include it."""
         return self.kind == "models"
 
     @property
@@ -102,7 +103,7 @@ class ReportRun:
 
     @property
     def task_set(self) -> tuple[str, str]:
-        """Dataset and split. Runs of one task set are comparable."""
+        """The dataset and the split. Only runs of the same task set are compared."""
         return self.evaluation.card.dataset, split_name(self.evaluation.card.split)
 
     @property
@@ -266,7 +267,7 @@ def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
 
 
 def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """Return one run per system: the run with the most scored trials. Ties are resolved by order."""
+    """Return one run per system: the run with the most scored trials, or the first of several such runs."""
     best: dict[tuple[str, str, str, str], ReportRun] = {}
     for run in runs:
         if run.system not in best or len(run.scored_trials) > len(best[run.system].scored_trials):

@@ -28,7 +28,7 @@ class Section:
         text: The paragraphs before charts and tables.
         charts: The charts.
         tables: The tables.
-        folded: Keys of the tables that are collapsed.
+        folded: Keys of the tables that the page shows collapsed.
     """
 
     key: str

@@ -16,6 +16,7 @@ from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.repeats import mean_pass_all
 
 System = tuple[str, str, str, str]
+"""Planner, perception model, agent and variant, as in ``ReportRun.system``."""
 
 
 def sensitivity_section(runs: Sequence[ReportRun]) -> Section:

@@ -19,6 +19,7 @@ SLACK_S = 0.5
 BROKEN_OUTCOMES = ("camera_error", "cancelled", "planner_error")
 """Outcomes of runs that infrastructure may have broken. The model itself may also cause a planner error."""
 PERCEPTION_TOOLS = REGISTRY.perceiving
+"""Names of the tools that call perception."""
 MOVING_NEEDS = frozenset({"move", "zoom", "preset"})
 """Needs of a task for which the camera's viewpoint or pose must change."""
 
@@ -52,7 +53,7 @@ def trial_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator
 
 
 def _verdict_faults(line: TrialLine) -> Iterator[str]:
-    """Yield faults of the headline. It must follow from the checks or from a judgement."""
+    """Yield a fault if the headline does not follow from the checks or from a judgement."""
     if line.scored_by == "judge":
         if line.headline in ("correct", "incorrect") and line.headline not in {judgement.verdict for judgement in line.judged}:
             yield f"the trial was scored {line.headline} by a judge, but no judgement has this verdict"
@@ -103,7 +104,7 @@ def checks_of(task: Task) -> set[str]:
 
 
 def _check_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """Yield faults of the checks: missing or superfluous checks, or a check that contradicts the outcome."""
+    """Yield faults of the checks: missing or superfluous checks, or an outcome check that contradicts the outcome."""
     if line.scored_by == "judge":
         yield "the trial was scored by a judge although the task has checks"
     if line.headline == "infrastructure" and line.outcome is None and not line.checks:

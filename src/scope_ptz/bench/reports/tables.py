@@ -99,7 +99,7 @@ def cell_text(value: CellValue, kind: ColumnKind) -> str:
 
 
 def interval(estimate: IntervalEstimate, kind: ColumnKind) -> tuple[str, str]:
-    """Return the interval of an estimate and its limitation as texts. Either text may be empty."""
+    """Return two texts: the interval of an estimate, and its limitation, such as omitted strata. Either text may be empty."""
     if estimate.low is None or estimate.high is None:
         return "", "interval unknown"
     omitted = ", ".join(name.replace("_", " ") for name in estimate.without)

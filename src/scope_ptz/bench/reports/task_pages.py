@@ -47,7 +47,7 @@ OpenSample = Callable[[Evaluation, Trial], OpenedRun]
 
 @dataclass(frozen=True, slots=True)
 class PageCall:
-    """A tool call on the page, with its texts.
+    """A tool call on the page, as text.
 
     Attributes:
         call: The tool and its arguments.
@@ -101,7 +101,7 @@ class TaskPage:
 
     Attributes:
         task: The task's id.
-        file: Path of the page in the report's folder.
+        file: Path of the page, relative to the report's folder.
         evidence: The evidence of the task, one line per view.
         runs: The failed trials.
     """
@@ -118,7 +118,7 @@ class TaskPage:
 
 
 def page_files(evaluations: Sequence[Evaluation]) -> dict[str, str]:
-    """Return the path of each failed task's page in the report's folder, by the task's id.
+    """Return the path of each failed task's page, relative to the report's folder, by the task's id.
 
     Task ids from logs are converted to safe file names.
     """

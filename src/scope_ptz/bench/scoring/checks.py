@@ -122,7 +122,7 @@ def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def changes(before: CameraPosition, after: CameraPosition) -> list[str]:
-    """Return which of viewpoint, pan, tilt and zoom differ between two states."""
+    """Return which of viewpoint, pan, tilt and zoom differ between two positions of the camera."""
     one, two = before.pose, after.pose
     differs = {
         "viewpoint": before.viewpoint != after.viewpoint,
@@ -134,7 +134,7 @@ def changes(before: CameraPosition, after: CameraPosition) -> list[str]:
 
 
 def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the requested number of pictures was taken and that their files exist."""
+    """Check that the requested number of pictures was taken and, where this is known, that their files exist."""
     required = task.behaviour.pictures
     if required is None:
         return None

@@ -57,7 +57,7 @@ def uncovered_part(view: EvidenceView, observations: Sequence[Observation]) -> s
 
 
 def counts_for(view: EvidenceView, observation: Observation) -> bool:
-    """Return whether an observation matches the viewpoint, the time window and the subject of a view."""
+    """Return whether an observation matches the viewpoint, the time window and the subject of an evidence view."""
     if observation.viewpoint != view.aim.viewpoint:
         return False
     if view.window_s is not None and not view.window_s[0] <= observation.time_s <= view.window_s[1]:
@@ -66,7 +66,7 @@ def counts_for(view: EvidenceView, observation: Observation) -> bool:
 
 
 def reference_directions(view: EvidenceView) -> Floats:
-    """Return directions on a regular grid over a view's reference frame, without its border.
+    """Return directions on a regular grid over the reference frame of an evidence view, without its border.
 
     If the scope is full, the directions cover all pans within the view's band of tilts.
 

@@ -24,6 +24,7 @@ _HOW: dict[str, ObservationKind] = {
     "zoom_to_object": "locate",
     "track_object": "track",
 }
+"""The kind of observation that each tool makes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,7 @@ class Observation:
     Attributes:
         viewpoint: Viewpoint of the camera.
         projection: Projection of the image.
-        time_s: Scene time.
+        time_s: Scene time in seconds.
         how: The kind of perception call; "planner" for a frame that the planner was shown.
         asked: The description or question of the call.
         known: Whether perception could answer. An observation without an answer covers no evidence.
@@ -82,7 +83,7 @@ class EpisodeCall:
 
 @dataclass(frozen=True, slots=True)
 class SavedPicture:
-    """A picture that ``take_image`` reported. ``exists`` is None if the run stored no pictures."""
+    """A picture that ``take_image`` reported. ``exists`` states whether its file exists; None if that was not checked."""
 
     file: str
     exists: bool | None = None
@@ -140,7 +141,7 @@ class PresetViewpoints:
 
 @dataclass(frozen=True, slots=True)
 class FrameGeometry:
-    """The geometry of a run's frames: size in pixels, lens and limits of the camera."""
+    """The geometry of a run's frames: their size in pixels, and the lens and the limits of the camera."""
 
     width: int
     height: int
@@ -226,7 +227,8 @@ def _episode_call(
 def observations_of(call: EpisodeCall, geometry: FrameGeometry) -> tuple[Observation, ...]:
     """Return the observations of a successful call.
 
-    A zoom has only its first observation, because later ones are not recorded. Tracking has one for each pose of its path.
+    A call of ``zoom_to_object`` yields only its first observation, because later ones are not recorded. A call of ``track_object``
+    yields one for each pose on its path.
     """
     how, result = _HOW.get(call.name), call.result or {}
     if how is None:

@@ -36,7 +36,9 @@ class ErrorMode(StrEnum):
 
 
 _OBSERVING_TOOLS = frozenset({"count_objects", "query_answer"})
+"""Tools that only observe."""
 _MOVING_TOOLS = frozenset({"adjust_ptz", "go_to_preset", "go_home"})
+"""Tools that move the camera without searching for anything."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +167,7 @@ def _all_perception_failed(case: _Case) -> bool:
 
 
 def _was_left_unanswered(case: _Case) -> bool:
-    """Return whether only coverage failed, because perception could not answer a correct question about the right view."""
+    """Return whether, apart from the answer, only coverage failed: perception could not answer a question about the right view."""
     wrong = {check.name for check in case.verdict.checks if check.passed is False} - {"answer", "outcome"}
     observations = [replace(observation, known=True) for observation in case.episode.observations]
     return wrong == {"coverage"} and all(
@@ -174,7 +176,7 @@ def _was_left_unanswered(case: _Case) -> bool:
 
 
 def _was_misled(case: _Case) -> bool:
-    """Return whether the camera missed the target because perception located nothing or the wrong thing for a right description."""
+    """Return whether the camera missed the target because perception found nothing or the wrong thing for a right description."""
     required = case.task.behaviour.calls
     if not case.acted_wrongly or (case.verdict.failed("calls") and _missing_call(case, required, {"found"}) is not None):
         return False
@@ -245,3 +247,4 @@ _RULES: tuple[tuple[ErrorMode, Callable[[_Case], bool]], ...] = (
     (ErrorMode.VLM_COUNTING, _miscounted),
     (ErrorMode.VLM_QUERY, _misread),
 )
+"""The rules in their order. The first rule that applies decides; if none applies, the mode is ``REASONING``."""

@@ -29,7 +29,7 @@ from scope_ptz.bench.tasks.expected import (
 from scope_ptz.bench.tasks.task import Task
 
 _MAX_COUNTS = 8
-"""Maximum number of counts whose sums are computed."""
+"""Sums are computed only for the first counts of a run, at most this many."""
 
 
 def text_from_tools(episode: Episode) -> str:

@@ -65,7 +65,7 @@ def wrong_reads(task: Task, episode: Episode) -> bool:
 
 
 def _answers_wrongly(view: EvidenceView, observation: Observation, call: EpisodeCall) -> bool:
-    """Return whether a reply is wrong about a view. If the question names one of several things, only that thing is checked."""
+    """Return whether a reply is wrong about an evidence view. If its question names one of several things, only that is checked."""
     thing = _thing_asked_about(view, observation.asked)
     if thing is None:
         return _misreads(view.shows, call)
@@ -116,6 +116,7 @@ def _is_as_narrow(view: EvidenceView, observation: Observation) -> bool:
 
 
 def _reach_deg(view: EvidenceView) -> float:
+    """Return the angle between the centre of a view's reference frame and its corners."""
     half = math.tan(math.radians(view.hfov_deg) / 2)
     return math.degrees(math.atan(half * math.hypot(1.0, 1 / view.aspect)))
 

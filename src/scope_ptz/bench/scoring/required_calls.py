@@ -11,6 +11,7 @@ from scope_ptz.bench.tasks.task import Argument, RequiredCall
 from scope_ptz.tools.registry import TOOLS
 
 _DEFAULTS: dict[str, dict[str, Any]] = {name: tool.defaults() for name, tool in TOOLS.items()}
+"""The default arguments of each tool."""
 
 
 def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:

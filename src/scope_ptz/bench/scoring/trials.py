@@ -72,7 +72,7 @@ class ObservationTime(_Record):
     """Wall-clock seconds of one perception call. Concurrent calls share a frame and its capture.
 
     Attributes:
-        view: The view that was observed.
+        view: Whether the current view or a panorama of the full scene was observed.
         eyes_s: Seconds of perception (the model role "eyes").
         capture_s: Seconds of camera moves and captures, including rendering.
         call_s: Seconds of the whole tool call.
@@ -89,7 +89,7 @@ class Trial(_Record):
 
     Attributes:
         task: The facts about the task.
-        epoch: 1 for the first run of the task.
+        epoch: Number of the run among the runs of the same task, from 1.
         sample: Name of the sample in the log. The sample contains the trace and the pictures of the run.
         headline: The verdict: correct, incorrect, unscored, or infrastructure failure.
         scored_by: The source of the verdict: the checks, or a judge if the task has no check of its answer.

@@ -18,7 +18,9 @@ from scope_ptz.errors import ScopeError
 from scope_ptz.tools.registry import TOOLS
 
 Headline = Literal["correct", "incorrect", "unscored", "infrastructure"]
+"""The categories of results. "unscored": a check could not decide; "infrastructure": a failure outside the agent."""
 MOVING_TOOLS = TOOLS.moving
+"""Names of the tools that can move the camera."""
 AGENT_FAILURES = frozenset({"empty", "context-overflow"})
 """Kinds of planner failures that count against the agent: an empty reply and a context overflow."""
 
@@ -29,7 +31,7 @@ class Verdict:
 
     Attributes:
         task: The task's id.
-        headline: "correct", "incorrect", "unscored" or "infrastructure".
+        headline: The category of the result: "correct", "incorrect", "unscored" or "infrastructure".
         checks: The results of the checks.
         moved_needlessly: Whether the final pose differs from the start although the task required no move. It does not affect
             the headline.

@@ -15,7 +15,11 @@ from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import InputError, OutputError
 
 Policy = Literal["all", "exact", "any", "none"]
-"""Which of the expected tools a run must use: all of them, exactly these, any of them, or unchecked."""
+"""How the expected calls are checked.
+
+"all": every expected call was made; "exact": every expected call was made, and no other tool was used; "any": at least one
+expected call was made; "none": the calls are not checked.
+"""
 
 
 class ImportedTask(BaseModel):
@@ -27,7 +31,7 @@ class ImportedTask(BaseModel):
         line: Line number in the source file.
         raw: The cells of the source file, unchanged.
         calls: The expected calls.
-        policy: Which of the expected calls a run must make.
+        policy: How the expected calls are checked.
         order: Whether the calls must be made in the given order ("ordered") or in any order.
         start_s: Scene time at the start, in seconds.
         findings: Findings about the row.

@@ -41,4 +41,5 @@ def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Ta
 
 
 def _margins(group: tuple[str, ...]) -> list[tuple[str, ...]]:
+    """Return the keys under which a task of a group is counted: the whole group, and each of its three parts."""
     return [group, *(("any", part) for part in group)]

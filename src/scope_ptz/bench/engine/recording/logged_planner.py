@@ -26,7 +26,12 @@ class LoggedPlanner(Planner):
     """
 
     def __init__(self, model: Model, planner: Planner | None) -> None:
-        """Initialize the planner; ``of`` creates one for a model. ``planner`` is None unless ``model`` is a ``ScopeModel``."""
+        """Initialize the planner. Use ``of`` to create one for a model.
+
+        Args:
+            model: The Inspect model.
+            planner: The planner that the model runs; None unless the model is a ``ScopeModel``.
+        """
         self._model, self._planner = model, planner
         self.name = planner.name if planner is not None else str(model)
         self.sees = planner.sees if planner is not None else False

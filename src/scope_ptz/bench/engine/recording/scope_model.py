@@ -38,6 +38,7 @@ from scope_ptz.planner.chat.chat_messages import valid_tool_name
 __all__ = ["PROVIDER", "Model", "ScopeModel", "inspect_model", "output_of", "scope_ptz"]
 
 PROVIDER = "scope_ptz"
+"""Name of the Inspect provider, as in ``scope_ptz/grammar``."""
 
 _Reply = TypeVar("_Reply", bound=BaseModel)
 

@@ -37,6 +37,7 @@ from scope_ptz.planner.chat.schemas import plain_schemas
 from scope_ptz.tools.registry import schemas
 
 Record = Started | Decided | Called | Ended
+"""A record of a trace."""
 
 _BRIEFING: TypeAdapter[Briefing] = TypeAdapter(Briefing)
 
@@ -45,6 +46,11 @@ def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[Cha
     """Convert a state to messages.
 
     Each step appends messages to those of the previous step. The newest view replaces the previous view.
+
+    Args:
+        state: The state.
+        prompt: The system prompt.
+        sees: Whether the planner accepts images.
     """
     briefing = state.briefing
     system = ChatMessageSystem(
@@ -75,7 +81,7 @@ def call_id(step: int, index: int) -> str:
 
 
 def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool:
-    """Convert the result of a call to a message to the planner, with the whole outcome in the metadata."""
+    """Convert the result of a call into a message for the planner, with the whole outcome in the metadata."""
     content: list[Content] = [ContentText(text=observation(outcome))]
     if outcome.picture is not None:
         content += _picture_content(outcome.picture)
