@@ -24,12 +24,12 @@ from scope_ptz.simulator.models import SceneFile
 
 
 class BlenderCamera(Camera):
-    """A pan-tilt-zoom camera in a scene that a worker has loaded. Moves to a pose take no time.
+    """A pan-tilt-zoom camera in a scene that a Blender process has loaded. Moves to a pose take no time.
 
-    Moving actors are at their positions at the clock's time. The caller closes the worker.
+    Moving actors appear where they are at the clock's time. The caller closes the worker.
 
     Args:
-        worker: The running worker, with the scene loaded.
+        worker: The running Blender process, with the scene loaded.
         scene: The scene's viewpoints and presets.
         viewpoint: The viewpoint of the camera; by default, that of the home preset.
         samples: Cycles samples per pixel. Packs are baked with 16.

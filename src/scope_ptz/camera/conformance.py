@@ -33,7 +33,11 @@ class CameraConformance(LensConformance, ABC):
     """Checks of the ``Camera`` contract. Widen the tolerances for real motors and encoders."""
 
     angle_tolerance_deg: float = 0.05
+    """Allowed difference of pan and of tilt, in degrees."""
+
     zoom_tolerance: float = 0.02
+    """Allowed relative difference of the magnification."""
+
     field_tolerance: float = 0.02
     """Allowed relative difference between a frame's field of view and the zoom table."""
     same_picture_mean_difference: float = 2.0

@@ -67,7 +67,10 @@ class HeadMotion:
         self.drive(Velocity(), now_s, 0.0)
 
     def stop_axes(self, now_s: float, *, pan_tilt: bool, zoom: bool) -> None:
-        """Stop pan and tilt, the zoom, or neither. The other axes keep their velocity and timeout, or their destination."""
+        """Stop pan and tilt if ``pan_tilt`` is true, and the zoom if ``zoom`` is true.
+
+        The other axes keep their velocity and timeout, or their destination.
+        """
         command, since_s = self._current
         if isinstance(command, _Driving):
             target, left_s = command.target, since_s + command.hold_s - now_s

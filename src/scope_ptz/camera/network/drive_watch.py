@@ -46,7 +46,7 @@ class DriveWatch:
         self._retry_s, self._give_up_s = retry_s, give_up_s
         self._condition = threading.Condition()
         self._deadline_s: float | None = None
-        self._handed_over = False  # whether another party now stops the camera
+        self._handed_over = False  # whether only the watchdog process still tries to stop the camera
         self._thread: threading.Thread | None = None
 
     @property
@@ -118,7 +118,7 @@ class DriveWatch:
             with self._condition:
                 if self._deadline_s != due_s:
                     pause_s = self._retry_s
-                    continue  # driven again, or stopped by another party
+                    continue  # driven again, or stopped by another call
                 if sent:
                     self._stopped()
                 elif monotonic() - due_s > self._give_up_s:
