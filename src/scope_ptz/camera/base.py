@@ -45,8 +45,8 @@ class Camera(ABC):
     async def move(self, pose: Pose) -> Arrival:
         """Move to an absolute pose, clamped to the limits, and return when the picture has settled.
 
-        Pan is not wrapped before it is clamped: with limits at -179 and 179,
-        a request for 190 stops at 179 and never turns the long way round.
+        Pan is not wrapped before it is clamped: with limits at -179 and 179, a request for 190 stops at 179 and never turns the
+        long way round.
         """
 
     @abstractmethod
@@ -175,7 +175,7 @@ class Camera(ABC):
         raise CameraError(f"{self.info.name} cannot remove presets.")
 
     control_lock: ControlLock | None = None
-    """The lock that ``control`` acquires. If it is None, ``control`` creates one that only excludes users of this object.
+    """The lock that ``control`` acquires. If it is None, ``control`` creates one that only users of this object respect.
 
     If other programs can reach the camera, the code that opens it sets a lock that works across processes.
     """

@@ -13,6 +13,8 @@ _MAX_OCTAVES = 30.0  # far beyond any lens; without it, a zoom that is driven fo
 
 @dataclass(frozen=True, slots=True)
 class _Move:
+    """A move from one pose to another."""
+
     head: Head
     start: Pose
     end: Pose
@@ -20,6 +22,8 @@ class _Move:
 
 @dataclass(frozen=True, slots=True)
 class _Driving:
+    """A drive that starts at a pose and a speed, accelerates to a target speed, and begins to brake after ``hold_s`` seconds."""
+
     start: Pose
     speed: Velocity
     target: Velocity

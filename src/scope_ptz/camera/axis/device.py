@@ -158,6 +158,7 @@ async def _table(client: VapixClient, group: str, attribute: str) -> tuple[tuple
 
 
 def _fields(model: str, reported: DeviceLimits) -> tuple[float, float]:
+    """Return the reported or known horizontal fields of view, in degrees, at the widest and the closest zoom."""
     widest, closest = reported.max_field_angle, reported.min_field_angle
     if widest is not None and closest is not None and 0 < closest < widest <= 1800:
         return widest / 10, closest / 10

@@ -92,7 +92,7 @@ def zoom_scale(
 
 
 def optics_of(scale: ZoomScale, fields: tuple[tuple[float, float], ...]) -> Optics:
-    """Return the lens that has known fields of view. Between them, the focal length grows linearly with magnification.
+    """Return the optics with the given fields of view. Between them, the focal length grows linearly with magnification.
 
     Args:
         scale: The zoom scale.

@@ -139,6 +139,7 @@ class _Problem:
         return float(np.abs(turns).max(initial=0.0))
 
     def _add_pair(self, normal: Floats, right: Floats, pair: PairMatches, focals: Floats) -> None:
+        """Add the matches of a pair to the normal equations."""
         i, j, n = pair.first, pair.second, len(self.views)
         (rays_i, slopes_i), (rays_j, slopes_j) = (
             _rays(points, float(focals[k]), self.axes[k]) for k, points in ((i, pair.first_px), (j, pair.second_px))

@@ -80,12 +80,14 @@ def _detail_map(session: CaptureSession) -> NDArray[np.float32]:
 
 
 def _detail_in(detail: NDArray[np.float32], view: Perspective) -> float:
+    """Return the mean detail in a view."""
     xs, ys = ((np.arange(n) + 0.5) / n for n in (16, 9))
     rows, columns = _cells(view.directions(np.stack(np.meshgrid(xs, ys), axis=-1)))
     return float(detail[rows, columns].mean())
 
 
 def _cells(rays: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the rows and the columns of the cells to which directions belong."""
     pan = np.degrees(np.arctan2(rays[..., 0], rays[..., 1]))
     tilt = np.degrees(np.arcsin(np.clip(rays[..., 2], -1.0, 1.0)))
     return np.clip((90.0 - tilt).astype(np.int64), 0, 179), (pan + 180.0).astype(np.int64) % 360

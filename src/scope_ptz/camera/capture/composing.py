@@ -166,6 +166,7 @@ class Composer:
         return [int(k) for k in indices[apart < reach + self._reach_deg[indices]]]
 
     def _layer(self, index: int, grid: Grid, rays: NDArray[np.float64]) -> _Layer | None:
+        """Return a frame, resampled to a block; None if it shows no part of the block."""
         frame = self._frames[index]
         nodes = frame.points(rays)
         if not np.any(np.all((nodes > -0.1) & (nodes < 1.1), axis=-1)):

@@ -111,6 +111,7 @@ def world_directions(view: Perspective, points_px: Floats) -> Floats:
 
 
 def _match(views: Sequence[Perspective], features: Callable[[int], Features], i: int, j: int) -> PairMatches | None:
+    """Return the matches of two frames that agree with one rotation; None if there are too few."""
     one, two = features(i), features(j)
     rays_1, rays_2 = world_directions(views[i], one.points), world_directions(views[j], two.points)
     here, there = _seen_by(views[j], rays_1), _seen_by(views[i], rays_2)

@@ -30,8 +30,8 @@ VIEWPOINT = "camera"
 """Name of the viewpoint of a captured scene."""
 
 BASE_DENSITY = 1.27
-"""Density of the panorama relative to the centre of a wide frame. With this value, views from the pack are as
-sharp as the frames."""
+"""Density of the panorama relative to the centre of a wide frame. With this value, views from the pack are as sharp
+as the frames."""
 
 MAX_WIDE_DENSITY = 1.15
 """Maximum density of the frames in the panorama, relative to the widest frames. Denser frames become tiles."""
@@ -165,6 +165,7 @@ class _Painter:
 def _tiles(
     place: Path, painter: _Painter, views: Sequence[tuple[int, Perspective]], wide: Sequence[int], steps: Steps
 ) -> list[Tile]:
+    """Write the tiles, and return their entries in the manifest. All tiles share one empty layer of instance ids."""
     if not views:
         return []
     tiles = []

@@ -49,6 +49,7 @@ class Ranges:
     def _cut(
         axis: str, chosen: tuple[float, float] | None, limits: tuple[float, float], *, endless: bool = False
     ) -> tuple[float, float]:  # fmt: skip
+        """Return the chosen range of an axis, narrowed to its limits."""
         if chosen is None:
             return limits
         if not (all(math.isfinite(angle) for angle in chosen) and chosen[0] <= chosen[1]):

@@ -151,6 +151,8 @@ async def _calibrate(camera: Camera, start: Pose, zooms: int, assumed: tuple[str
 
 @dataclass(frozen=True, slots=True)
 class _Response:
+    """The scales of pan and tilt (as in ``AxisResponse``), the tilt offset, and the focal length at the widest zoom."""
+
     pan: float
     tilt: float
     tilt_offset_deg: float

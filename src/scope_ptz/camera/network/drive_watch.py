@@ -104,6 +104,7 @@ class DriveWatch:
             self._watchdog.disarm()
 
     def _watch(self) -> None:
+        """Wait for each deadline and send stops until one arrives. This runs in the thread."""
         pause_s = self._retry_s
         while True:
             with self._condition:

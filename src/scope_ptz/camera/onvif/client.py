@@ -1,4 +1,4 @@
-"""The ONVIF services of one device, through ``onvif-zeep-async`` on a pinned transport."""
+"""The ONVIF services of one device, through ``onvif-zeep-async`` and a transport that reaches no other device."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ class OnvifClient:
         return camera
 
     async def make_service(self, name: str, camera: Any = None) -> Any:
-        """Return a new service on the pinned transport."""
+        """Return a new service that uses ``PinnedTransport``."""
         camera = camera or self._camera
         with soap_errors(self.address, f"the {name} service"):
             xaddr, wsdl, binding = camera.get_definition(name)

@@ -1,4 +1,4 @@
-"""Send SOAP messages through the pinned HTTP client, regardless of the addresses that the device reports."""
+"""Send SOAP messages only to the configured device, regardless of the addresses that it reports."""
 
 from __future__ import annotations
 
