@@ -37,7 +37,7 @@ class BlenderCamera(Camera):
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
         optics: The lens; the default is that of the simulated camera, an AXIS M5075-G.
-        limits: Limits of motion; the default is those of the simulated camera.
+        limits: Limits of motion; by default, those of the simulated camera.
         has_truth: Whether frames record their origin, so that the ground truth of a pack can be applied to them.
     """
 

@@ -71,7 +71,7 @@ def whole_circle(limits: Limits) -> bool:
 
 
 def plan_poses(info: CameraInfo, limits: Limits, zoom: float, overlap: float = OVERLAP) -> list[Pose]:
-    """Return poses whose frames cover everything that the camera can show within limits at a zoom. Every other row is reversed.
+    """Return poses whose frames cover everything that the camera can show within limits at a magnification. Every other row is reversed.
 
     Args:
         info: The camera.

@@ -89,10 +89,10 @@ def register(session: CaptureSession, steps: Steps) -> Registration:
 
 
 def measured_optics(optics: Optics, factors: list[tuple[float, float]]) -> Optics:
-    """Return a zoom table corrected with measured focal lengths.
+    """Return the optics, with the zoom table corrected by measured focal lengths.
 
     Args:
-        optics: The reported table.
+        optics: The reported optics.
         factors: Pairs of magnification and the ratio of measured to reported focal length; empty if nothing was measured.
     """
     if not factors:

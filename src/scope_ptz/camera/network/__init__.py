@@ -1,1 +1,1 @@
-"""Code that network camera drivers share: HTTP that sends credentials only to the camera, pictures, streams, settling, and a dead man's switch."""
+"""Code that network camera drivers share: HTTP with safe credentials, pictures, streams, settling, and a dead man's switch."""

@@ -52,7 +52,7 @@ class OnvifDevice:
         timeout_s: Shortest and longest timeout, in seconds, that it accepts for a continuous move.
         limits: Limits of motion.
         capabilities: Its optional capabilities, without focus and iris.
-        assumed: Names of the values that are neither reported, configured nor measured.
+        assumed: Names of the values that are only assumed, because they are not reported, configured or measured.
     """
 
     manufacturer: str
