@@ -141,7 +141,7 @@ class CaptureSession:
         return sum(not shot.file for shot in self._shots.values())
 
     def find(self, key: str) -> Shot | None:
-        """Return the frame or refused pose with a key; None if the key has not been reached yet."""
+        """Return the frame, or the refused pose, with a key; None if there is none yet."""
         return self._shots.get(key)
 
     def add(self, key: str, frame: Frame, preset: str = "") -> Shot:
