@@ -73,8 +73,7 @@ def whole_circle(limits: Limits) -> bool:
 def plan_poses(info: CameraInfo, limits: Limits, zoom: float, overlap: float = OVERLAP) -> list[Pose]:
     """Return poses whose frames cover everything that the camera can show within limits at a magnification.
 
-    Every other row is reversed, which shortens the way of the camera.
-
+    Every other row is reversed, so that the camera travels less.
 
     Args:
         info: The camera.
