@@ -27,7 +27,7 @@ class Camera(ABC):
     """A pan-tilt-zoom camera. All methods raise ``CameraError`` when the camera fails.
 
     Attributes:
-        clock: The time of the camera's world.
+        clock: The clock of the camera's world: real time, or the time of a simulated scene.
     """
 
     clock: Clock
@@ -45,7 +45,8 @@ class Camera(ABC):
     async def move(self, pose: Pose) -> Arrival:
         """Move to an absolute pose, clamped to the limits, and return when the picture has settled.
 
-        Pan is not wrapped before it is clamped: a request for 190 stops at 179 and never turns the long way round.
+        Pan is not wrapped before it is clamped: with limits at -179 and 179, a request for 190 stops at 179 and never turns the
+        long way round.
         """
 
     @abstractmethod
@@ -141,7 +142,7 @@ class Camera(ABC):
         raise CameraError(f"The driver of {self.info.name} cannot set the iris.")
 
     async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
-        """Yield frames as they are taken, at most ``rate_hz`` per second. A slow consumer gets the newest frame, never a queue.
+        """Yield frames as they are taken, at most ``rate_hz`` per second. A slow consumer skips frames and gets the newest.
 
         Use it with ``contextlib.aclosing``, so that the stream is released when the consumer stops early.
         """
@@ -167,14 +168,14 @@ class Camera(ABC):
 
         Raises:
             UnknownNameError: There is no such preset.
-            CameraError: The camera cannot remove this preset, or no presets at all.
+            CameraError: The camera cannot remove this preset, or cannot remove any.
         """
         if name not in (known := [preset.name for preset in await self.presets()]):
             raise UnknownNameError("preset", name, known)
         raise CameraError(f"{self.info.name} cannot remove presets.")
 
     control_lock: ControlLock | None = None
-    """The lock that ``control`` acquires.
+    """The lock that ``control`` acquires. If it is None, ``control`` creates one that only users of this object respect.
 
     If other programs can reach the camera, the code that opens it sets a lock that works across processes.
     """

@@ -24,12 +24,12 @@ from scope_ptz.simulator.models import SceneFile
 
 
 class BlenderCamera(Camera):
-    """A pan-tilt-zoom camera in a scene that a worker has loaded. Moves to a pose take no time.
+    """A pan-tilt-zoom camera in a scene that a Blender process has loaded. Moves to a pose take no time.
 
-    Moving actors are at their positions at the clock's time. The caller closes the worker.
+    Moving actors appear where they are at the clock's time. The caller closes the worker.
 
     Args:
-        worker: The running worker, with the scene loaded.
+        worker: The running Blender process, with the scene loaded.
         scene: The scene's viewpoints and presets.
         viewpoint: The viewpoint of the camera; by default, that of the home preset.
         samples: Cycles samples per pixel. Packs are baked with 16.
@@ -37,7 +37,7 @@ class BlenderCamera(Camera):
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
         optics: The lens; the default is that of the simulated camera, an AXIS M5075-G.
-        limits: Limits of motion; the default is those of the simulated camera.
+        limits: Limits of motion; by default, those of the simulated camera.
         has_truth: Whether frames record their origin, so that the ground truth of a pack can be applied to them.
     """
 

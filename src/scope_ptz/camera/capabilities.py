@@ -9,7 +9,7 @@ from scope_ptz.camera.lens import FocusAction, IrisAction
 from scope_ptz.errors import InputError
 
 MAX_PRESET_NAME = 31
-"""Maximum length of a preset name in characters. It is the limit of AXIS cameras."""
+"""Maximum length of a preset name in characters. AXIS cameras have this limit, and it applies to all cameras."""
 
 MAX_DRIVE_TIMEOUT_S = 10.0
 """Maximum time in seconds that a driven camera keeps moving without another command."""

@@ -33,11 +33,15 @@ class CameraConformance(LensConformance, ABC):
     """Checks of the ``Camera`` contract. Widen the tolerances for real motors and encoders."""
 
     angle_tolerance_deg: float = 0.05
+    """Allowed difference of pan and of tilt, in degrees."""
+
     zoom_tolerance: float = 0.02
+    """Allowed relative difference of the magnification."""
+
     field_tolerance: float = 0.02
     """Allowed relative difference between a frame's field of view and the zoom table."""
     same_picture_mean_difference: float = 2.0
-    """Allowed mean difference (out of 255) between two pictures of one pose, to allow for noise and moving objects."""
+    """Allowed mean difference (out of 255) between two pictures of one pose, which noise and moving objects may cause."""
     driving_s: float = 0.5
     """Duration of a drive, in seconds on the camera's clock."""
     stopping_s: float = 0.5

@@ -10,7 +10,7 @@ from scope_ptz.geometry import Pose, wrap_pan_deg
 
 
 def poses(info: CameraInfo) -> list[Pose]:
-    """Return four poses that are well within the limits and far from each other."""
+    """Return four poses that are far from each other. Pan and tilt are well within the limits, and zoom spans its range."""
     limits = info.limits
     fractions = ((0.5, 0.6, 0.0), (0.8, 0.4, 0.7), (0.2, 0.8, 0.3), (0.55, 0.2, 1.0))
     return [

@@ -123,7 +123,7 @@ class ControlLock:
 
 
 def _read_holder(note: Path) -> Holder | None:
-    """Return the controller that a lock file names; None if the file is empty or damaged."""
+    """Return the controller that the note beside a lock file names; None if the note is missing or damaged."""
     try:
         found = json.loads(note.read_text(encoding="utf-8"))
         return Holder(str(found["name"]), str(found["process"]), str(found["since"]))

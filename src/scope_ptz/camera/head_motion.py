@@ -13,6 +13,8 @@ _MAX_OCTAVES = 30.0  # far beyond any lens; without it, a zoom that is driven fo
 
 @dataclass(frozen=True, slots=True)
 class _Move:
+    """A move from one pose to another."""
+
     head: Head
     start: Pose
     end: Pose
@@ -20,6 +22,8 @@ class _Move:
 
 @dataclass(frozen=True, slots=True)
 class _Driving:
+    """A drive that starts at a pose and a speed, accelerates to a target speed, and begins to brake after ``hold_s`` seconds."""
+
     start: Pose
     speed: Velocity
     target: Velocity
@@ -67,7 +71,10 @@ class HeadMotion:
         self.drive(Velocity(), now_s, 0.0)
 
     def stop_axes(self, now_s: float, *, pan_tilt: bool, zoom: bool) -> None:
-        """Stop pan and tilt, the zoom, or neither. The other axes keep their velocity and timeout, or their destination."""
+        """Stop pan and tilt if ``pan_tilt`` is true, and the zoom if ``zoom`` is true.
+
+        The other axes keep their velocity and timeout, or their destination.
+        """
         command, since_s = self._current
         if isinstance(command, _Driving):
             target, left_s = command.target, since_s + command.hold_s - now_s

@@ -11,7 +11,10 @@ from scope_ptz.geometry import Pose
 
 @dataclass(frozen=True, slots=True)
 class Motor:
-    """A motor, described by its top speed in units/s and its acceleration in units/s²."""
+    """A motor, described by its top speed in units/s and its acceleration in units/s².
+
+    The unit is the degree for pan and tilt, and the octave (a doubling of magnification) for zoom.
+    """
 
     speed: float
     acceleration: float
@@ -69,7 +72,10 @@ class Motor:
 
 @dataclass(frozen=True, slots=True)
 class Head:
-    """The motors of a camera. Zoom is in octaves (doublings of magnification), which matches how operators perceive it."""
+    """The motors of a camera. Zoom is in octaves (doublings of magnification), which matches how operators perceive it.
+
+    ``settle_s`` is the time from the end of a move until the picture is still.
+    """
 
     pan: Motor
     tilt: Motor
@@ -109,4 +115,4 @@ def _distances(start: Pose, end: Pose) -> tuple[float, float, float]:
 
 
 AXIS_M5075_G_HEAD = Head(pan=Motor(100.0, 400.0), tilt=Motor(100.0, 400.0), zoom=Motor(1.5, 6.0), settle_s=0.1)
-"""The pan speed is from the data sheet. Tilt, zoom, acceleration and settling time are estimates."""
+"""The motors of the AXIS M5075-G. The pan speed is from the data sheet; tilt, zoom, acceleration and settling are estimates."""

@@ -1,4 +1,4 @@
-"""Notebook display of a frame."""
+"""Display a frame in a notebook."""
 
 from __future__ import annotations
 

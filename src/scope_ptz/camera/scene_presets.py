@@ -22,7 +22,8 @@ def starting_preset(scene: SceneFile, viewpoint: str | None = None) -> ScenePres
         viewpoint: Where the camera stands; None for the viewpoint of the scene's home preset.
 
     Returns:
-        The scene's home preset or, for another viewpoint, its first preset. If it has none, a preset that points straight ahead.
+        The scene's home preset or, for another viewpoint, the first preset there. If there is none, a new preset that points
+        straight ahead.
 
     Raises:
         UnknownNameError: The scene has no such viewpoint.

@@ -44,8 +44,8 @@ def _rendering() -> CapacityLimiter:
 class SimulatedCamera(Camera):
     """An AXIS M5075-G in a scene, or the camera from which a scene was captured. Many cameras can share one scene.
 
-    On the given clock, moves take as long as those of a real head. In evaluations only scene time passes; in interactive use moves
-    also take real time.
+    On the given clock, moves take as long as those of a real head. In evaluations, a move only advances the clock; in interactive
+    use, it also takes real time.
 
     Args:
         scene: The scene.

@@ -12,7 +12,7 @@ class CameraSpec:
 
     Attributes:
         scheme: The camera type, in lower case: ``sim``, ``blender``, or the name of a plug-in.
-        address: The text after the scheme, without leading slashes and options.
+        address: The text after the scheme, without leading slashes or options.
         options: The ``NAME=VALUE`` pairs after a question mark, as in ``blender:yard.blend?samples=4``.
         name: The name of the camera in ``scope.yaml``; empty if it is not named there.
     """

@@ -1,4 +1,4 @@
 """Model servers: addresses, requests and failures.
 
-No HTTP library is imported before the first request, so that commands without a server start fast.
+No HTTP library is imported before the first request, so that commands that use no server start fast.
 """

@@ -20,6 +20,7 @@ _MAX_QUOTED_BYTES = 80
 
 _JSON_TYPE = re.compile(r"^(application|text)/([\w.+-]+\+)?json$")
 _UNSAFE = re.compile("[\\x00-\\x08\\x0b\\x0c\\x0e-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
+# The same characters in JSON: escape sequences and raw bytes.
 _UNSAFE_ESCAPE = re.compile(rb"\\u(00[0189]|[dD][89a-fA-F])|\\[bf]|[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]|\xc2[\x80-\x9f]")
 
 

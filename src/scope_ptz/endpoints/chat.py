@@ -24,7 +24,7 @@ __all__ = ["ChatClient", "ChatReply", "RawToolCall"]
 EVENT_STREAM = "text/event-stream"
 UNKNOWN_FIELD_STATUS = 422  # the status with which strict servers reject unknown request fields
 DRAIN_S = 0.1
-"""Seconds to drain a finished stream, so that its connection can be reused."""
+"""Maximum seconds to read the rest of a finished stream, so that its connection can be reused."""
 
 
 class ChatClient:

@@ -25,7 +25,7 @@ _GREETING = [
     {"role": "user", "content": "Say hello."},
 ]
 UNKNOWN_MODEL_CHECK = "an unknown model name"
-"""Name of the last check, which runs only if the server is reachable."""
+"""Name of the last check, which is skipped if the server is unreachable or rejects the key."""
 _NO_MODEL = "no-model-has-this-name"
 
 
@@ -34,7 +34,7 @@ class ServerCheck(BaseModel):
 
     Attributes:
         verdict: "partly" means that SCOPE works with the server, but not as well as it could; "failed" means that it does not.
-        kind: The kind of the failure, if one was raised.
+        kind: The kind of server failure that was raised; empty if there was none.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -60,7 +60,7 @@ async def run_check(what: str, check: Callable[[], Awaitable[Finding]]) -> Serve
 
 
 async def check_chat(endpoint: Endpoint) -> AsyncIterator[ServerCheck]:
-    """Check a chat server. The checks end early if the server is unreachable or rejects the key."""
+    """Check a chat server, and yield each result. The checks end early if the server is unreachable or rejects the key."""
     single_retry = endpoint.model_copy(update={"retries": 1})
     client = ChatClient(single_retry)
     try:

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict
 
 from scope_ptz.errors import ScopeError
 
-MAX_DETAIL_CHARS = 300
+MAX_DETAIL_CHARS = 300  # longer messages from servers are truncated
 MIN_SCRUBBED_CHARS = 6
 """Keys with fewer characters, such as "none" or "EMPTY", are placeholders. They are not removed from texts, because they may be
 ordinary words."""

@@ -32,8 +32,8 @@ RETRYABLE = frozenset(
 )
 """Kinds of failure after which a call is retried. With a wrong key, path, request or content type, a retry would fail again."""
 
-FIRST_PAUSE_S = 0.5
-MAX_PAUSE_S = 8.0
+FIRST_PAUSE_S = 0.5  # upper bound of the random pause before the first retry; it doubles with each further retry
+MAX_PAUSE_S = 8.0  # maximum of that bound
 MAX_RETRY_AFTER_S = 30.0
 """Longest pause in seconds that a server may request. If it requests a longer one, the call fails."""
 
@@ -53,7 +53,7 @@ class Caller:
         self.rng, self.breaker = rng or random.Random(), breaker or Breaker()
 
     async def call(self, attempt: Callable[[], Awaitable[T]]) -> tuple[T, tuple[Attempt, ...]]:
-        """Run ``attempt`` until it succeeds or the retries are used up. Return its result and all attempts.
+        """Run ``attempt``, and retry it if the failure permits, within the limits. Return its result and all attempts.
 
         Raises:
             ServerFailure: No attempt succeeded; ``history`` lists the attempts.

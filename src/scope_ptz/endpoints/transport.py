@@ -16,7 +16,7 @@ _ALLOWED_HEADERS = frozenset(
     {"host", "accept", "accept-encoding", "connection", "content-type", "content-length", "transfer-encoding", "user-agent"}
 )
 _MAX_COMPRESSION = 128
-"""Compressed bodies are limited to ``MAX_BODY_BYTES`` divided by this factor."""
+"""Compressed bodies are limited to ``MAX_BODY_BYTES`` divided by this factor, because decompression enlarges them."""
 
 
 def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> httpx2.AsyncClient:

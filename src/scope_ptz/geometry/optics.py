@@ -74,7 +74,7 @@ class Limits:
     def clamp(self, pose: Pose) -> tuple[Pose, tuple[Axis, ...]]:
         """Return the nearest pose within the limits, and the axes that were clamped.
 
-        Pan is not wrapped first: 170 + 20 = 190 is clamped to 179, because the camera does not turn the other way.
+        Pan is not wrapped first: 170 + 20 = 190 is clamped to 179, and the camera does not turn the other way to -170.
         """
         pan = wrap_pan_deg(pose.pan_deg) if self.pan_endless else _clamped(pose.pan_deg, self.min_pan_deg, self.max_pan_deg)
         tilt = _clamped(pose.tilt_deg, self.min_tilt_deg, self.max_tilt_deg)

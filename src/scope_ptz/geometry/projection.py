@@ -48,7 +48,7 @@ class Projection(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Perspective:
-    """A pinhole view with square pixels."""
+    """A pinhole view with square pixels and without roll, whose centre is at ``pan_deg`` and ``tilt_deg``."""
 
     pan_deg: float
     tilt_deg: float

@@ -1,6 +1,7 @@
 """Directions on the sphere around a camera.
 
-At pan 0, x points right and y forward; z points up. A direction is a unit vector; arrays of directions have shape ``(..., 3)``.
+The axes do not turn with the camera: x points right and y forward at pan 0, and z points up. A direction is a unit vector; arrays
+of directions have shape ``(..., 3)``.
 """
 
 from __future__ import annotations

@@ -81,6 +81,7 @@ def list_audit(
 
 
 def _file(connection: Connection, path: Path) -> tuple[int, int]:
+    """Return the number of an audit log in the index, and how many of its bytes are indexed. A new log is added."""
     row = connection.execute(select(AUDIT_FILES).where(AUDIT_FILES.c.path == str(path))).mappings().first()
     if row is not None:
         return row["number"], row["offset"]

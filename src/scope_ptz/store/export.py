@@ -94,7 +94,7 @@ def _write_zip(database: Database, root: Path, runs: Iterable[str], file: IO[byt
 
 
 def _ratings(database: Database, run_id: str) -> list[dict[str, str]]:
-    """Return the newest rating of a whole run as a line for the benchmark's generator; no line if there is none."""
+    """Return the newest rating of a whole run as the only item of a list, for ``scope bench generate``; empty if there is none."""
     rated = [each for each in feedback_on(database, run_id) if each.position is None and each.rating]
     return [{"run": run_id, "rating": "good" if each.rating > 0 else "bad", "note": each.comment} for each in rated[-1:]]
 

@@ -169,6 +169,7 @@ def _cursor(after: str) -> tuple[float, int]:
 
 
 def _ratings(connection: Connection, numbers: Sequence[int]) -> dict[int, tuple[int, int]]:
+    """Return how many good and how many bad ratings runs have, by the number of the run."""
     good = func.sum(case((FEEDBACK.c.rating > 0, 1), else_=0))
     bad = func.sum(case((FEEDBACK.c.rating < 0, 1), else_=0))
     query: Select[Any] = select(FEEDBACK.c.run, good, bad).where(FEEDBACK.c.run.in_(numbers)).group_by(FEEDBACK.c.run)

@@ -1,1 +1,1 @@
-"""The driver of AXIS cameras: VAPIX requests and replies, device capabilities, and the camera itself."""
+"""The driver for AXIS cameras: VAPIX requests and replies, device capabilities, and the camera itself."""

@@ -33,10 +33,10 @@ class AxisCamera(NetworkCamera):
     """An AXIS camera on the network. Open it with ``open``.
 
     Args:
-        client: The connection.
+        client: The connection to the device.
         device: The device's properties and capabilities.
         pictures: The source of its pictures.
-        settling: The criteria for when it counts as settled.
+        settling: The criteria for when the camera counts as settled.
     """
 
     def __init__(self, client: VapixClient, device: AxisDevice, pictures: AxisPictures, settling: Settling) -> None:
@@ -70,15 +70,16 @@ class AxisCamera(NetworkCamera):
         """Connect to a camera and read its capabilities. ``http`` is closed with the camera, or if opening fails.
 
         Args:
-            http: The device.
-            credentials: The account, for RTSP.
+            http: The HTTP connection to the device.
+            credentials: The account for the RTSP stream.
             channel: The video channel.
             width: Width of a frame in pixels.
             height: Height of a frame in pixels.
             stream: The transport of ``frames``.
             rtsp_port: Port of the RTSP server; None for the port that the device reports.
             latency_s: Seconds from the exposure of a streamed frame to its arrival.
-            fields_deg: Horizontal fields of view at the widest and the closest zoom, instead of those that the device reports.
+            fields_deg: Horizontal fields of view in degrees at the widest and the closest zoom; None for those that the device
+                reports.
             measured_fields: Measured rows of (fraction of the zoom range, horizontal field of view in degrees), widest first.
                 They take precedence over the device's values, and ``fields_deg`` takes precedence over them.
             settling: The criteria for when the camera counts as settled.
@@ -187,7 +188,7 @@ class AxisCamera(NetworkCamera):
         try:
             await self._client.drop_control()
         except CameraError:
-            pass  # the connection is gone, and the queue forgets a silent client
+            pass  # the connection is gone, and the control queue drops a client that sends nothing
         finally:
             await self._client.http.close()
 
@@ -226,7 +227,7 @@ def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
     """Stop all motion of a device, over a separate connection. The call blocks.
 
     Args:
-        http: The device.
+        http: The HTTP connection to the device.
         details: The video channel, under the key ``channel``.
 
     Raises:
@@ -236,7 +237,10 @@ def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
 
 
 def _zoom_speed(rate: float, capabilities: Capabilities) -> int:
-    """Return the zoom speed, from -100 to 100, for a rate. VAPIX reports no rates, so 100 is assumed to be the top speed."""
+    """Return the VAPIX zoom speed, from -100 to 100, for a rate in octaves per second.
+
+    VAPIX does not report how fast a zoom speed is, so 100 is taken as the assumed top rate.
+    """
     top = capabilities.top_speed.zoom_rate
     if not rate or not top:
         return 0

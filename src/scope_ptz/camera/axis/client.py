@@ -39,7 +39,7 @@ class VapixClient:
     """The connection to one channel of a device.
 
     Args:
-        http: The device.
+        http: The HTTP connection to the device.
         channel: The video channel, from 1.
     """
 

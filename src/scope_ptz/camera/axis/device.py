@@ -21,7 +21,7 @@ RTSP_PORT = 554
 """The standard port of RTSP servers."""
 
 DEFAULT_SPEEDS = ((1.0, 1.0), (100.0, 100.0))
-"""Speed table assumed for devices that have none: a speed of 100 is 100 degrees per second."""
+"""Rows of (speed, degrees per second), assumed for devices without a speed table."""
 
 DEFAULT_ZOOM_RATE = 1.0
 """Assumed top speed of the zoom in octaves per second, because VAPIX reports none."""
@@ -33,14 +33,14 @@ class AxisDevice:
 
     Attributes:
         model: Product name; empty if it reports none.
-        limits: Limits in degrees and magnification.
+        limits: Limits of motion, with angles in degrees and zoom as magnification.
         optics: The lens, which relates magnification to field of view.
         zoom: The relation between zoom positions and magnifications.
         speeds: The relation between the device's speeds and degrees per second.
         capabilities: Its capabilities beyond moving to a pose.
         supported: Names of the functions whose ``PTZ.Support`` parameter is true, such as ``AutoFocus``.
         queueing: Whether its control queue is on.
-        locked: Whether its position is locked.
+        locked: Whether its position is locked, so that it cannot be moved.
         sizes: Picture sizes that it reports, as (width, height); empty if it reports none.
         firmware: Version of its firmware; empty if it reports none.
     """
@@ -65,9 +65,9 @@ async def read_device(
 
     Args:
         client: The connection.
-        fields_deg: Horizontal fields of view at the widest and the closest zoom, instead of those that the device reports.
+        fields_deg: Horizontal fields of view in degrees at the widest and the closest zoom; None for those that the device reports.
         measured: Measured rows of (fraction of the zoom range, horizontal field of view in degrees), widest first.
-            They are used if they cover the whole zoom range.
+            They are used if they cover the whole zoom range and ``fields_deg`` is None.
 
     Raises:
         NotACameraError: It is not an AXIS camera with pan, tilt and zoom.
@@ -158,6 +158,7 @@ async def _table(client: VapixClient, group: str, attribute: str) -> tuple[tuple
 
 
 def _fields(model: str, reported: DeviceLimits) -> tuple[float, float]:
+    """Return the reported or known horizontal fields of view, in degrees, at the widest and the closest zoom."""
     widest, closest = reported.max_field_angle, reported.min_field_angle
     if widest is not None and closest is not None and 0 < closest < widest <= 1800:
         return widest / 10, closest / 10

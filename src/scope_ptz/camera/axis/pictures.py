@@ -32,7 +32,7 @@ class AxisPictures(DevicePictures):
 
     Args:
         client: The connection.
-        credentials: The account, for RTSP.
+        credentials: The account for the RTSP stream.
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
         sizes: Picture sizes that the device reports.
@@ -72,6 +72,9 @@ class AxisPictures(DevicePictures):
 
 
 def _small_size(width: int, height: int, sizes: tuple[tuple[int, int], ...]) -> tuple[int, int]:
-    """Return the smallest reported size with the frame's aspect ratio that is wide enough, or else the frame's own size."""
+    """Return the smallest reported size that has the frame's aspect ratio and is at least ``SMALL_WIDTH`` wide.
+
+    If there is none, return the frame's own size.
+    """
     fitting = [(w, h) for w, h in sizes if w >= SMALL_WIDTH and abs(w * height - h * width) <= max(w, h)]
     return min([*fitting, (width, height)])

@@ -1,4 +1,4 @@
-"""Parse and check VAPIX replies, which are text or JSON. Nothing in them is trusted."""
+"""Parse VAPIX replies, which are text or JSON. Replies are not trusted, so every value is checked."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ class VapixError(CameraError):
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """A position that the device reports: pan and tilt in degrees, other values in the device's units, None if not reported."""
+    """A position that the device reports. Pan and tilt are in degrees, and other values in the device's units.
+
+    None means that the device does not report the value.
+    """
 
     pan_deg: float
     tilt_deg: float
@@ -36,7 +39,7 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class DeviceLimits:
-    """The limits of a device; None for those that it does not report. Field angles are in tenths of a degree."""
+    """The limits that a device reports. Field angles are in tenths of a degree, and None if it does not report them."""
 
     min_pan_deg: float
     max_pan_deg: float
@@ -53,7 +56,7 @@ class QueuePlace:
     """A place in the control queue.
 
     Attributes:
-        place: The place: 1 has control, 2 and above are waiting, and 0 means not in the queue.
+        place: Position in the queue: 1 has control, 2 and above are waiting, and 0 is not in the queue.
         seconds: Seconds of control left, or seconds until control; -1 if unknown.
         poll_s: Seconds after which the place must be renewed.
     """
@@ -85,7 +88,7 @@ def text_of(body: bytes) -> str:
 
 
 def values_of(text: str) -> dict[str, str]:
-    """Return the ``name=value`` lines of a reply. The prefix ``root.`` of names is removed."""
+    """Return the ``name=value`` lines of a reply as a dictionary. The prefix ``root.`` is removed from names."""
     pairs = (line.strip().partition("=") for line in text.splitlines())
     return {name.strip().removeprefix("root."): value.strip() for name, equals, value in pairs if equals and name.strip()}
 
@@ -114,7 +117,7 @@ def parse_limits(body: bytes) -> DeviceLimits:
 
     Raises:
         VapixError: The device refuses the request.
-        CameraReplyError: A limit is missing or not a number, or a minimum is above its maximum.
+        CameraReplyError: A limit is missing or not a number, or a minimum is not below its maximum (for zoom, above it).
     """
     values = _lower(values_of(text_of(body)))
     fields = [_optional(values, name) for name in ("minfieldangle", "maxfieldangle")]
@@ -146,10 +149,11 @@ def parse_table(body: bytes, channel: int, attribute: str, key: str) -> tuple[tu
         body: The reply.
         channel: The video channel.
         attribute: The table: ``zoomSteps`` or ``speeds``.
-        key: The column next to ``value``: ``zoom`` or ``speed``.
+        key: The column with the physical values, ``zoom`` or ``speed``. The column ``value`` has the device's values.
 
     Returns:
-        Rows of (device value, physical value), increasing in both columns; empty if the device has no such table.
+        Rows of (device value, physical value), increasing in both columns; empty if the device has no such table. Rows that break
+        the order are dropped.
     """
     text = text_of(body)
     try:

@@ -30,7 +30,7 @@ class VapixRequest:
     Attributes:
         path: The path on the device.
         query: Query parameters, not yet URL-encoded.
-        repeat: Whether the request may be repeated because sending it twice has the same effect as sending it once.
+        repeat: Whether the request may be sent again after a lost connection. This is safe if a second copy has no further effect.
     """
 
     path: str
@@ -137,12 +137,12 @@ def query(channel: int, what: Literal["position", "limits", "presetposcam", "spe
 
 
 def attributes(channel: int, group: Literal["zoom", "speed"]) -> VapixRequest:
-    """Read a calibration table."""
+    """Read the calibration table of the zoom or of the speeds."""
     return _ptz(channel, query="attributes", group=group, format="json")
 
 
 def control_queue(channel: int, action: Literal["request", "drop", "query"]) -> VapixRequest:
-    """Request PTZ control, drop it, or ask who is in the queue."""
+    """Request PTZ control, release it, or read this client's place in the queue."""
     return VapixRequest(QUEUE_PATH, {"camera": _channel(channel), "control": action})
 
 

@@ -62,7 +62,7 @@ class SpeedScale:
         return self.table[-1][1]
 
     def to_speed(self, dps: float) -> int:
-        """Return the device speed, from -100 to 100, for a velocity. Every velocity except 0 moves the camera."""
+        """Return the device speed, from -100 to 100, for a velocity. Only a velocity of 0 becomes a speed of 0."""
         import numpy as np
 
         if dps == 0:
@@ -77,11 +77,11 @@ def zoom_scale(
     """Return the zoom scale of a device.
 
     Args:
-        rows: The device's own table; empty if it has none.
+        rows: The device's own table of (zoom position, magnification); empty if it has none.
         min_units: The lowest zoom position.
         max_units: The highest zoom position.
-        widest: Horizontal field of view in degrees at the widest zoom, for a device without a table.
-        closest: Horizontal field of view in degrees at the closest zoom.
+        widest: Horizontal field of view in degrees at the widest zoom. It is used only if the device has no table.
+        closest: The same at the closest zoom.
     """
     max_units = min(max_units, OPTICAL_END_UNITS)
     kept = tuple(row for row in rows if min_units <= row[0] <= max_units)
@@ -92,7 +92,7 @@ def zoom_scale(
 
 
 def optics_of(scale: ZoomScale, fields: tuple[tuple[float, float], ...]) -> Optics:
-    """Return the optics. Between the known fields of view, the focal length grows linearly with magnification.
+    """Return the optics with the given fields of view. Between them, the focal length grows linearly with magnification.
 
     Args:
         scale: The zoom scale.

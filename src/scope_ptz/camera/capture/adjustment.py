@@ -39,7 +39,7 @@ REJECT_PX = 2.5
 """Matches whose error in the first solution exceeds this many pixels are excluded from the second one."""
 
 MAX_PAUSE_S = 60.0
-"""Maximum seconds between two frames that count towards the drift. A longer pause is an interruption of the capture."""
+"""Maximum seconds between two frames that count towards the drift. A longer gap, such as an interruption, counts as this many."""
 
 SAME_FIELD = 0.004
 """Frames whose focal lengths differ by less than this fraction share one correction."""
@@ -58,7 +58,7 @@ class Adjustment:
         axes: The right, up and forward axes of each frame, as the rows of a (3, 3) matrix.
         focal_px: Focal length of each frame in pixels.
         registered: Whether each frame has enough matches to determine its pose.
-        residual_px: Root mean square error of the matches, in pixels of the coarser frame; None without matches.
+        residual_px: Root mean square error of the matches, in pixels of the coarser frame of each pair; None without matches.
         matches: Number of matches that were used.
     """
 
@@ -96,7 +96,7 @@ def adjust(views: Sequence[Perspective], matches: Sequence[PairMatches], times_s
 
 
 class _Problem:
-    """The current solution and its normal equations.
+    """The current solution, and the normal equations that improve it.
 
     The unknowns are three numbers per frame (a rotation vector in world coordinates), one per group of frames with the same field
     of view (the logarithm of a factor on the focal length), and two for the drift of pan and tilt over the capture, in radians.
@@ -110,7 +110,8 @@ class _Problem:
         self.turns = np.zeros((len(views), 3))
         self.drift = np.zeros(2)
         self.drift_sigma = np.full(2, math.radians(DRIFT_SIGMA_DEG))
-        # A drift of pan rotates about the vertical, clockwise from above; a drift of tilt rotates about the frame's right axis.
+        # A drift of pan rotates about the vertical, clockwise as seen from above.
+        # A drift of tilt rotates about the frame's right axis.
         self._progress = progress
         self._whole_bases = [np.column_stack([(0.0, 0.0, -1.0), axes[0]]) for axes in self.axes]
         self.drift_bases = [part * basis for part, basis in zip(progress, self._whole_bases, strict=True)]
@@ -138,6 +139,7 @@ class _Problem:
         return float(np.abs(turns).max(initial=0.0))
 
     def _add_pair(self, normal: Floats, right: Floats, pair: PairMatches, focals: Floats) -> None:
+        """Add the matches of a pair to the normal equations."""
         i, j, n = pair.first, pair.second, len(self.views)
         (rays_i, slopes_i), (rays_j, slopes_j) = (
             _rays(points, float(focals[k]), self.axes[k]) for k, points in ((i, pair.first_px), (j, pair.second_px))
@@ -176,7 +178,10 @@ class _Problem:
         right[middle] -= self.log_factor / FOCAL_SIGMA**2
 
     def drop_insignificant_drift(self) -> None:
-        """Set a drift to zero if errors of individual poses can explain it. This makes the absolute orientation more accurate."""
+        """Make the next steps set a drift to zero if errors of individual poses can explain it.
+
+        This makes the absolute orientation more accurate.
+        """
         count = len(self.views)
         # The components of each turn along a drift of pan and a drift of tilt over the whole capture.
         parts = np.array([basis.T @ turn for basis, turn in zip(self._whole_bases, self.turns, strict=True)]).reshape(count, 2)
@@ -190,7 +195,7 @@ class _Problem:
         return np.asarray(np.linalg.norm(one - two, axis=1) * min(focals[pair.first], focals[pair.second]))
 
     def without_outliers(self, matches: Sequence[PairMatches]) -> list[PairMatches]:
-        """Return the matches that agree with the solution. Pairs with too few of them are dropped."""
+        """Return the matches that agree with the solution, without pairs that have too few of them."""
         focals, inliers = self.focals(), []
         for pair in matches:
             good = self._distances_px(pair, focals) < REJECT_PX

@@ -21,13 +21,16 @@ STRONG_EDGE = 24.0
 """Minimum local contrast of an edge that counts, on a scale of 0 to 255. Noise and fine texture stay below it."""
 
 HORIZON_DEG, FALL_DEG = -4.0, 22.0
-"""Centre and width, in degrees of tilt, of the weight of detail. Distant objects, which look small, are near the horizon."""
+"""Centre and width, in degrees of tilt, of the bell curve that weights detail.
+
+It favours directions near the horizon, where distant objects are, which look small.
+"""
 
 Floats = NDArray[np.float64]
 
 
 def choose_close_ups(session: CaptureSession, info: CameraInfo, candidates: Sequence[Pose], limit: int) -> list[Pose]:
-    """Return the ``limit`` candidates that show the most detail, in their original order.
+    """Return at most ``limit`` candidates: those that show the most detail, in their original order.
 
     Args:
         session: The capture, with its wide frames.
@@ -46,7 +49,10 @@ def _view(info: CameraInfo, pose: Pose) -> Perspective:
 
 
 def _detail_map(session: CaptureSession) -> NDArray[np.float32]:
-    """Return the weighted fraction of strong, fine edges per cell, as (180, 360): rows from the zenith, columns from pan -180."""
+    """Return the weighted fraction of strong, fine edges in each cell of one degree.
+
+    The shape is (180, 360). Rows start at the zenith, and columns at pan -180.
+    """
     sums, counts = np.zeros((180, 360)), np.zeros((180, 360))
     widest = max((shot.hfov_deg for shot in session.shots), default=0.0)
     for shot in session.shots:
@@ -74,12 +80,14 @@ def _detail_map(session: CaptureSession) -> NDArray[np.float32]:
 
 
 def _detail_in(detail: NDArray[np.float32], view: Perspective) -> float:
+    """Return the mean detail in a view."""
     xs, ys = ((np.arange(n) + 0.5) / n for n in (16, 9))
     rows, columns = _cells(view.directions(np.stack(np.meshgrid(xs, ys), axis=-1)))
     return float(detail[rows, columns].mean())
 
 
 def _cells(rays: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the rows and the columns of the cells to which directions belong."""
     pan = np.degrees(np.arctan2(rays[..., 0], rays[..., 1]))
     tilt = np.degrees(np.arcsin(np.clip(rays[..., 2], -1.0, 1.0)))
     return np.clip((90.0 - tilt).astype(np.int64), 0, 179), (pan + 180.0).astype(np.int64) % 360

@@ -35,22 +35,25 @@ MOVED = 14.0
 """Difference from the median after smoothing, on a scale of 0 to 255, above which a frame shows a moving object."""
 
 MIXED_CELLS, MIXED_MOVED = 2.5, 20.0
-"""Smoothing, in cells of the coarsest frame, and maximum difference when frames with different zooms are compared. Such frames
-never look exactly the same."""
+"""Values for comparing frames with different zooms, which never look exactly the same: the smoothing, in cells of ``LOW_SCALE``
+pixels of the coarsest frame, and the difference that is used instead of ``MOVED``."""
 
 SHARP_POWER, SOFT_POWER = 12, 2
 """Exponents of the weight, which decreases from the centre of a frame to its edge: for fine detail, and for large structures."""
 
 MIN_FINE_DENSITY = 0.8
-"""Minimum density of a fine frame, relative to the densest one. Coarser frames only vote, and fill the rest of the picture."""
+"""Minimum pixel density of a "fine" frame, relative to the densest frame of a block.
+
+Coarser frames help to detect moving objects, and fill the areas that no fine frame shows.
+"""
 
 FINE_EDGE = 0.06
-"""Weight of fine frames below which coarse frames replace them."""
+"""Weight of the best fine frame below which coarse frames gradually replace it."""
 
 MIN_WEIGHT = 1e-7  # weight at the edge of a frame
 MAX_CACHED_FRAMES = 40
-_STEP = 8
-GREY = np.array([0.299, 0.587, 0.114], np.float32)
+_STEP = 8  # distance in pixels between the points at which directions are computed exactly
+GREY = np.array([0.299, 0.587, 0.114], np.float32)  # weights of red, green and blue in the brightness
 
 View = Equirectangular | Perspective
 
@@ -75,7 +78,7 @@ class FramePicture:
 
 
 def frame_picture(image: Picture, hidden: Mask | None, gain: NDArray[np.float64]) -> FramePicture:
-    """Prepare the pixels of a frame, (H, W, 3) RGB, for composition: apply the gain, and compute the low band and the weights."""
+    """Prepare the pixels of a frame, (H, W, 3) RGB, for composition: apply the gains, and compute low band and weights."""
     toned = image if np.allclose(gain, 1.0, atol=1e-3) else _with_gain(image, gain)
     height, width = image.shape[:2]
     low = cv2.resize(toned, (max(1, width // LOW_SCALE), max(1, height // LOW_SCALE)), interpolation=cv2.INTER_AREA)
@@ -116,7 +119,7 @@ class Composer:
         chosen: Sequence[int],
         progress: Callable[[int, int], None] = lambda *_: None,
     ) -> tuple[Picture, Mask]:
-        """Compose a picture with a projection from frames.
+        """Compose a picture in a given projection from some of the frames.
 
         Args:
             projection: The projection of the picture.
@@ -155,7 +158,7 @@ class Composer:
         seen[rows, columns] = shown
 
     def _near(self, rays: NDArray[np.float64], chosen: Sequence[int]) -> list[int]:
-        """Return the indices of the frames that may show some of the directions."""
+        """Return the indices of the chosen frames that may show some of the directions."""
         indices = np.array(chosen, dtype=np.int64)
         middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
         reach = float(angle_between_deg(rays, middle).max())
@@ -163,6 +166,7 @@ class Composer:
         return [int(k) for k in indices[apart < reach + self._reach_deg[indices]]]
 
     def _layer(self, index: int, grid: Grid, rays: NDArray[np.float64]) -> _Layer | None:
+        """Return a frame, resampled to a block; None if it shows no part of the block."""
         frame = self._frames[index]
         nodes = frame.points(rays)
         if not np.any(np.all((nodes > -0.1) & (nodes < 1.1), axis=-1)):
@@ -259,7 +263,10 @@ def _by_fineness(weights: Sequence[Floats], fine: Sequence[bool], best: Floats) 
 
 
 def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floats]:
-    """Return the trust in each layer and the disagreement between trusted layers, from 0 to 1 on the coarse grid."""
+    """Return the trust in each layer, and the disagreement between trusted layers, both from 0 to 1 on the coarse grid.
+
+    A layer is trusted except where it shows a moving object.
+    """
     shape = layers[0].weight.shape
     if len(layers) == 1:
         return [np.ones(shape, np.float32)], np.zeros(shape, np.float32)
@@ -284,7 +291,7 @@ def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floa
 
 
 def _smoothed(grey: Floats, focal_px: float, coarsest_px: float, density: float, cells: float) -> Floats:
-    """Smooth a low band to ``cells`` cells of the coarsest frame, so that different sharpness does not count as a difference."""
+    """Smooth a brightness to ``cells`` cells of the coarsest frame, so that a difference in sharpness is not taken for motion."""
     target, current = (LOW_SCALE * density / focal / COARSE_PX for focal in (coarsest_px, focal_px))
     sigma = math.sqrt(max(0.0, (cells * target) ** 2 - current**2))
     return grey if sigma < 0.3 else np.asarray(cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE))

@@ -39,6 +39,7 @@ def kept_out(settings: CaptureSettings, projection: Projection) -> Mask | None:
 
 
 def _enlarged(region: Region) -> Region:
+    """Return a region that is larger by ``MARGIN_DEG`` on every side."""
     (left, right), (bottom, top) = region.pan_deg, region.tilt_deg
     if region.width_deg < 360.0 - 2 * MARGIN_DEG:
         left, right = (left - MARGIN_DEG + 180.0) % 360.0 - 180.0, (right + MARGIN_DEG + 180.0) % 360.0 - 180.0

@@ -13,9 +13,12 @@ from scope_ptz.geometry import Perspective, angle_between_deg
 from scope_ptz.geometry.sphere import camera_axes
 
 GATE_DEG = 3.0
-"""Maximum angle in degrees between matching features, according to the reported poses. Larger pose errors are not found."""
+"""Maximum angle in degrees between matching features, according to the reported poses.
 
-MAX_FEATURES = 1000
+If the reported poses of two frames are off by more, their features are not matched.
+"""
+
+MAX_FEATURES = 1000  # per frame
 RATIO = 0.85  # Lowe's ratio test, among the features within the gate
 MIN_INLIERS = 12
 """Minimum number of matches between two frames. Fewer may agree by chance."""
@@ -25,7 +28,7 @@ AGREEMENT_PX = 4.0
 
 MAX_MATCHES = 80  # per pair; more matches do not improve the precision
 MIN_OVERLAP = 0.15  # minimum overlap of a pair, as a fraction of the smaller frame
-_HYPOTHESES = 96
+_HYPOTHESES = 96  # rotations that RANSAC tries per pair of frames
 
 Floats = NDArray[np.float64]
 
@@ -108,6 +111,7 @@ def world_directions(view: Perspective, points_px: Floats) -> Floats:
 
 
 def _match(views: Sequence[Perspective], features: Callable[[int], Features], i: int, j: int) -> PairMatches | None:
+    """Return the matches of two frames that agree with one rotation; None if there are too few."""
     one, two = features(i), features(j)
     rays_1, rays_2 = world_directions(views[i], one.points), world_directions(views[j], two.points)
     here, there = _seen_by(views[j], rays_1), _seen_by(views[i], rays_2)
@@ -161,7 +165,7 @@ def _agreeing(one: Floats, two: Floats, tolerance_rad: float, seed: int) -> NDAr
 
 
 def _frames(a: Floats, b: Floats) -> Floats:
-    """Return (n, 3, 3) orthonormal bases whose columns are a, the normal of a and b, and their cross product."""
+    """Return (n, 3, 3) orthonormal bases whose columns are a, the normal of a and b, and the cross product of these two."""
     normal = np.cross(a, b)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     return np.stack([a, normal, np.cross(a, normal)], axis=-1)

@@ -30,12 +30,13 @@ VIEWPOINT = "camera"
 """Name of the viewpoint of a captured scene."""
 
 BASE_DENSITY = 1.27
-"""Density of the panorama relative to the centre of a wide frame. With this value, views are as sharp as the frames."""
+"""Density of the panorama relative to the centre of a wide frame. With this value, views from the pack are as sharp
+as the frames."""
 
 MAX_WIDE_DENSITY = 1.15
 """Maximum density of the frames in the panorama, relative to the widest frames. Denser frames become tiles."""
 
-BASE_QUALITY, TILE_QUALITY = 90, 86
+BASE_QUALITY, TILE_QUALITY = 90, 86  # AVIF quality of the panorama and of tiles, from 0 to 100
 BASE_SHARPENING, TILE_SHARPENING, SHARPENING_SIGMA_PX = 0.6, 0.2, 0.8
 """Amounts and radius of the unsharp mask that is applied before pictures are stored. It compensates for resampling twice: the
 frames into the pack, and later the pack into a view. With these amounts, the Laplacian variance of views is closest to that of the
@@ -55,7 +56,7 @@ class WrittenScene:
         folder: The scene's folder.
         file: The content of its ``scene.json``.
         tiles: Number of sharper tiles.
-        left_out_presets: Names of the camera's presets outside the captured range.
+        left_out_presets: Names of the camera's presets that the scene lacks, because they are outside the captured range.
     """
 
     folder: Path
@@ -69,7 +70,7 @@ def write_scene(session: CaptureSession, registration: Registration, folder: Pat
 
     Args:
         session: The capture.
-        registration: The registration of the capture.
+        registration: The registered frames of the capture.
         folder: The scene's folder, which must not exist yet. Its name becomes the name of the scene.
         steps: Called with the name of a phase, its number of finished steps, and its total number of steps.
 
@@ -164,6 +165,7 @@ class _Painter:
 def _tiles(
     place: Path, painter: _Painter, views: Sequence[tuple[int, Perspective]], wide: Sequence[int], steps: Steps
 ) -> list[Tile]:
+    """Write the tiles, and return their entries in the manifest. All tiles share one empty layer of instance ids."""
     if not views:
         return []
     tiles = []
@@ -234,7 +236,8 @@ def _unseen_share(
 ) -> float:  # fmt: skip
     """Return the fraction of the directions that the camera can show at its widest zoom but that no frame shows."""
     whole, pans = panorama.projection, np.arange(-179.0, 180.0, 2.0)
-    # Each direction is viewed from the nearest pose. Whether that view shows it depends only on the angle between them.
+    # The camera aims as near to each direction as its limits permit. Whether the direction is then in view depends only on its tilt
+    # and on the remaining difference in pan.
     turns = np.array([wrap_pan_deg(pan - limits.clamp(Pose(limits.aim_pan_deg(pan)))[0].pan_deg) for pan in pans.tolist()])
     total = missing = 0.0
     for tilt in np.arange(-89.0, 90.0, 2.0).tolist():

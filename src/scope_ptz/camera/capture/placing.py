@@ -42,7 +42,7 @@ class PlacedFrame:
         return Perspective(float(pan), float(tilt), hfov_deg, self.width, self.height)
 
     def directions(self, points: ArrayLike) -> Floats:
-        """Return unit vectors (..., 3) through normalised points (..., 2)."""
+        """Return unit vectors (..., 3) through points (..., 2), given from (0, 0) at the top left to (1, 1) at the bottom right."""
         p = np.asarray(points, dtype=np.float64)
         local = np.stack(
             [(p[..., 0] - 0.5) * self.width, (0.5 - p[..., 1]) * self.height, np.full(p.shape[:-1], self.focal_px)], axis=-1
@@ -50,7 +50,10 @@ class PlacedFrame:
         return np.asarray(local @ self.axes / np.linalg.norm(local, axis=-1, keepdims=True))
 
     def points(self, directions: ArrayLike) -> Floats:
-        """Return normalised points (..., 2) of directions (..., 3); NaN for directions behind the camera."""
+        """Return the points (..., 2) that show directions (..., 3), from (0, 0) at the top left to (1, 1) at the bottom right.
+
+        Directions behind the camera give NaN.
+        """
         local = np.asarray(directions, dtype=np.float64) @ self.axes.T
         depth = np.where(local[..., 2] > 0.05, local[..., 2], np.nan)
         x = 0.5 + self.focal_px * local[..., 0] / depth / self.width

@@ -17,10 +17,10 @@ objects can be detected."""
 
 MAX_OVERLAP = 0.8
 WHOLE_CIRCLE_DEG = 340.0
-"""Minimum pan range, in degrees, that is swept as a full circle. The frames at its two ends overlap."""
+"""Minimum pan range, in degrees, that is swept as a full circle, because the frames at its two ends overlap."""
 
 EXTREME_REACH = 0.7
-"""How far frames of the highest and lowest rows overlap, as a fraction of the way from the centre to the outer edge."""
+"""How far out frames of the highest and lowest rows overlap as planned, from 0 (their centre) to 1 (their outer edge)."""
 
 MAX_FRAMES = 5000
 
@@ -49,6 +49,7 @@ class Ranges:
     def _cut(
         axis: str, chosen: tuple[float, float] | None, limits: tuple[float, float], *, endless: bool = False
     ) -> tuple[float, float]:  # fmt: skip
+        """Return the chosen range of an axis, narrowed to its limits."""
         if chosen is None:
             return limits
         if not (all(math.isfinite(angle) for angle in chosen) and chosen[0] <= chosen[1]):
@@ -70,7 +71,9 @@ def whole_circle(limits: Limits) -> bool:
 
 
 def plan_poses(info: CameraInfo, limits: Limits, zoom: float, overlap: float = OVERLAP) -> list[Pose]:
-    """Return poses whose frames cover everything that the camera can show within limits at a zoom. Rows alternate in direction.
+    """Return poses whose frames cover everything that the camera can show within limits at a magnification.
+
+    Every other row is reversed, so that the camera travels less.
 
     Args:
         info: The camera.

@@ -27,9 +27,9 @@ class Registration:
 
     Attributes:
         shots: The frames.
-        placed: The adjusted position of each frame.
+        placed: Each frame with its adjusted orientation and focal length.
         gains: The gain of each frame and colour channel, ``(n, 3)``.
-        registered: Whether the pose of each frame was determined from its picture; otherwise, the reported pose is used.
+        registered: Whether each frame has enough matches to determine its pose; otherwise, its pose relies on the reported one.
         corrections_deg: Angle between the reported and the adjusted orientation of each frame.
         residual_px: Root mean square error of the matches in pixels; None without matches.
         matches: Number of matches.
@@ -89,10 +89,10 @@ def register(session: CaptureSession, steps: Steps) -> Registration:
 
 
 def measured_optics(optics: Optics, factors: list[tuple[float, float]]) -> Optics:
-    """Return a zoom table corrected with measured focal lengths.
+    """Return the optics, with the zoom table corrected by measured focal lengths.
 
     Args:
-        optics: The reported table.
+        optics: The reported optics.
         factors: Pairs of magnification and the ratio of measured to reported focal length; empty if nothing was measured.
     """
     if not factors:

@@ -1,4 +1,4 @@
-"""An unfinished capture on disk, with its settings, frames and poses, which the same command can resume."""
+"""An unfinished capture on disk: its settings, frames and poses. Running the same command again resumes it."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Shot(_Stored):
         key: Its name in the plan, such as ``1x-007``; unique in a capture.
         file: File of the picture; empty if there is none.
         pan_deg: Reported pan at exposure in degrees.
-        tilt_deg: Reported tilt in degrees.
+        tilt_deg: Reported tilt at exposure in degrees.
         zoom: Reported magnification.
         hfov_deg: Reported horizontal field of view in degrees.
         preset: Name of the preset at which it was taken; empty if none.
@@ -141,7 +141,7 @@ class CaptureSession:
         return sum(not shot.file for shot in self._shots.values())
 
     def find(self, key: str) -> Shot | None:
-        """Return the frame with a key; None if it has not been taken yet."""
+        """Return the frame, or the refused pose, with a key; None if there is none yet."""
         return self._shots.get(key)
 
     def add(self, key: str, frame: Frame, preset: str = "") -> Shot:

@@ -144,7 +144,7 @@ async def take_frames(
         session: The capture, which stores the frames.
         progress: Called after every frame.
         holder: The name that other clients see as the camera's controller.
-        presets: The presets to copy to the scene; None for all.
+        presets: Names of the presets at which to take pictures; None for all.
 
     Raises:
         ControlHeldError: Another client controls the camera.

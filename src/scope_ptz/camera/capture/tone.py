@@ -20,7 +20,7 @@ DARK, BRIGHT = 12.0, 243.0
 """Range of usable values, from 0 to 255. Values outside it may be clipped by the sensor."""
 
 MIN_CELLS = 8  # minimum number of cells in an overlap
-PRIOR = 0.02  # weight of a gain of 1, relative to one overlap; it determines the overall tone
+PRIOR = 0.02  # weight of a gain of 1, relative to one overlap; without it, the overall brightness would be undetermined
 MAX_GAIN = 2.0
 
 Floats = NDArray[np.float64]
@@ -61,7 +61,7 @@ def gains(frames: Sequence[PlacedFrame], cells: Sequence[NDArray[np.float32]], p
 
 
 def _log_ratio(one: PlacedFrame, two: PlacedFrame, cells_1: NDArray[np.float32], cells_2: NDArray[np.float32]) -> Floats | None:
-    """Return the median log ratio (3,) of the cells of two frames in the same directions; None if there are too few cells."""
+    """Return the median log ratio (3,) of the first frame's cells to the second's in the same directions; None if too few."""
     rows, columns = cells_1.shape[:2]
     points = np.stack(np.meshgrid((np.arange(columns) + 0.5) / columns, (np.arange(rows) + 0.5) / rows), axis=-1)
     there = two.points(one.directions(points))

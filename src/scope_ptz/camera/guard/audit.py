@@ -1,4 +1,4 @@
-"""An append-only log of a camera's commands, their authors, and the resulting moves."""
+"""An append-only log of a camera's commands, who issued them, and the resulting moves."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class AuditLog:
         """Append an event.
 
         Raises:
-            OutputError: The file cannot be written. A caller that needs a complete log must stop.
+            OutputError: The file cannot be written. A caller that needs a complete log must send no further command.
         """
         entry = {"time": datetime.now(UTC).isoformat(timespec="milliseconds"), "camera": self._camera, "actor": self._actor}
         line = json.dumps({**entry, "event": event, **fields}, ensure_ascii=False, default=str) + "\n"

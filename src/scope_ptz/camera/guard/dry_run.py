@@ -20,8 +20,9 @@ HELD_BACK_UNKNOWN = "the dry run: only the camera knows the pose there"
 class DryRunCamera(CameraWrapper):
     """A camera whose commands are reported but not executed.
 
-    ``pose`` returns the pose that the camera would have. Frames are real and keep their real pose, as the camera does not move.
-    Every ``Arrival`` names the dry run as its limit, so that tool results and traces show it.
+    ``pose`` returns the target of the last ``move``, or else the real pose. Frames are real and keep their real
+    pose, as the camera does not move. Every ``Arrival`` names the dry run in ``limited_by``, so that tool results and traces
+    show it.
 
     Args:
         camera: The wrapped camera.

@@ -25,7 +25,7 @@ from scope_ptz.geometry import Axis, Limits, Pose, wrap_pan_deg
 STOPPING_S = 0.4
 """Seconds that a driven camera is assumed to need to react and brake."""
 
-_STEP_S = 0.02
+_STEP_S = 0.02  # interval at which the path of a driven camera is checked
 
 _SPEED_FACTORS = (1.0, 0.5, 0.25, 0.1, 0.04)
 """Factors on the requested velocity, tried in order near a limit or a keep-out region."""
@@ -65,7 +65,7 @@ class GuardedCamera(CameraWrapper):
         return self._rules
 
     def record_instruction(self, instruction: str) -> None:
-        """Record a person's instruction."""
+        """Record a person's instruction in the audit log."""
         self._record("instruction", text=instruction)
 
     async def move(self, pose: Pose) -> Arrival:
@@ -169,7 +169,7 @@ class GuardedCamera(CameraWrapper):
             raise ConfigError(f"The rules of {self.inner.info.name} cannot be kept: {error}.") from error
 
     def permitted(self, pose: Pose) -> tuple[Pose, tuple[Axis, ...], str]:
-        """Return the nearest permitted pose, the clamped axes, and the rule that limited the move, if any.
+        """Return the nearest permitted pose, the clamped axes, and the keep-out region that limited the move, in words (or empty).
 
         Raises:
             KeepOutError: No permitted pose is near.
@@ -225,7 +225,7 @@ class GuardedCamera(CameraWrapper):
             await self.clock.sleep(left_s)
 
     def _free_axes(self, here: Pose, velocity: Velocity) -> Velocity:
-        """Return a velocity, with the axes set to zero that would pass a limit before they could stop."""
+        """Return a velocity in which every axis that would pass a soft limit before it could stop is zero."""
         stopped = self._beyond(advanced(here, velocity, STOPPING_S + _STEP_S))
         return Velocity(
             0.0 if "pan" in stopped else velocity.pan_dps,

@@ -12,7 +12,7 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.camera.guard.rules import PixelMask, Region
 from scope_ptz.geometry import Projection, direction
 
-_STEP_DEG = 0.5
+_STEP_DEG = 0.5  # distance between the points of a region's outline
 _GRID = 4
 """Regions are drawn on a grid of every fourth pixel and enlarged by one cell, so that no pixel of a region stays visible."""
 

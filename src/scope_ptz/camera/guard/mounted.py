@@ -55,7 +55,8 @@ class MountedCamera(CameraWrapper):
     async def move(self, pose: Pose) -> Arrival:
         target, clamped = self.info.limits.clamp(pose)
         arrival = await self.inner.move(self._device_pose(target))
-        # If the base leans, the device's axes are not those of the world, so the difference shows which axes were clamped.
+        # If the base leans, the device's axes are not those of the world, so the distance from the target shows which
+        # axes were clamped.
         world = self._world_arrival(arrival)
         if self._lean_deg and arrival.clamped:
             return replace(world, clamped=tuple(dict.fromkeys((*clamped, *_differences(target, world.pose)))))

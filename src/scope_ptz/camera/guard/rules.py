@@ -135,7 +135,8 @@ class Mounting(_Rules):
 def nearest_outside(pose: Pose, regions: tuple[Region, ...], limits: Limits) -> Pose | None:
     """Return the permitted pose that is nearest to a pose inside a region.
 
-    It lies on an edge of the region, within the limits, and in no other region. Return None if there is no such pose.
+    It lies on an edge of the region, within the limits, and in no other region. Return None if there is no such pose. A pose
+    that is in no region is returned unchanged.
     """
     region = next((r for r in regions if r.contains(pose.pan_deg, pose.tilt_deg)), None)
     if region is None:

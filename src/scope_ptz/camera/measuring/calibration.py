@@ -35,7 +35,7 @@ PAN_OFFSETS_DEG = (0.0, 60.0, -60.0, 120.0)
 """Pan offsets from the start pose, tried in order until one shows enough detail."""
 
 _SMALL, _LARGE = 0.12, 0.35  # turns as fractions of the field of view: a small one for the sign, a large one for the focal length
-_SHOTS, _RUNS = 5, 3
+_SHOTS, _RUNS = 5, 3  # numbers of snapshots and of moves that are timed
 
 Progress = Callable[[str], None]
 
@@ -151,6 +151,8 @@ async def _calibrate(camera: Camera, start: Pose, zooms: int, assumed: tuple[str
 
 @dataclass(frozen=True, slots=True)
 class _Response:
+    """The scales of pan and tilt (as in ``AxisResponse``), the tilt offset, and the focal length at the widest zoom."""
+
     pan: float
     tilt: float
     tilt_offset_deg: float
@@ -198,7 +200,7 @@ async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, p
         stated = optics.hfov_deg(zoom)
         expected = min(stated * correction, fields[-1].measured_deg)
         at = Pose(base.pan_deg, base.tilt_deg, zoom)
-        for fraction in (0.25, 0.06):  # the second pass is for a zoom table that is far off
+        for fraction in (0.25, 0.06):  # the second, smaller turn is for a zoom table that is far off
             try:
                 centre, here = await _move_and_take(camera, at)
                 pair, turned = await _turned(camera, at, centre, here, fraction * expected / abs(response.pan), 0.0)

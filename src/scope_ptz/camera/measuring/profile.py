@@ -33,7 +33,10 @@ class MeasuredField(_Record):
 
 
 class CalibrationRecord(_Record):
-    """A calibration, with the ranges of pan and tilt that its scales refer to."""
+    """A calibration, with the ranges of pan and tilt that its scales refer to.
+
+    ``replaces`` names the values that the driver only assumed. The measurements are used instead of them.
+    """
 
     measured_at: str
     pan_scale: float

@@ -23,8 +23,8 @@ MIN_MATCHES = 24
 """Minimum number of matches for a registration; fewer may agree by chance."""
 
 _RATIO = 0.75  # Lowe's ratio test
-_RANSAC_PX = 2.0
-_MAX_FEATURES = 3000
+_RANSAC_PX = 2.0  # maximum error, in pixels, of a match that agrees with the others
+_MAX_FEATURES = 3000  # per picture
 
 
 class RegistrationError(CameraError):

@@ -1,4 +1,4 @@
-"""The address of a device. Addresses that the device returns are pinned to it."""
+"""The address of a device, and the rewriting of URLs that the device returns, so that they point to this address."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ class DeviceAddress:
             return self.host.lower() == "localhost"
 
     def has_origin(self, scheme: str, host: str, port: int | None) -> bool:
-        """Return whether a scheme, host and port are those of this address."""
+        """Return whether a scheme, host and port are those of this address. A missing port is the default one of the scheme."""
         mine = "https" if self.tls else "http"
         port = port or (443 if scheme == "https" else 80)
         return (scheme, host.strip("[]").lower(), port) == (mine, self.host.strip("[]").lower(), self.port)
 
     def pin_http(self, url: str) -> str:
-        """Return a URL that the device returned, rewritten to its configured scheme, host and port.
+        """Return a URL that the device returned, rewritten to the scheme, host and port of this address.
 
         Devices behind address translation return addresses in their local network. Path and query are kept; credentials
         are dropped.
@@ -67,7 +67,7 @@ class DeviceAddress:
         return self.base_url + urlunsplit(("", "", path, parts.query, ""))
 
     def pin_rtsp(self, url: str, default_port: int = 554) -> str:
-        """Return a stream URL that the device returned, rewritten to its configured host. The stream's own port is kept.
+        """Return a stream URL that the device returned, rewritten to the host of this address. The stream's own port is kept.
 
         Raises:
             ForeignAddressError: It is not an RTSP URL.

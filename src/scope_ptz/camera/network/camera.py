@@ -43,7 +43,7 @@ class NetworkCamera(Camera):
     Args:
         info: The camera's properties and capabilities.
         pictures: The source of its pictures.
-        settling: The criteria for when it counts as settled.
+        settling: The criteria for when the camera counts as settled.
         watchdog: The process that stops the camera if this program is killed.
     """
 
@@ -68,7 +68,7 @@ class NetworkCamera(Camera):
 
     @abstractmethod
     async def _start_drive(self, number: int, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
-        """Send velocities with ``_send``, which takes the number of the command."""
+        """Send the velocities with ``_send``, and pass ``number``, the number of the command, to it."""
 
     @abstractmethod
     async def _send_stop(self) -> None:

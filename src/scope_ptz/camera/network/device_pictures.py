@@ -60,7 +60,7 @@ class DevicePictures(ABC):
         """Release resources that are kept between snapshots. By default, there are none."""
 
     async def frame(self, read_pose: Callable[[], Awaitable[Pose]], info: CameraInfo, clock: Clock) -> Frame:
-        """Take a snapshot, with the pose in the middle of the exposure.
+        """Take a snapshot, with the pose at the time of exposure.
 
         Raises:
             PictureError: The picture is damaged, black or frozen, or has the wrong size.

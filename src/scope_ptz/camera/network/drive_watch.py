@@ -46,7 +46,7 @@ class DriveWatch:
         self._retry_s, self._give_up_s = retry_s, give_up_s
         self._condition = threading.Condition()
         self._deadline_s: float | None = None
-        self._handed_over = False  # whether another party now stops the camera
+        self._handed_over = False  # whether only the watchdog process still tries to stop the camera
         self._thread: threading.Thread | None = None
 
     @property
@@ -104,6 +104,7 @@ class DriveWatch:
             self._watchdog.disarm()
 
     def _watch(self) -> None:
+        """Wait for each deadline and send stops until one arrives. This runs in the thread."""
         pause_s = self._retry_s
         while True:
             with self._condition:
@@ -118,7 +119,7 @@ class DriveWatch:
             with self._condition:
                 if self._deadline_s != due_s:
                     pause_s = self._retry_s
-                    continue  # driven again, or stopped by another party
+                    continue  # driven again, or stopped by another call
                 if sent:
                     self._stopped()
                 elif monotonic() - due_s > self._give_up_s:

@@ -46,7 +46,7 @@ class DeviceReply:
     Attributes:
         status: HTTP status: 2xx, or one that the caller accepts.
         content_type: Media type without parameters, in lower case.
-        body: The body.
+        body: The decompressed body.
     """
 
     status: int
@@ -58,8 +58,8 @@ class DeviceHttp:
     """An HTTP client for one device. It follows no redirects and uses no proxy.
 
     Args:
-        address: The device.
-        credentials: The account.
+        address: The address of the device.
+        credentials: The account that signs in.
         timeouts: Time limits.
         verify: Whether to verify the certificate, or the TLS context that verifies it.
     """
@@ -113,8 +113,9 @@ class DeviceHttp:
 
         Args:
             path: The path on the device.
-            parameters: The query.
-            repeat: Whether the request may be sent again after a lost connection. Relative commands must not be.
+            parameters: The query parameters.
+            repeat: Whether the request may be sent again after a lost connection. It must be false for relative moves, which a
+                second copy would double.
             accept: Status codes besides 2xx that are returned instead of raised as errors.
 
         Raises:
@@ -182,7 +183,7 @@ class DeviceHttp:
             check_status(self.address, client.post(path, content=content, headers=dict(headers)), ())
 
     def _blocking_client(self, timeout_s: float) -> httpx2.Client:
-        # The sign-in is new, because that of the event loop counts its requests and is not thread-safe.
+        # The event loop's sign-in counts its requests and is not thread-safe, so this client gets its own.
         return httpx2.Client(
             base_url=self.address.base_url, auth=PinnedSignIn(self.address, self.credentials), timeout=timeout_s,
             cookies=self._client.cookies, follow_redirects=False, trust_env=False, verify=self._verify,

@@ -27,7 +27,7 @@ async def wait_until_focused(read: Callable[[], Awaitable[LensState]], poll_s: f
         poll_s: Seconds between two readings.
 
     Raises:
-        CameraError: The focus is still moving at the time limit.
+        CameraError: The focus is still moving after ``TIMEOUT_S`` seconds.
     """
     state, started_s, equal = await read(), monotonic(), 0
     if state.focus is None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from scope_ptz.geometry import Pose
 
 BLACK_LEVEL = 6
-"""A picture is black if no pixel is brighter than this. Even the sensor noise in the dark is brighter."""
+"""A picture is black if no value in it, from 0 to 255, is above this. Even the sensor noise in the dark is above it."""
 
 FROZEN_TURN_DEG = 1.0
 """A picture is frozen if it is bit-identical after a turn of more than this many degrees."""
@@ -33,8 +33,8 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
 
     Args:
         data: The content of the JPEG file.
-        width: The expected width in pixels; None for any.
-        height: The expected height in pixels; None for any.
+        width: The expected width in pixels; None, as for ``height``, if any size is accepted.
+        height: The expected height in pixels.
 
     Returns:
         Array of shape ``(H, W, 3)``, uint8, RGB.

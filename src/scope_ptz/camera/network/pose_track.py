@@ -12,7 +12,7 @@ from time import monotonic
 from scope_ptz.geometry import Pose, wrap_pan_deg
 
 MAX_SAMPLES = 128
-"""Maximum number of readings to keep, which is about six seconds."""
+"""Maximum number of readings to keep, which cover about six seconds."""
 
 POLL_S = 0.05
 """Seconds between two readings. At 400 degrees/s², linear interpolation between them is off by at most 0.13 degrees."""
@@ -35,12 +35,12 @@ class PoseTrack:
         return self._samples[-1][0] if self._samples else float("-inf")
 
     def add(self, time_s: float, pose: Pose) -> None:
-        """Add a reading."""
+        """Add a reading. It is ignored unless it is newer than the newest one."""
         if time_s > self.newest_s:
             self._samples.append((time_s, pose))
 
     def at(self, time_s: float) -> Pose:
-        """Return the pose at a time, interpolated between readings. Before the first and after the last reading, return that one.
+        """Return the pose at a time, interpolated between readings. Outside the readings, return the nearest.
 
         Raises:
             ValueError: There is no reading.

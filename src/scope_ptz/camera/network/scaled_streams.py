@@ -18,7 +18,7 @@ class SnapshotStream(LiveStream):
     """A stream that consists of snapshots.
 
     Args:
-        take: Takes a snapshot.
+        take: Takes a snapshot, and returns bytes that are identical for identical pictures, and the pixels.
     """
 
     def __init__(self, take: Callable[[], Awaitable[tuple[bytes, NDArray[np.uint8]]]]) -> None:

@@ -22,7 +22,7 @@ class Settling:
     """The criteria for when a camera counts as settled.
 
     Attributes:
-        angle_tolerance_deg: Allowed difference between the requested and the reached angle.
+        angle_tolerance_deg: Allowed difference between the requested and the reached angle, in degrees.
         zoom_tolerance: Allowed relative difference between the requested and the reached zoom.
         poll_s: Seconds between two readings of the position.
         start_s: Seconds to wait for a motion to start before assuming that the camera will not move.
@@ -72,11 +72,13 @@ async def wait_until_stationary(
     target: Pose | None = None,
     superseded: Callable[[], bool] = lambda: False,
 ) -> Pose:
-    """Wait until the camera is stationary: at the target, or anywhere once it has had time to start.
+    """Wait until the camera is stationary, at the target or elsewhere, and return its position.
+
+    Elsewhere, it must stay still for ``start_s`` seconds, or for two readings if there is no target and it has moved.
 
     Args:
         read_pose: Reads the position.
-        settling: The criteria.
+        settling: The intervals, tolerances and time limits.
         target: The pose to reach; None if it is unknown, as for a preset.
         superseded: Returns whether another command has replaced this one. If so, any stationary position counts.
 
@@ -107,10 +109,10 @@ async def wait_until_stationary(
 GRID = (320, 180)
 """Width and height in pixels at which pictures are compared."""
 
-_TILE = 20
-_TEXTURE = 1.5
-_NOISE = 1.5
-_SHIFT_PX = 0.25
+_TILE = 20  # edge of a tile in pixels
+_TEXTURE = 1.5  # minimum mean gradient of a textured tile, in grey levels (of 255) per pixel
+_NOISE = 1.5  # mean change that noise may cause, in grey levels
+_SHIFT_PX = 0.25  # shift of the picture that does not count as motion, in pixels
 
 
 def moving_fraction(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> float | None:
@@ -143,7 +145,7 @@ def moving_fraction(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> floa
 async def wait_for_still_picture(
     take: Callable[[], Awaitable[NDArray[np.uint8]]], settling: Settling, superseded: Callable[[], bool] = lambda: False
 ) -> None:
-    """Wait until two successive pictures show the same view.
+    """Wait until two successive pictures show the same view, or have too little texture to tell.
 
     Raises:
         PictureNotStillError: The picture keeps moving.

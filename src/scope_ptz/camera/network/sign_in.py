@@ -18,7 +18,7 @@ class PinnedSignIn(httpx2.Auth):
     """Digest sign-in for one host and port. Basic sign-in is used only over TLS, because it reveals the password to the network.
 
     Args:
-        address: The device.
+        address: The address of the device.
         credentials: The account.
     """
 

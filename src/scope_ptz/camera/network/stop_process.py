@@ -1,7 +1,7 @@
 """A process that stops a driven camera if this program is killed.
 
 A killed program (``kill -9``, out of memory) runs no more code, and a device whose protocol has no timeout would keep moving. So
-another process waits at the end of a pipe, which is closed when this program ends for any reason.
+another process reads from a pipe, which the operating system closes when this program ends for any reason.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class StopProcess:
     """The watchdog process of one camera. It is started when the camera is first driven.
 
     Args:
-        http: The device.
+        http: The HTTP connection to the device.
         stop: The function that stops the device.
         details: The values that ``stop`` needs in addition to the connection. They must be JSON-serialisable.
     """
@@ -117,7 +117,7 @@ def main() -> None:
 
 
 def carry_out(order: Mapping[str, Any], *, give_up_s: float = GIVE_UP_S) -> bool:
-    """Stop a camera, and retry until the command reaches it. Return whether it did."""
+    """Stop a camera, and retry until the command reaches it. Return whether it did within ``give_up_s`` seconds."""
     from scope_ptz.camera.network.http import DeviceHttp
 
     module, name = order["function"]

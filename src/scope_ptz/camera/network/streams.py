@@ -68,9 +68,9 @@ class MjpegStream(LiveStream):
     """Motion JPEG over HTTP. Only pictures that a consumer waits for are decoded.
 
     Args:
-        http: The device.
+        http: The HTTP connection to the device.
         path: Path of the stream.
-        parameters: Query of the stream.
+        parameters: Query parameters of the stream.
         width: Expected width in pixels.
         height: Expected height in pixels.
         stalled_s: Seconds without a picture after which the stream is opened again.

@@ -37,13 +37,13 @@ class PinnedContext(ssl.SSLContext):
 
 
 def trust_fingerprint(address: DeviceAddress, fingerprint: str, *, timeout_s: float = 5.0) -> PinnedContext:
-    """Return a TLS context that accepts only the certificate with a fingerprint. The call blocks while it connects.
+    """Return a TLS context that accepts only the certificate with a given fingerprint. The call blocks while it connects.
 
     The certificate is fetched, compared, and then becomes the only one that the context trusts. If a later
     connection presents another certificate, the TLS handshake therefore fails before any credentials are sent.
 
     Args:
-        address: The device.
+        address: The address of the device.
         fingerprint: SHA-256 of the certificate in hexadecimal, with or without colons.
         timeout_s: Time limit for the connection in seconds.
 

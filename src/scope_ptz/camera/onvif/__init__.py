@@ -1,1 +1,1 @@
-"""The driver of ONVIF cameras: services on one pinned host, coordinate spaces, pictures, and the camera itself."""
+"""The driver for ONVIF cameras: services of one device, coordinate spaces, pictures, and the camera itself."""

@@ -37,7 +37,7 @@ class OnvifCamera(NetworkCamera):
         device: The device's properties and capabilities.
         pictures: The source of its pictures.
         lens: Its focus and iris.
-        settling: The criteria for when it counts as settled.
+        settling: The criteria for when the camera counts as settled.
     """
 
     def __init__(
@@ -72,15 +72,15 @@ class OnvifCamera(NetworkCamera):
         """Connect to a camera and read its capabilities. ``http`` is closed with the camera, or if opening fails.
 
         Args:
-            http: The device.
+            http: The HTTP connection to the device.
             credentials: The account.
-            mapping: Configured or measured values.
+            mapping: Configured or measured values that ONVIF does not report, such as fields of view.
             assume: Whether to assume values that are neither reported nor known, which is useful before they are measured.
             profile: Token or name of the ONVIF profile; by default, a suitable one.
             width: Width of a frame in pixels; by default that of the device's pictures.
             height: Height of a frame in pixels; by default that of the device's pictures.
             stream: The transport of ``frames``.
-            rtsp_port: Port of the RTSP server, instead of the reported one.
+            rtsp_port: Port of the RTSP server; None for the port that the device reports.
             latency_s: Seconds from the exposure of a streamed frame to its arrival.
             settling: The criteria for when the camera counts as settled.
 

@@ -1,4 +1,4 @@
-"""The ONVIF services of one device, through ``onvif-zeep-async`` on a pinned transport."""
+"""The ONVIF services of one device, through ``onvif-zeep-async`` and a transport that reaches no other device."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 NOT_RETRIED = ("ContinuousMove", "RelativeMove", "SetPreset", "RemovePreset")
-"""Operations that are not retried after a lost connection."""
+"""Operations that are not retried after a lost connection, because a second copy could have a further effect."""
 
 _STOP_HEADERS = {"Content-Type": "application/soap+xml; charset=utf-8"}
 
@@ -28,7 +28,7 @@ class OnvifClient:
     """The connection to one device. Call ``connect`` first.
 
     Args:
-        http: The device. It is closed with the client.
+        http: The HTTP connection to the device. It is closed with the client.
         credentials: The account.
 
     Raises:
@@ -64,7 +64,7 @@ class OnvifClient:
                 with anyio.CancelScope(shield=True):
                     await _close(camera)
                 if isinstance(error, CameraReplyError) and adjust_time:
-                    continue  # a device without a readable clock: assume that its clock is right
+                    continue  # the device's clock cannot be read, so assume that it is right
                 raise
             await self._close_services()
             self._camera = camera
@@ -100,7 +100,7 @@ class OnvifClient:
         Raises:
             CameraError: The stop command did not reach the device, or was refused.
         """
-        service = self._stop_service  # with separate time stamps, because those of the event loop are not thread-safe
+        service = self._stop_service  # a separate one, because those of the event loop are not thread-safe
         with soap_errors(self.address, "Stop"):
             message = service.zeep_client.create_message(
                 service.ws_client, "Stop", ProfileToken=self._stop_profile, PanTilt=True, Zoom=True
@@ -145,7 +145,7 @@ class OnvifClient:
         return camera
 
     async def make_service(self, name: str, camera: Any = None) -> Any:
-        """Return a new service on the pinned transport."""
+        """Return a new service that uses ``PinnedTransport``."""
         camera = camera or self._camera
         with soap_errors(self.address, f"the {name} service"):
             xaddr, wsdl, binding = camera.get_definition(name)
@@ -153,7 +153,7 @@ class OnvifClient:
                 self.address.pin_http(xaddr), camera.user, camera.passwd, wsdl, no_cache=True, dt_diff=camera.dt_diff,
                 binding_name=binding, binding_key=(name, None),
             )  # fmt: skip
-            await service.close()  # its default transport
+            await service.close()  # closes its default transport
             service.transport = PinnedTransport(self.http)
             await service.setup()
         return service
@@ -191,7 +191,7 @@ def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
     """Stop all motion of a device, from a process that has no connection to it yet. The call blocks.
 
     Args:
-        http: The device.
+        http: The HTTP connection to the device.
         details: The token of the profile that controls the motors, under the key ``profile``.
 
     Raises:

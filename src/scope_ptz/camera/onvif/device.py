@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.onvif.client import OnvifClient
 
 ENDLESS_DEG = 359.5
-"""A pan range of at least this many degrees has no stops."""
+"""A pan range of at least this many degrees counts as endless."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +49,10 @@ class OnvifDevice:
         fov_translation: The space of relative turns in fractions of the field of view; None if it has none.
         zoom_translation: The generic space of relative zoom; None if it has none.
         video_source: Token of the video source, for focus and iris.
-        timeout_s: Shortest and longest timeout of a continuous move.
+        timeout_s: Shortest and longest timeout, in seconds, that it accepts for a continuous move.
         limits: Limits of motion.
         capabilities: Its optional capabilities, without focus and iris.
-        assumed: Names of the values that are neither reported, configured nor measured.
+        assumed: Names of the values that are only assumed, because they are not reported, configured or measured.
     """
 
     manufacturer: str
@@ -185,7 +185,7 @@ async def _options(client: OnvifClient, configuration: Any) -> tuple[Any, Ends]:
     except CameraSignInError:
         raise
     except (OnvifFaultError, CameraReplyError, AttributeError):
-        pass  # the node reports the same
+        pass  # the PTZ node reports spaces too
     node = await client.call("ptz", "GetNode", NodeToken=configuration.NodeToken)
     return node.SupportedPTZSpaces, (0.1, 60.0)
 
@@ -257,5 +257,5 @@ def _name(profile: Any) -> str:
 
 
 def _word(text: object) -> str:
-    """Return a text from the device, shortened and without non-printable characters."""
+    """Return text from the device, shortened and without non-printable characters."""
     return " ".join("".join(c if c.isprintable() else " " for c in str(text or "")).split())[:60]

@@ -34,7 +34,7 @@ _PROBE = (
 
 @dataclass(frozen=True, slots=True, order=True)
 class FoundDevice:
-    """A device that answered.
+    """A device that answered the search.
 
     Attributes:
         address: Host and port of its web interface, as in a camera spec.
@@ -55,10 +55,10 @@ class FoundDevice:
 
 
 async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port: int = PORT) -> list[FoundDevice]:
-    """Return the devices that answer, ordered by address.
+    """Search for devices, and return those that answer, ordered by address.
 
     Args:
-        interfaces: IPv4 addresses of this machine's interfaces; by default, all that are found, and loopback.
+        interfaces: IPv4 addresses of this machine's interfaces; by default, those of ``local_addresses``.
         wait_s: Seconds to wait for answers.
         port: The UDP port of the devices.
 
@@ -104,7 +104,7 @@ def local_addresses() -> tuple[str, ...]:
 
 
 def parse_match(data: bytes, sender: str) -> list[FoundDevice]:
-    """Return the devices that an answer describes; none if the datagram is not an answer.
+    """Return the devices that an answer describes; an empty list if the datagram is not an answer.
 
     Args:
         data: The datagram.
@@ -182,7 +182,7 @@ def _parse_address(text: str) -> tuple[str, int, bool] | None:
 
 
 def _scope(scopes: list[str], kind: str) -> str:
-    """Return a device's description of itself on one line, without control characters."""
+    """Return the name or hardware that a device's scopes state, on one line and without control characters; or empty."""
     start = f"onvif://www.onvif.org/{kind}/"
     text = next((unquote(scope[len(start) :]) for scope in scopes if scope.lower().startswith(start)), "")
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:60]

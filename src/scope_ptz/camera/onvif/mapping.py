@@ -13,7 +13,7 @@ ASSUMED_PAN_DEG = (-180.0, 180.0)
 ASSUMED_TILT_DEG = (-90.0, 90.0)
 """The angles at the ends of the generic space on most devices. A driver uses them only to measure the actual angles."""
 
-ASSUMED_FIELDS_DEG = (60.0, 6.0)
+ASSUMED_FIELDS_DEG = (60.0, 6.0)  # at the widest and the closest zoom, also used only to measure the actual ones
 ASSUMED_SPEED = Velocity(60.0, 60.0, 0.5)
 """Top speeds that are assumed for a device without measured ones.
 
@@ -51,7 +51,7 @@ class OnvifMapping:
 
 
 def known_mapping(model: str) -> OnvifMapping:
-    """Return the data sheet values of a model; an empty mapping for most models."""
+    """Return the data sheet values of a model; an empty mapping for a model that is not listed here."""
     return _KNOWN.get(model.strip().upper().removeprefix("AXIS ").strip(), OnvifMapping())
 
 

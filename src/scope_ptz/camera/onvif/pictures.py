@@ -36,8 +36,8 @@ class OnvifPictures(DevicePictures):
     """Pictures from one profile.
 
     Args:
-        http: The device.
-        credentials: The account, for RTSP.
+        http: The HTTP connection to the device.
+        credentials: The account for the RTSP stream.
         snapshot_path: Path and query of a snapshot; empty if the device has none.
         stream_url: URL of the RTSP stream without credentials; empty if the device has none.
         native: Width and height in pixels of a snapshot, or of the stream if there are no snapshots.
@@ -121,12 +121,12 @@ async def open_pictures(
 
     Args:
         client: The connection.
-        credentials: The account, for RTSP.
-        device: The device.
+        credentials: The account for the RTSP stream.
+        device: The device's properties and capabilities.
         width: Width of a frame in pixels; None for that of the device's pictures.
         height: Height of a frame in pixels; None for that of the device's pictures.
         stream: The transport of live frames.
-        rtsp_port: Port of the RTSP server, instead of the one that the device reports.
+        rtsp_port: Port of the RTSP server; None for the port that the device reports.
         latency_s: Seconds from the exposure of a streamed frame to its arrival.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Send SOAP messages through the pinned HTTP client, regardless of the addresses that the device reports."""
+"""Send SOAP messages only to the configured device, regardless of the addresses that it reports."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class PinnedTransport:
     """A transport for zeep. Every message goes to the configured host and port; redirects are refused.
 
     Args:
-        http: The device.
+        http: The HTTP connection to the device.
     """
 
     cache = None
@@ -111,7 +111,7 @@ def unchanged_proxies() -> Iterator[None]:
 
 
 def _readable(body: bytes) -> bytes:
-    """Return a reply with bytes replaced that are not valid UTF-8, because some devices garble preset names."""
+    """Return a reply in which invalid UTF-8 is replaced, because some devices garble preset names."""
     if b"encoding=" in body[:100] and b"utf-8" not in body[:100].lower():
         return body
     try:
