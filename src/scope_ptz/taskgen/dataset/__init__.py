@@ -1,1 +1,5 @@
-"""The published dataset: ``unseen`` builds the unseen split, ``distributions`` counts tasks, ``card`` writes the dataset card."""
+"""The published dataset.
+
+``build`` writes the splits, the validation report and the gold runs, and ``unseen`` builds the unseen split. ``distributions``
+counts tasks, and ``card`` writes the dataset card.
+"""
