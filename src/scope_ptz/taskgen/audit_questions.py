@@ -1,4 +1,4 @@
-"""The questions of a picture audit: the frames that a task's reference program sees, each with a caption about its view."""
+"""Write the questions of a picture audit: the frames that a task's reference program observes, captioned with their views."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ async def write_question(
         task: The task.
         runner: Runs the task's reference program in its scene.
         out: Folder for the pictures.
-        notify: Receives a note if the reference program makes no perception call.
+        notify: Called with a note if the reference program makes no perception call, so that there are no pictures.
     """
     episode = await runner.run(task, task.reference, "")
     first = [call.observations[0] for call in episode.calls if call.observations]
@@ -48,7 +48,7 @@ async def write_question(
 
 
 def _caption(observation: Observation, scene: Scene) -> str:
-    """Return the preset or viewpoint of a picture and its pose, in words."""
+    """Return the caption of a picture: its preset (or its viewpoint, if the view is no preset) and its pose."""
     view = observation.projection
     if not isinstance(view, Perspective):
         return "everything around the camera, from pan -180 to 180 degrees"

@@ -1,7 +1,7 @@
 """Audit the expected answers with readers who see only pictures: sample questions, and compare the readers' answers.
 
-Readers receive the instruction and the frames that the reference program observes, with anonymous question numbers. Their answers
-are parsed and compared with the expected answers.
+A reader is a person or a model. Readers receive the instruction and the frames that the reference program observes, under a
+question number that does not identify the task. Their answers are parsed and compared with the expected answers.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ from scope_ptz.errors import InputError
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
 QUESTIONS, ANSWERS, FINDINGS, DRAW = "questions.jsonl", "answers.jsonl", "findings.jsonl", "draw.json"
+"""Names of the files in the folder of an audit."""
+
 Outcome = Literal["agrees", "disagrees", "not readable", "not answered"]
 
 
@@ -61,7 +63,7 @@ class DisagreementNote(_Row):
 class AuditedAnswer(_Row):
     """A reader's answer to a task, and whether it agrees with the expected answer.
 
-    ``digest`` is that of the instruction and the expected answer. It shows whether the task was corrected after the audit.
+    ``digest`` is the ``task_digest`` at the time of the audit. If the task now has another one, it was changed after the audit.
     """
 
     q: str
@@ -84,7 +86,10 @@ class Audit(_Row):
     rows: tuple[AuditedAnswer, ...]
 
     def share(self, rows: Iterable[AuditedAnswer] | None = None) -> tuple[int, int]:
-        """Return the number of answers that agree, and the number of all answers. Unanswered questions are not counted."""
+        """Return the number of answers that agree, and the number of all answers. Unanswered questions are not counted.
+
+        By default, all rows of the audit are counted.
+        """
         counted = [row for row in (self.rows if rows is None else rows) if row.outcome != "not answered"]
         return sum(row.outcome == "agrees" for row in counted), len(counted)
 
@@ -111,7 +116,7 @@ def draw_questions(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[
         seed: Seed for the sampling.
 
     Returns:
-        Question numbers with their tasks. The questions are shuffled, so that their numbers do not reveal the order of the tasks.
+        Question numbers with their tasks. The questions are shuffled, so that a number does not reveal which task it stands for.
     """
     candidates = [task for task in tasks if task.stratum == "core" and not isinstance(task.expected, ActionOnly)]
     chosen = stratified_sample(candidates, number, seed)

@@ -20,8 +20,8 @@ QUOTAS: dict[Category, int] = {
 }  # fmt: skip
 """Number of core tasks per category, as in the paper: 536 in total."""
 
-REACTIONS = 44  # number of tasks that an agent should question or refuse
-PARAPHRASED, WORDINGS = 64, 3  # number of paraphrased core tasks, and of additional wordings for each
+REACTIONS = 44  # number of tasks with a request that the agent should ask about or refuse
+PARAPHRASED, WORDINGS = 64, 3  # number of core tasks to paraphrase, and number of additional wordings for each of them
 
 Progress = Callable[[str], None]
 
@@ -40,7 +40,7 @@ class BuiltTasks:
 
 
 class Builder:
-    """A builder of the tasks of a dataset. Its arguments are those of ``build``."""
+    """The state of one dataset build. The arguments are those of the function ``build``."""
 
     def __init__(
         self,
@@ -102,7 +102,7 @@ class Builder:
                 row.pair, twin.pair = twin.id, row.id
 
     def _paraphrases(self, chosen: dict[Category, list[ChosenDraft]]) -> list[Task]:
-        """Return additional wordings of tasks, taken from the categories in turn."""
+        """Return tasks that are additional wordings of core tasks. The core tasks are taken from each category in turn."""
         number = max(1, PARAPHRASED * sum(self.quotas.values()) // sum(QUOTAS.values()))
         paraphrases = list[Task]()
         candidates = {c: [row for row in rows if len(row.variants) >= WORDINGS] for c, rows in chosen.items()}
@@ -158,10 +158,10 @@ def build(
         scenes: The scenes of the tasks.
         seed: Seed for every random choice.
         quotas: Core tasks per category. The default is the published quotas, plus reactions.
-        progress: Receives a line of text after every step.
-        can_answer: Returns whether perception can answer the questions of a draft. By default, all drafts are answerable.
+        progress: Called with a line of text after every step.
+        can_answer: Returns whether perception can answer the questions of a draft. By default, all drafts count as answerable.
 
     Returns:
-        The tasks, and the number of missing ones.
+        The tasks, and how many are missing per category.
     """
     return Builder(scenes, seed, quotas, progress, can_answer).build()

@@ -18,6 +18,9 @@ from scope_ptz.taskgen.authoring.task_places import TaskPlace
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.tools.arguments import View
 
+# Placeholders of the sentence frames: {d} is the question in its direct form and {i} the question as a clause. {m} is the moves as
+# a complete phrase, and {l} the moves as a phrase to which "and ..." can be added. {D}, {M} and {L} begin with a capital letter.
+# {p} is a preset.
 _WRAPPERS = (
     "{M}. {D}", "{L} and tell me {i}.", "{L}, then tell me {i}.", "Please {l} and let me know {i}.", "{M}: {d}",
     "Could you {l} and report {i}?", "I'd like you to {m}. {D}", "{L} and find out {i}.", "First {m}. {D}",
@@ -48,7 +51,7 @@ class Question:
 
 
 def identical_forms(*questions: str) -> tuple[tuple[str, str], ...]:
-    """Return wordings that read the same as a question and as a clause ("which is nearer, ...")."""
+    """Return the forms of questions that read the same as a direct question and as a clause ("which is nearer, ...")."""
     return tuple((question, question.rstrip("?")) for question in questions)
 
 
@@ -58,7 +61,7 @@ class TaskDraft:
 
     Attributes:
         category: The category of the task.
-        question_type: The question type, which the selection balances.
+        question_type: The type of the question or command, such as "sum" or "close-up". The selection balances the types.
         key: A key for the question, so that it is asked only once about a view.
         place: The start of the task, and the view that it is about.
         expected: The expected answer.
@@ -70,7 +73,7 @@ class TaskDraft:
         behaviour: What a run must do in addition to answering.
         needs: The actions that an agent must take before it can answer. By default, those of the place.
         tags: Tags of the task.
-        weight: Number of objects to distinguish, for the difficulty.
+        weight: Number of objects to tell apart, which contributes to the difficulty.
         twin: For a draft about an absent object, the draft with the same wording about a present one.
         answer_key: The answer as a short text, which the selection balances.
     """
@@ -128,13 +131,19 @@ class TaskDraft:
         return f"{self.place.key}|{self.key}"
 
     def digest(self, seed: int | str) -> str:
-        """Return a pseudo-random hexadecimal number that depends only on the seed and this draft."""
+        """Return a pseudo-random hexadecimal number, by which drafts are shuffled. It depends only on the seed and this draft."""
         text = f"{seed}|{self.category}|{self.question_type}|{self.full_key}|{self.answer_key}|{self.place.start}"
         return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
 class SentenceFrames:
-    """A writer of the instructions of a category. It uses all sentence frames equally often, and no text twice."""
+    """The sentence frames of a category, and how often each is used. All are used about equally often, and no text twice.
+
+    A sentence frame is one wording of a question inside one of the sentences above, such as "First {m}. {D}".
+
+    Args:
+        texts: Instructions that are already used. ``take`` adds to this set.
+    """
 
     def __init__(self, texts: set[str]) -> None:
         self.used: Counter[str] = Counter()
@@ -194,7 +203,8 @@ def evidence_view(
         shows: The answer that the view supports.
         about: Words that a perception call about this evidence mentions.
         items: The objects from which the answer follows.
-        whole: Whether the whole view is evidence. A run must then see it with at least 60% of its resolution here.
+        whole: Whether the whole view is evidence, not only its items. A run must then observe all of it, with at least 60% of the
+            pixels per degree that it has here.
     """
     density = place.truth.projection.pixels_per_radian * math.pi / 180
     return EvidenceView(

@@ -63,7 +63,7 @@ def article(noun: str) -> str:
 
 
 _VOWEL_SOUNDS = ("SUV", "8", "11 ", "18 ")
-"""Beginnings that are pronounced with a vowel sound but not spelt with a vowel."""
+"""Beginnings of noun phrases that take "an" although they are not spelt with a lower-case vowel."""
 
 
 def the(name: str) -> str:

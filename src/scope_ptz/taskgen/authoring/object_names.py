@@ -24,8 +24,8 @@ class NamedThing:
     Attributes:
         thing: The object as it appears in the view.
         name: The name without an article ("excavator", "leftmost car").
-        kind: The kind of object in the name.
-        positional: Whether the name describes the position in the view.
+        kind: The kind of object that the name states, such as "car" in "leftmost car".
+        positional: Whether the name compares the object with others by its position ("leftmost", "nearest").
     """
 
     thing: Sighting
@@ -72,7 +72,7 @@ def unique_things(truth: RobustTruth, *, coloured: bool, min_pixels: int = 350) 
 
 
 def is_only_candidate(truth: RobustTruth, kind: Kind, thing: Sighting) -> bool:
-    """Return whether no other object in the view, not even a barely visible one, fits a kind."""
+    """Return whether no other object in the view, not even a barely visible one, fits a kind or could be taken for it."""
     return not any(kind.fits(other) or kind.ambiguous_with(other) for other in truth.others(thing))
 
 
@@ -113,7 +113,8 @@ def named_things(truth: RobustTruth, min_pixels: int = 350, min_text_px: float =
 def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_px: float) -> bool:
     """Return whether a person can recognise an object by its name in this view.
 
-    If the name of an object comes from its lettering, as for signs and numbered bays, the lettering must be large enough.
+    If people know such an object by its lettering, as with signs and numbered bays, a text on it must contain a distinctive word
+    (or the number) of the name and be large enough to read.
     """
     thing = sighting.instance
     distinctive = _words(name) - _FUNCTION_WORDS - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
@@ -140,7 +141,7 @@ _PART_WORDS = frozenset({"with", "carrying", "pushing", "holding"})
 """Words in names that mention a part or a carried object, such as "with a pram"."""
 
 _MIN_SHARE_WITH_PART = 0.75
-"""Minimum visible share of an object whose name mentions a part, because the part could otherwise be hidden."""
+"""Minimum visible fraction of an object whose name mentions a part. Below it, the part itself could be hidden."""
 
 _PERSON_PX = 700
 """Minimum number of pixels of a person for clothes and carried objects to be visible."""
@@ -268,9 +269,9 @@ def colours_confusable(one: str, other: str | None) -> bool:
 
 
 def is_complete_group(truth: RobustTruth, kind: Kind) -> bool:
-    """Return whether all visible objects of a kind are clearly visible.
+    """Return whether every object of a kind that is in view is clearly visible.
 
-    A person could otherwise take a partly hidden object for the outermost one.
+    If one were partly hidden, people could disagree about which object is the outermost.
     """
     visible = {s.instance.number for s in truth.all_of(kind) or ()}
     return not any(kind.fits(s.instance) and s.instance.number not in visible and s.pixels > 30 for s in truth.samples[0].sightings)

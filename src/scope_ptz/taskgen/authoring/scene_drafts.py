@@ -30,21 +30,21 @@ from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
 _OFF_PRESET_VIEWS = 64  # number of views away from the presets, per scene
-_CANDIDATE_VIEWS = 2  # each such view is the candidate with the most objects among this many
+_CANDIDATE_VIEWS = 2  # number of random candidates for each of these views; the one with the most visible objects is used
 _START_VIEWS = 3  # number of presets with questions about the start view, which need no move
-_MAX_GROUPS = 40  # maximum number of compared pairs of presets, and of groups of three
+_MAX_GROUPS = 40  # maximum number of pairs of presets to compare, and of groups of three presets
 _MAX_PER_TYPE = 10  # maximum number of drafts per question type and view
-_READING_VIEWS = 36  # maximum number of views that are close enough to read a text, per scene
+_READING_VIEWS = 36  # maximum number of views that are zoomed in to read a text, per scene
 
 
 class SceneDrafts:
-    """A generator of the drafts of a scene, in an order that depends on the seed. The ground truth of a view is read on first use.
+    """The drafts of one scene, in an order that depends on the seed. The ground truth of a view is read on first use.
 
     Args:
         scene: The scene.
         seed: Seed for every random choice.
         nouns: Nouns of object categories that a question may be about even if the scene has no such object.
-        values: The values of attributes in all scenes.
+        values: The values of attributes in all scenes, from which the options of a question are taken.
     """
 
     def __init__(self, scene: Scene, seed: int, nouns: frozenset[str], values: Values) -> None:
@@ -86,7 +86,7 @@ class SceneDrafts:
 
     @cached_property
     def reading_views(self) -> list[TaskPlace]:
-        """Views that are close enough to read a text, one for each object with lettering."""
+        """Views that are zoomed in far enough to read a text, at most one for each object with lettering."""
         by_object: dict[str, TaskPlace] = {}
         texts = list(self.scene.file.texts)
         self._rng("reading").shuffle(texts)
@@ -98,7 +98,7 @@ class SceneDrafts:
                 angle = float(angle_between_deg(np.cross(np.array(text.right), np.array(text.up)), towards))
                 if angle > 42 or text.parent in by_object:
                     continue
-                # Capitals of 22 px are legible under the strictest threshold.
+                # Capital letters 22 px high are legible even under the strictest threshold.
                 cap_deg = np.degrees(text.cap_height_m / float(np.linalg.norm(towards)))
                 hfov = TASK_CAMERA.width / (22.0 / cap_deg)
                 if hfov < TASK_CAMERA.optics.hfov_deg(TASK_CAMERA.limits.max_zoom):

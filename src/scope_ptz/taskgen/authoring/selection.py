@@ -24,22 +24,26 @@ MAX_PAIRS_OF_TYPE = {"not-there": 4, "half-none": 3, "neither": 4}
 MAX_SAME_ANSWER: dict[Category, int] = {
     "counting": 5, "descriptor": 2, "location": 1, "ocr": 1, "single_call": 1, "multi_step_reasoning": 2, "comparative": 1,
 }  # fmt: skip
-"""Maximum number of tasks with the same correct answer per category, without pairs: at most 3% of all tasks in total."""
+"""Maximum number of tasks per category that have the same correct answer, not counting pairs.
+
+Over all categories, these are at most 3% of the tasks.
+"""
 
 MAX_SAME_YES_NO = 1
-"""Maximum number of tasks with the answer "yes", and with the answer "no", per question type, without pairs."""
+"""Maximum number of tasks per question type that have the answer "yes", and maximum for "no", not counting pairs."""
 
 MAX_SAME_QUESTION = 2
 """Maximum number of tasks in a scene that have the same question and answer, about different views."""
 
 MAX_AT_ONE_POSITION: dict[Category, int] = {"descriptor": 3, "location": 3, "comparative": 5}
-"""Maximum number of tasks whose correct answer is at the same position among the options of the question, without pairs.
+"""Maximum number of tasks whose correct answer is at the same position among the options of the question, not counting pairs.
 
-This is at most 3% of all tasks in total."""
+Over all categories, these are at most 3% of the tasks.
+"""
 
-_NO_LIMIT = 1000.0
+_NO_LIMIT = 1000.0  # slack at which the limits on equal questions, equal answers and answer positions have no effect
 
-MAX_FRAME_SHARE = 0.06  # maximum share of a category's tasks with the same sentence frame
+MAX_FRAME_SHARE = 0.06  # maximum fraction of a category's tasks with the same sentence frame
 MAX_FROM_START = 3  # maximum number of tasks per category that can be answered from the start view
 
 # Weights of the traits in the cost of selecting another draft with the same trait.
@@ -70,7 +74,7 @@ class ChosenDraft:
 
 @dataclass
 class SharedLimits:
-    """Limits that all categories share.
+    """Limits that all categories share, and the questions and instructions that any category has already used.
 
     Attributes:
         asked: Keys of the questions and views that are already used.
@@ -221,7 +225,7 @@ def answer_positions(draft: TaskDraft, text: str) -> list[str]:
 
 
 def answerable_from_start(draft: TaskDraft) -> bool:
-    """Return whether a task that needs a move or a sweep would also pass all checks if a run only looked at the start view."""
+    """Return whether a task that needs a move or a sweep would also pass all checks if a run observed only the start view."""
     place = draft.place
     needs = place.needs if draft.needs is None else draft.needs
     views = [view for view in draft.evidence if view.must_look]

@@ -148,7 +148,7 @@ def call_phrases(call: ProgramCall, rng: random.Random) -> list[str]:
 
 
 def preset_at(preset: ScenePreset) -> CameraPosition:
-    """Return the viewpoint and pose of a preset, within the limits of the camera."""
+    """Return the viewpoint and pose of a preset, clamped to the limits of the camera."""
     return CameraPosition(preset.viewpoint, TASK_CAMERA.limits.clamp(Pose(preset.pan_deg, preset.tilt_deg, preset.zoom))[0])
 
 
@@ -172,7 +172,8 @@ def go(preset: str) -> ProgramCall:
 def comparison_start(one: TaskPlace, two: TaskPlace) -> TaskPlace:
     """Return the start of a task about two presets.
 
-    It is the start of the first place, or a third preset if that start is the second preset.
+    It is the start of the first place. If that start is the second preset, it is a third preset instead (if the scene has one), so
+    that the start view is neither of the two that the task is about.
     """
     names = [p.name for p in one.scene.file.presets]
     others = [name for name in names if name not in (one.preset, two.preset)]
@@ -183,7 +184,7 @@ def comparison_start(one: TaskPlace, two: TaskPlace) -> TaskPlace:
 
 
 class ScenePlaces:
-    """A sampler of places in a scene, with a seeded random generator."""
+    """The places of tasks in one scene. Random choices use the generator ``rng``, so its seed determines the places."""
 
     def __init__(self, scene: Scene, rng: random.Random) -> None:
         self.scene, self.presets = scene, {p.name: p for p in scene.file.presets}
@@ -242,10 +243,17 @@ class ScenePlaces:
         return adjust(pan, tilt)
 
     def towards(self, viewpoint: str, pan_deg: float, tilt_deg: float, zoom: float) -> TaskPlace | None:
-        """Return a view in a direction, which is reached from the nearest preset of the viewpoint by turning whole degrees.
+        """Return a view in a given direction, reached from the viewpoint's nearest preset by turning whole degrees and zooming in.
+
+        Args:
+            viewpoint: Name of the viewpoint.
+            pan_deg: Pan of the direction, in degrees.
+            tilt_deg: Tilt of the direction, in degrees.
+            zoom: Minimum zoom of the view.
 
         Returns:
-            The place; None if the viewpoint has no preset, or if a limit of the camera prevents the move.
+            The place; None if the viewpoint has no preset, if a factor of up to 4 does not reach the zoom, or if a limit of the
+            camera prevents the move.
         """
         nearby_presets = [p for p in self.presets.values() if p.viewpoint == viewpoint]
         if not nearby_presets:

@@ -15,7 +15,7 @@ _MAX_COUNT, _MAX_COUNT_IN_SWEEP = 15, 8
 """Maximum count in a view and in a sweep. People disagree about larger counts."""
 
 _MIN_SHARE = 0.5
-"""Minimum visible share of a counted object. People disagree about counting objects of which less is visible."""
+"""Minimum visible fraction of a counted object. People disagree on whether objects with less in view count."""
 
 _MIN_PX, _MIN_PX_IN_SWEEP = 220, 450
 """Minimum size of a counted object in a view and in a sweep, in pixels. People overlook smaller objects."""
@@ -59,9 +59,10 @@ def plain_counts(truth: RobustTruth) -> list[tuple[Kind, int]]:
 
 @lru_cache(maxsize=512)
 def absent_kinds(truth: RobustTruth, nouns: frozenset[str]) -> tuple[Kind, ...]:
-    """Return kinds without any visible object.
+    """Return kinds that are certainly absent from a view.
 
-    They are nouns of the scenes, and visible categories with a colour that other objects of the category have in this scene.
+    The candidates are all ``nouns``, and each category in view combined with the colours that its objects have anywhere in this
+    scene ("red car" in a view with white cars only).
     """
     kinds = [Kind(noun) for noun in sorted(nouns - _UNASKED_NOUNS)]
     categories = sorted({s.instance.category for s in truth.clear if own_colour(s.instance) is not None} - UNCOUNTED)

@@ -13,7 +13,7 @@ from scope_ptz.taskgen.facts.kinds import SceneThing
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA, RobustTruth
 
 FILL = 0.75
-"""Share of the frame that a framed object fills along its limiting side."""
+"""Fraction of the frame's width or height, whichever it fills more, that an object fills after ``zoom_to_object``."""
 
 
 MIN_TARGET_PX = 150
@@ -21,14 +21,14 @@ MIN_TARGET_PX = 150
 
 
 def close_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, float]) -> tuple[Pose, float] | None:
-    """Return the pose that frames an outline, and the share of the frame that the outline then fills.
+    """Return the pose that frames an outline, and the fraction of the frame's width or height that the outline then fills.
 
     Args:
         hull_deg: Pan and tilt of the points of the outline, in degrees.
         zoom_limits: Minimum and maximum zoom.
 
     Returns:
-        The pose and the share; None if no pose shows the whole outline.
+        The pose and the fraction; None if no pose shows the whole outline.
     """
     outline = direction(*np.array(hull_deg, dtype=np.float64).T)
     middle = outline.mean(axis=0)
@@ -52,8 +52,8 @@ def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace
     """Return the view after zooming in on an object.
 
     Returns:
-        The place; None if the view cannot be predicted, because the object is too small, cut off or partly hidden, or because of a
-        camera limit.
+        The place; None if the object is too small, cut off or partly hidden, if a limit of the camera prevents the view, or if the
+        camera would hardly zoom in.
     """
     if sighting.cut or sighting.occluded or sighting.pixels < MIN_TARGET_PX:
         return None
@@ -68,7 +68,7 @@ def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace
 
 
 def framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing | None:
-    """Return the requirement to frame an object; None if it is partly hidden, or if the zoom range is too small to frame it."""
+    """Return the framing that a task requires; None if the object is partly hidden or the zoom range is too small to frame it."""
     close = framed(place, sighting, thing)
     extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
     if close is None or extent is None or sighting.visible_fraction < 0.97:

@@ -1,1 +1,5 @@
-"""The published dataset: ``unseen`` builds the unseen split, ``distributions`` counts tasks, ``card`` writes the dataset card."""
+"""The published dataset.
+
+``build`` writes all of its files, ``unseen`` builds the unseen split, ``distributions`` counts tasks, and ``card`` writes the
+dataset card.
+"""

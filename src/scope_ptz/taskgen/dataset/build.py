@@ -49,11 +49,11 @@ def build_dataset(
         seed: Seed for every random choice.
         numbers: Numbers of the scene variations for the unseen split.
         quotas: Number of tasks of each category; None for the published numbers.
-        validate: Validates tasks.
-        make_gold: Creates gold runs.
+        validate: Validates the tasks of one split.
+        make_gold: Creates gold runs from the core tasks.
         can_answer: Returns whether ground-truth perception can answer the questions of a draft.
-        report: Receives each line of the result.
-        notify: Receives notes about progress and shortfalls.
+        report: Called with each line of the result.
+        notify: Called with notes about progress and missing tasks.
 
     Returns:
         True if every quota was met and every task was validated.

@@ -10,7 +10,7 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
 BAR_CHARS = 30  # length of the longest bar in a chart
-MAX_ANSWERS = 6  # number of most frequent answers that are listed per category
+MAX_ANSWERS = 6  # maximum number of answers listed per category, the most frequent first
 
 Key = Callable[[Task], str]
 _ORDER = {"easy": 1, "medium": 2, "hard": 3}

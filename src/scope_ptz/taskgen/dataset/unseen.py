@@ -23,14 +23,14 @@ def build_unseen(
         scenes: The scenes.
         numbers: Numbers of the variations. The tasks are distributed over all variations of all scenes.
         quotas: Number of tasks per category; None for the published numbers.
-        progress: Receives a line of text after every step.
+        progress: Called with a line of text after every step.
         can_answer: Returns whether perception can answer the questions of a draft.
 
     Returns:
-        The tasks, and the number of missing ones.
+        The tasks, and how many are missing per category.
     """
     worlds = [(scene, number, scene.varied(number)) for scene in scenes for number in dict.fromkeys(numbers)]
-    # Core datasets have smaller seeds, so that the wordings and objects of the unseen tasks differ from theirs.
+    # This seed is larger than the seeds of core datasets, so the wordings and objects of the unseen tasks differ from theirs.
     seed = 1_000_000 + sum(number * 31**k for k, number in enumerate(numbers))
     built = build([world for _, _, world in worlds], seed, dict(quotas or QUOTAS), progress, can_answer)
     origins = {world.name: (scene, number) for scene, number, world in worlds}

@@ -49,7 +49,8 @@ INCOMPLETE_CATEGORIES: Mapping[str, frozenset[str]] = {
 }
 """Categories whose visible objects are not all in the ground truth, by scene.
 
-Some are in the backdrop, are parts of larger objects, or lie under other objects, so that people count them differently.
+Some of these objects are in the backdrop, are parts of larger objects or lie under other objects, so people would count
+differently.
 """
 
 _CONFUSED_CATEGORIES: tuple[frozenset[str], ...] = (
@@ -119,6 +120,7 @@ _SIMILAR_COLOURS = (
     {"amber", "yellow"}, {"rust", "red"}, {"lilac", "purple"}, {"lilac", "pink"},
     {"cream", "grey"}, {"light", "grey", "white"}, {"khaki", "green"}, {"khaki", "brown"},
 )  # fmt: skip
+"""Sets of words. Two colours are similar if their words together include one of these sets."""
 
 _WITH_VISIBLE_DRIVER = frozenset(
     {"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"}
@@ -162,7 +164,7 @@ class Kind:
         )
 
     def may_be_driver_of(self, thing: SceneThing) -> bool:
-        """Return whether a vehicle may show a person of this kind who is not an object in the ground truth."""
+        """Return whether a vehicle may have a visible driver of this kind who is not an object in the ground truth."""
         return self.category in GROUPS["person"] and thing.category in _WITH_VISIBLE_DRIVER
 
     def ambiguous_with(self, thing: SceneThing) -> bool:

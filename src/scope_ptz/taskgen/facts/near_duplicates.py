@@ -1,4 +1,4 @@
-"""Detect near-duplicate tasks: the same question about the same view in any words, or almost the same words.
+"""Detect near-duplicate tasks: those that ask the same question about the same view, and those with almost the same words.
 
 Texts are compared by the Jaccard similarity of their sets of five-character shingles, including numbers and names. For a few
 thousand short texts, this is as fast as an estimate with MinHash, and exact.

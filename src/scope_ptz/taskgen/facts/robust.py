@@ -1,7 +1,8 @@
 """Robust ground truth: facts about a view that remain true if the pose, time and visibility thresholds change slightly.
 
-The ground truth of a view is read at its pose and at eight nearby poses and later times. A fact is reported only if it is true in
-all of them, and with visibility thresholds that are 30% lower and 30% higher. This module does not process language.
+The ground truth of a view is read at its pose and at eight nearby poses, each at a later time. A sweep is read at its start and at
+three later times. A fact is reported only if it is true in all of these samples, and with visibility thresholds that are 30% lower
+and 30% higher. This module does not process language.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from scope_ptz.taskgen.facts.kinds import INCOMPLETE_CATEGORIES, RECOGNISED_BY_T
 TASK_CAMERA = FrameGeometry(1280, 720)
 """The camera for which tasks are created and validated."""
 
-JITTER_DEG, JITTER_ZOOM = 0.5, 0.03  # offset of the nearby poses in pan and tilt (degrees), and in zoom (share)
+JITTER_DEG, JITTER_ZOOM = 0.5, 0.03  # offset of the nearby poses in pan and tilt (degrees), and in zoom (fraction)
 THRESHOLDS = (0.7, 1.0, 1.3)
 """Factors by which the visibility thresholds are multiplied. A fact must be true with each of them."""
 
@@ -47,7 +48,7 @@ TRACE_PX = 20
 FAINT_PX = 40
 """Maximum number of pixels of an object that people certainly do not count.
 
-If an object has more pixels but is not visible by definition, no question asks for the number of its kind.
+If an object has more pixels but does not meet the definition of visible, no question asks for the number of its kind.
 """
 
 _MIN_FACING_COSINE = 0.2
@@ -57,7 +58,7 @@ SOON_S = (0.5, 1.0, 1.5, 2.0, 4.5)
 """Seconds after the start at which texts must also be legible, if actors pass through the view."""
 
 LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
-"""Seconds after the start at which the nearby poses are read, one for each pose."""
+"""Seconds after the start at which the nearby poses are read, one for each pose. A sweep is read at three of these times."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,7 @@ class RobustTruth:
 
     @cached_property
     def samples(self) -> tuple[ViewTruth, ...]:
-        """The ground truth at the pose, then at eight nearby poses, each at another time."""
+        """The ground truth at the pose, then at eight nearby poses, each at another time. For a sweep, only the time differs."""
         if self.pose is None:
             later_times_s = LATER_S[1::3]
             return self.first, *(
@@ -240,7 +241,7 @@ class RobustTruth:
         Args:
             sighting: The object.
             axis: 0 for left and right, 1 for upper and lower.
-            margin: Minimum distance of the object's centre from the middle line, as a share of the frame.
+            margin: Minimum distance of the object's centre from the middle line, as a fraction of the frame.
 
         Returns:
             0 for left or upper, 1 for right or lower; None if the object is too close to the middle line.
@@ -292,6 +293,7 @@ class RobustTruth:
     def _item(
         self, name: str, box: tuple[float, float, float, float], value: str | bool | float | None, cap_deg: float | None
     ) -> Item:
+        """Return an evidence item for a box, which is shrunk until its outline in pan and tilt lies inside the frame."""
         x0, y0, x1, y1 = box
         for _ in range(12):
             middle_x, middle_y = (x0 + x1) / 2, (y0 + y1) / 2
@@ -312,7 +314,7 @@ class RobustTruth:
 
 @lru_cache(maxsize=16)
 def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance, ...]]:
-    """Return the positions of each actor by its number, every 0.5 s during the first two minutes."""
+    """Return the positions of each actor by its number, every 0.5 s for the longest period of an actor (at most two minutes)."""
     origin, by_actor = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
     longest = max((actor.period_s for actor in scene.file.actors), default=0.0)
     for time_s in np.arange(0.0, min(longest, 120.0), 0.5):
@@ -345,12 +347,12 @@ def _faces(text: SceneText, point: NDArray[np.float64]) -> bool:
 
 
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:
-    """Return whether an object is visible by definition, with both thresholds multiplied by ``scale``."""
+    """Return whether an object meets the definition of visible, with both thresholds multiplied by ``scale``."""
     return sighting.pixels >= MIN_VISIBLE_PX * scale and sighting.visible_fraction >= MIN_VISIBLE_FRACTION * scale
 
 
 def legible(text: TextSighting, scale: float = 1.0) -> bool:
-    """Return whether a text is legible by definition, with all thresholds made stricter by ``scale``."""
+    """Return whether a text meets the definition of legible. A ``scale`` above 1 makes all thresholds stricter."""
     return (
         text.cap_height_px >= MIN_CAP_HEIGHT_PX * scale
         and text.angle_deg <= min(MAX_READING_ANGLE_DEG / scale, 85.0)

@@ -24,8 +24,8 @@ class LedgerEntry(BaseModel):
 
     Attributes:
         batch: Number of the request.
-        fate: Whether the draft was kept, or how it was rejected.
-        reason: The reason why it was not kept.
+        fate: What became of the draft: "kept", or how it was rejected.
+        reason: The reason why it was not kept; empty if it was.
         draft: The draft as the model wrote it.
         task: The task created from the draft; None if it was not kept.
     """

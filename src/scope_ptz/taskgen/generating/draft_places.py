@@ -14,8 +14,10 @@ from scope_ptz.taskgen.generating.draft_schema import Draft, Move
 _AROUND = re.compile(
     r"\b(?:around|round|sweep|whole|everything|entire|everywhere|all directions|every direction|full)\b", re.IGNORECASE
 )
+"""Words that show that an instruction is about everything around the camera."""
+
 _TIMES = {2.0: ("twice", "double"), 3.0: ("three times", "triple"), 0.5: ("half",), 4.0: ("four times",)}
-_MAX_CALLS = 6
+_MAX_CALLS = 6  # maximum number of moves in a draft
 
 
 class DraftRejectedError(Exception):

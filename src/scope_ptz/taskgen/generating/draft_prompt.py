@@ -1,7 +1,7 @@
 """Write the prompt that requests drafts from a language model.
 
-It contains the inventory of the scene, facts about views, the requested numbers, example tasks and recorded runs of operators.
-Changing its wording changes the drafts that a model writes.
+It contains the inventory of the scene, facts about views, the number of drafts requested per category, example tasks and recorded
+operator runs. Changing its wording changes the drafts that a model writes.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def inventory(scene: Scene) -> dict[str, Any]:
 
 
 def view_facts(scene: Scene, preset: ScenePreset) -> dict[str, Any]:
-    """Return the objects that the view of a preset certainly shows, and how they change with each adjustment."""
+    """Return facts about a preset's view: its certain counts, its legible texts, and how each adjustment changes the counts."""
     position = preset_at(preset)
     preset_view = TaskPlace(scene, preset.name, (), position)
     base = certain_counts(preset_view)
@@ -109,7 +109,7 @@ def view_facts(scene: Scene, preset: ScenePreset) -> dict[str, Any]:
 
 
 def certain_counts(place: TaskPlace) -> dict[str, int]:
-    """Return the number of visible objects of each category and colour at a place. Uncertain kinds are omitted."""
+    """Return the number of visible objects of each category and colour at a place. Kinds with an uncertain number are omitted."""
     kinds = [kind for kind in kinds_in(s.instance for s in place.truth.clear) if kind.attribute is None]
     objects = ((kind, place.truth.all_of(kind)) for kind in kinds)
     return {_name(kind): len(things) for kind, things in objects if things}

@@ -100,7 +100,7 @@ def _without_defs(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def read_reply(text: str) -> list[Any]:
-    """Return the rows of a reply without checking them.
+    """Return the drafts in a reply as JSON data, without validating them. Drafts beyond ``MAX_DRAFTS`` are omitted.
 
     Raises:
         ValueError: The reply is not a list of drafts.

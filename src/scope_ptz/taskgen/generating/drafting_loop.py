@@ -30,7 +30,7 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class GenerationRequest:
-    """The settings of a generation.
+    """The settings for generating tasks.
 
     Attributes:
         scene: The scene of the tasks.
@@ -56,14 +56,14 @@ async def generate(
 ) -> None:
     """Request drafts until every category is complete or the maximum number of requests is reached.
 
-    Drafts that the ledger already contains count as well.
+    Tasks and requests that the ledger already contains count as well.
 
     Args:
         request: The settings.
-        complete: Sends a request to the model.
+        complete: Sends a request to the model and returns its reply.
         validate: Validates a task by running it.
         ledger: The record to resume and extend.
-        progress: Receives a line of text after every request.
+        progress: Called with a line of text after every request.
 
     Raises:
         NoReplyError: The model repeatedly gave no usable reply. The ledger still contains the tasks that were kept before.
@@ -117,7 +117,7 @@ async def _ledger_entry(
 async def entry_of(
     draft: Draft, row: object, scene: Scene, known_tasks: KnownTasks, ledger: DraftLedger, validate: ValidateTask, batch: int
 ) -> LedgerEntry:
-    """Make a task of a draft, validate it, and return the entry for the ledger.
+    """Create a task from a draft, validate it, and return the entry for the ledger.
 
     Args:
         draft: The draft.
@@ -147,7 +147,7 @@ def _shortened(row: object) -> object:
 
 
 def _share(missing: dict[Category, int], size: int) -> dict[Category, int]:
-    """Return the number of drafts per category for one request of up to ``size`` drafts, taken from the categories in turn."""
+    """Return the number of drafts per category for one request: up to ``size`` in total, taken from the categories in turn."""
     requested: Counter[Category] = Counter()
     while sum(requested.values()) < min(size, sum(missing.values())):
         for category, number in missing.items():

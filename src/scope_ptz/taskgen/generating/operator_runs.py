@@ -44,7 +44,7 @@ class OperatorRun:
 
 
 def read_runs(folder: Path | None, feedback: Path | None) -> list[OperatorRun]:
-    """Read the runs for a prompt, those with feedback first.
+    """Read at most ``MAX_RUNS`` runs for a prompt, those with feedback first.
 
     Args:
         folder: Folder that contains run folders; None for no runs.

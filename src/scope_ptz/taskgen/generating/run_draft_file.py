@@ -28,7 +28,7 @@ class RunDraft(BaseModel):
         instruction: The operator's instruction.
         note: The operators' comments.
         draft: The draft.
-        reason: The reason why the run makes no draft.
+        reason: The reason why the run cannot be converted to a draft.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

@@ -26,7 +26,7 @@ from scope_ptz.taskgen.generating.run_draft_file import RunDraft
 
 START_TOLERANCE_DEG, START_TOLERANCE_ZOOM = 0.5, 0.03
 """Maximum distance of a run's start from the pose of a preset: degrees of pan and tilt, and fraction of the zoom."""
-_SOURCE_NOTE = re.compile(r"\s*\(Source: [^()]*\)\s*\Z")
+_SOURCE_NOTE = re.compile(r"\s*\(Source: [^()]*\)\s*\Z")  # a note at the end of a run's answer, which drafts omit
 _ASKS_WHETHER = re.compile(r"\b(?:is|are) there\b(?! how)|\bany\b|\bwhether\b|\bdo you see\b|\bcan you see\b", re.IGNORECASE)
 _ASKS_COUNT = re.compile(r"\bhow many\b|\bcount\b|\bnumber of\b", re.IGNORECASE)
 _ASKS_SUM = re.compile(r"\b(?:total|altogether|together|sum|add|combined|in all)\b", re.IGNORECASE)
@@ -55,7 +55,7 @@ class _View:
 
 
 def run_draft(run: str, trace: Trace, note: str, open_scene: Callable[[str], Scene]) -> RunDraft:
-    """Convert a run to a line of the drafts file: its draft, or the reason why it makes none.
+    """Convert a run to a line of the drafts file: a draft, or the reason why the run cannot be converted.
 
     Args:
         run: Name of the run folder.
@@ -121,7 +121,7 @@ def _close(one: Pose, other: Pose) -> bool:
 
 
 def _views(calls: Sequence[Called], scene: Scene) -> list[_View]:
-    """Group the tool calls of a run into views. A move after a question begins a new view."""
+    """Group the tool calls of a run into views. A move or a change of scope after a question begins a new view."""
     views = [_View()]
     for called in calls:
         call = called.outcome.call

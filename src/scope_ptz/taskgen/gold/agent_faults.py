@@ -104,11 +104,11 @@ _REPLACEMENTS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
     "take_image": ("query_answer", {"question": "What is in view?"}, {"message": "A view.", "answer": "A view."}),
     "zoom_to_object": ("adjust_ptz", {"zoom_factor": 1.2}, {"message": "Moved."}),
 }
-"""The tool, arguments and result that replace a call of a tool. Other tools are replaced by ``take_image``."""
+"""The tool, arguments and result that replace a call to a tool. Calls to other tools are replaced by ``take_image``."""
 
 
 def swap_tools(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Replace every call of one tool with a call of an unsuitable tool."""
+    """Replace every call to one tool with a call to an unsuitable tool."""
     name = rng.choice([call.name for call in episode.calls])
     other, arguments, result = _REPLACEMENTS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
     if any(call.name == other for call in episode.calls):
@@ -172,7 +172,7 @@ def count_of(expected: AnyExpected, answer: str, call: EpisodeCall) -> int:
 
 
 def other_preset(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
-    """Go to another preset."""
+    """Go to a wrong preset instead of one of the presets that the run visits."""
     visited = [call.arguments["name"] for call in episode.calls if call.name == "go_to_preset"]
     if not visited:
         return None

@@ -26,7 +26,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
 
-RUNS_PER_MODE = 30  # 240 runs for the eight error modes
+RUNS_PER_MODE = 30  # number of gold runs per error mode: 240 runs for the eight modes
 
 WITHOUT_MODE = ("accepted", "not scored")
 """Results of a faulty run to which the rules assign no error mode: it is judged correct, or it is not scored."""
@@ -61,11 +61,11 @@ class ConfusionMatrix:
 
     @property
     def false_accept_rate(self) -> float:
-        """Share of runs that were judged correct despite their fault."""
+        """Fraction of runs that were judged correct despite their fault."""
         return self.accepted / self.total if self.total else 0.0
 
     def worse_than(self, published: Mapping[str, int]) -> bool:
-        """Return whether fewer modes are correct, or more runs are accepted, than in the header of a published file."""
+        """Return whether the rules name fewer modes correctly, or accept more runs, than the header of a published file states."""
         return self.named < published["named"] or self.accepted > published["accepted"]
 
     def as_dict(self) -> dict[str, Any]:
@@ -90,7 +90,7 @@ def gold_runs(
 
     Args:
         runs: Tasks with passing runs.
-        settings: Fault settings by scene or variation.
+        settings: Fault settings by the name of the scene or variation.
         seed: Seed for every random choice.
         per_mode: Number of runs per error mode, taken from the categories in turn.
     """

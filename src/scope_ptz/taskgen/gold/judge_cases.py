@@ -58,7 +58,7 @@ async def judge_all(
         out: File for verdicts.
         repeats: Number of judgements of each run.
         concurrency: Number of concurrent judgements.
-        notify: Receives a note before each round.
+        notify: Called with a note before each round of judgements.
     """
     name = server.client.endpoint.model
     version = prompt_version()

@@ -27,15 +27,15 @@ from scope_ptz.errors import InputError
 from scope_ptz.taskgen.gold.mutations import GoldRun
 
 PASSES = "passes"  # used instead of an error mode for runs without a fault
-WITHOUT_VERDICT = ("unparseable", "failed")
+WITHOUT_VERDICT = ("unparseable", "failed")  # results of judgements that say nothing about the run
 
 
 class GoldCase(BaseModel):
     """A run with a known verdict, as a case for a judge.
 
     Attributes:
-        facts: Facts about the task.
-        case: The case.
+        facts: The task, as the judge receives it.
+        case: The run, as the judge receives it.
         fault: The error mode of its fault; None for a passing run.
         how: Name of the fault function, or "reference" for a passing run.
     """
@@ -90,7 +90,7 @@ async def judge_gold(
         cases: The runs.
         concurrency: Number of concurrent judgements.
         repeat: Index of the judgement of each run, from 0.
-        note: Receives each verdict as soon as it is available. Its exceptions are raised to the caller.
+        note: Called with each verdict as soon as it is available. Its exceptions are raised to the caller.
     """
     limit = anyio.Semaphore(concurrency)
 
@@ -135,13 +135,13 @@ class GoldResult:
 
     @property
     def false_accept_rate(self) -> float | None:
-        """Share of faulty runs with a verdict that are judged correct."""
+        """Fraction of the judgements of faulty runs that say "correct". Judgements without a verdict are not counted."""
         judged = self._count(faulty=True) - self._count(faulty=True, verdicts=WITHOUT_VERDICT)
         return self._count(faulty=True, verdicts=("correct",)) / judged if judged else None
 
     @property
     def false_reject_rate(self) -> float | None:
-        """Share of passing runs with a verdict that are not judged correct."""
+        """Fraction of the judgements of passing runs that do not say "correct". Judgements without a verdict are not counted."""
         judged = self._count(faulty=False) - self._count(faulty=False, verdicts=WITHOUT_VERDICT)
         return 1 - self._count(faulty=False, verdicts=("correct",)) / judged if judged else None
 
@@ -201,7 +201,7 @@ def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
 
 
 def gold_raters(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
-    """Return one rater for the known faults and one for every judge."""
+    """Return the raters whose agreement can be measured: one for the known faults and one for every judge."""
     newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
     known_faults, judges = Rater("the known faults", "gold", "gold"), dict[str, Rater]()
     by_key: dict[str, list[GoldVerdict]] = {}

@@ -17,7 +17,7 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, wrong_answer
 from scope_ptz.taskgen.gold.agent_faults import FaultSetting, changed, count_of, replayed, with_result
 
-_MAX_TRIES = 24  # maximum number of wrong answers that are tried until one has no support in the run
+_MAX_TRIES = 24  # maximum number of wrong answers to try when looking for one that the run does not support
 _DECLINES = ("I cannot tell.", "I'm not sure.", "It is not possible to say.")
 
 

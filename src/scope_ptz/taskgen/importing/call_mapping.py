@@ -27,7 +27,7 @@ from scope_ptz.tools.registry import TOOLS as SCOPE_TOOLS
 from scope_ptz.tools.registry import parse_call
 
 DEGREES_TOLERANCE, ZOOM_TOLERANCE, SECONDS_TOLERANCE = 0.5, 0.03, 0.5
-"""Tolerances of expected arguments. The zoom tolerance is a share."""
+"""Tolerances of expected arguments: in degrees, as a fraction of the zoom factor, and in seconds."""
 _UNITS_S = {"": 1.0, "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 0.001, "min": 60.0, "minute": 60.0, "minutes": 60.0}
 _STOP_WORDS = frozenset({"the", "a", "an", "all", "any", "of", "in", "on", "with", "and", "view", "scene"})
 TOOL_FIELDS = {name: frozenset(tool.arguments.model_fields) for name, tool in SCOPE_TOOLS.items()}
@@ -66,7 +66,7 @@ def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, prese
     )
     names = list(steps_in(order, lambda detail: expectation.note("unknown-tool", detail)))
     if not names and isinstance(given, dict) and any(normalise(name) in TOOLS for name in given):
-        names = [(name, {}) for name in given]  # only the arguments are given, by tool
+        names = [(name, {}) for name in given]  # the row gives only arguments, by tool
     for detail in unused_arguments(given, [name for name, _ in names]):
         expectation.note("unchecked-argument", detail)
     for index, (name, call_arguments) in enumerate(names):

@@ -44,7 +44,7 @@ class Table:
         columns: Names of the columns, in lower case.
         rows: The rows, without blank ones.
         notes: Notes for the user about unusual properties of the file.
-        encoding: The encoding.
+        encoding: The encoding in which the file was read.
     """
 
     columns: tuple[str, ...]

@@ -30,6 +30,8 @@ _ASSERTS_NOTHING = re.compile(
     r"(?: successfully)?)\W*",
     re.IGNORECASE,
 )
+"""Expected answers that assert nothing about the scene, such as "All steps have been completed"."""
+
 _QUOTED = re.compile(r"[\"“”'‘]([^\"“”'’]{2,60})[\"“”'’]")
 _NUMBERS = {number_in_words(number): str(number) for number in range(21)}
 _UNINFORMATIVE = frozenset("the a an is are it there of in on yes no none not say says read reads i see".split())  # noqa: SIM905

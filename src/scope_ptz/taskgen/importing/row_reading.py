@@ -26,7 +26,7 @@ _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
 }  # fmt: skip
 _MAX_QUESTION_CHARS = 4000  # longer questions are truncated
 Note = Callable[[FindingKind, str], None]
-"""A function that adds a finding with its type and its detail."""
+"""A function that adds a finding, given its type and its detail."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class ParsedRow:
 
     @property
     def view(self) -> tuple[str, ...]:
-        """Scene and preset of the question. A scene or preset that was not found has its name in the file."""
+        """Scene and preset of the question. For one that was not found, its name in the file is used."""
         return (self.scene or self.place[0], self.preset or self.place[1])
 
     @property

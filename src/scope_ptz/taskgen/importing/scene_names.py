@@ -55,7 +55,8 @@ class SceneNames:
     def scene(self, location: str) -> str | None:
         """Return the scene for a file location; None if it is not found.
 
-        The mapping takes precedence. Otherwise the name of the file without its suffix, or of its folder, must match a scene.
+        The mapping takes precedence. Otherwise the name of the file without its suffix, or of its folder, must match a scene. If
+        neither does, the mapping's entry "*" is used.
         """
         mapped = self.mapping.scenes
         path = PurePosixPath(location.replace("\\", "/"))

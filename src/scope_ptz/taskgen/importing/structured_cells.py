@@ -14,7 +14,7 @@ _EMPTY_VALUES = frozenset({"", "null", "none", "n/a", "na", "nan", "-", "[]", "{
 
 
 def structure(text: str) -> Any:
-    """Parse a cell. An empty cell is None, and words without brackets are a list.
+    """Parse a cell. An empty cell becomes None, and words without brackets become a list.
 
     Raises:
         ValueError: The cell begins like JSON or a Python literal, but cannot be parsed.

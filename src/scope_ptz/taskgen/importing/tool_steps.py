@@ -21,7 +21,7 @@ def steps_in(content: Any, note: Callable[[str], None]) -> Iterator[tuple[str, M
 
     Args:
         content: The parsed content of the cell.
-        note: Receives a line of text for every part that names no tool.
+        note: Called with a line of text for every part that names no tool.
     """
     if isinstance(content, str):
         yield content, {}

@@ -107,7 +107,7 @@ def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: rand
     Args:
         task: The task.
         common: The most common answer of its category.
-        sibling: The answer to a similar task with a different answer; None if there is no such task.
+        sibling: The correct answer to a similar task, which is wrong for this one; None if there is no such task.
         rng: Random generator for the wrong answer.
     """
     blind = tuple(call for call in task.reference if call.tool not in PERCEPTION_TOOLS and call.tool != "zoom_to_object")

@@ -1,7 +1,7 @@
 """Check that a task is consistent with its scene: recompute its expected answer from the scene and the evidence.
 
 The rules use only the finished task, and not the code that created it. They detect answers that were changed by hand, and scenes
-that were baked again.
+that were baked again after the task was created.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from scope_ptz.taskgen.facts.kinds import Kind, kinds_in
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA, TRACE_PX, RobustTruth, visible
 
 TruthReader = Callable[[Scene, str, Perspective | Equirectangular, float], ViewTruth]
+"""A function that reads the ground truth of a view, given the scene, the viewpoint, the projection and the time in seconds."""
 
 
 def inconsistencies(task: Task, scene: Scene, read_truth: TruthReader = view_truth) -> list[str]:
@@ -101,7 +102,10 @@ def _answer_from_counts(task: Task) -> object:
 
 
 def _compared(expected: Choice | Ordering, numbers: Sequence[float], *, fewest: bool) -> object:
-    """Return the option with the most (or fewest) objects. Options and evidence have the same order."""
+    """Return the option with the most (or fewest) objects. Options and evidence have the same order.
+
+    For an ordering, return the expected order if all numbers differ, and otherwise None.
+    """
     if isinstance(expected, Ordering):
         return expected.value if len(set(numbers)) == len(numbers) else None
     if len(set(numbers)) == 1:

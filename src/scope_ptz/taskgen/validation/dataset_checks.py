@@ -12,9 +12,9 @@ from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 MAX_GUESSED_SHARE = 0.03
-"""Maximum share of the core tasks that a fixed answer may pass. A task of a pair counts only if both tasks of the pair pass."""
+"""Maximum fraction of the core tasks that a fixed answer may pass. A task of a pair counts only if both tasks of the pair pass."""
 
-_MIN_TASKS_FOR_SHARE = 300  # the share is not checked for smaller numbers of core tasks
+_MIN_TASKS_FOR_SHARE = 300  # minimum number of core tasks for the check of ``MAX_GUESSED_SHARE``
 
 
 def structural_faults(tasks: Sequence[Task], dataset: Sequence[Task] = ()) -> list[ValidationFault]:
@@ -63,7 +63,7 @@ def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
 
 
 def check_guesses(report: ValidationReport, tasks: Sequence[Task]) -> None:
-    """Record a fault for each fixed answer that passes both tasks of a pair or too many tasks."""
+    """Record a fault for each fixed answer that passes both tasks of a pair, or more tasks than ``MAX_GUESSED_SHARE`` allows."""
     twins = {task.id: task.pair for task in tasks}
     core = report.by_stratum["core"]
     for name, ids in report.guessed.items():

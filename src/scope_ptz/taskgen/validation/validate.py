@@ -51,7 +51,7 @@ async def validate(
         make_context: Creates the tool context of a camera.
         seed: Seed for the wrong answers.
         read_truth: Reads the ground truth of a view. A function with a cache makes validation much faster.
-        progress: Receives the progress after every task.
+        progress: Called after every task with the number of validated tasks and the total.
         dataset: The whole dataset, if ``tasks`` is a selection from it. It may contain twins and paraphrased tasks.
 
     Returns:

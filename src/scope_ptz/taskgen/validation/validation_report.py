@@ -33,7 +33,7 @@ class ValidationReport:
         tasks: Number of tasks.
         by_category: Number of core tasks per category.
         by_stratum: Number of tasks per stratum.
-        passed: Number of passes of each attempt.
+        passed: How often each attempt passed.
         tried: Number of tasks at which each attempt was made.
         absences: Number of core tasks with the answer "there is none", each of which has a twin.
         from_start: Number of core tasks that can be answered from the start view.
@@ -60,7 +60,7 @@ class ValidationReport:
 
     @property
     def adversarial_shares(self) -> dict[str, float]:
-        """The share of all tasks that each adversarial attempt passes."""
+        """The fraction of all tasks that each adversarial attempt passes."""
         return {name: self.passed[name] / self.tasks for name in sorted(self.tried) if name not in CORRECT_ATTEMPTS and self.tasks}
 
     @property

@@ -37,7 +37,7 @@ class _Appearance:
 
 
 def _random_appearance(random: Random, hair: str | None, woman_share: float) -> _Appearance:
-    """Return a random appearance. ``hair`` overrides the random hair colour."""
+    """Return a random appearance: that of a woman with probability ``woman_share``. ``hair`` overrides the random hair colour."""
     woman = random.random() < woman_share
     height = random.gauss(1.67, 0.04) if woman else random.gauss(1.78, 0.045)
     tone = random.choices(range(6), (30, 26, 16, 12, 10, 6))[0]

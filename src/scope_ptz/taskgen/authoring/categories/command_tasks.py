@@ -37,6 +37,8 @@ _SHAPES = (
     ("tilt", "shot", "home"),
     ("zoom", "turn", "shot", "preset"),
 )
+"""The shapes of commands: sequences of steps, which are filled with random presets and amounts. A shot is a picture."""
+
 _OPENINGS = (
     "{M}.",
     "Please {m}.",
@@ -49,7 +51,7 @@ _OPENINGS = (
 
 
 def drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield commands of every shape, from random presets."""
+    """Yield commands of every shape, which start at random presets."""
     names = list(places.presets)
     for n in range(60 * len(_SHAPES)):
         shape = _SHAPES[n % len(_SHAPES)]

@@ -17,6 +17,8 @@ from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, SceneThing, colour_shows
 STATES: tuple[tuple[str, ...], ...] = (
     ("open", "closed"), ("lit", "unlit"), ("full", "empty"), ("occupied", "free"), ("occupied", "empty"), ("standing", "sitting"),
 )  # fmt: skip
+"""Pairs of opposite states. A question about a state offers both."""
+
 _SYNONYMS = {
     "closed": ("shut",),
     "lit": ("on", "switched on", "lit up"),

@@ -82,14 +82,14 @@ _MAX_LINE_GAP = 3.0
 
 
 def prices(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
-    """Return the prices among the texts of a price card. Its other texts are part of its name."""
+    """Return the prices among the texts of a price card. The question already contains the others, in the name of the card."""
     return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
 
 
 def expected_text(target: NamedThing, texts: tuple[TextSighting, ...] | None) -> Text | None:
     """Return the whole text on an object as the expected answer.
 
-    Return None if there is no text, if it is too long, or if the object's name contains most of its words.
+    Return None if there is no text, if it is too long or in too many pieces, or if the object's name contains half of its words.
     """
     if not texts:
         return None
@@ -155,6 +155,7 @@ _PRICES: tuple[_Forms, _Forms] = (
         ("which price does a close-up of {n} show?", "the price that a close-up of {n} shows"),
     ),
 )
+"""Questions about lettering, number plates and prices: first for texts that are legible in the view, then for others."""
 
 
 def _draft(

@@ -52,7 +52,7 @@ _WHERE = (
 
 
 def drafts(one: TaskPlace, two: TaskPlace, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
-    """Return drafts whose instructions involve two presets, the first of which is ``one.preset``."""
+    """Return drafts about the view of ``one.preset`` that also involve ``two.preset``, or presets to go to afterwards."""
     p, q = one.preset, two.preset
     if p is None or q is None or p == q:
         return []
@@ -68,7 +68,7 @@ def _count_view(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
 
 
 def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraft]:
-    """Yield sums and differences of a kind between two presets."""
+    """Yield questions about the sum or difference of the counts of one kind at two presets."""
     there = dict(countable(two.truth))
     start = comparison_start(one, two)
     for kind, n in countable(one.truth):
@@ -143,7 +143,7 @@ def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
 
 
 def _only_one_alive(one: Kind, two: Kind) -> bool:
-    """Return whether only one of two kinds is alive. A question about their sum would sound unnatural."""
+    """Return whether only one of two kinds is alive. A question that combines their counts would sound unnatural."""
     return (one.category in _LIVING_CATEGORIES) != (two.category in _LIVING_CATEGORIES)
 
 
