@@ -48,7 +48,7 @@ async def write_question(
 
 
 def _caption(observation: Observation, scene: Scene) -> str:
-    """Return the caption of a picture: its preset (or its viewpoint, if the view is no preset) and its pose."""
+    """Return the caption of a picture: its preset (or its viewpoint, if no preset has this view) and its pose."""
     view = observation.projection
     if not isinstance(view, Perspective):
         return "everything around the camera, from pan -180 to 180 degrees"

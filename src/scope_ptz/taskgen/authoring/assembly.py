@@ -102,7 +102,7 @@ class Builder:
                 row.pair, twin.pair = twin.id, row.id
 
     def _paraphrases(self, chosen: dict[Category, list[ChosenDraft]]) -> list[Task]:
-        """Return tasks that are additional wordings of core tasks. The core tasks are taken from each category in turn."""
+        """Return paraphrases of some core tasks, as additional tasks. The core tasks are taken from each category in turn."""
         number = max(1, PARAPHRASED * sum(self.quotas.values()) // sum(QUOTAS.values()))
         paraphrases = list[Task]()
         candidates = {c: [row for row in rows if len(row.variants) >= WORDINGS] for c, rows in chosen.items()}

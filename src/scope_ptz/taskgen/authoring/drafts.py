@@ -139,7 +139,7 @@ class TaskDraft:
 class SentenceFrames:
     """The sentence frames of a category, and how often each is used. All are used about equally often, and no text twice.
 
-    A sentence frame is one wording of a question inside one of the sentences above, such as "First {m}. {D}".
+    A sentence frame is one wording of a question inside one of the sentence patterns of this module, such as "First {m}. {D}".
 
     Args:
         texts: Instructions that are already used. ``take`` adds to this set.
@@ -204,7 +204,7 @@ def evidence_view(
         about: Words that a perception call about this evidence mentions.
         items: The objects from which the answer follows.
         whole: Whether the whole view is evidence, not only its items. A run must then observe all of it, with at least 60% of the
-            pixels per degree that it has here.
+            pixels per degree that the place's view has.
     """
     density = place.truth.projection.pixels_per_radian * math.pi / 180
     return EvidenceView(

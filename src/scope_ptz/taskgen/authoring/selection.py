@@ -123,7 +123,10 @@ class Selection:
         return self.rows
 
     def _best(self, pool: list[TaskDraft], add_draft: _AddDraft) -> bool:
-        """Select the draft that improves the balance most. Remove it and the drafts that ``add_draft`` rejected from the pool."""
+        """Select the draft that improves the balance most, and return whether there is one.
+
+        The selected draft and the drafts that ``add_draft`` rejected are removed from the pool.
+        """
         while pool:
             index = min(range(len(pool)), key=lambda n: self._cost(pool[n]))
             if add_draft(pool.pop(index)):

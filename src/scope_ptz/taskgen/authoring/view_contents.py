@@ -15,7 +15,7 @@ _MAX_COUNT, _MAX_COUNT_IN_SWEEP = 15, 8
 """Maximum count in a view and in a sweep. People disagree about larger counts."""
 
 _MIN_SHARE = 0.5
-"""Minimum visible fraction of a counted object. People disagree on whether objects with less in view count."""
+"""Minimum visible fraction of a counted object. People disagree on whether to count objects that are less visible."""
 
 _MIN_PX, _MIN_PX_IN_SWEEP = 220, 450
 """Minimum size of a counted object in a view and in a sweep, in pixels. People overlook smaller objects."""

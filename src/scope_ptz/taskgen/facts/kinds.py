@@ -49,8 +49,8 @@ INCOMPLETE_CATEGORIES: Mapping[str, frozenset[str]] = {
 }
 """Categories whose visible objects are not all in the ground truth, by scene.
 
-Some of these objects are in the backdrop, are parts of larger objects or lie under other objects, so people would count
-differently.
+Some of these objects are in the backdrop, are parts of larger objects or lie under other objects, so people would disagree about
+their number.
 """
 
 _CONFUSED_CATEGORIES: tuple[frozenset[str], ...] = (

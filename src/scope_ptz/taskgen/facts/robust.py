@@ -171,7 +171,7 @@ class RobustTruth:
         return None if self._may_appear(kind) else tuple(members)
 
     def _counts_as(self, kind: Kind, sighting: Sighting) -> bool | None:
-        """Return whether an object certainly counts as a visible one of a kind; None if people could disagree about it."""
+        """Return whether an object certainly counts as a visible object of a kind; None if people could disagree about it."""
         thing = sighting.instance
         visible = self.visibility(thing.number)
         if not kind.fits(thing):
@@ -184,7 +184,7 @@ class RobustTruth:
         return True
 
     def _may_appear(self, kind: Kind) -> bool:
-        """Return whether objects of a kind that do not show in the view itself may show around it or later."""
+        """Return whether objects of a kind that are not in the view itself may appear in nearby views or at later times."""
         if any(kind.fits(a) or kind.may_be_driver_of(a) for a in self.scene.file.actors if a.number in self.passing_actors):
             return True
         shown = {s.instance.number for s in self.samples[0].sightings}

@@ -86,7 +86,7 @@ def inventory(scene: Scene) -> dict[str, Any]:
 
 
 def view_facts(scene: Scene, preset: ScenePreset) -> dict[str, Any]:
-    """Return facts about a preset's view: its certain counts, its legible texts, and how each adjustment changes the counts."""
+    """Return facts about a preset's view: the counts that are certain, the legible texts, and how adjustments change the counts."""
     position = preset_at(preset)
     preset_view = TaskPlace(scene, preset.name, (), position)
     base = certain_counts(preset_view)

@@ -27,7 +27,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.taskgen.gold.mutations import GoldRun
 
 PASSES = "passes"  # used instead of an error mode for runs without a fault
-WITHOUT_VERDICT = ("unparseable", "failed")  # results of judgements that say nothing about the run
+WITHOUT_VERDICT = ("unparseable", "failed")  # outcomes of judgements that contain no verdict
 
 
 class GoldCase(BaseModel):
@@ -135,13 +135,13 @@ class GoldResult:
 
     @property
     def false_accept_rate(self) -> float | None:
-        """Fraction of the judgements of faulty runs that say "correct". Judgements without a verdict are not counted."""
+        """Fraction of the verdicts on faulty runs that are "correct"."""
         judged = self._count(faulty=True) - self._count(faulty=True, verdicts=WITHOUT_VERDICT)
         return self._count(faulty=True, verdicts=("correct",)) / judged if judged else None
 
     @property
     def false_reject_rate(self) -> float | None:
-        """Fraction of the judgements of passing runs that do not say "correct". Judgements without a verdict are not counted."""
+        """Fraction of the verdicts on passing runs that are not "correct"."""
         judged = self._count(faulty=False) - self._count(faulty=False, verdicts=WITHOUT_VERDICT)
         return 1 - self._count(faulty=False, verdicts=("correct",)) / judged if judged else None
 

@@ -131,7 +131,10 @@ def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: rand
 
 
 def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
-    """Yield fixed answers after the perception calls of the reference program. They pass only if they happen to be correct."""
+    """Yield attempts that make the perception calls of the reference program, and then give a fixed answer.
+
+    They pass only if the answer happens to be correct.
+    """
     perceiving = [
         index for index, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"
     ]

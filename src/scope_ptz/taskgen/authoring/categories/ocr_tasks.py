@@ -82,14 +82,14 @@ _MAX_LINE_GAP = 3.0
 
 
 def prices(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
-    """Return the prices among the texts of a price card. The question already contains the others, in the name of the card."""
+    """Return the prices among the texts of a price card. The card's other texts are part of the name that a question gives it."""
     return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
 
 
 def expected_text(target: NamedThing, texts: tuple[TextSighting, ...] | None) -> Text | None:
     """Return the whole text on an object as the expected answer.
 
-    Return None if there is no text, if it is too long or in too many pieces, or if the object's name contains half of its words.
+    Return None if there is no text, if it is too long or in too many pieces, or if half of its words are in the object's name.
     """
     if not texts:
         return None

@@ -53,7 +53,7 @@ def command(
 
 
 def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield drafts, taking turns between the types."""
+    """Yield drafts of all types in turn. Those of close-ups and tracking are about the places in ``pool``."""
     streams = [
         _moves(places, rng),
         _presets(places, rng),
