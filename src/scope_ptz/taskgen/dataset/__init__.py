@@ -1,5 +1,5 @@
 """The published dataset.
 
-``build`` writes all of its files, ``unseen`` builds the unseen split, ``distributions`` counts tasks, and ``card`` writes the
-dataset card.
+``build`` writes the splits, the validation report and the gold runs, and ``unseen`` builds the unseen split. ``distributions``
+counts tasks, and ``card`` writes the dataset card.
 """

@@ -25,7 +25,11 @@ from scope_studio.kit.people.poses import Joints, Pose, named, solve
 
 @dataclass(frozen=True)
 class _Appearance:
-    """Physical features of a person."""
+    """Physical features of a person.
+
+    ``girth`` is the width of the body relative to the standard figure, ``tone`` is an index of ``clothing.SKIN_TONES``, and
+    ``style`` is a style of ``heads.hair_cap``.
+    """
 
     height_m: float
     girth: float
@@ -103,7 +107,11 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
 
 @dataclass(frozen=True)
 class _Outfit:
-    """Clothes of a person. Only workers have a ``vest`` and a ``helmet``."""
+    """Clothes of a person. Only workers have a ``vest`` and a ``helmet``.
+
+    ``top``, ``legs``, ``inner`` (a shirt under a jacket), ``glove``, ``vest`` and ``helmet`` are colours. ``style`` is the style of
+    the top, as in ``clothing.top``, and ``neck`` is its neck, as in ``figure.trunk``.
+    """
 
     top: str
     legs: str
