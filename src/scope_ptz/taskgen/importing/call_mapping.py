@@ -95,7 +95,7 @@ def _arguments_of(given: Any, name: str, index: int, earlier_calls: int, *, only
         given: The arguments of all calls.
         name: The name of the tool in the file.
         index: Position of the call.
-        earlier_calls: Number of earlier calls of the same tool.
+        earlier_calls: Number of earlier calls to the same tool.
         only_call: Whether this is the only call. Arguments without a tool name then belong to it.
     """
     if isinstance(given, list):
