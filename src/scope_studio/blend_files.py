@@ -24,8 +24,8 @@ def open_file(path: str) -> tuple[dict[str, Any], tuple[Viewpoint, ...]]:
     """Open a .blend file with its scripts and script drivers disabled.
 
     Returns:
-        A description of the file and its cameras as plain data, and the cameras as viewpoints. The names
-        are the names in the file in kebab case; the titles are the names as they are in the file.
+        A description of the file and its cameras as plain data, and the cameras as viewpoints. A camera's title is its name in the
+        file, and its name is the same in kebab case.
 
     Raises:
         ValueError: The scene of the file has no camera.

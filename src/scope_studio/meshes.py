@@ -1,4 +1,4 @@
-"""Export the triangles of all annotated instances. Their complete silhouettes, including hidden parts, are computed from these."""
+"""Export the triangles of all annotated instances, from which their whole silhouettes are computed, including hidden parts."""
 
 from __future__ import annotations
 

@@ -17,6 +17,7 @@ from scope_studio.actor_bodies import ActorBodies
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
 Progress = Callable[[int, int], None]
+"""A function that is called with the number of finished steps of an operation and the total."""
 
 
 class Studio:

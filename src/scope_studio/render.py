@@ -1,4 +1,4 @@
-"""Render views from one optical centre with Cycles: denoised colour images, and exact instance numbers with distances."""
+"""Render views from the optical centre of a viewpoint with Cycles: denoised images, and exact instance numbers with distances."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_studio.kit.core.stage import Viewpoint
 
 GPU_INTERFACES = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
-"""Compute interfaces in order of preference."""
+"""Interfaces through which Cycles can use a GPU, in order of preference."""
 
 SKY_M = 1e9
 """Depth in metres above which a pixel is sky. Cycles reports 1e10 where a ray hits nothing."""

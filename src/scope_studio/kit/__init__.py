@@ -4,5 +4,6 @@
 the surroundings. ``buildings``, ``furniture``, ``signs``, ``vehicles``, ``people``, ``works`` and ``yard`` contain the objects.
 
 A builder function models its object at the origin, standing on z = 0 and facing +y, and returns it as a ``Built``. Lengths are
-in metres.
+in metres. Parameters named ``cap``, ``cap_m`` or ``cap_height`` are the height of capital letters, ``ink`` is the colour of
+lettering, and ``dirt`` is the amount of dirt from 0 to 1.
 """

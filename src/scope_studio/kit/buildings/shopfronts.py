@@ -32,7 +32,7 @@ class Front:
     """Parameters of a shop front. It is ``width_m`` wide, and the middle of its door is at ``door_x``.
 
     For a viewer in front of it, x increases to the left. ``room`` is the colour of the inside walls, and ``lit`` turns on
-    the lamps.
+    the lamps. ``tiles`` is the colour of the tiles below the windows; None means wood.
     """
 
     width_m: float

@@ -50,7 +50,8 @@ def arch_panel(
 ) -> None:
     """Add a wall panel with an arched opening, centred on x = 0, from ``z0`` to ``z1``. Its front face is at y = 0.
 
-    The opening starts at ``z0``, and its arch springs at ``spring``. ``rise`` is the height of the arch; None means a semicircle.
+    The opening is twice ``half`` wide. It starts at ``z0``, and its arch springs at the height ``spring``. ``rise`` is the height
+    of the arch itself; None means a semicircle.
     """
     lift = (half if rise is None else rise) / half
     curve = [(u, spring + (v - spring) * lift) for u, v in arc((0.0, spring), half, 0, 180, 16)]
@@ -61,7 +62,7 @@ def arch_panel(
 def arch_trim(
     s: Solid, half: float, spring: float, material: bpy.types.Material, *, projection: float = 0.07, band: float = 0.28
 ) -> None:
-    """Add the voussoirs (wedge-shaped stones) of an arch, with a keystone."""
+    """Add the voussoirs (wedge-shaped stones) of an arch, with a keystone. ``half`` and ``spring`` are as in ``arch_panel``."""
     outer, inner = arc((0, spring), half + band, 0, 180, 14), arc((0, spring), half - 0.01, 0, 180, 14)
     for k in range(14):
         gap = 0.006

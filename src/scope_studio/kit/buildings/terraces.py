@@ -31,7 +31,8 @@ WHITE = (0.66, 0.655, 0.62)
 class Terrace:
     """Parameters of one building in a row.
 
-    ``wall`` contains the arguments of ``wet_masonry.wall``: kind and colour. ``lit`` lists the (floor, column) of lit windows. With
+    ``wall`` contains the arguments of ``wet_masonry.wall``: kind and colour. ``columns`` is the number of windows on each upper
+    floor, and ``bars`` the number of vertical glazing bars in each. ``lit`` lists the (floor, column) of lit windows. With
     ``shop``, the front has a gap on the ground floor for a shop front; without it, windows and a door opening.
     """
 

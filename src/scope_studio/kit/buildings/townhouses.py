@@ -27,7 +27,12 @@ CLAY: Rgb = (0.27, 0.105, 0.062)
 
 @dataclass(frozen=True)
 class House:
-    """Parameters of a town house. Sizes are in metres. ``shutters`` is a paint colour, or None for no shutters."""
+    """Parameters of a town house. Sizes are in metres. ``shutters`` is a paint colour, or None for no shutters.
+
+    ``bays`` is the number of windows on each upper floor, and ``window`` is their width and height. ``ground_m`` is the height of
+    the ground floor, and ``storey_m`` that of each upper floor. ``door`` is the colour of the street door; None means a blank wall
+    on the ground floor, for a shop front.
+    """
 
     width: float
     wall: bpy.types.Material

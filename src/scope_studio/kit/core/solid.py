@@ -69,7 +69,8 @@ class Solid:
     ) -> None:
         """Add polygons, transformed by the current frame.
 
-        ``rest`` contains the value of the "rest" attribute for each point. Shaders use this attribute for masks.
+        ``rest`` contains a value of the "rest" attribute for each point, such as its position on an upright figure. Shaders use
+        this attribute for masks.
         """
         if material not in self.slots:
             self.slots.append(material)

@@ -167,6 +167,7 @@ class Stage:
 
         Args:
             name: A plain English noun phrase, such as "white van".
+            lean_deg: Rotations about the object's x axis and y axis.
             attributes: Facts that questions can be about, such as colour, material, state ("open", "lit", "parked") or facing.
                 Values are short lower-case strings, numbers or booleans.
 

@@ -67,7 +67,7 @@ def chair(colour: str = "dark green") -> Built:
 
 
 def parasol(first: str, second: str | None = None, *, open: bool = True, text: str | None = None) -> Built:  # noqa: A002
-    """Build a nearly square parasol on a concrete foot, 2.9 m wide and 2.75 m high. If ``open`` is false, it is folded."""
+    """Build an octagonal parasol on a concrete base, 2.9 m wide and 2.75 m high. If ``open`` is false, it is folded."""
     s = Solid("parasol")
     cloth = stripes(f"parasol {first} {second or first}", first, second or first, 0.7)
     s.box((0.55, 0.55, 0.10), (0, 0, 0.05), concrete(light=False), 0.03)

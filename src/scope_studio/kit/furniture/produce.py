@@ -39,6 +39,7 @@ def _crate(s: Solid, colour: str) -> None:
 
 
 Maker = Callable[[Solid, random.Random, float, float, float], None]
+"""A function that adds one piece of produce at a position (x, y, z). The generator varies its appearance."""
 
 
 def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.92, name: str) -> Maker:

@@ -175,7 +175,7 @@ PETALS = {
 def blooms(
     s: Solid, colours: Sequence[str], spread_m: float, low: float, high: float, count: int, seed: int, *, ball: bool = False
 ) -> None:
-    """Add flower heads and leaves between two heights. With ``ball``, they trail over an edge instead of standing upright."""
+    """Add flower heads and leaves between two heights. They stand upright or, with ``ball``, trail over the edge of a container."""
     rng = Random(f"blooms {seed} {colours}")
     green = [plain("flower leaf 0", (0.085, 0.190, 0.040), 0.6), plain("flower leaf 1", (0.15, 0.27, 0.07), 0.6)]
     for k in range(count * 6):

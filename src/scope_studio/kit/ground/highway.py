@@ -17,7 +17,11 @@ from scope_studio.kit.ground import markings
 
 @dataclass(frozen=True)
 class Carriageway:
-    """A dual carriageway along y that bends in the distance. Offsets are measured from the middle of the central reserve."""
+    """A dual carriageway along y that bends in the distance. Offsets are measured from the middle of the central reserve.
+
+    Each side is paved from the offset ``reserve_m`` to ``edge_m``, and its lanes, ``lane_m`` wide, begin at ``first_lane_m``. The
+    road is straight up to the distance ``straight_m`` from the origin, and then bends with ``radius_m`` until ``length_m``.
+    """
 
     reserve_m: float = 1.55
     edge_m: float = 15.5

@@ -21,12 +21,12 @@ MIDDLE = (0.150, 0.225, 0.400)
 COOL_HORIZON = (0.300, 0.320, 0.400)
 WARM_HORIZON = (1.10, 0.520, 0.220)
 HAZE = (0.135, 0.155, 0.205)
-"""Linear RGB values of the haze."""
+"""Linear RGB colours of the sky (at the zenith, in the middle, and at the horizon away from and near the glow) and of the haze."""
 
 SODIUM = (1.0, 0.56, 0.20)
 LED = (0.86, 0.93, 1.0)
 WARM = (1.0, 0.80, 0.56)
-"""Linear RGB of lamp light."""
+"""Linear RGB colours of lamp light, by type of lamp."""
 
 DIMMED = ("paint ", "vehicle lamp", "sheet ")
 """Name prefixes of slightly emissive materials, such as reflective sheet. Without dimming, they would look like lit lamps."""

@@ -21,7 +21,9 @@ Rgb = tuple[float, float, float]
 class Species:
     """Parameters of a tree species.
 
-    ``crown`` is the outline: "round", "column", "cone" or "weeping". ``dark`` and ``bright`` are the two colours of its leaves.
+    ``crown`` is the outline: "round", "column", "cone" or "weeping". ``bare_share`` is the fraction of the height below the lowest
+    bough. ``leaf_m`` is the size of a leaf, and ``slim`` is its width divided by its length. ``dark`` and ``bright`` are the two
+    colours of the leaves.
     """
 
     name: str
@@ -194,6 +196,8 @@ def cards(
     gen: np.random.Generator, centres: np.ndarray, outward: np.ndarray, size_m: float, slim: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return diamond-shaped leaves at ``centres`` (n, 3) that point roughly in the directions ``outward``.
+
+    ``slim`` is the width of a leaf divided by its length.
 
     Returns:
         Points (4n, 3), quads (n, 4) and tints (4n,).

@@ -25,7 +25,11 @@ from scope_studio.kit.people.poses import Joints, Pose, named, solve
 
 @dataclass(frozen=True)
 class _Appearance:
-    """Physical features of a person."""
+    """Physical features of a person.
+
+    ``girth`` is the width of the body relative to the standard figure, ``tone`` is an index of ``clothing.SKIN_TONES``, and
+    ``style`` is a style of ``heads.hair_cap``.
+    """
 
     height_m: float
     girth: float
@@ -37,7 +41,7 @@ class _Appearance:
 
 
 def _random_appearance(random: Random, hair: str | None, woman_share: float) -> _Appearance:
-    """Return a random appearance. ``hair`` overrides the random hair colour."""
+    """Return a random appearance: that of a woman with probability ``woman_share``. ``hair`` overrides the random hair colour."""
     woman = random.random() < woman_share
     height = random.gauss(1.67, 0.04) if woman else random.gauss(1.78, 0.045)
     tone = random.choices(range(6), (30, 26, 16, 12, 10, 6))[0]
@@ -103,7 +107,11 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
 
 @dataclass(frozen=True)
 class _Outfit:
-    """Clothes of a person. Only workers have a ``vest`` and a ``helmet``."""
+    """Clothes of a person. Only workers have a ``vest`` and a ``helmet``.
+
+    ``top``, ``legs``, ``inner`` (a shirt under a jacket), ``glove``, ``vest`` and ``helmet`` are colours. ``style`` is the style of
+    the top, as in ``clothing.top``, and ``neck`` is its neck, as in ``figure.trunk``.
+    """
 
     top: str
     legs: str

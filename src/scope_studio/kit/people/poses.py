@@ -40,7 +40,8 @@ class Arm:
     """The position of an arm.
 
     It is defined by angles in degrees (``forward``, ``out``, ``bend``), or by the position of the ``hand`` in the coordinates of
-    the upright body. ``curl`` closes the fingers: -1 points the index finger, 0 is flat, and 1 is a fist.
+    the upright body. With ``hand``, ``elbow`` is the direction in which the elbow points (x is outwards). ``curl`` closes the
+    fingers: -1 points the index finger, 0 is flat, and 1 is a fist.
     """
 
     forward: float = 4.0

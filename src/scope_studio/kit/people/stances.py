@@ -22,7 +22,10 @@ HAND_M = 0.085
 
 
 def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = None, drop: float = -0.5) -> Pose:
-    """Return ``pose`` with closed hands at these positions on the figure, in metres before scaling by height."""
+    """Return ``pose`` with closed hands at the given positions, in metres on a figure that is not yet scaled to its height.
+
+    ``drop`` is the upward component of the direction in which the elbows point: the lower it is, the lower the elbows.
+    """
     chest = solve(pose).chest
     arms = list(pose.arms)
     for index, (side, target) in enumerate(zip((-1, 1), (left, right), strict=True)):

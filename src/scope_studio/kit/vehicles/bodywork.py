@@ -33,7 +33,10 @@ class Station:
 
 @dataclass(frozen=True)
 class Pane:
-    """A window between two stations and two rows of section points, on both sides or, with ``across``, over the middle."""
+    """A window between two stations and two rows of section points, on both sides or, with ``across``, over the middle.
+
+    ``frame_m`` is the width of its black frame.
+    """
 
     stations: tuple[int, int]
     rows: tuple[int, int]

@@ -16,7 +16,10 @@ from scope_studio.kit.vehicles.paintwork import AMBER, GAP, REAR_LAMP, TRIM, Pat
 
 @dataclass(frozen=True)
 class Cabin:
-    """The interior that is visible through the windows, between ``front_y`` (dashboard) and ``rear_y`` and below ``belt_z``."""
+    """The interior that is visible through the windows, between ``front_y`` (dashboard) and ``rear_y`` and below ``belt_z``.
+
+    ``shelf_m`` is the depth of the parcel shelf behind the rear seats, or 0 for none.
+    """
 
     front_y: float
     rear_y: float
@@ -29,7 +32,14 @@ class Cabin:
 
 @dataclass(frozen=True)
 class CarModel:
-    """The shape and the parts of one car model."""
+    """The shape and the parts of one car model.
+
+    ``stations``, ``panes``, ``creases`` and ``bulge`` are arguments of ``bodywork.shell``. ``axles`` are the y coordinates of the
+    axles, and the wheels are at ``track_x`` on both sides. ``handles`` and ``mirror`` are positions (y, z) on the side, and
+    ``plate_z`` are the heights of the front and the rear number plate. ``pillars`` are the (y, width) of door pillars.
+    ``arch_trim`` adds black flares to the wheel arches. ``extra_cutters`` are the (size, centre) of boxes to subtract from the
+    body for a load bed.
+    """
 
     name: str
     stations: list[Station]

@@ -102,7 +102,7 @@ def _roller_parts() -> Parts:
 
 
 def dumper(colour: str, *, number: str) -> Built:
-    """Build a nine-tonne forward-tipping site dumper, 4.6 m long, with a skip of earth, four big wheels and a roll bar."""
+    """Build a nine-tonne forward-tipping site dumper, 4.6 m long, with a skip full of earth, four big wheels and a roll bar."""
     mesh = bw.body_mesh("dumper", _dumper_parts)
     letters = bw.both_sides(number, 0.24, 0.95, 1.40, "black", x=0.86, width_m=0.8)
     return bw.finish("dumper", mesh, [fittings.machine_paint("dumper", colour)], letters)

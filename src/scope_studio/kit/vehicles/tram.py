@@ -31,6 +31,7 @@ SECTION = [
     (0.55, 3.22),
     (0.0, 3.24),
 ]
+"""Right half of the body's cross-section: (x, z) in metres, from the middle of the floor to the middle of the roof."""
 
 
 def _ring(y: float, narrow: float = 1.0, *, front: bool = False) -> list[tuple[float, float, float]]:

@@ -88,7 +88,7 @@ def delineator() -> Built:
 
 
 def striped_plank(s: Solid, width: float, height: float, x0: float, y: float, z: float, count: int, depth: float = 0.03) -> None:
-    """Add a plank of alternating red and white reflective blocks on both faces."""
+    """Add a plank with alternating red and white reflective blocks on both faces."""
     step = width / count
     for i in range(count):
         s.box(
@@ -114,7 +114,7 @@ def barrier_board(*, lit: bool = True) -> Built:
 
 
 def lamp(s: Solid, x: float, y: float, z: float, lit: bool, colour: str = "amber") -> None:
-    """Add a road-works lamp: a yellow battery box with a round lens on both sides. ``z`` is the height of its lower edge."""
+    """Add a road-works lamp: a yellow battery box with a round lens on each side. ``z`` is the height of its lower edge."""
     s.box((0.15, 0.09, 0.13), (x, y, z + 0.065), paint("yellow", dirt=0.35), 0.012)
     s.lathe(
         [(0.05, -0.045), (0.088, -0.038), (0.092, 0.0), (0.088, 0.038), (0.05, 0.045)],
@@ -215,7 +215,7 @@ def concrete_barrier(length: float = 3.0) -> Built:
 
 
 def chapter8_barrier() -> Built:
-    """Build an orange plastic pedestrian barrier, 2.0 x 1.0 m.
+    """Build an orange plastic pedestrian barrier, 2.0 x 1.0 m, as in Chapter 8 of the British Traffic Signs Manual.
 
     It has a red and white reflective board along the top, and swivelling feet.
     """

@@ -1,4 +1,4 @@
-"""Lamps of yards and buildings: masts, wall packs and strips. Their lenses emit little light; ``dusk.lamplight`` adds it."""
+"""Lamps of yards and buildings: masts, wall packs and strips. Most of their light is added separately, by ``dusk.lamplight``."""
 
 from __future__ import annotations
 
