@@ -23,7 +23,7 @@ _DROPPED_KEYWORDS = (
 
 
 def plain_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the tools with a single type for each parameter. A parameter that may be null keeps only its other type."""
+    """Return the tools without constraints on their parameters. A parameter of a type or null gets the type alone."""
     return [{**tool, "function": {**tool["function"], "parameters": _parameters(tool["function"]["parameters"])}} for tool in tools]
 
 
