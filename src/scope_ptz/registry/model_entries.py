@@ -20,7 +20,7 @@ BYTES_PER_PARAMETER: dict[Precision, float] = {
 """Memory of the weights, in bytes per parameter. Four-bit formats store scales and some layers in more bits
 (Q4_K_M: 4.85 bits per weight)."""
 RUNTIME_GB = 1.5
-"""GB that a serving process needs in addition to weights and cache: kernels, activations and the workspace of the vision tower."""
+"""GB that a server needs in addition to weights and key-value cache: kernels, activations and the vision tower's workspace."""
 WINDOW = 16_384
 """Tokens of context assumed in memory figures and serve commands. A long agent run needs about half of them."""
 
@@ -33,7 +33,7 @@ class Server(_Entry):
     """A server program, such as vLLM or Ollama.
 
     Attributes:
-        command: One command per line, with the placeholders ``{source}``, ``{window}`` and ``{flags}``.
+        command: The commands that serve a model, in order, with the placeholders ``{source}``, ``{window}`` and ``{flags}``.
     """
 
     title: str
@@ -58,7 +58,7 @@ class Model(_Entry):
 
     Attributes:
         size_b: Billions of parameters, as stated by the model's authors.
-        active_b: Billions of active parameters, as stated by the model's authors.
+        active_b: Billions of parameters that are active per token, as stated by the model's authors.
         parameters_b: Billions of parameters in memory, including vision tower and embeddings; None if equal to ``size_b``.
         kv_kib: Size of the key-value cache per token of context, in KiB.
     """
@@ -101,7 +101,8 @@ class Model(_Entry):
     def memory_for(self, server: str | None = None) -> float:
         """Return the GB (10^9 bytes) needed to serve the model with a window of ``WINDOW`` tokens.
 
-        This is parameters x bytes per parameter + cache + ``RUNTIME_GB``. It is not measured, unless ``memory_gb`` is given.
+        This is parameters x bytes per parameter + key-value cache + ``RUNTIME_GB``, unless the measured ``memory_gb`` is given and
+        applies to the server's precision.
         """
         serving = self.serve.get(server) if server else None
         precision = (serving.precision if serving else None) or self.precision

@@ -41,7 +41,9 @@ is known. A match that deviates faster is a different object.
 
 LOST_DETECTIONS = 2
 LOST_ZOOM_FACTOR = 0.6
-"""After ``LOST_DETECTIONS`` detections without the target, each further one multiplies the zoom by ``LOST_ZOOM_FACTOR``."""
+"""After ``LOST_DETECTIONS`` consecutive detections without the target, and after each further one, the zoom is multiplied by
+``LOST_ZOOM_FACTOR``, so that a larger view may show the target again.
+"""
 
 
 class TrackObject(Arguments):
@@ -153,7 +155,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
         due_s = started + PERIOD_S * len(path)
         now_s = camera.clock.now_s()
         await camera.clock.sleep(min(max(due_s - now_s, 0.05), left_s))
-        if camera.clock.now_s() <= now_s:  # otherwise the requested time would never be over
+        if camera.clock.now_s() <= now_s:  # otherwise the requested time would never pass
             raise CameraError("Scene time is stopped, so nothing moves that could be followed. Let it pass, and try again.")
         frame = await camera.frame()
         detections = await context.perception.detect(frame, description)

@@ -96,7 +96,10 @@ def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[st
 
 
 def _core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tree.Test, ...], tree.Order | None]:
-    """Return the things that match the core words, additional tests, and the order: the phrase's, or that of "the left sign"."""
+    """Return the things that match the core words, additional tests, and the order.
+
+    Words for sides among the core words add a test ("the left signs") or set the order ("the left sign").
+    """
     words = list(phrase.words)
     if phrase.amount is not None and phrase.order is None and words and not english.is_plural(words[-1]) and phrase.amount > 1:
         words.insert(0, str(phrase.amount))

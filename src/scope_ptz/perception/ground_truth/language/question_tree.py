@@ -58,7 +58,7 @@ class Between:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """A test for a part of the frame: one or two sides. With ``half``, a side is a half ("left half") instead of a band ("left")."""
+    """A test for a part of the frame: one or two sides. A side is a band ("on the left"); with ``half``, a half ("left half")."""
 
     sides: tuple[Side, ...]
     half: bool = False
