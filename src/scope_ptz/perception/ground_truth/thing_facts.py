@@ -120,7 +120,7 @@ FILLERS = frozenset(
         "parts",
     ]
 )
-"""Words that say nothing about a thing, and are therefore never tested."""
+"""Words that say nothing about a thing, and are skipped; only "on" or "in" alone is tested ("is the light on?")."""
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
 """Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
 COLOUR_KEYS = ("colour", "color")

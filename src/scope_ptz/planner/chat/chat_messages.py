@@ -1,8 +1,8 @@
 """Convert the state S_t to chat messages.
 
 The messages are append-only: the messages of each step begin with exactly those of the previous step, so that the server's prefix
-cache works. There are two exceptions: for planners that accept images, the current view replaces the previous view; and if the
-context is full, old exchanges are shortened.
+cache works. There are two exceptions: for planners that accept images, the current view replaces the previous view; and with
+``ChatOptions.summarise``, old exchanges are shortened when the context is full.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ _DROPPED_KEYWORDS = (
 
 
 def plain_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the tools without constraints on their parameters. A parameter of a type or null gets the type alone."""
+    """Return the tools with simpler parameters: without constraints, and without null as an alternative type."""
     return [{**tool, "function": {**tool["function"], "parameters": _parameters(tool["function"]["parameters"])}} for tool in tools]
 
 

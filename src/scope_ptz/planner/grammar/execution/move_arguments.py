@@ -9,10 +9,10 @@ from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Turn, 
 
 _DEFAULT_DEG, _LITTLE_DEG = 10.0, 5.0  # turns of unspecified size, and "a little"
 _LOT_DEG = {"pan": 45.0, "tilt": 20.0}
-_LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}  # turns that reach the limit from any pose
+_LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}  # turns "all the way", which reach the limit from any pose
 _LOOP_PAN_DEG = 15.0  # a loop makes 24 steps by default, which is one full turn
 _LOOP_ZOOM_FACTOR = 1.5
-_TOLERANCE = 1e-6  # smaller changes are no move
+_TOLERANCE = 1e-6  # smaller changes count as no move
 
 
 def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) -> dict[str, Any]:

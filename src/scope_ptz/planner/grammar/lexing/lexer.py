@@ -27,9 +27,9 @@ _TOKEN = re.compile(
 )
 _MARKS = {**dict.fromkeys(",:()", "COMMA"), **dict.fromkeys(";.!?\n", "STOP"), "&": "AND"}
 SEPARATORS = ("COMMA", "AND", "THEN", "STOP")
-_ATTACHED_TO_PREVIOUS = frozenset(
-    {"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"}
-)  # terminals that continue a clause, so that a separator before them is dropped
+_ATTACHED_TO_PREVIOUS = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})
+"""Terminals that continue a clause, so that a separator before them is dropped."""
+
 _MAX_PHRASE_WORDS = 9
 _DIRECTION_LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
 _MOTION = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})  # after them, "up to" and "down to" are directions
