@@ -11,14 +11,17 @@ Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[a-z0-9][a-z
 Role = Literal["planner", "perception"]
 Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
 Thinking = Literal["none", "optional", "default", "always"]
-"""When a model reasons: "none" (never), "optional" (on request), "default" (unless switched off) or "always". With "always",
-only the length of the reasoning can be set.
+"""When a model reasons: "none" (never), "optional" (on request), "default" (unless switched off) or "always".
+
+With "always", only the length of the reasoning can be set.
 """
 BYTES_PER_PARAMETER: dict[Precision, float] = {
     "fp32": 4.0, "fp16": 2.0, "bf16": 2.0, "fp8": 1.05, "int4": 0.6, "q4": 0.61, "mxfp4": 0.61,
 }  # fmt: skip
-"""Memory of the weights, in bytes per parameter. Four-bit formats store scales and some layers in more bits
-(Q4_K_M: 4.85 bits per weight)."""
+"""Memory of the weights, in bytes per parameter.
+
+Four-bit formats need more than 0.5, because they store scales and some layers in more bits (Q4_K_M: 4.85 bits per weight).
+"""
 RUNTIME_GB = 1.5
 """GB that a server needs in addition to weights and key-value cache: kernels, activations and the vision tower's workspace."""
 WINDOW = 16_384

@@ -17,8 +17,10 @@ OVERLAP = 0.15
 """Fraction of a tile's width that the next tile also covers. Any narrower object is complete in one of the two tiles."""
 
 SAME_BOX = 0.5
-"""Minimum overlap at which boxes from neighbouring tiles count as the same object: the intersection over the area of the smaller
-box, or the vertical overlap if the borders of their tiles cut both boxes.
+"""Minimum overlap at which boxes from neighbouring tiles count as the same object.
+
+The overlap is the intersection over the area of the smaller box or, if the borders of their tiles cut both boxes, the shared height
+over the height of the taller box.
 """
 
 PANORAMA_SEAM = 0.002
