@@ -33,8 +33,9 @@ from scope_ptz.errors import OutputError, TraceError
 WIDTH = 1600
 MARGIN = 32
 GAP = 20
-CAPTION = 60
-MAX_PANELS = 12
+CAPTION = 60  # height of a caption
+
+MAX_PANELS = 12  # in runs with more panels, the middle ones are omitted
 COMPRESSION = 2  # PNG compression level: takes a third of the time of level 6, for files that are 7% larger
 MAX_NUMBERED_BOXES = 40  # with more boxes in a panel, the numbers would cover the picture
 

@@ -1,4 +1,4 @@
-"""The agent loop: the paper's recurrence over S_t = (U, H_t, O_t), with budgets and defined outcomes.
+"""The agent loop: the paper's recurrence over S_t = (U, H_t, O_t), with budgets and a defined outcome for every run.
 
 A listener receives each record of a run as it is created; the caller receives the finished run.
 """
@@ -38,7 +38,7 @@ from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.version import __version__
 
 STOP_TIMEOUT_S = 5.0  # seconds allowed for stopping the camera and reading its pose at the end of a run
-MAX_CALLS_PER_STEP = 32  # further calls in one decision are dropped, and an error message tells the planner so
+MAX_CALLS_PER_STEP = 32  # calls beyond this number in one decision are dropped, and an error tells the planner so
 MAX_REPEATED_BAD_CALLS = 5  # a run ends with a planner error after this many consecutive steps with the same wrong call
 
 

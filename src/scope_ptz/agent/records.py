@@ -124,6 +124,8 @@ class Called(_Record):
     """A tool call and its outcome.
 
     Attributes:
+        step: Number of the step, from 1.
+        index: Position of the call in the step, from 0.
         scene_time_s: Scene time at the start of the call.
         pose: Pose of the camera after the call.
         frame: Name of the picture of the view after the call; it is stored only if the pose changed.

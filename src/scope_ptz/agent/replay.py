@@ -24,8 +24,8 @@ _PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Po
 REPEATABLE = ("answered", "clarification", "refused", "step_limit")
 """Outcomes that a replay must reach again. Other outcomes, such as an exhausted budget or a failure, have external causes."""
 
-_FILE_NAME_FIELDS = ("frames", "file")
-_TOLERANCE = 0.011  # maximum rounding error, because results are rounded to hundredths or finer
+_FILE_NAME_FIELDS = ("frames", "file")  # not compared, because a replay stores no pictures
+_TOLERANCE = 0.011  # numbers that differ by at most this count as equal; results are rounded to hundredths or finer
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +123,8 @@ def _complete_decisions(trace: Trace) -> list[Decision]:
 
 
 class _RecordedPlanner(Planner):
+    """A planner that repeats the recorded decisions."""
+
     name = "recorded"
 
     def __init__(self, script: _Script) -> None:
@@ -137,6 +139,8 @@ class _RecordedPlanner(Planner):
 
 
 class _RecordedPerception(Perception):
+    """A perception backend that returns the recorded replies."""
+
     name = "recorded"
 
     def __init__(self, script: _Script) -> None:

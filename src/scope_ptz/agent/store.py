@@ -1,6 +1,6 @@
 """Image stores for runs: in a folder, in memory, or without storage.
 
-This module creates all file names. Text from users and models is never used as a path unchanged.
+This module creates all file names. Text from users becomes part of a path only in the form that ``slug`` returns.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Numbering:
         self._frames = self._pictures = 0
 
     def frame(self, frame: Frame) -> str:
-        """Return the name for the next frame that perception receives."""
+        """Return the name for the next frame of the run."""
         self._frames += 1
         return f"frames/{self._frames:03d}-{'view' if isinstance(frame.projection, Perspective) else 'full'}.jpg"
 
@@ -70,7 +70,7 @@ class EncodedImages(ABC):
         self._names = Numbering()
 
     def save_frame(self, frame: Frame) -> str:
-        """Store a frame that perception receives and return its name. Raises ``OutputError``."""
+        """Store a frame of the run, such as one that perception receives, and return its name. Raises ``OutputError``."""
         return self._store(self._names.frame(frame), frame, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
 
     def save_picture(self, frame: Frame) -> str:

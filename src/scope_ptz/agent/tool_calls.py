@@ -41,7 +41,13 @@ class RunEnd(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _FinishedCall:
-    """A finished or cancelled call. ``end`` is set if the call ends the run; ``raised`` is an error to raise to the caller."""
+    """A finished or cancelled call.
+
+    Attributes:
+        time_s: Scene time at the start of the call.
+        end: The reason why the run ends, if the call ends it.
+        raised: An error that is raised to the caller of the run: a damaged scene, or a file that cannot be written.
+    """
 
     outcome: ToolOutcome
     fault: CallFault | None

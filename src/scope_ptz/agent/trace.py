@@ -74,7 +74,7 @@ def picture_of(folder: Path, name: str) -> Path:
 
 
 def picture_names(trace: Trace) -> dict[str, int | None]:
-    """Return the pictures that a trace names, in order, each with the position of its call (None for the first view)."""
+    """Return the pictures that a trace names, in order, each with the position of its call; None for the view at the start."""
     found: dict[str, int | None] = {} if trace.started.frame is None else {trace.started.frame: None}
     for position, call in enumerate(trace.calls):
         result = call.outcome.result or {}

@@ -1,1 +1,1 @@
-"""Planners: the contract, the grammar planner, chat models and prompt-sensitivity tests."""
+"""Planners: their contract, the grammar planner, the planner for chat models, and measurements of planners."""

@@ -53,14 +53,23 @@ class ToolOutcome(_Model):
 
 
 class Exchange(_Model):
-    """One step of a run: the calls that the planner requested together, with their outcomes in the same order."""
+    """One step of a run: the calls that the planner requested together, with their outcomes in the same order.
+
+    Attributes:
+        thought: The text that accompanied the calls.
+    """
 
     outcomes: tuple[ToolOutcome, ...]
     thought: str = ""
 
 
 class PastTurn(_Model):
-    """An earlier turn of a conversation. ``start`` is the camera pose at its beginning."""
+    """An earlier turn of a conversation.
+
+    Attributes:
+        reply: The text that ended the turn: the answer, the clarifying question, or the reason why there is no answer.
+        start: The camera's pose at the beginning of the turn; None if it is unknown.
+    """
 
     instruction: str
     exchanges: tuple[Exchange, ...]
@@ -114,7 +123,7 @@ class Served(_Model):
         first_token_s: Seconds to the first token of a streamed reply.
         calls_from: Where the calls were found: "native" for the ``tool_calls`` field of the reply, otherwise the name of a text
             notation.
-        attempts: All requests, including failed ones.
+        attempts: All requests that were sent to get the reply, including failed ones.
     """
 
     model: str = ""

@@ -35,7 +35,7 @@ class Plan:
     Attributes:
         instruction: The instruction.
         understood: Whether the instruction was understood and is not refused.
-        calls: The calls, if every tool call succeeds and every condition is met at its first test.
+        calls: The calls that the planner makes if every call succeeds and every condition is met at its first test.
         clarification: The question or refusal if ``understood`` is false; otherwise None.
         outline: The calls grouped into loops and conditional branches.
     """
@@ -91,7 +91,7 @@ def plan(
 
 @dataclass(slots=True)
 class _AssumedWorld:
-    """An assumed camera and perception backend for plans. It tracks the pose and finds every object."""
+    """A stand-in for the camera and perception, for plans. It tracks the pose, and finds every object that it is asked for."""
 
     pose: Pose
     limits: Limits

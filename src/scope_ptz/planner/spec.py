@@ -10,7 +10,7 @@ from scope_ptz.endpoints.endpoint import Endpoint
 
 
 class PlannerSpec(BaseModel):
-    """A request for a planner of an installed plug-in.
+    """A request for a planner from an installed plug-in.
 
     Attributes:
         name: The planner's name, as traces and reports show it.

@@ -11,16 +11,19 @@ Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[a-z0-9][a-z
 Role = Literal["planner", "perception"]
 Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
 Thinking = Literal["none", "optional", "default", "always"]
-"""When a model reasons: "none" (never), "optional" (on request), "default" (unless switched off) or "always". With "always",
-only the length of the reasoning can be set.
+"""When a model reasons: "none" (never), "optional" (on request), "default" (unless switched off) or "always".
+
+With "always", only the length of the reasoning can be set.
 """
 BYTES_PER_PARAMETER: dict[Precision, float] = {
     "fp32": 4.0, "fp16": 2.0, "bf16": 2.0, "fp8": 1.05, "int4": 0.6, "q4": 0.61, "mxfp4": 0.61,
 }  # fmt: skip
-"""Memory of the weights, in bytes per parameter. Four-bit formats store scales and some layers in more bits
-(Q4_K_M: 4.85 bits per weight)."""
+"""Memory of the weights, in bytes per parameter.
+
+Four-bit formats need more than 0.5, because they store scales and some layers in more bits (Q4_K_M: 4.85 bits per weight).
+"""
 RUNTIME_GB = 1.5
-"""GB that a serving process needs in addition to weights and cache: kernels, activations and the workspace of the vision tower."""
+"""GB that a server needs in addition to weights and key-value cache: kernels, activations and the vision tower's workspace."""
 WINDOW = 16_384
 """Tokens of context assumed in memory figures and serve commands. A long agent run needs about half of them."""
 
@@ -33,7 +36,7 @@ class Server(_Entry):
     """A server program, such as vLLM or Ollama.
 
     Attributes:
-        command: One command per line, with the placeholders ``{source}``, ``{window}`` and ``{flags}``.
+        command: The commands that serve a model, in order, with the placeholders ``{source}``, ``{window}`` and ``{flags}``.
     """
 
     title: str
@@ -58,7 +61,7 @@ class Model(_Entry):
 
     Attributes:
         size_b: Billions of parameters, as stated by the model's authors.
-        active_b: Billions of active parameters, as stated by the model's authors.
+        active_b: Billions of parameters that are active per token, as stated by the model's authors.
         parameters_b: Billions of parameters in memory, including vision tower and embeddings; None if equal to ``size_b``.
         kv_kib: Size of the key-value cache per token of context, in KiB.
     """
@@ -101,7 +104,8 @@ class Model(_Entry):
     def memory_for(self, server: str | None = None) -> float:
         """Return the GB (10^9 bytes) needed to serve the model with a window of ``WINDOW`` tokens.
 
-        This is parameters x bytes per parameter + cache + ``RUNTIME_GB``. It is not measured, unless ``memory_gb`` is given.
+        This is parameters x bytes per parameter + key-value cache + ``RUNTIME_GB``, unless the measured ``memory_gb`` is given and
+        applies to the server's precision.
         """
         serving = self.serve.get(server) if server else None
         precision = (serving.precision if serving else None) or self.precision

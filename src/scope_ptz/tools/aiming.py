@@ -1,7 +1,8 @@
 """Calculate the pose that shows a box in the middle of the frame at a requested size.
 
 All calculations use directions on the sphere. Adding angles in the image to pan and tilt would be inexact away from the middle of
-the frame, and wrong at steep tilts.
+the frame, and wrong at steep tilts. The *limiting side* of a target is its width or its height, whichever fills the larger fraction
+of the frame.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 TARGET_FILL = 0.75
-"""Fraction of the frame that a framed target fills, along its limiting side. The paper requires 60 to 90%."""
+"""Fraction of the frame that the limiting side of a framed target fills. The paper requires 60 to 90%."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +34,7 @@ class Aim:
 
     Attributes:
         pose: The pose, within the camera's limits.
-        fill: The fraction of the limiting side that the target should fill; None for a pose at a given zoom.
+        fill: The fraction of the frame that the limiting side should fill; None for a pose at a given zoom.
         limited_by: The limits that prevent the target from being centred or from reaching the requested size.
     """
 
@@ -82,7 +83,8 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
         target: Directions of shape ``(n, 3)`` along the target's outline.
 
     Returns:
-        The fraction of the limiting side that the target fills, and the offset of its middle as fractions of width and height.
+        The fraction of the frame that the limiting side fills, and the offset of the target's middle from the frame's middle, as
+        fractions of width and height.
     """
     left, top, right, bottom = bounds(view(info, pose).points(target))
     if not math.isfinite(left):
@@ -91,7 +93,7 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
 
 
 def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL) -> Aim:
-    """Return the pose within the limits that centres a target and makes it fill ``fill`` of its limiting side.
+    """Return the pose within the limits that centres a target, and at which its limiting side fills ``fill`` of the frame.
 
     The calculation is iterative, because the bounding box of the target and its middle change with the view.
     """
@@ -129,9 +131,8 @@ def sorted_axes(axes: set[Axis]) -> tuple[Axis, ...]:
 def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> float:
     """Return the magnification at which the target fills the requested fraction.
 
-    In a centred view, sizes are proportional to the focal length.
-
-    A focal length outside the range of the lens gives a zoom outside the camera's limits, so that clamping reports the limit.
+    In a centred view, sizes are proportional to the focal length. A focal length outside the range of the lens gives a zoom outside
+    the camera's limits, so that clamping reports the limit.
     """
     optics = info.optics
     current_fill, _ = measure(info, pose, target)
@@ -171,7 +172,10 @@ def pose_towards(info: CameraInfo, pan_deg: float, tilt_deg: float, zoom: float)
 
 
 def lookahead(previous: Floats, current: Floats, ratio: float) -> Floats:
-    """Extrapolate a motion by ``ratio`` times the interval between two unit vectors of shape ``(3,)``."""
+    """Return where a motion from ``previous`` to ``current`` leads after another ``ratio`` times the time between the two.
+
+    All directions are unit vectors of shape ``(3,)``.
+    """
     pan0, tilt0 = geometry.pan_tilt_deg(previous)
     pan1, tilt1 = geometry.pan_tilt_deg(current)
     turn = (float(pan1 - pan0) + 180.0) % 360.0 - 180.0

@@ -13,7 +13,7 @@ class ImageStore(Protocol):
     """A store that saves pictures under unique names, relative to the run folder."""
 
     def save_frame(self, frame: Frame) -> str:
-        """Save a frame that perception received, with lossy compression, and return its name."""
+        """Save a frame of the run, such as one that perception received, with lossy compression, and return its name."""
         ...
 
     def save_picture(self, frame: Frame) -> str:

@@ -29,19 +29,24 @@ DEAD_ZONE = 0.06
 
 FILL_RANGE = (0.12, 0.5)
 TRACKING_FILL = 0.28
-"""If the fraction of the frame that the target fills is outside ``FILL_RANGE``, the zoom is changed so that it fills
-``TRACKING_FILL``, which leaves room for motion and enough pixels to recognise the target.
+"""A target that fills a fraction of the frame outside ``FILL_RANGE`` is zoomed to ``TRACKING_FILL``.
+
+That leaves room for motion, and enough pixels to recognise the target.
 """
 
 MAX_RATE_UNKNOWN_MOTION_DEG_S = 25.0
 MAX_RATE_KNOWN_MOTION_DEG_S = 10.0
-"""Maximum speeds, in degrees per second, at which the target can deviate from the expected direction, before and after its motion
-is known. A match that deviates faster is a different object.
+"""Maximum speeds at which a target can deviate from the expected direction, before and after its motion is known.
+
+A match that deviates faster is assumed to be a different object.
 """
 
 LOST_DETECTIONS = 2
 LOST_ZOOM_FACTOR = 0.6
-"""After ``LOST_DETECTIONS`` detections without the target, each further one multiplies the zoom by ``LOST_ZOOM_FACTOR``."""
+"""The zoom is multiplied by ``LOST_ZOOM_FACTOR`` after ``LOST_DETECTIONS`` consecutive detections without the target.
+
+It is multiplied again after each further detection without the target, because a wider view is more likely to show it.
+"""
 
 
 class TrackObject(Arguments):
@@ -153,7 +158,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
         due_s = started + PERIOD_S * len(path)
         now_s = camera.clock.now_s()
         await camera.clock.sleep(min(max(due_s - now_s, 0.05), left_s))
-        if camera.clock.now_s() <= now_s:  # otherwise the requested time would never be over
+        if camera.clock.now_s() <= now_s:  # otherwise the requested time would never pass
             raise CameraError("Scene time is stopped, so nothing moves that could be followed. Let it pass, and try again.")
         frame = await camera.frame()
         detections = await context.perception.detect(frame, description)

@@ -24,10 +24,10 @@ MAX_DETECTIONS = 3
 """Maximum number of perception calls per tool call."""
 
 SMALL_FILL = 0.05
-"""A target that fills less than this fraction of its limiting side is detected again at a closer zoom, for a more exact box."""
+"""A target whose limiting side fills less than this fraction of the frame is detected again at a closer zoom, for a better box."""
 
 CLOSER_FILL = 0.45
-"""Fraction of its limiting side that a small target fills for the next detection."""
+"""Fraction of the frame that the limiting side of a small target fills for the next detection."""
 
 CUT_OFF_ZOOM_FACTOR = 0.4
 """Factor by which the zoom changes for the next detection of a target that the frame cuts off, so that the whole target fits."""
@@ -51,7 +51,7 @@ class ZoomResult(PerceptionResult):
         found: Whether anything in view matches the description.
         matches: Number of matches in the first frame.
         chosen: Name of the match on which the camera zoomed in.
-        fill: Fraction of its limiting side that the target fills after the move.
+        fill: Fraction of the frame that the target's limiting side fills after the move.
         offset: Offset of the target's middle from the frame's middle, as fractions of width and height.
         limited_by: Limits that prevent the target from being centred or from reaching the requested size.
         box: The target in the last frame.
@@ -82,7 +82,7 @@ class _Detection:
 
 
 async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomResult:
-    """Centre an object and make it fill ``TARGET_FILL`` of the frame.
+    """Centre an object, and zoom so that its limiting side fills ``TARGET_FILL`` of the frame.
 
     If several objects match, the first one that perception lists is used; the ground truth lists the largest first. After a move,
     the match nearest to the expected position is assumed to be the same object. The camera does not move if nothing is found.

@@ -33,7 +33,7 @@ class BackendSpec(BaseModel):
     options: dict[str, Any] = Field(default_factory=dict)
 
     def needed_endpoint(self) -> Endpoint:
-        """Return the endpoint. For backends that require a server.
+        """Return the endpoint of a backend that requires a server.
 
         Raises:
             ConfigError: The spec has no endpoint.
@@ -43,7 +43,7 @@ class BackendSpec(BaseModel):
         return self.endpoint
 
     def needed_model(self) -> str:
-        """Return the model's name. For backends that load a model.
+        """Return the model's name, for a backend that loads a model.
 
         Raises:
             ConfigError: The spec has no model.

@@ -23,7 +23,7 @@ def named_in_full(view: View, phrase: tree.Phrase) -> list[Thing]:
 
 
 def _words(phrase: tree.Phrase) -> set[str]:
-    """Return all words of a phrase; an empty set if the phrase contains more than a name can."""
+    """Return all words of a phrase; an empty set if the phrase states no property, or more than a name can."""
     if not phrase.tests or phrase.order is not None or phrase.ordinal is not None:
         return set()
     words = set(phrase.words)

@@ -4,8 +4,8 @@
 overlap horizontally, with a tolerance of a tenth of the frame.
 - *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap horizontally, with a
 tolerance of a twentieth of the frame.
-- *near, next to*: at most 4 m apart in the world.
-- *on, in, at, of*: a part of the other thing, or within its footprint and not below it.
+- *near, next to, facing*: at most 4 m apart in the world, and neither is a part of the other.
+- *on, in, at, of*: a part of the other thing, or smaller, within its footprint and resting on or in it.
 - *on the left*: the centre lies in the left 40% of the frame; *in the left half*: in the left 50%; *in a corner*: in the 40% bands
 of both sides; *in the middle*: in the middle 40% across, without the top and bottom tenth.
 - *in the foreground*, *in the distance*: the nearest and furthest third of the depth in view, on a logarithmic scale.
@@ -27,7 +27,7 @@ BACKDROP = frozenset({"surface", "sky"})
 
 NEAR_M = 4.0  # maximum gap between things that are next to each other
 ON_SLACK_M = 0.3  # tolerance when testing whether one thing stands on another
-FLAT_M = 0.5  # lower things are flat, such as a road
+FLAT_M = 0.5  # things lower than this are flat, such as a road
 DEPTH_STEP_M = 0.5  # minimum difference in distance at which one thing is behind another
 SIDE_BAND = 0.4  # fraction of the frame that counts as a side
 SIDE_SLACK = 0.05  # tolerance of horizontal overlap, as a fraction of the frame
@@ -86,7 +86,8 @@ def _overlap_horizontally(a: Thing, b: Thing, slack: float) -> bool:
 def _rests_on(a: Thing, b: Thing) -> bool:
     """Return whether a thing stands on another.
 
-    Its centre must be within the other's footprint, and its base above the other's base, unless the other is flat like a road.
+    It must be the smaller of the two, with its centre within the other's footprint. Its base must lie between the other's base and
+    top, with a tolerance, and above the other's base unless the other is flat like a road.
     """
     middle = (a.low_m + a.high_m)[:2] / 2
     over = bool(np.all(middle >= b.low_m[:2] - ON_SLACK_M) and np.all(middle <= b.high_m[:2] + ON_SLACK_M))

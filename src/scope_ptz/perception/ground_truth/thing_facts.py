@@ -120,6 +120,7 @@ FILLERS = frozenset(
         "parts",
     ]
 )
+"""Words that say nothing about a thing, and are skipped; only "on" or "in" alone is tested ("is the light on?")."""
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
 """Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
 COLOUR_KEYS = ("colour", "color")
@@ -184,7 +185,7 @@ def is_colour(value: object) -> bool:
 
 
 def is_worn(key: str) -> bool:
-    """Return whether an attribute is about clothes, so that its colour is not the person's."""
+    """Return whether an attribute is about clothes. A colour in it is that of the clothes, not of the person."""
     return any(
         lexicon().concept(x) in {"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"} for x in key_words(key)
     )
@@ -282,7 +283,10 @@ def _in_context(view: View, thing: Thing, word: str) -> bool:
 
 
 def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None = None) -> bool:
-    """Return whether a thing has a matching attribute, part, clothing or text. Anything not stated counts as absent."""
+    """Return whether a thing has a matching attribute, part, clothing or text. Anything not stated counts as absent.
+
+    ``amount`` is the required number of items ("with two doors"); it is compared only with a number that the scene states.
+    """
     rest = [x for x in words if x not in FILLERS]
     spans = nouns_in(rest, view.nouns)
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))

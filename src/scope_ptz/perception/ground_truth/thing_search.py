@@ -50,7 +50,7 @@ def find(view: View, description: tree.Description) -> list[Thing]:
 
 
 def things_named(view: View, description: tree.Description) -> list[Thing]:
-    """Return the things that match a description. Things that people wear are not included."""
+    """Return the things that match a description. People who wear the described clothes are not included."""
     matches = _two_coloured(view, description)
     if matches:
         return matches
@@ -60,7 +60,7 @@ def things_named(view: View, description: tree.Description) -> list[Thing]:
 
 
 def _worn(view: View, phrase: tree.Phrase) -> list[Thing]:
-    """Find "hard hats", which are not independent things, on the people who wear them."""
+    """Return the people who wear what the phrase describes ("hard hats"), because clothes are not things of their own."""
     if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
         return []
     return sorted((t for t in view.things if "person" in t.concepts and has_item(view, t, phrase.words)), key=pixels, reverse=True)
@@ -96,7 +96,10 @@ def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[st
 
 
 def _core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tree.Test, ...], tree.Order | None]:
-    """Return the things that match the core words, additional tests, and the order if the words imply one ("the left sign")."""
+    """Return the things that match the core words, additional tests, and the order.
+
+    Words for sides among the core words add a test ("the left signs") or set the order ("the left sign").
+    """
     words = list(phrase.words)
     if phrase.amount is not None and phrase.order is None and words and not english.is_plural(words[-1]) and phrase.amount > 1:
         words.insert(0, str(phrase.amount))
@@ -118,7 +121,10 @@ def _core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tree.Test
 
 
 def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
-    """Return the things that a noun names. If no vehicle matches the other words ("yellow vehicle"), machines count as vehicles."""
+    """Return the things that a noun names. If no vehicle matches the other words ("yellow vehicle"), machines count as vehicles.
+
+    "Thing" names all independent objects and, if ``carried`` is set ("the things on the van"), their parts.
+    """
     if lexicon().concept(noun) == "thing":
         return [t for t in view.things if _is_object(view, t) or (carried and not t.concepts & BACKDROP)]
     named = [t for t in view.things if fits_noun(view, t, noun)]
@@ -236,6 +242,7 @@ def _stated(view: View, thing: Thing, other: tree.Description) -> bool:
     return has_item(view, thing, words)
 
 
+# Words for lanes by their number.
 _LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "right outside fast third overtaking"}
 
 

@@ -32,6 +32,7 @@ class Thing:
         high_m: Highest corner of that box.
         concepts: Its concept and all kinds that it belongs to.
         motion: "moving" or "stationary".
+        texts: The legible texts on it and its parts.
     """
 
     sighting: Sighting
@@ -79,10 +80,11 @@ class Thing:
 
 @dataclass(frozen=True)
 class View:
-    """Everything visible in a frame, nearest first."""
+    """Everything visible in a frame. Things are sorted by distance, nearest first."""
 
     things: tuple[Thing, ...]
     texts: tuple[TextSighting, ...]
+    """All texts, including illegible ones, from top to bottom and from left to right."""
     parents: Mapping[str, str]
     """The id of the parent of each instance, for the whole scene."""
     instances: Mapping[str, SceneInstance | SceneActor]
@@ -140,7 +142,7 @@ class SceneFacts:
 
 
 _SCENES: dict[int, SceneFacts] = {}
-_MAX_SCENES = 32
+_MAX_SCENES = 32  # the cache is emptied when it contains this many scenes
 
 
 def scene_facts(scene: SceneFile) -> SceneFacts:

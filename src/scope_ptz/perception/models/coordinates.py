@@ -31,8 +31,8 @@ class Convention:
 
     Attributes:
         space: The unit of the coordinates. "guess" infers it from the largest number in a reply.
-        factor: The model resizes images to multiples of this many pixels. Frames are resized before they are sent, so that
-            the model does not resize them again. None sends frames unchanged.
+        factor: The model resizes images to multiples of this many pixels; None if it has no such factor. If the coordinates
+            are pixels, frames are resized before they are sent, so that the model does not resize them again.
         y_first: Whether boxes are ``[y, x, y, x]`` and points ``[y, x]``.
         box_key: The JSON key of a box.
         point_key: The JSON key of a point.
@@ -138,7 +138,7 @@ def places_in_frame(
 ) -> ReplyPlaces:
     """Return the boxes and points of a reply in [0, 1].
 
-    Entries that are not finite, have no area, lie outside the frame or are repeated are dropped and counted in the notes.
+    Entries that are non-finite, without area, outside the frame or repeated are dropped and counted in the notes.
 
     Args:
         things: The objects in the reply.
@@ -202,7 +202,7 @@ def _scale(things: Sequence[RawThing], space: Space, sent: tuple[int, int]) -> t
 def _guess(things: Sequence[RawThing], sent: tuple[int, int]) -> Space:
     """Infer the unit of all coordinates in a reply from the largest one.
 
-    Up to 1 means fractions, up to 1000 means thousandths (as requested), and up to the image size means pixels.
+    Up to 1 means fractions, up to 1000 means thousandths (as the prompt requests), and up to the image size means pixels.
     """
     finite = [abs(v) for t in things for v in t.numbers if math.isfinite(v)]
     largest = max(finite, default=0.0)

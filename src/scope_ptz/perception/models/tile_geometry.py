@@ -17,12 +17,14 @@ OVERLAP = 0.15
 """Fraction of a tile's width that the next tile also covers. Any narrower object is complete in one of the two tiles."""
 
 SAME_BOX = 0.5
-"""Minimum overlap at which boxes from neighbouring tiles count as the same object: the intersection over the area of the smaller
-box, or the vertical overlap if the borders of their tiles cut both boxes.
+"""Minimum overlap at which boxes from neighbouring tiles count as the same object.
+
+The overlap is the intersection over the area of the smaller box or, if the borders of their tiles cut both boxes, the shared height
+over the height of the taller box.
 """
 
 PANORAMA_SEAM = 0.002
-"""A box within this fraction of the width from the end of a 360-degree panorama may continue at the other end."""
+"""A box within this fraction of the width from one end of a 360-degree panorama may continue at the other end."""
 
 TILE_BORDER = 0.01
 """A box within this fraction of the tile's width from the border of its tile may continue beyond it."""
@@ -103,7 +105,11 @@ def merge_boxes(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int)
 
 
 def merge_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
-    """Merge the points of all tiles. Points of different tiles become one if they are within ``near``, a fraction of the width."""
+    """Merge the points of all tiles. Of points in different tiles that mark the same object, the first is kept.
+
+    Two points mark the same object if they differ by at most ``near`` in x, a fraction of the width, and by at most ``5 * near`` in
+    y, a fraction of the height.
+    """
     result: list[tuple[PanoramaTile, Point]] = []
     for tile, points in parts:
         for point in (tile.place_point(p, width) for p in points):

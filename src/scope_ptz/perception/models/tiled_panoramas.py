@@ -20,7 +20,10 @@ MAX_CONCURRENT_TILES = 4
 """Maximum number of tiles that are processed concurrently."""
 
 SAME_POINT = 0.15
-"""Points in two tiles that are within this fraction of the panorama's height mark the same object."""
+"""Maximum distance of two points in different tiles that mark the same object, as a fraction of the panorama's height.
+
+Vertically, the fraction is divided by the ratio of width to height; horizontally, it is divided by 5.
+"""
 
 FULL_TURN_DEG = 359.5  # a panorama at least this wide wraps around
 

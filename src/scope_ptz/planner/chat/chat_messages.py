@@ -1,7 +1,8 @@
 """Convert the state S_t to chat messages.
 
 The messages are append-only: the messages of each step begin with exactly those of the previous step, so that the server's prefix
-cache works. The only exception is the current view, for planners that accept images: it replaces the previous view.
+cache works. There are two exceptions: for planners that accept images, the current view replaces the previous view; and with
+``ChatOptions.summarise``, old exchanges are shortened when the context is full.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ def build_messages(
         notation: How tool calls are exchanged.
         accepts_images: Whether the model accepts images.
         switch: Text appended to the user messages to switch the model's reasoning on or off.
-        shorten_oldest: The number of oldest exchanges to shorten.
+        shorten_oldest: How many of the oldest exchanges to shorten.
     """
     writer = _Writer(notation, shorten_oldest, in_parts=accepts_images)
     briefing = state.briefing
@@ -88,7 +89,7 @@ class _Writer:
 
         Args:
             notation: How tool calls are exchanged.
-            shorten_oldest: The number of oldest exchanges to shorten.
+            shorten_oldest: How many of the oldest exchanges to shorten.
             in_parts: Whether user messages are lists of parts, so that pictures can be appended.
         """
         self.messages: list[Message] = []
@@ -102,7 +103,7 @@ class _Writer:
     def user(self, content: str | list[Message]) -> None:
         last = self.messages[-1]
         if last["role"] == "user":
-            # Not changed in place, because a caller may still have a reference to the old message.
+            # The old message is not changed in place, because a caller may still have a reference to it.
             self.messages[-1] = {"role": "user", "content": [*_parts(last["content"]), *_parts(content)]}
         else:
             self.add({"role": "user", "content": _parts(content) if self._in_parts else content})
@@ -153,8 +154,8 @@ def valid_tool_name(name: str) -> str:
 def _arguments(call: ToolCall) -> str:
     """Return the arguments as a JSON object.
 
-    Servers render the arguments with chat templates, which fail on anything else. The error message of a malformed call quotes the
-    original text.
+    Servers render the arguments with chat templates, which fail on anything but an object. A malformed call has no arguments; its
+    error message quotes the original text.
     """
     return json.dumps(call.arguments, ensure_ascii=False)
 

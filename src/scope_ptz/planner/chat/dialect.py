@@ -19,7 +19,7 @@ _TOOLS_REJECTED = re.compile(
     r"\btools?\b|tool_|tool[- ]|function[- ]call|--jinja|roles? must alternate|(unknown|unexpected|unsupported|invalid) role",
     re.IGNORECASE,
 )
-"""Error messages that reject tools, including those of chat templates that support only the roles user and assistant."""
+"""The pattern of error messages that reject tools, including those of chat templates without the role "tool"."""
 
 _SYSTEM_ROLE_REJECTED = re.compile(
     r"system (role|message|prompt)s? (is |are )?not supported|does not support system", re.IGNORECASE

@@ -41,8 +41,8 @@ class Family:
 
     Attributes:
         thinks: Whether its models reason by default.
-        on: The switch that turns reasoning on; None if it cannot be switched.
-        off: The switch that turns reasoning off; None if it cannot be switched.
+        on: The request data that turns reasoning on; None if requests cannot turn it on.
+        off: The request data that turns reasoning off; None if requests cannot turn it off.
         temperatures: The sampling temperatures with and without reasoning; None selects the server's default. With reasoning,
             greedy sampling tends to loop, so the value is the one that the model's authors recommend. Without reasoning, 0
             makes calls reproducible.
@@ -112,7 +112,11 @@ def usual_server(url: str) -> Server | None:
 
 
 def switch_for(model: str, thinking: Thinking, server: Server | None) -> Switch:
-    """Return the request data that switches a model's reasoning. It is empty for "default" and for models without a switch."""
+    """Return the request data that switches a model's reasoning on or off.
+
+    It is empty for "default" and for models without a switch. On OpenAI's servers, a model of unknown family gets a
+    ``reasoning_effort``.
+    """
     if thinking == "default":
         return _NO_SWITCH
     family = family_of(model)

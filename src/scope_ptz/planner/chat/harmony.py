@@ -27,7 +27,7 @@ def read_harmony(text: str) -> tuple[str, list[str]]:
     in_body = False
     pieces = _TOKEN.split(text)
     if pieces[0].strip():
-        header = pieces[0]  # the prompt ended with the role or the name of the channel
+        header = pieces[0]  # the prompt contains the start of the header, so the reply begins inside it
     for token, piece in zip(pieces[1::2], pieces[2::2], strict=True):
         if token == "message":  # noqa: S105 - a token of the format, not a password
             in_body = True

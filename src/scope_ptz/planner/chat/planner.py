@@ -23,13 +23,15 @@ from scope_ptz.planner.chat.window import fits, shortenings
 
 _OVERFLOW, _CUT_OFF = FailureKind.CONTEXT_OVERFLOW, FailureKind.CUT_OFF
 _MAX_ADAPTATIONS = 6
-"""Maximum number of rejected features to omit. A further rejection is an error."""
+"""Maximum number of retries of a request, each without one more rejected feature. A further rejection is an error."""
 
 
 class ChatOptions(BaseModel):
     """Options for planning with a chat model.
 
     Attributes:
+        prompt: The name of the packaged system prompt.
+        thinking: Whether to switch the model's reasoning on or off; "default" leaves it unchanged.
         tools: How tool calls are exchanged: in the API's native fields ("native"), in the text of messages ("text"), or
             natively until the server rejects tools ("auto").
         sees: Whether the model accepts images.
@@ -38,6 +40,8 @@ class ChatOptions(BaseModel):
         context_tokens: The size of the model's context; None if it is unknown.
         max_tokens: The maximum length of a reply; None selects the server's default.
         temperature: The sampling temperature; None selects the default of the model's family.
+        seed: The seed of the server's sampling; None sends no seed.
+        stream: Whether to request streamed replies.
         server: The server program; None to infer it from the address.
         family: The model name that determines the family, if the server uses a different name for the model.
     """

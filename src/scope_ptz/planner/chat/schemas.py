@@ -23,7 +23,7 @@ _DROPPED_KEYWORDS = (
 
 
 def plain_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the tools with a single type for each parameter. A parameter that may be null keeps only its other type."""
+    """Return the tools with simpler parameters: without constraints, and without null as an alternative type."""
     return [{**tool, "function": {**tool["function"], "parameters": _parameters(tool["function"]["parameters"])}} for tool in tools]
 
 

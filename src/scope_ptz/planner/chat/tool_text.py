@@ -183,7 +183,7 @@ def _mistral_calls(body: str, tools: Signatures) -> list[WrittenCall]:
 
 
 def _between(opening: str, closing: str) -> re.Pattern[str]:
-    """Return a pattern for the text between two tags. The closing tag may be missing before the next call and at the end."""
+    """Return a pattern for the text between two tags. The closing tag may be missing before the next call or at the end."""
     return re.compile(f"{opening}(?P<body>.*?)(?:{closing}|(?={opening})|\\Z)", re.DOTALL)
 
 
@@ -198,7 +198,7 @@ _TAGGED_NOTATIONS: tuple[tuple[str, re.Pattern[str], _CallParser], ...] = (
     ("llama", _between(r"<\|python_tag\|>", r"<\|eom_id\|>|<\|eot_id\|>"), _json_calls),
 )
 _MAX_START_LINES = 20
-"""Maximum number of lines to try as the start of calls. A text with more such lines is a table or a program."""
+"""Maximum number of lines with an opening bracket to try as the start of calls. A text with more is a table or a program."""
 _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
 
 

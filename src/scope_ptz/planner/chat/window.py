@@ -43,7 +43,7 @@ def fits(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapping[str, Any
 
 
 def shortenings(state: State) -> Iterator[int]:
-    """Yield how many of the oldest exchanges to shorten: first about half of them, then all but the newest.
+    """Yield how many of the oldest exchanges to shorten: first about half of them, then all but ``NEVER_SHORTENED``.
 
     Half is rounded down to an even number, so that the beginning of the messages rarely changes and prefix caches keep working.
     """

@@ -10,7 +10,7 @@ from typing import Any
 from scope_ptz.planner.chat.strict import strict_json
 
 _NAME = re.compile(r"""["']name["']\s*:\s*["'](?P<name>[^"']{1,80})["']""")
-MAX_QUOTED_CHARS = 300  # characters of a malformed call that its error message quotes
+MAX_QUOTED_CHARS = 300  # maximum number of characters of a malformed call that its error message quotes
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class WrittenCall:
 
 @dataclass(frozen=True, slots=True)
 class Signatures:
-    """The names of the offered tools and the JSON types of their parameters, for notations whose values have no types."""
+    """The names of the offered tools and the JSON types of their parameters, for notations in which values have no type."""
 
     types: Mapping[str, Mapping[str, frozenset[str]]]
 

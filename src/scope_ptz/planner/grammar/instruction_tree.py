@@ -118,7 +118,7 @@ class GoToPreset:
 
 @dataclass(frozen=True, slots=True)
 class GoThere:
-    """Go to the preset that was mentioned last, or to the preset that a comparison found."""
+    """Go to the preset that was mentioned last, or to the preset that won a comparison."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Define small, deterministic edits that do not change the meaning of an instruction or prompt."""
+"""Define small, deterministic edits of instructions and prompts that should not change the calls of a planner."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.english import number_word
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """An edit of a text. If ``apply`` returns a text unchanged, that text is not measured again."""
+    """An edit of the prompt or of an instruction. If ``apply`` returns a text unchanged, the text is not measured again."""
 
     name: str
     where: Literal["prompt", "instruction"]
@@ -38,12 +38,12 @@ def _lower_first(text: str) -> str:
 
 
 def _request(opening: str, ending: str) -> Callable[[str], str]:
-    """Return an edit that adds polite words to a command. Questions and conditions remain unchanged."""
+    """Return an edit that puts words around a command, such as "please". Questions and conditions remain unchanged."""
     return lambda text: text if _QUESTION_START.match(text) else f"{opening}{_lower_first(text.rstrip('.!'))}{ending}"
 
 
 def _misspell(text: str) -> str:
-    """Swap two letters of the longest lower-case word, except units and presets."""
+    """Swap two letters in the middle of the longest lower-case word with at least six letters, except units and presets."""
     words = [w for w in re.findall(r"[a-z]{6,}", text) if w not in _NOT_MISSPELLED]
     if not words:
         return text

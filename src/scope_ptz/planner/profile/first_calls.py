@@ -1,4 +1,4 @@
-"""Send one instruction to a planner without a camera, and check its first calls.
+"""Send one instruction to a planner without a camera, and check the calls of its first step.
 
 The checks test whether each call is valid, whether the first call is the expected one, and whether its direction is inverted.
 """
@@ -21,7 +21,7 @@ from scope_ptz.planner.base import Briefing, CallTools, Planner, State, Usage
 from scope_ptz.tools.adjust_ptz import AdjustPtz
 from scope_ptz.tools.registry import parse_call, schemas
 
-PRESETS = ("gate", "highway")  # the camera's presets in the planner's briefing
+PRESETS = ("gate", "highway")  # the presets that the planner's briefing lists
 _TOLERANCE = 0.01  # numbers that differ by at most this count as equal
 
 
@@ -37,7 +37,12 @@ class FirstCall(_Model):
 
 
 class InstructionRow(_Model):
-    """An instruction with its expected calls. ``alternatives`` lists other tools that are acceptable as the first call."""
+    """An instruction with its expected calls.
+
+    Attributes:
+        kind: The type of instruction, such as "move".
+        alternatives: Names of other tools that are also acceptable as the first call.
+    """
 
     instruction: str
     kind: str
@@ -53,6 +58,7 @@ class PlannerTrial(_Model):
         asked: The instruction as it was sent, after the edit.
         calls: The valid calls.
         invalid: The number of invalid calls.
+        text: The text of the reply or, if the planner failed, the error message.
         failure: The kind of failure; None if the planner did not fail.
         right: Whether the first call is the expected one.
         inverted: Whether the first move turns or zooms opposite to the expected direction.
@@ -117,7 +123,7 @@ class _Line(BaseModel):
 
 
 async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None = None, edit: str = "") -> PlannerTrial:
-    """Send an instruction to a planner. ``asked`` is the edited wording, if any."""
+    """Send an instruction to a planner. If it was edited, ``asked`` is its new wording, and ``edit`` the name of the edit."""
     instruction = row.instruction if asked is None else asked
     state = State(
         instruction=instruction, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=Limits()), tools=tuple(schemas())
@@ -157,7 +163,7 @@ def _valid(name: str, arguments: dict[str, Any]) -> bool:
 
 
 def is_expected_call(row: InstructionRow, call: FirstCall) -> bool:
-    """Return whether a call is the expected first one. Descriptions are compared by their words; questions are not compared."""
+    """Return whether a call is correct as the first one: it uses an alternative tool, or is equivalent to the expected call."""
     expected = row.calls[0]
     if call.name in row.alternatives:
         return True
@@ -167,8 +173,9 @@ def is_expected_call(row: InstructionRow, call: FirstCall) -> bool:
 def same_arguments(one: FirstCall, other: FirstCall) -> bool:
     """Return whether two calls of a tool have equivalent arguments.
 
-    Numbers must be equal and descriptions must consist of the same words; the texts of questions are not compared. In an expected
-    call, ``{"contains": [words, ...]}`` may replace a text, which must then contain the words in any order.
+    Numbers may differ by ``_TOLERANCE``. Descriptions must consist of the same words, apart from articles, "all", "any" and a final
+    "s". The texts of questions are not compared. If ``one`` is an expected call, it may contain ``{"contains": [words, ...]}``
+    instead of a text; the text of the other call must then contain these words, in any order.
     """
     required_words = {
         key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value
@@ -215,7 +222,7 @@ def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
 
 
 def _directions(call: FirstCall) -> tuple[float, float, float]:
-    """Return the pan, tilt and zoom of a move, whose signs are its directions. All are zero for an invalid call."""
+    """Return the pan, tilt and zoom of a move. Only their signs, which give the directions, matter. An invalid call gives zeros."""
     try:
         move = AdjustPtz.model_validate(call.arguments)
     except ValidationError:

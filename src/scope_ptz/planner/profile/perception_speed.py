@@ -20,7 +20,7 @@ class PerceptionSpeed(BaseModel):
 
     Attributes:
         frames: Number of frames.
-        by_skill: Median and 95th percentile of the successful calls.
+        by_skill: Median and 95th percentile of the seconds per successful call.
         never_worked: Skills without a successful call.
         failures: Number of failed calls by kind.
         first_failure: The error message of the first failed call.
@@ -45,7 +45,7 @@ class PerceptionSpeed(BaseModel):
 async def measure_perception(
     perception: Perception, frames: Sequence[Frame], on_call: Callable[[], None] = lambda: None
 ) -> PerceptionSpeed:
-    """Call every skill on every frame and measure the time.
+    """Call every skill of a backend on every frame, and measure the time.
 
     A warm-up round, which loads the model and opens the connection, is not counted.
 

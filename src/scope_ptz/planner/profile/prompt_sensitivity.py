@@ -54,6 +54,8 @@ class EditEffect(_Model):
     Attributes:
         tools_changed: The rate at which the planner chose different tools than without the edit.
         calls_changed: The rate at which the tools or their arguments changed.
+        right: The rate at which the first call with the edit was the expected one.
+        inverted: The rate of inverted moves with the edit, among the instructions that request a move.
     """
 
     edit: str
@@ -65,11 +67,13 @@ class EditEffect(_Model):
 
 
 class Sensitivity(_Model):
-    """The report of a measurement.
+    """The result of a sensitivity measurement.
 
     ``valid``, ``right``, ``inverted`` and ``failed`` are rates over the unedited instructions. A trial in which the planner or its
     server failed counts only in ``failed``. ``noise`` is the rate at which the tools change without any edit; an edit has an effect
-    only if its rate is higher. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` are examples.
+    only if its rate is higher. ``by_prompt`` and ``by_instruction`` are the rates at which the tools change with edits of the
+    prompt and of the instruction. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` list examples
+    of inverted moves and of changed tools.
     """
 
     prompt: str
@@ -89,7 +93,13 @@ class Sensitivity(_Model):
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A trial to run: an instruction with an edit, and the prompt to send it with."""
+    """A trial to run: an instruction, and the prompt to send it with.
+
+    Attributes:
+        edit: The name of the edit; empty or ``AGAIN`` if nothing is edited.
+        where: What the edit changes: "prompt" or "instruction"; empty if nothing is edited.
+        asked: The instruction as it is sent.
+    """
 
     row: InstructionRow
     edit: str
@@ -155,7 +165,7 @@ def _cases(rows: Sequence[InstructionRow], prompt: Prompt, edits: Sequence[Edit]
 
 
 def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Case], trials: Sequence[PlannerTrial]) -> Sensitivity:
-    """Return the report of all trials, which are in the order of their cases."""
+    """Return the report. Each trial is the result of the case at the same position."""
     unedited = {trial.row.instruction: trial for trial in trials if not trial.edit}
     planned = [trial for trial in unedited.values() if trial.failure is None]
     pairs = _pairs(cases, trials, unedited)

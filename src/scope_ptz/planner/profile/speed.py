@@ -1,4 +1,4 @@
-"""Measure a planner's speed and its rate of valid calls on individual instructions."""
+"""Summarise the speed of a planner and its rate of valid calls in trials of individual instructions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.planner.profile.prompt_sensitivity import Rate
 
 
 class Spread(BaseModel):
-    """Median and 95th percentile."""
+    """The median and the 95th percentile of a list of values."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -35,8 +35,9 @@ class Speed(BaseModel):
     Attributes:
         valid: Turns with only valid calls, out of the turns with calls.
         right: Turns whose first call was the expected one.
-        failures: Failed turns by kind; they are excluded from all rates and times.
-        first_failure: The message of the first failure.
+        inverted: Turns with an inverted move, out of the turns whose instruction requests a move.
+        failures: Number of failed turns by kind of failure. Failed turns are excluded from all rates and times.
+        first_failure: The error message of the first failure, which may be that of the warm-up.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -53,7 +54,7 @@ class Speed(BaseModel):
 
 
 def speed_of(trials: Sequence[PlannerTrial], warm_up: PlannerTrial | None = None) -> Speed:
-    """Return the speed of a planner. ``warm_up`` is an uncounted trial before the others, used only for its error message."""
+    """Return the speed of a planner. ``warm_up`` is an earlier trial, of which only the error message is used."""
     succeeded = [t for t in trials if t.failure is None]
     called = [t for t in succeeded if t.calls or t.invalid]
     return Speed(

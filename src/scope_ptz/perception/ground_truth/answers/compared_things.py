@@ -52,7 +52,7 @@ def _equal(key: tree.OrderKey, a: Thing, b: Thing) -> bool:
 
 
 def compare(view: View, question: tree.Compare) -> AnswerText:
-    """Answer whether the first thing ranks before the second in a comparison."""
+    """Answer whether the first thing ranks before the second in a comparison, as in "is the van nearer than the bus?"."""
     for description in (question.first, question.second):
         if not find(view, description):
             return unknown(f"I cannot tell: {none_of(view, description)}")

@@ -102,7 +102,7 @@ def _listed_in_question(view: View, question: tree.What) -> AnswerText:
 
 
 def _no_match(view: View, question: tree.What, description: tree.Description) -> AnswerText:
-    """Answer when nothing matches: with a stated fact ("which lane is closed"), or that nothing matches."""
+    """Answer if no thing matches: with a fact that the scene states ("which lane is closed?"), otherwise that nothing matches."""
     state_words = [x for t in question.tests if isinstance(t, tree.Is) for x in t.words]
     if state_words and not find(view, question.what):
         return fact_in_view(view, (*question.what.phrases[0].words, *state_words))

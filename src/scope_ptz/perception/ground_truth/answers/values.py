@@ -32,6 +32,7 @@ UNSEEN = frozenset(
 )
 """Subjects about which a picture gives no information."""
 _ACTIVITY_WORDS = frozenset(["doing", "activity", "action", "up"])
+# Groups of words that ask for the same fact.
 _KEY_SYNONYMS = {
     "state": {"state", "status", "condition", "position"},
     "kind": {"kind", "type", "make", "model", "sort"},
@@ -97,7 +98,8 @@ _VERBS = {
     "wearing clothes clothing outfit": "wearing ", "carrying load cargo holding": "carrying ", "made material": "made of ",
     "direction pointing facing heading way": "facing ", "lane": "in ", "carriageway": "on the ",
 }  # fmt: skip
-"""The words between "is" and the value of some attributes."""
+"""The words between "is" and the value of an attribute, by the words that ask for the attribute."""
+# Activities as scenes state them, with the words for answers.
 _GERUNDS = {
     "stand": "standing", "walk": "walking", "kneel": "kneeling", "shovel": "shovelling", "carry": "carrying something",
     "point": "pointing", "phone": "talking on the phone", "clipboard": "holding a clipboard", "sit": "sitting", "run": "running",
@@ -106,7 +108,7 @@ _GERUNDS = {
 
 
 def pose_of(thing: Thing) -> str | None:
-    """Return the activity of a person or machine that the scene states."""
+    """Return the activity of a person or machine that the scene states; None if it states none."""
     for key in ("activity", "action", "doing", "task", "pose", "state"):
         if isinstance(value := thing.attributes.get(key), str):
             return _GERUNDS.get(value, value)
@@ -114,6 +116,7 @@ def pose_of(thing: Thing) -> str | None:
 
 
 _POLAR = ("open", "closed", "lit", "unlit", "raised", "lowered", "empty", "full", "moving", "stationary")
+"""States with an opposite, which answer a question about the state of a thing."""
 
 
 def _value(key: str, value: object) -> str:

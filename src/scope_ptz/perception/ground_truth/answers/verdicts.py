@@ -152,7 +152,7 @@ def _verdict(
         subject: The description of the things in question.
         tests: The tests.
         things: The things in question.
-        yes: The things of ``things`` for which the tests hold.
+        yes: Those of ``things`` for which the tests hold.
     """
     total, many = len(things), noun(view, subject, many=True)
     if any(p.words[-1] in _EVERYBODY for p in subject.phrases if p.words):

@@ -18,6 +18,7 @@ class Lexicon:
     """All concepts, with their names and the kinds that they belong to. The methods cache their results."""
 
     parents: dict[str, tuple[str, ...]]
+    """The kinds to which each concept belongs directly."""
     names: dict[str, str]
     """The concept of every noun in the singular."""
 
@@ -72,7 +73,7 @@ def lexicon() -> Lexicon:
 
 
 def nouns_in(words: Sequence[str], extra_nouns: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
-    """Return spans ``[start, end)`` of words that could be the noun of a phrase: those with the last end, longest first.
+    """Return the spans ``[start, end)`` of words that could be the noun of a phrase: those that end last, longest first.
 
     Args:
         words: The words of the phrase.

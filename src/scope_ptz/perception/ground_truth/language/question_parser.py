@@ -1,4 +1,4 @@
-"""The parser of descriptions and questions. Lark finds every reading that the grammar allows; the cheapest is used."""
+"""The parser of descriptions and questions. Of all readings that the grammar allows, the one with the lowest cost is used."""
 
 from __future__ import annotations
 
@@ -44,9 +44,8 @@ def parse_question(text: str) -> Question | None:
     reading = _best(text, "question") or _best(text, "description")
     if not isinstance(reading, Description):
         return reading
-    has_nouns = all(
-        nouns_in(p.words) for p in reading.phrases
-    )  # a noun phrase alone, such as "any vehicles?", asks whether there are any
+    # A noun phrase alone, such as "any vehicles?", asks whether there are any.
+    has_nouns = all(nouns_in(p.words) for p in reading.phrases)
     return Exists(reading) if has_nouns else None
 
 

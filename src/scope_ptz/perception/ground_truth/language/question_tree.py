@@ -13,12 +13,13 @@ Words = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Phrase:
-    """One noun phrase. ``words`` is its core ("red car", "cars parked"); matching decides where the noun ends."""
+    """One noun phrase. ``words`` is its core ("red car", "cars parked"); the search for matches decides where the noun ends."""
 
     words: Words
     tests: tuple[Test, ...] = ()
     order: Order | None = None
     ordinal: int | None = None
+    """The position among the matches: 1 for the first, -1 for the last."""
     amount: int | None = None
     """The number of things ("the two nearest cones")."""
 
@@ -40,7 +41,7 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """A relation to other things. ``preposition`` is the original wording, because one kind covers several prepositions."""
+    """A test for a relation to other things. ``preposition`` keeps the wording, because one kind covers several prepositions."""
 
     kind: RelationKind
     other: Description
@@ -49,7 +50,7 @@ class Relation:
 
 @dataclass(frozen=True, slots=True)
 class Between:
-    """A place between two things."""
+    """A test for a place between two things."""
 
     first: Description
     second: Description
@@ -57,7 +58,7 @@ class Between:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """A part of the frame: one or two sides. With ``half``, a side is a half ("left half") instead of a band ("on the left")."""
+    """A test for a part of the frame: one or two sides. A side is a band ("on the left"); with ``half``, a half ("left half")."""
 
     sides: tuple[Side, ...]
     half: bool = False
@@ -94,7 +95,7 @@ class Faces:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A comparison of size or distance ("closer than the van", "bigger than the car")."""
+    """A test that compares size, distance or position ("closer than the van", "bigger than the car")."""
 
     key: OrderKey
     other: Description
@@ -180,8 +181,9 @@ class IsA:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """Ask for the value of an attribute ("what colour is the van?"). ``what`` is None if any thing may have it ("which lane is
-    closed?").
+    """Ask for the value of an attribute ("what colour is the van?").
+
+    ``what`` is None if any thing may have the attribute ("which lane is closed?").
     """
 
     attribute: Words

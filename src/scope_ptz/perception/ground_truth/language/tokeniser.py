@@ -51,8 +51,8 @@ _FRAME_FILLERS = frozenset(
 )
 _PLACE_WORDS = frozenset(["site", "area", "place", "premises", "property", "worksite"])
 _FRAME_PREPOSITIONS = frozenset(["in", "of", "from", "on", "across", "within", "throughout", "inside", "around", "for"])
-_TEXT_ENDS = frozenset({"visible", "there", "?"})
-_PARTICLES = frozenset(["on", "off", "up", "down", "in", "out"])
+_TEXT_ENDS = frozenset({"visible", "there", "?"})  # words that end the text after "says"
+_PARTICLES = frozenset(["on", "off", "up", "down", "in", "out"])  # at the end of a text, not a preposition ("is the light on")
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Resolve preset names to the camera's presets, pronouns to the last object, and the scope of questions after a sweep."""
+"""Resolve preset names and pronouns, and decide whether questions are about the current view or the whole scene."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class UnresolvedError(Exception):
 
 
 def match_exactly(name: str, presets: Sequence[str]) -> str | None:
-    """Return the preset with a name, ignoring case, accents, spaces and hyphens."""
+    """Return the preset with a name, ignoring case, accents, spaces and hyphens; None if there is none."""
     key = "".join(preset_key(name))
     return next((preset for preset in presets if "".join(preset_key(preset)) == key), None)
 
@@ -83,7 +83,7 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
 
 
 def abbreviates(short: str, long: str) -> bool:
-    """Return whether a word abbreviates another by omitting vowels: "hwy" for "highway"."""
+    """Return whether a word abbreviates another: the same first letter, then some of its other consonants ("hwy" for "highway")."""
     letters = iter(long)
     return (
         len(short) >= _MIN_ABBREVIATION_CHARS

@@ -35,7 +35,7 @@ def number(value: float) -> str:
 
 
 def count_word(count: int) -> str:
-    """Return a count from 1 to 12 as a word, and any other count in digits. Counts of objects are always in digits."""
+    """Return a number of moves: from 1 to 12 as a word, otherwise in digits. Counts of objects are always in digits."""
     return english.number_word(count) if 0 < count <= _MAX_SPELLED else str(count)
 
 

@@ -16,7 +16,7 @@ class ConditionEvaluation(RunState):
     """The part of a run that evaluates conditions."""
 
     def _test(self, condition: ast.Condition) -> CallGenerator:
-        """Return whether a condition is met, and a sentence that states what was observed."""
+        """Return whether a condition is met or assumed to be met, and a sentence that states what was observed."""
         met, reason = yield from self._evaluate(condition)
         return (met or self.assume_met), reason
 

@@ -7,12 +7,12 @@ from typing import Any
 from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Turn, Zoom
 
-_DEFAULT_DEG, _LITTLE_DEG = 10.0, 5.0
+_DEFAULT_DEG, _LITTLE_DEG = 10.0, 5.0  # turns of unspecified size, and "a little"
 _LOT_DEG = {"pan": 45.0, "tilt": 20.0}
-_LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}
+_LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}  # turns "all the way", which reach the limit from any pose
 _LOOP_PAN_DEG = 15.0  # a loop makes 24 steps by default, which is one full turn
 _LOOP_ZOOM_FACTOR = 1.5
-_TOLERANCE = 1e-6
+_TOLERANCE = 1e-6  # smaller changes count as no move
 
 
 def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) -> dict[str, Any]:
@@ -76,8 +76,8 @@ def _zoom(zoom: Zoom, in_loop: bool) -> dict[str, Any]:
         return {"zoom_limit": zoom.kind}
     if zoom.kind == "percent":
         return {"zoom_percent": max(zoom.value, -99.0)}
-    plain = in_loop and zoom.value in {2.0, 0.5}
-    return {"zoom_factor": (_LOOP_ZOOM_FACTOR if zoom.value > 1 else 1 / _LOOP_ZOOM_FACTOR) if plain else zoom.value}
+    unspecified = in_loop and zoom.value in {2.0, 0.5}  # the parser's factors for a zoom without an amount
+    return {"zoom_factor": (_LOOP_ZOOM_FACTOR if zoom.value > 1 else 1 / _LOOP_ZOOM_FACTOR) if unspecified else zoom.value}
 
 
 def _aim(aim: Aim, pose: Pose, limits: Limits) -> dict[str, Any]:

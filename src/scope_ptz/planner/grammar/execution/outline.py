@@ -25,7 +25,7 @@ AssumedResult = Callable[[str, Mapping[str, Any]], dict[str, Any]]
 
 @dataclass(frozen=True, slots=True)
 class OutlineCall:
-    """A call that the program makes."""
+    """A call that the program would make."""
 
     name: str
     arguments: dict[str, Any]
@@ -40,11 +40,11 @@ class OutlineBlock:
 
 
 def outline(steps: Sequence[ast.Step], limits: Limits, pose: Pose, assumed_result: AssumedResult) -> OutlineBlock:
-    """Return the outline of bound steps.
+    """Return the outline of steps.
 
     Args:
-        steps: The steps, with names bound to presets.
-        limits: The camera's limits, which determine how many times a loop can move.
+        steps: The steps, with all names resolved.
+        limits: The camera's limits.
         pose: The camera's pose at the start.
         assumed_result: Returns the assumed result of a call.
     """

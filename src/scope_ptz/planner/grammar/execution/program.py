@@ -1,6 +1,7 @@
-"""Run bound steps. A program is a generator that yields tool calls, receives their outcomes and describes the results in words.
+"""Run steps whose names are resolved. A program is a generator that yields tool calls and receives their outcomes.
 
-The planner replays the generator against the recorded history at every step, so it depends only on its inputs.
+It describes the results in words, which become the answer. At every step, the planner replays the generator against the recorded
+history, so a program must depend only on its inputs.
 """
 
 # ruff: noqa: ARG002 - all step methods share one signature
@@ -25,7 +26,7 @@ _CAPABILITIES = (
     "and zoom in on or follow things"
 )
 _DEFAULT_MAX_MOVES = 24  # maximum number of moves of a loop if the instruction gives none
-_MAX_REQUESTED_MOVES = 100  # maximum number of moves that an instruction can request
+_MAX_REQUESTED_MOVES = 100  # maximum number of moves of a loop that an instruction can request
 
 
 class Program(ConditionEvaluation):
@@ -243,7 +244,7 @@ class Program(ConditionEvaluation):
         yield from self._run_steps(step.otherwise)
 
     def _move_limit(self, step: ast.Loop) -> int:
-        """Return the limit on a loop's moves: the limit in the instruction, otherwise enough moves to cover the axis once."""
+        """Return the limit on a loop's moves: that of the instruction, otherwise enough to cover the axis once, but at most 24."""
         bound = step.bound or ast.Bound()
         if bound.moves is not None:
             return min(bound.moves, _MAX_REQUESTED_MOVES)

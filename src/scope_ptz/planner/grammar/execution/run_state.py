@@ -59,10 +59,10 @@ class RunState:
     sources: list[str] = field(default_factory=list)
     _missing: set[str] = field(default_factory=set)  # descriptions of objects that were not found
     _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
-    _best_preset: str | None = None  # the preset that a comparison found
+    _best_preset: str | None = None  # the preset for "go there" after a comparison; None if there is no winner
     _moved_to_object: bool = False  # whether a perception tool moved the camera after the last move to a preset or home
-    _went_home: bool = False
-    _last_count: int = -1
+    _went_home: bool = False  # whether the run has made a move to home
+    _last_count: int = -1  # the last count in a condition; -1 if there was none
     _last_was_yes: bool = False  # whether the last answer was yes, or the last count was above zero
 
     def answer(self) -> str:

@@ -27,14 +27,16 @@ _TOKEN = re.compile(
 )
 _MARKS = {**dict.fromkeys(",:()", "COMMA"), **dict.fromkeys(";.!?\n", "STOP"), "&": "AND"}
 SEPARATORS = ("COMMA", "AND", "THEN", "STOP")
-_ATTACHED_TO_PREVIOUS = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})  # a separator before them is dropped
+_ATTACHED_TO_PREVIOUS = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})
+"""Terminals that continue a clause, so that a separator before them is dropped."""
+
 _MAX_PHRASE_WORDS = 9
 _DIRECTION_LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
 _MOTION = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})  # after them, "up to" and "down to" are directions
 _NEVER_GERUND = frozenset({*SEPARATORS, "DET", "ONEOF", "PREP", "SAYS", "BY", "SHOWS", "VISIBLE", "FILLS"})
 """Terminals for which a word that ends in "ing" is not the gerund of a command."""
 
-_HEDGES = frozenset({"FILLER", "BY"})  # words such as "about" that are dropped at the start of a clause
+_HEDGES = frozenset({"FILLER", "BY"})  # terminals of words such as "about", which are dropped at the start of a clause
 _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 
@@ -46,7 +48,7 @@ class Lexeme:
         kinds: The terminals that it can match.
         start: The index of its first character in the original text.
         end: The index after its last character.
-        value: The value of a number.
+        value: The value of a number; 0 for other lexemes.
     """
 
     kinds: frozenset[str]

@@ -14,6 +14,7 @@ ORDINAL_WORDS: Mapping[str, int] = {**ORDINALS, "last": -1, "final": -1}
 
 _BRACKETS = re.compile(r"([()\[\]|])")
 _NOT_DOUBLED = frozenset({"open", "visit", "orient", "monitor", "widen", "tighten", "broaden", "enter"})
+"""Verbs that do not double their last consonant before "-ing", unlike other verbs with such an ending."""
 
 
 def _forms(verb_phrase: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Combine neighbouring steps of a sentence: moves joined by "and", "each time" or "do that again"."""
+"""Combine neighbouring steps of a sentence: moves joined by "and", and steps such as "each time" with those that they refer to."""
 
 from __future__ import annotations
 
@@ -161,14 +161,14 @@ def _shared(part: Part, others: tuple[Part, ...]) -> Part:
 
 
 def _step_size(step: Step) -> Turn | None:
-    """Return the turn that a move makes in steps; None if the move has no such turn."""
+    """Return the turn of a move that has a step size; None if there is none."""
     if isinstance(step, Move):
         return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
     return None
 
 
 def _stepped(step: Step) -> Step:
-    """Expand a move in steps: "90 degrees in 30 degree steps" is three moves, "in 30 degree steps" alone is one."""
+    """Split a move with a step size: "90 degrees in 30 degree steps" is three moves, "in 30 degree steps" alone is one."""
     turn = _step_size(step)
     if turn is None or turn.step is None or not isinstance(step, Move):
         return step
@@ -186,7 +186,7 @@ def _stepped(step: Step) -> Step:
 
 
 def _stepped_loop(step: Loop | Repeat) -> Step:
-    """Expand a loop over a move in steps: each iteration makes one step, and the total bounds the loop."""
+    """Split the move with a step size in a loop: each iteration makes one step, and the whole move limits the loop."""
     turn = _step_size(step.body[0])
     if turn is None or not isinstance(step.body[0], Move):
         return step
@@ -222,7 +222,10 @@ def _done_at_place(out: list[Step]) -> tuple[Step, ...]:
 
 
 def _add_again(out: list[Step], step: DoAgain) -> None:
-    """Repeat the steps that follow the last move to a preset or home."""
+    """Repeat the steps that follow the last move to a preset or home.
+
+    If that move is the last step ("count the cars, go to gate and do that again"), run the steps before it at the new place.
+    """
     if isinstance(out[-1], GoToPreset) and len(out) > 1:
         out.extend(_done_at_place(out[:-1]))
         return
@@ -245,7 +248,7 @@ def _interleaved(step: Step | None, between: tuple[Step, ...]) -> list[Step]:
 
 
 def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
-    """Add steps to run at regular intervals of a turn."""
+    """Add steps to run at regular angular intervals during a turn."""
     move = step.move
     if move is None and out and isinstance(last := out[-1], Move) and any(isinstance(p, Turn) for p in last.parts):
         move = last

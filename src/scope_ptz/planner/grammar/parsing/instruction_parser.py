@@ -52,7 +52,8 @@ def parser(presets_known: bool) -> ChartParser:
 def roles(kinds: frozenset[str]) -> frozenset[str]:
     """Return the terminals that a lexeme can match, including its role in a description.
 
-    The role is WORD (costs nothing), SOFT or HARD (with a cost). A lexeme that structures the sentence has no role.
+    The role is WORD (free), SOFT (at a low cost) or HARD (at a high cost). Because of the costs, the parser prefers readings in
+    which a known phrase keeps its own meaning. A lexeme that structures the sentence has no role.
     """
     if kinds & _FREE_WORDS:
         return kinds | {"WORD"}
@@ -79,7 +80,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
 
 
 def _sentences(lexemes: list[Lexeme]) -> list[tuple[int, int]]:
-    """Return the start and end index of each sentence."""
+    """Return the range of lexemes of each sentence: the first index, and the index after the last."""
     stops = [i for i, lexeme in enumerate(lexemes) if "STOP" in lexeme.kinds]
     edges = [-1, *stops, len(lexemes)]
     return [(a + 1, b) for a, b in pairwise(edges) if b > a + 1]

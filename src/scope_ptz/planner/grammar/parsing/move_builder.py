@@ -34,6 +34,7 @@ _AIMING = (
 """Beginnings of the verbs of LOOKAT that aim the camera; the other verbs zoom in."""
 
 _SMALL_STEP_DEG = 5.0
+# Terminals of words that name a move.
 _VERBS = (
     "PAN",
     "MOVE",

@@ -36,6 +36,7 @@ SCOPES = {"now", "full", "scene"}
 _ALL_AROUND = re.compile(r"\b(whole|entire|full) (scene|area|site|panorama|place|surroundings)\b", re.IGNORECASE)
 _NOUNS = frozenset({"CAMERA", "PICTURE", "WHO", "PRESETWORD", "CIRCLE", "SURROUND", "LEVEL", "STEPS", "HOME", "WIDE"})
 _SCOPE_WORDS = frozenset({"FULLSCOPE", "NOWSCOPE"})
+# Parts of descriptions with their replacements: relative clauses become phrases, and other function words are dropped.
 _RELATIVE = (
     (re.compile(r"\b(?:(?:who|that|which) )?(?:are|is|were|was)(?:n['’]?t| not)\b", re.IGNORECASE), "not"),
     (
@@ -288,7 +289,7 @@ class SceneBuilder(TreeVisitor):
 
 
 def described(text: str) -> str:
-    """Return a description without the verb of its relative clause.
+    """Return a description without function words and without the verb of its relative clause.
 
     For example "people that aren't wearing helmets" becomes "people not wearing helmets".
     """
