@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     AtIntervals,
     AtPlaces,
+    Back,
     BeforeAfter,
     Between,
     Bound,
@@ -82,6 +83,8 @@ def _add_modifier(out: list[Step], step: Step) -> bool:
             _add_again(out, step)
         case Further():
             _add_further(out, step)
+        case Back() if step.amount is not None and step.amount.kind in ("degrees", "little", "lot"):
+            _add_back_by(out, step.amount)
         case SameAt():
             out.append(AtPlaces(step.places, _done_at_place(out)))
         case _:
@@ -94,6 +97,16 @@ def _add_further(out: list[Step], step: Further) -> None:
     last = out[-1] if out else None
     turn = next((p for p in reversed(last.parts) if isinstance(p, Turn)), None) if isinstance(last, Move) else None
     out.append(Move((replace(turn, amount=step.amount),)) if turn else Unclear("Which way shall I turn, and how far?"))
+
+
+def _add_back_by(out: list[Step], amount: Amount) -> None:
+    """Turn back by an amount ("then go back 20 degrees"). It is clear only after a turn about one axis."""
+    last = out[-1] if out else None
+    turns = [p for p in last.parts if isinstance(p, Turn)] if isinstance(last, Move) else []
+    if len(turns) == 1:
+        out.append(Move((Turn(turns[0].axis, -turns[0].sign, amount),)))
+    else:
+        out.append(Unclear("Which way shall I turn back?"))
 
 
 def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
