@@ -20,7 +20,7 @@ class Gate:
 
     Args:
         accounts: The accounts that may use the camera.
-        realm: The authentication realm, which clients show.
+        realm: The authentication realm, which clients show to their users.
     """
 
     def __init__(self, accounts: Accounts, realm: str) -> None:
@@ -28,7 +28,7 @@ class Gate:
         self._digest = DigestAuthenticator(accounts, realm)
 
     def for_role(self, role: Role, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
-        """Return an endpoint that admits accounts of a role and above."""
+        """Return an endpoint that calls a handler for accounts with at least the given role, and refuses others."""
 
         async def endpoint(request: Request) -> Response:
             client = self._client(request)
