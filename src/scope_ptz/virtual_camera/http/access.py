@@ -75,6 +75,6 @@ def is_local(connection: HTTPConnection) -> bool:
 
 
 def is_foreign_page(request: Request) -> bool:
-    """Return whether a browser sent a request on behalf of a web page from another site."""
+    """Return whether a browser sent a request for a web page of another site, according to the ``Origin`` header."""
     origin = request.headers.get("origin")
     return origin is not None and origin.partition("://")[2] != request.headers.get("host")

@@ -26,7 +26,7 @@ PATHS = {
 VERSION = {"Major": 19, "Minor": 12}
 """Version of the ONVIF specifications that the services implement."""
 
-# The categories that ``GetCapabilities`` can request: with the namespaces of their services, and those without a service.
+# The categories that ``GetCapabilities`` can request: those with a service and its namespace, and those without a service.
 _CATEGORIES = {"Device": DEVICE, "Media": MEDIA, "PTZ": PTZ, "Imaging": IMAGING}
 _ABSENT = {"Analytics", "Events"}
 
