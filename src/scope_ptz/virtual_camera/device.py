@@ -181,7 +181,7 @@ class VirtualDevice:
 
     @property
     def commanded_velocity(self) -> Velocity:
-        """The velocity that was requested of ``drive``; zero after its timeout, and during a move to a pose."""
+        """The velocity that the last ``drive`` command requested; zero after its timeout, and during a move to a pose."""
         return self._motion.driven_at(self.now_s())
 
     def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:

@@ -18,7 +18,7 @@ def use_one_heap() -> bool:
     """Make all threads of this program share one heap. Call it before threads are started.
 
     The GNU C library gives each thread its own heap. Short-lived pictures fragment these heaps, so the memory use of a camera with
-    streams grows by about 100 MB within minutes. Sharing one heap does not cost more processor time. With another C library or on
+    streams grows by about 100 MB within minutes. Sharing one heap takes no additional processor time. With another C library or on
     another system, nothing changes.
 
     Returns:

@@ -116,7 +116,7 @@ class Centre(Body):
 
 
 class FrameBox(Body):
-    """The box in a picture that shall fill the view, as fractions of the picture's width and height from the top left.
+    """The box in a picture that should fill the view, as fractions of the picture's width and height from the top left.
 
     ``pose`` is the pose of the picture; by default, the current pose.
     """

@@ -147,7 +147,7 @@ class Gate:
     ) -> None:
         """Serve a request, and end it if its token is removed or its session ends in the meantime.
 
-        Without this check, a client could watch a stream for ever after its token was removed.
+        Without this check, a client could continue to watch a stream indefinitely.
         """
         work = asyncio.ensure_future(self._app(scope, _limited(receive), reply.send))
         try:

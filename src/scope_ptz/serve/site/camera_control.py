@@ -22,7 +22,7 @@ MAX_REQUESTS = 20
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A request for control by the client with a key and a name, and the time at which it was made."""
+    """A client's request for control: the key and the name of the client, and the time of the request."""
 
     key: str
     name: str

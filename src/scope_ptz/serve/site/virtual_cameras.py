@@ -19,7 +19,7 @@ from scope_ptz.virtual_camera.accounts import Account
 from scope_ptz.virtual_camera.device import VirtualDevice
 
 HOST = "127.0.0.1"
-"""The address that virtual cameras listen on. They can be reached only from this machine, unlike the server itself."""
+"""The address that virtual cameras listen on. Only this machine can reach them, whatever address the server itself listens on."""
 
 ACCOUNT = "root"
 """The account name of virtual cameras. A new password is generated each time a camera is turned on."""

@@ -96,7 +96,7 @@ async def serve(
 
     Raises:
         ConfigError: A port is in use or not permitted; a camera without accounts would be open to the network; or the number of
-            ports or certificates is not that of the cameras.
+            ports or certificates differs from the number of cameras.
     """
     ports = ports or [0] * len(devices)
     if len(ports) != len(devices):

@@ -1,4 +1,4 @@
-"""The coordinate spaces in which ONVIF requests and replies state positions, translations and speeds, and conversions to poses.
+"""Convert between poses and the coordinate spaces in which ONVIF states positions, translations and speeds.
 
 Positive x is right and positive y is up in all of them.
 """
