@@ -27,7 +27,7 @@ _ERRORS = responses(404, 409, 503)
 
 @router.post("/runs", status_code=202, responses=_ERRORS)
 async def start_run(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
-    """Start a run and reply immediately. `/runs/{run}/events` streams its records. It does not stop if no client follows it."""
+    """Start a run and reply immediately. The run continues even if no client follows it at `/runs/{run}/events`."""
     return state_of(await _start(site, client, body))
 
 
