@@ -1,4 +1,4 @@
-"""Serve the operator's page together with the API."""
+"""Serve the operator's page and the HTTP API from one server."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from scope_ptz.serve.server import serve
 from scope_ptz.serve.site.service import Site
 
 FOLDER = Path(__file__).parent
-ASSETS_PREFIX = "/console"
+ASSETS_PREFIX = "/console"  # path of the page's scripts and styles
 
 PAGE_POLICY = "; ".join(
     (
@@ -51,12 +51,12 @@ _SETTINGS: dict[str, Any] = {
 
 @asynccontextmanager
 async def serve_console(site: Site, access: Access, *, port: int = 8000) -> AsyncIterator[int]:
-    """Serve the page and the API while the context is open, and return the port.
+    """Serve the page and the API while the context is open, and yield the port.
 
-    Streamlit allows one page per process.
+    Call this at most once per process, because Streamlit supports only one page in a process.
 
     Args:
-        site: The site. This function enters its context.
+        site: The cameras, models and runs to serve. This function enters the site's context.
         access: The access rules. The server listens on their host.
         port: The port; 0 for any free one.
 
@@ -73,7 +73,7 @@ async def serve_console(site: Site, access: Access, *, port: int = 8000) -> Asyn
 
 
 class _Assets(StaticFiles):
-    """Serves the page's scripts and styles. Browsers revalidate them on each load."""
+    """Serves the page's scripts and styles. Browsers check on each load whether a file has changed."""
 
     async def get_response(self, path: str, scope: MutableMapping[str, Any]) -> Response:
         response = await super().get_response(path, scope)

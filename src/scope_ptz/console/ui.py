@@ -1,7 +1,7 @@
 """The script that Streamlit runs for each browser tab.
 
-It only mounts one component. The component sends its requests directly to the API, so a command never waits for a rerun of this
-script, and a rerun never interrupts the live picture.
+It only adds one component, which contains the whole page. The component sends its requests directly to the API, so a command never
+waits for a rerun of this script, and a rerun never interrupts the live picture.
 """
 
 from pathlib import Path

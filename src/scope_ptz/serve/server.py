@@ -19,15 +19,15 @@ from scope_ptz.virtual_camera.http.server import listen
 SHUTDOWN_S = 5
 """Seconds that open replies have to finish when the server shuts down."""
 
-MAX_CONNECTIONS = 500
+MAX_CONNECTIONS = 500  # further requests get the status 503
 
 
 @asynccontextmanager
 async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | None = None) -> AsyncIterator[int]:
-    """Serve a site while the context is open, and return the port.
+    """Serve a site while the context is open, and yield the port.
 
     Args:
-        site: The site. This function enters its context.
+        site: The cameras, models and runs to serve. This function enters the site's context.
         access: The access rules. The server listens on their host.
         port: The port; 0 for any free one.
         app: The application, wrapped in a ``Gate``; by default, the API alone.
@@ -55,7 +55,7 @@ def configuration(app: ASGIApp) -> uvicorn.Config:
         app,
         lifespan="off",
         log_config=None,
-        log_level="warning",  # if a program configures logging, as Streamlit does, uvicorn would log every connection
+        log_level="warning",  # otherwise, uvicorn logs every connection if the program configures logging, as Streamlit does
         access_log=False,
         server_header=False,
         proxy_headers=False,  # address headers from clients are not trusted
@@ -69,6 +69,7 @@ def configuration(app: ASGIApp) -> uvicorn.Config:
 
 
 async def _until_ready(server: _Server, running: asyncio.Task[None]) -> None:
+    """Wait until a server listens. If its task ends before that, raise the task's error."""
     waiting = asyncio.ensure_future(server.ready.wait())
     await asyncio.wait({waiting, running}, return_when=asyncio.FIRST_COMPLETED)
     waiting.cancel()

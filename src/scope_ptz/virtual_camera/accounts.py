@@ -8,7 +8,7 @@ from enum import IntEnum
 
 
 class Role(IntEnum):
-    """The permissions of an account. Each role includes those below it."""
+    """The permissions of an account. Each role includes the permissions of all roles with lower numbers."""
 
     VIEWER = 1
     """May view pictures and streams."""
@@ -46,5 +46,5 @@ class Accounts:
         return iter(self._accounts.values())
 
     def find(self, name: str) -> Account | None:
-        """Return an account by name."""
+        """Return an account by name; None if there is no such account."""
         return self._accounts.get(name)

@@ -1,4 +1,4 @@
-"""The virtual device that all protocols fraction: motors, presets, accounts, faults, and the image at the current pose."""
+"""The virtual device that all protocols share: motors, presets, accounts, faults, and the image at the current pose."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ class Exposure:
     Attributes:
         image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
         pose: The pose that the encoders reported at exposure.
-        time_s: Scene time of the exposure.
-        taken_s: Time of the exposure on ``time.monotonic``.
+        time_s: Scene time of the exposure, in seconds.
+        taken_s: Time of the exposure in seconds, on the clock of ``time.monotonic``.
     """
 
     image: NDArray[np.uint8]
@@ -63,7 +63,7 @@ class VirtualDevice:
     Args:
         scene: The scene.
         viewpoint: The viewpoint of the camera; by default, that of the scene's home preset.
-        name: The device's name, which discovery and clients show.
+        name: Name of the device, which clients show to their users; by default, the names of the scene and the viewpoint.
         accounts: The accounts that may use it. If there are none, it requires no password.
         clock: The scene clock, which moves the actors. It can be paused while the motors keep moving.
         head: The motors; the default is those of the AXIS M5075-G.
@@ -74,7 +74,7 @@ class VirtualDevice:
     Attributes:
         faults: The current faults; assign another ``Faults`` to change them.
         observers: Functions that are called with each new exposure, in the thread that captures it.
-        lens: Its focus and iris.
+        lens: Focus and iris of the camera.
     """
 
     def __init__(
@@ -135,11 +135,11 @@ class VirtualDevice:
 
     @property
     def destination(self) -> Pose:
-        """The target of the current move; the current pose if the camera is driven at a velocity."""
+        """The target of the last move; the current pose if the camera was driven at a velocity instead."""
         return self._motion.end or self.pose()
 
     def move(self, pose: Pose, *, speed_fraction: float = 1.0, zoom_fraction: float | None = None) -> None:
-        """Start a move to a pose. Values beyond a limit are clamped, and a stuck axis does not move.
+        """Start a move to a pose. Values beyond a limit are clamped, and an axis with the fault ``stuck`` does not move.
 
         Args:
             pose: The target.
@@ -152,10 +152,10 @@ class VirtualDevice:
         self._motion.move(replace(reachable, **stuck), self.now_s(), speed_fraction=speed_fraction, zoom_fraction=zoom_fraction)
 
     def drive(self, velocity: Velocity, *, timeout_s: float | None = None, sent_s: float | None = None) -> bool:
-        """Move continuously. The command is dropped if it was sent before the last ``stop`` and arrived after it.
+        """Move continuously. A command that was sent before the last ``stop``, but arrives after it, is dropped.
 
         Args:
-            velocity: Velocities; those above the top speed are reduced to it.
+            velocity: The velocities. Those above the top speed of an axis are reduced to it.
             timeout_s: Seconds of motor time after which the device stops on its own; None for never.
             sent_s: The time at which the client sent the command, in Unix seconds, if known.
 
@@ -176,12 +176,12 @@ class VirtualDevice:
 
     @property
     def velocity(self) -> Velocity:
-        """The current velocity of a driven head."""
+        """The current velocity of a head that ``drive`` moves; zero during a move to a pose."""
         return self._motion.velocity(self.now_s())
 
     @property
     def commanded_velocity(self) -> Velocity:
-        """The velocity that the drive command in effect requested; zero if the head is not being driven."""
+        """The velocity that the last ``drive`` command requested; zero after its timeout, and during a move to a pose."""
         return self._motion.driven_at(self.now_s())
 
     def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
@@ -204,9 +204,9 @@ class VirtualDevice:
             self._motion.brake(now_s)
 
     def reboot(self) -> None:
-        """Return to the home position immediately and forget earlier stop commands, as after a reboot.
+        """Return to the home position immediately, as after a reboot. Presets are kept; focus and iris become automatic.
 
-        Presets are kept; focus and iris become automatic.
+        Earlier stop commands no longer cause ``drive`` commands to be dropped.
         """
         self._motion.halt(self.home, self.now_s())
         self.lens = VirtualLens(self.now_s)
@@ -238,11 +238,15 @@ class VirtualDevice:
         return self._presets[number]
 
     def save_preset(self, name: str, *, number: int | None = None) -> DevicePreset:
-        """Store the current pose. A preset of the same name or number is replaced.
+        """Store the current pose as a preset. A preset with this number is replaced.
+
+        Args:
+            name: The name.
+            number: The number; by default, that of the preset with this name, or else the first free one.
 
         Raises:
             InputError: The name is empty, too long, or contains unprintable characters.
-            CameraError: The device cannot store more presets.
+            CameraError: No number is free, or the number is out of range.
         """
         check_preset_name(name)
         if number is None:
@@ -279,13 +283,17 @@ class VirtualDevice:
         self.home = self.pose()
 
     def prefetch(self) -> Prefetch:
-        """Load the viewpoint in the background, so that no later exposure has to wait for a file."""
+        """Read the files of the viewpoint in the background, so that later exposures do not have to wait for them."""
         return Prefetch(self.scene.viewpoint(self.viewpoint), self.width, self.optics, self.limits)
 
     def expose(self, width: int | None = None, height: int | None = None) -> Exposure:
-        """Capture the image at the current pose. This blocks for one re-projection.
+        """Capture the image at the current pose. This blocks until the image is rendered.
 
         The horizontal field of view depends only on the zoom, not on the image size.
+
+        Args:
+            width: Width of the image in pixels; by default, the full size.
+            height: Height of the image in pixels; by default, the full size.
         """
         faults = self._faults
         if faults.picture == "frozen" and self._frozen is not None:

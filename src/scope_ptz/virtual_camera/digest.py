@@ -19,10 +19,11 @@ NONCE_LIFETIME_S = 300.0
 """How long a nonce is accepted, in seconds. After that, a correct response gets a new challenge that is marked stale."""
 
 _ALGORITHMS: dict[str, Callable[[bytes], hashlib._Hash]] = {"SHA-256": hashlib.sha256, "MD5": hashlib.md5}
-# A client that reads only one challenge either takes the first and supports SHA-256, or takes the last and supports MD5 (FFmpeg).
+# Challenges are sent in this order. A client that reads only one of them reads either the first, and then supports SHA-256, or the
+# last, and then needs MD5 (FFmpeg).
 
 _PARAMETER = re.compile(r'([\w*-]+)\s*=\s*(?:"((?:[^"\\]|\\.)*)"|([^\s,"]+))\s*(?:,|$)')
-_NONCE = Struct("!d12s")  # time of issue, random bytes
+_NONCE = Struct("!d12s")  # the content of a nonce: its time of issue and random bytes; a signature follows
 _SIGNATURE_BYTES = 16
 _WINDOW = 64  # nonce counts up to this far below the highest one are accepted, because requests of a client may arrive out of order
 
@@ -33,7 +34,7 @@ class Verdict:
 
     Attributes:
         account: The authenticated account; None if the request must be refused.
-        stale: Whether a refused client need only repeat its request with a new nonce.
+        stale: Whether the request is refused only because of its nonce, so that the client can repeat it with a new one.
     """
 
     account: Account | None = None
@@ -47,10 +48,10 @@ class DigestAuthenticator:
 
     Args:
         accounts: The accounts that may sign in.
-        realm: The authentication realm, which clients show.
-        qop: Whether ``qop=auth`` is offered and required. Many RTSP clients do not support it.
+        realm: The authentication realm, which clients show to their users.
+        qop: Whether ``qop=auth``, which detects replayed requests, is offered and required. Many RTSP clients do not support it.
         nonce_lifetime_s: Seconds for which a nonce is accepted.
-        now_s: The clock that determines the age of nonces, in seconds.
+        now_s: Returns the current time in seconds, to determine the age of nonces.
     """
 
     def __init__(
@@ -77,10 +78,10 @@ class DigestAuthenticator:
         """Check the ``Authorization`` header of a request.
 
         Args:
-            authorization: The value of the header, None if there is none.
+            authorization: The value of the header; None if there is none.
             method: The method of the request, such as ``GET`` or ``DESCRIBE``.
-            uri: The request target (in HTTP, the path and query). With None, any URI in the response is accepted, because RTSP
-                clients send the URI of the stream in requests for its tracks.
+            uri: The request target (in HTTP, the path and query), which the URI in the header must match. None accepts any URI,
+                for RTSP: in requests for a track, clients authenticate with the URI of the whole stream.
         """
         answer = _parse(authorization or "")
         algorithm = _ALGORITHMS.get(answer.get("algorithm", "MD5").upper())
@@ -117,7 +118,7 @@ class DigestAuthenticator:
         return urlsafe_b64encode(content + self._signature(content)).decode()
 
     def _issued_s(self, nonce: str) -> float | None:
-        """Return the time at which this server issued a nonce; None if it did not issue it."""
+        """Return the time at which this server issued a nonce; None if another server issued it or it is invalid."""
         try:
             content = urlsafe_b64decode(nonce.encode())
         except ValueError:
@@ -131,7 +132,7 @@ class DigestAuthenticator:
         return hmac.digest(self._key, content, "sha256")[:_SIGNATURE_BYTES]
 
     def _is_first_use(self, nonce: str, issued_s: float, answer: dict[str, str]) -> bool:
-        """Return whether a nonce count is new. Without ``qop`` there is no count, and a nonce may be used again."""
+        """Return whether this is the first request with its nonce and count. Without ``qop``, there is no count to check."""
         if "qop" not in answer:
             return True
         try:
@@ -147,7 +148,13 @@ class DigestAuthenticator:
 
 @dataclass(slots=True)
 class _NonceCounts:
-    """The counts that were used with a nonce: the highest one, and a bit for each of those just below it."""
+    """The counts that were used with a nonce.
+
+    Attributes:
+        issued_s: The time at which the nonce was issued.
+        highest: The highest count so far.
+        seen: Bit ``k`` is set if the count ``highest - k`` was used.
+    """
 
     issued_s: float
     highest: int = 0
@@ -177,7 +184,10 @@ def _parse(authorization: str) -> dict[str, str]:
 
 
 def _same_target(answered: str, target: str) -> bool:
-    """Return whether the URI in a response matches the request target. Some clients sign the full URL instead of path and query."""
+    """Return whether the URI in an ``Authorization`` header matches the request target.
+
+    Some clients send the full URL there instead of the path and query.
+    """
     if answered == target:
         return True
     parts = urlsplit(answered)

@@ -22,7 +22,7 @@ class Faults(BaseModel):
         picture: The image fault: ``truncated`` JPEGs, a ``frozen`` image, a ``black`` image, or a wrong ``size``; empty for none.
         stuck: Axes whose motors do not turn.
         drift_dps: Degrees per second by which the image drifts away from the pose that the encoders report.
-        move_status: The fault of the reported move status: ``lying`` (always idle) or ``missing``; empty for none.
+        move_status: The fault of the move status: ``lying`` (always idle) or ``missing`` (not reported); empty for none.
         down: Whether the camera is off the network, as during a reboot.
         clock_skew_s: Seconds by which the camera's clock is ahead.
     """
@@ -42,7 +42,7 @@ class Faults(BaseModel):
 
 
 def checked_faults(content: Mapping[str, object]) -> Faults:
-    """Validate faults that are given by name, and return them.
+    """Return the faults from a mapping of their names to values, after checking both.
 
     Raises:
         InputError: A fault is unknown or has an invalid value.

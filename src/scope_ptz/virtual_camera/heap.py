@@ -9,17 +9,17 @@ import anyio
 
 from scope_ptz.simulator.sheets.memory import release_free_memory
 
-RELEASE_EVERY_S = 60.0
+RELEASE_EVERY_S = 60.0  # seconds between two releases of freed memory
 
-_M_ARENA_MAX = -8  # of mallopt in the GNU C library
+_M_ARENA_MAX = -8  # number of the parameter M_ARENA_MAX in calls of mallopt (GNU C library)
 
 
 def use_one_heap() -> bool:
     """Make all threads of this program share one heap. Call it before threads are started.
 
     The GNU C library gives each thread its own heap. Short-lived pictures fragment these heaps, so the memory use of a camera with
-    streams grows by about 100 MB within minutes. One heap takes no more processor time. With another C library, and on
-    other systems, nothing changes.
+    streams grows by about 100 MB within minutes. Sharing one heap takes no additional processor time. With another C library or on
+    another system, nothing changes.
 
     Returns:
         Whether the setting was accepted.

@@ -11,7 +11,7 @@ from scope_ptz.virtual_camera.device import VirtualDevice
 BRAND = "AXIS"
 PRODUCT = "M5075-G"
 FIRMWARE = "11.11.0"
-"""The version of AXIS OS whose interface the virtual camera implements."""
+"""The version of AXIS OS that the virtual camera reports, and whose interfaces it implements."""
 
 
 def serial_number(device: VirtualDevice) -> str:

@@ -17,17 +17,20 @@ AUTO_IRIS = 0.5
 """The iris opening for correct exposure of the scene."""
 
 TRAVEL_S = 3.0
-"""Time that the focus takes to travel its whole range, in seconds."""
+"""Time in seconds that the focus takes to travel its whole range at top speed."""
 
 _BLUR_PX = 12.0  # standard deviation of the blur for a defocus of the whole range, at 1x in an image 1280 pixels wide
-_MAX_BLUR_PX = 8.0
+_MAX_BLUR_PX = 8.0  # maximum standard deviation of the blur, in an image 1280 pixels wide
 _STOPS = 4.0  # stops (factors of two) of light from the closed to the open iris
-_GAMMA = 2.2
+_GAMMA = 2.2  # exponent that converts pixel values to light
 
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """Modes, the iris, and the motion of the focus: start, speed (fractions of the range per second) and end."""
+    """The state of a lens: its modes, its manual iris opening, and the last motion of the focus.
+
+    The motion begins at ``start`` at the time ``started_s``, and has a ``speed`` in fractions of the range per second.
+    """
 
     autofocus: bool = True
     autoiris: bool = True
@@ -44,7 +47,7 @@ class VirtualLens:
     Commands come from one thread. ``VirtualDevice.expose`` may run in another one at the same time.
 
     Args:
-        now_s: A function that returns the time of the motors in seconds.
+        now_s: Returns the motors' time in seconds.
     """
 
     def __init__(self, now_s: Callable[[], float]) -> None:
@@ -76,7 +79,7 @@ class VirtualLens:
         return self.focus != self._state.end
 
     def set_autofocus(self, *, on: bool) -> None:
-        """Turn autofocus on, which focuses immediately, or off, which keeps the current focus."""
+        """Turn autofocus on, which starts to focus at once, or off, which keeps the current focus."""
         if on:
             self._travel(SHARP_FOCUS, 1 / TRAVEL_S, autofocus=True)
         else:
@@ -87,7 +90,11 @@ class VirtualLens:
         self._travel(_clamped(position), 1 / TRAVEL_S)
 
     def drive_focus(self, speed: float) -> None:
-        """Move the focus to an end of its range, at a signed fraction of its top speed (-1 to 1). This turns autofocus off."""
+        """Move the focus towards the far (``speed`` above 0) or near end of its range. This turns autofocus off.
+
+        Args:
+            speed: Signed fraction of the top speed, from -1 to 1; 0 stops the focus.
+        """
         if not speed:
             self.stop_focus()
         else:
@@ -102,7 +109,7 @@ class VirtualLens:
         self._state = replace(self._state, autoiris=on, iris=self.iris)
 
     def set_iris(self, opening: float) -> None:
-        """Set the iris within its range. This turns the automatic iris off."""
+        """Open the iris to a fraction of its range. This turns the automatic iris off."""
         self._state = replace(self._state, autoiris=False, iris=_clamped(opening))
 
     def apply(self, image: NDArray[np.uint8], zoom: float) -> NDArray[np.uint8]:

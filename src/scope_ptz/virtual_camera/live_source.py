@@ -1,4 +1,4 @@
-"""The live picture of a device, exposed once per tick for all streams while at least one client watches."""
+"""The live picture of a device. While at least one client watches, each frame is exposed once for all streams."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
 class LiveSource:
     """Exposes frames at a constant rate and passes the newest one to every subscriber.
 
-    A slow subscriber misses frames and never delays the others. The source runs inside ``run``, in the caller's event loop.
+    A slow subscriber misses frames and never delays the others. Frames are exposed only while ``run`` is running.
 
     Args:
         device: The camera.
         rate_hz: Frames per second.
-        latency_s: Time in seconds from exposure until a frame is delivered, as in the encoder of a real camera.
+        latency_s: Simulated delay in seconds from the exposure of a frame to its delivery, like that of a real camera's encoder.
     """
 
     def __init__(self, device: VirtualDevice, *, rate_hz: float = 25.0, latency_s: float = 0.0) -> None:
         self.device, self.rate_hz, self.latency_s = device, rate_hz, latency_s
         self.late_frames = 0
-        """Number of ticks that were skipped because an exposure took too long."""
+        """Number of frames that were skipped because earlier exposures took too long."""
         self._newest: Exposure | None = None
         self._number = 0
         self._changed = anyio.Event()

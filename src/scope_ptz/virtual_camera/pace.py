@@ -1,10 +1,10 @@
-"""Select frames for a stream that is slower than the camera's live picture."""
+"""Select frames for a stream that has a lower frame rate than the camera's live picture."""
 
 from __future__ import annotations
 
 
 class Pace:
-    """Selects frames of the live picture so that a stream keeps its own rate.
+    """Selects the frames of the live picture that belong to a stream, so that the stream has its own frame rate.
 
     Args:
         source_hz: Frames per second of the live picture.
@@ -19,8 +19,11 @@ class Pace:
     def accepts(self, taken_s: float) -> bool:
         """Return whether the stream includes the frame that was taken at ``taken_s``.
 
-        Call this once for each frame, in order. A frame may be up to half a frame interval early. Otherwise, a stream could not
-        reach a rate that does not divide the camera's rate.
+        Call this once for each frame, in order. A frame may be early by up to half a frame interval of the live picture. Otherwise,
+        a stream could not reach a rate that does not divide the camera's rate.
+
+        Args:
+            taken_s: Time of the exposure in seconds. Any clock will do, as long as it is the same for all frames.
         """
         if not self._period_s:
             return True

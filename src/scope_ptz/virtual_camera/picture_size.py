@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.device import VirtualDevice
 
-MIN_SIDE_PX = 16
+MIN_SIDE_PX = 16  # minimum width and height of a requested image, in pixels
 
 
 def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
     """Parse ``WIDTHxHEIGHT``. An empty string means the camera's full size.
 
     Raises:
-        InputError: The text has another form, or the size is larger than the camera's.
+        InputError: The text has another form, or the size is too small or larger than the camera's.
     """
     if not text:
         return device.width, device.height

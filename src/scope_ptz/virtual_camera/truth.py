@@ -12,14 +12,14 @@ KEPT_EXPOSURES = 3000
 """Maximum number of stored exposures: two minutes at 25 frames per second."""
 
 TOLERANCE_S = 0.001
-"""Default tolerance of requested times in seconds. Times on the network have a resolution of microseconds."""
+"""Default tolerance in seconds for finding an exposure by its time. Times on the network have a resolution of microseconds."""
 
 
 class TruthLog:
-    """Stores the pose and time of recent exposures.
+    """Stores the origin (scene, viewpoint, pose and scene time) of recent exposures, to be looked up by time.
 
     Args:
-        device: The camera. Its exposures for all protocols are stored.
+        device: The camera. Exposures for all protocols are stored.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
@@ -38,7 +38,8 @@ class TruthLog:
 
         Args:
             taken_s: The time of the exposure in Unix seconds. The nearest exposure is returned.
-            time_s: The scene time of the exposure. While scene time is paused, the newest exposure at that time is returned.
+            time_s: The scene time of the exposure. Several exposures can have the same one, because scene time can be paused;
+                without ``taken_s``, the newest of them is returned.
             within_s: Maximum difference from ``taken_s`` in seconds.
         """
         fitting = [
@@ -51,7 +52,7 @@ class TruthLog:
         return min(fitting, key=lambda found: abs(found[0] - taken_s), default=None)
 
     def origin(self, exposure: Exposure) -> FrameOrigin:
-        """Return the origin of an exposure."""
+        """Return the origin of an exposure: scene, viewpoint, pose and scene time."""
         return FrameOrigin(self._device.scene.name, self._device.viewpoint, exposure.pose, exposure.time_s)
 
     def _note(self, exposure: Exposure) -> None:

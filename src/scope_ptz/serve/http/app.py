@@ -1,4 +1,4 @@
-"""The ASGI application of the API, alone or next to the console."""
+"""The ASGI application of the HTTP API, to be served alone or together with the console."""
 
 from __future__ import annotations
 
@@ -51,10 +51,10 @@ _MODULES = (
 
 
 def api_application(site: Site, access: Access) -> FastAPI:
-    """Return the API, to be mounted at ``/api`` behind a ``Gate``. It needs no lifespan; the caller enters ``site``.
+    """Return the API, to be mounted at ``/api`` behind a ``Gate``.
 
-    Its schema is at ``/api/v1/openapi.json``. The documentation pages of FastAPI are disabled, because they load scripts from other
-    hosts.
+    The caller must enter the context of ``site``; the application has no ASGI lifespan of its own. Its schema is at
+    ``/api/v1/openapi.json``. The documentation pages of FastAPI are disabled, because they load scripts from other hosts.
     """
     app = FastAPI(
         title="SCOPE",

@@ -1,4 +1,4 @@
-"""The bodies of requests and replies about evaluations."""
+"""Request and response bodies of the routes for evaluations."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.serve.http.models import Body, Identifier, whole_number
 from scope_ptz.serve.site.benchmark.evaluation_folder import State
 from scope_ptz.serve.site.benchmark.evaluations import EvaluationStatus, ReportState
 
-MAX_LIMIT = 10_000
+MAX_LIMIT = 10_000  # maximum number of tasks that a request may ask for
 Split = Literal["core", "lite", "paraphrase", "reaction", "unseen", "all"]
 
 
@@ -43,10 +43,10 @@ class BenchmarkModel(BaseModel):
 
 
 class EvaluationStart(Body):
-    """A new evaluation.
+    """The evaluation to start.
 
     Attributes:
-        pair: A pair of the server; by default, the first one.
+        pair: A pair of the server; by default, the default pair.
         split: A split of the dataset.
         limit: Maximum number of tasks, sampled evenly; by default, all.
         categories: The categories to evaluate; all if empty.
@@ -59,7 +59,11 @@ class EvaluationStart(Body):
 
 
 class ProgressModel(BaseModel):
-    """The progress of an evaluation: its counts, its scores so far with 95% intervals, and the running tasks."""
+    """The progress of an evaluation: its counts of runs, its scores so far with 95% intervals, and the running tasks.
+
+    ``broken`` counts the runs with an infrastructure failure. ``micro`` is the fraction of correct runs, and ``macro`` the mean of
+    the fractions of the categories. ``seconds_left`` is the estimated remaining time.
+    """
 
     runs: int
     done: int
@@ -75,7 +79,11 @@ class ProgressModel(BaseModel):
 
 
 class EvaluationModel(BaseModel):
-    """An evaluation. ``message`` is the error if it failed; ``report_message`` is the error if writing the report failed."""
+    """An evaluation.
+
+    ``actor`` is the name of the client that started it, and ``resumed`` the number of times that it was resumed. ``message`` is the
+    error if the evaluation failed, and ``report_message`` the error if writing the report failed; otherwise, they are empty.
+    """
 
     id: str
     pair: str
@@ -111,7 +119,7 @@ class EvaluationModel(BaseModel):
 
 
 class TrialModel(BaseModel):
-    """A finished run of a task. ``sample`` identifies the run within its evaluation."""
+    """A finished run of a task. ``sample`` identifies the run within its evaluation. ``headline`` is the verdict."""
 
     sample: str
     task: str
@@ -146,7 +154,11 @@ class TrialModel(BaseModel):
 
 
 class TrialList(BaseModel):
-    """A page of runs. ``count`` is the number of runs that match the filters. ``error_modes`` has the counts of all runs."""
+    """A page of runs.
+
+    ``count`` is the number of runs that match the filters. ``error_modes`` counts the runs of the whole evaluation with each error
+    mode.
+    """
 
     trials: list[TrialModel]
     count: int
@@ -154,7 +166,7 @@ class TrialList(BaseModel):
 
 
 class CheckModel(BaseModel):
-    """The result of a check. ``passed`` is null if the check is undecided."""
+    """The result of one check of an answer or a run. ``passed`` is null if the check is undecided."""
 
     name: str
     passed: bool | None
@@ -169,7 +181,7 @@ class StepPicture(BaseModel):
 
 
 class TrialStep(BaseModel):
-    """A tool call of a run."""
+    """A tool call of a run. ``message`` is the message of its result, or the error if the call failed."""
 
     tool: str
     arguments: dict[str, Any]
@@ -180,7 +192,11 @@ class TrialStep(BaseModel):
 
 
 class TrialDetails(BaseModel):
-    """A run with its checks and steps. ``missing`` is the reason why the steps cannot be read; empty if they can."""
+    """A run with its checks and steps.
+
+    ``demands`` lists what the run was required to do in addition to giving the expected answer. ``start_picture`` is the name of
+    the picture from before the first step. ``missing`` is the reason why the steps cannot be read; empty if they can.
+    """
 
     trial: TrialModel
     demands: list[str]

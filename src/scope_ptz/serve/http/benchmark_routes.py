@@ -33,6 +33,7 @@ REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
 )
 """The content security policy of reports. Reports have no scripts and load only their own pictures."""
+
 _MEDIA_TYPES = {"tasks": "text/html", "frames": "image/jpeg", "tables": "text/csv"}
 
 router = APIRouter(prefix="/benchmark", tags=["benchmark"])
@@ -76,7 +77,7 @@ async def start_evaluation(site: SiteDep, client: RunOperator, body: EvaluationS
 
 @router.get("/evaluations/{evaluation}", responses=_ERRORS)
 async def evaluation_state(site: SiteDep, client: Viewer, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
-    """Return an evaluation: its state, its scores so far, and the estimated remaining time."""
+    """Return the state of an evaluation, its scores so far, and the estimated remaining time."""
     return await _status(site, evaluation)
 
 

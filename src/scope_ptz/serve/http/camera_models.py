@@ -1,4 +1,4 @@
-"""The bodies of requests and replies about cameras, scene time and virtual cameras."""
+"""Request and response bodies of the routes for camera cards, scene time and virtual cameras."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class SceneTimeModel(BaseModel):
 
 
 class SceneTimeBody(Body):
-    """A change of scene time. Omitted fields stay the same."""
+    """A change to the scene time. Omitted fields stay the same."""
 
     time_s: Annotated[float, Field(ge=0.0, le=MAX_TIME_S, allow_inf_nan=False), BeforeValidator(_number)] | None = None
     playing: bool | None = None
@@ -47,9 +47,9 @@ class VirtualCameraBody(Body):
 
 
 class VirtualCameraModel(BaseModel):
-    """A virtual camera. Its addresses are null while it is off.
+    """A virtual camera. While it is off, all fields but ``on`` are null.
 
-    Only the reply to the request that turns it on contains ``password``.
+    Only the reply to the request that turns the camera on contains ``password``.
     """
 
     on: bool
@@ -72,7 +72,7 @@ class VirtualCameraModel(BaseModel):
 
 
 class SceneModel(BaseModel):
-    """The scene of a simulated camera: its viewpoints, and the numbers of its presets and moving objects."""
+    """The scene of a simulated camera: the names of its viewpoints, and how many presets and moving objects it has."""
 
     name: str
     title: str
@@ -84,7 +84,8 @@ class SceneModel(BaseModel):
 class HealthModel(BaseModel):
     """Whether a camera works.
 
-    ``state`` is "connected" if it answers, "ready" if it will be opened on first use, and "failed" with ``problem``.
+    ``state`` is "connected" if the camera answers, "ready" if it will be opened on first use, and "failed" if it cannot be used.
+    ``problem`` is the reason for a failure; null otherwise.
     """
 
     state: HealthState
@@ -94,8 +95,8 @@ class HealthModel(BaseModel):
 class CameraCardModel(BaseModel):
     """The card of a camera in the camera list.
 
-    ``configured`` is true for a camera in ``scope.yaml``. ``scene_time`` is null until a simulated camera is used. ``has_picture``
-    is true if there is a thumbnail.
+    ``configured`` is true for a camera in ``scope.yaml``. ``scene_time`` is null for a camera that is not simulated or has not been
+    opened yet. ``has_picture`` is true if there is a thumbnail.
     """
 
     name: str

@@ -73,7 +73,7 @@ async def camera_state(site: SiteDep, station: StationDep, client: Viewer) -> Ca
 
 
 def control_model(station: Station, client: Client) -> ControlModel:
-    """Return the client that controls a camera and the requests for control, as the given client sees them."""
+    """Return who controls a camera and who asks for control, in the form of a reply to ``client``."""
     control, holder = station.control, station.control.holder
     return ControlModel(
         holder=holder.name if holder else None,

@@ -22,7 +22,7 @@ router = APIRouter(prefix="/cameras/{camera}", tags=["cameras"])
 async def camera_card(site: SiteDep, station: StationDep, client: Viewer) -> CameraCardModel:
     """Return the kind and the abilities of a camera, and check whether it works. A failure is part of the reply.
 
-    The check connects to a device, but does not open a scene.
+    The check connects to a device, but does not open a simulated camera.
     """
     card = await site.cards.card(station)
     opened, scene, problem = station.open_camera, card.scene, card.problem

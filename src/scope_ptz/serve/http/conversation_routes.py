@@ -1,4 +1,4 @@
-"""Routes for conversations. A conversation belongs to the name of a token; other clients cannot see it."""
+"""Routes for conversations. Only clients whose token has the same name as the one that started a conversation can see it."""
 
 from __future__ import annotations
 

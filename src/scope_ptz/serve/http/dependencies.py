@@ -1,4 +1,4 @@
-"""Dependencies of the request handlers: the site, the client, and a camera by name."""
+"""FastAPI dependencies of the request handlers: the site, the client that sends the request, and a camera by name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from scope_ptz.serve.site.station import Station
 
 
 def site_of(connection: HTTPConnection) -> Site:
-    """Return the site of the application."""
+    """Return the site that the application serves."""
     site: Site = connection.app.state.site
     return site
 
@@ -70,7 +70,11 @@ def _station(request: Request, camera: Annotated[str, Path(max_length=120)]) -> 
 
 
 def station_of(socket: WebSocket, camera: str) -> Station:
-    """Return a camera for a WebSocket. Raises ``UnknownNameError`` if the site has no such camera."""
+    """Return a camera by name, for a WebSocket.
+
+    Raises:
+        UnknownNameError: The site has no such camera.
+    """
     return site_of(socket).station(camera)
 
 
@@ -83,10 +87,10 @@ SiteDep = Annotated[Site, Depends(_site)]
 AccessDep = Annotated[Access, Depends(_access)]
 StationDep = Annotated[Station, Depends(_station)]
 Viewer = Annotated[Client, Depends(_counted("read", operates=False))]
-"""A client that watches."""
+"""A client of any role, for requests that only read."""
 Operator = Annotated[Client, Depends(_counted("command", operates=True))]
-"""A client that sends commands."""
+"""A client with the operator role, for requests that are commands."""
 RunOperator = Annotated[Client, Depends(_counted("run", operates=True))]
-"""A client that starts a run."""
+"""A client with the operator role, for requests that start a run. Their rate limit is lower."""
 StoppingOperator = Annotated[Client, Depends(_operator)]
-"""A client that stops a camera or a run. These requests have no rate limit."""
+"""A client with the operator role, for requests that stop a camera, a run or an evaluation. They have no rate limit."""

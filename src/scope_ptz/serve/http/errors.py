@@ -1,4 +1,4 @@
-"""Error replies. All have the same form: a code for programs and a message for people."""
+"""Replies to requests that fail. All have the same form: a code for programs and a message for people."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from scope_ptz.serve.site.errors import (
     TooManyRequestsError,
 )
 
-# The first matching class applies.
+# Errors with their HTTP status and code. The first class that matches an error applies.
 _STATUS: tuple[tuple[type[ScopeError], int, str], ...] = (
     (NotInControlError, 409, "not_in_control"),
     (BusyError, 409, "busy"),
@@ -59,11 +59,12 @@ _STATUS: tuple[tuple[type[ScopeError], int, str], ...] = (
     (PlannerError, 503, "planner_failed"),
 )
 
+# Codes of errors that the framework raises, by HTTP status.
 _CODES = {400: "malformed", 401: "sign_in", 403: "not_allowed", 404: "unknown", 405: "method", 413: "too_large", 415: "media_type"}
 
 
 def responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Return the OpenAPI entries for an operation's error replies: the given statuses, and those common to all operations."""
+    """Return the OpenAPI entries for the error replies of an operation: the given statuses, and those common to all operations."""
     return {status: {"model": ErrorReply} for status in (400, 401, 403, 422, 429, *statuses)}
 
 
@@ -82,7 +83,7 @@ def error_reply(status: int, code: str, message: str, headers: dict[str, str] | 
 
 
 def status_of(error: Exception) -> tuple[int, str]:
-    """Return the status of a reply with an error, and the code of the error."""
+    """Return the HTTP status and the code with which an error is reported."""
     return next(((status, code) for kind, status, code in _STATUS if isinstance(error, kind)), (500, "failed"))
 
 
@@ -109,7 +110,7 @@ async def http_error(request: Request, error: Exception) -> JSONResponse:
 
 
 def _methods(request: Request) -> list[str]:
-    """Return all methods that a path accepts. The framework reports only the methods of one operation."""
+    """Return all HTTP methods that the path of a request accepts. The framework itself reports only those of one operation."""
     methods: set[str] = set()
     for route in request.app.routes:
         match, _ = route.matches(request.scope)

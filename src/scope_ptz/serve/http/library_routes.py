@@ -1,4 +1,4 @@
-"""Routes for stored runs: lists, export, pictures and feedback."""
+"""Routes for stored runs: list, export and keep them, get their pictures, and give feedback."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ MAX_EXPORT = 10_000
 """Maximum number of runs in one export."""
 
 MAX_DRAFTS = 100
-"""Maximum number of runs that are read for a list of drafts."""
+"""Maximum number of runs that are converted to drafts of tasks for one request."""
 
 router = APIRouter(tags=["library"])
 RunId = Annotated[str, Path(min_length=1, max_length=120)]
@@ -231,7 +231,7 @@ async def filmstrip(site: SiteDep, client: Viewer, run: RunId) -> Response:  # n
 
 @router.put("/runs/{run}/kept", status_code=204, responses=_ERRORS)
 async def keep_run(site: SiteDep, client: Operator, run: RunId, body: Kept) -> Response:  # noqa: ARG001 - checks the token
-    """Set whether a run is kept when old runs are removed."""
+    """Set whether to keep a run when old runs are removed."""
     await site.journal.in_thread(partial(keep, site.journal.store.database, run, kept=body.kept))
     return Response(status_code=204)
 

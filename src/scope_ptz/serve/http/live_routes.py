@@ -23,7 +23,7 @@ from scope_ptz.serve.site.station import Station
 
 BOUNDARY = "scopeframe"
 ACK_TIMEOUT_S = 30.0
-"""Seconds without an acknowledgement after which a client is disconnected."""
+"""Seconds without an acknowledgement after which the client of a WebSocket is disconnected."""
 
 router = APIRouter(prefix="/cameras/{camera}", tags=["live"])
 Width = Annotated[int, Query(ge=160, le=3840, description="Maximum width in pixels")]
@@ -125,7 +125,7 @@ class _Watcher:
                 await self._send_state()
                 if picture is None:
                     continue
-                # Frames that arrive before the acknowledgement are skipped, except the newest one, so that no time is lost.
+                # Of the frames that arrive before the acknowledgement, only the newest one is sent, as soon as the client is ready.
                 if not self._acknowledged.is_set():
                     await asyncio.wait_for(self._acknowledged.wait(), ACK_TIMEOUT_S)
                     if picture is not self._station.live.newest:
@@ -144,7 +144,7 @@ class _Watcher:
             self._acknowledged.set()
 
     async def _send_state(self) -> None:
-        """Send the camera's state, such as its run, control and presets, if it has changed."""
+        """Send the camera's state, such as its run and who controls it, if it has changed since it was last sent."""
         station = self._station
         holder = station.control.holder
         state = {

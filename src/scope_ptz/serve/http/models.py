@@ -38,7 +38,7 @@ def whole_number(value: object) -> object:
 
 
 Moment = Annotated[datetime, BeforeValidator(_check_moment)]
-"""A date and time in a query."""
+"""A date and time in the query of a request."""
 
 
 class Body(BaseModel):
@@ -48,7 +48,7 @@ class Body(BaseModel):
 
 
 class Problem(BaseModel):
-    """The reason for an error reply. ``code`` is for programs, ``message`` for people."""
+    """The reason why a request failed. ``code`` is for programs, ``message`` for people."""
 
     code: str
     message: str
@@ -82,7 +82,8 @@ class PoseModel(BaseModel):
 class ArrivalModel(BaseModel):
     """The result of a move.
 
-    ``clamped`` names the axes that a limit of the device stopped. ``limited_by`` describes any other limit that stopped the camera.
+    ``pose`` is the pose at which the camera arrived. ``clamped`` names the axes that were stopped by a limit of the device.
+    ``limited_by`` describes any other limit that stopped the camera; it is empty if there was none.
     """
 
     pose: PoseModel
@@ -96,7 +97,7 @@ class ArrivalModel(BaseModel):
 
 
 class Move(Body):
-    """An absolute pose. Omitted axes do not move."""
+    """The absolute pose to go to. Omitted axes do not move."""
 
     pan_deg: Finite | None = None
     tilt_deg: Finite | None = None
@@ -104,7 +105,7 @@ class Move(Body):
 
 
 class Centre(Body):
-    """A point of a picture, in fractions of its width and height from the top left.
+    """The point of a picture to centre, as fractions of its width and height from the top left.
 
     ``pose`` is the pose of the picture that was clicked; by default, the current pose.
     """
@@ -115,7 +116,10 @@ class Centre(Body):
 
 
 class FrameBox(Body):
-    """A box in a picture that should fill the view, in fractions of the picture's size. ``pose`` is as in ``Centre``."""
+    """The box in a picture that should fill the view, as fractions of the picture's width and height from the top left.
+
+    ``pose`` is the pose of the picture; by default, the current pose.
+    """
 
     x_min: Unit
     y_min: Unit
@@ -125,7 +129,10 @@ class FrameBox(Body):
 
 
 class Drive(Body):
-    """Velocities in degrees per second and octaves of magnification per second. The camera stops after ``timeout_s`` seconds."""
+    """Velocities in degrees per second and, for the zoom, in octaves of magnification per second.
+
+    The camera stops after ``timeout_s`` seconds.
+    """
 
     pan_dps: Finite = 0.0
     tilt_dps: Finite = 0.0
@@ -134,8 +141,9 @@ class Drive(Body):
 
 
 class PresetModel(BaseModel):
-    """A preset. ``pose`` and ``viewpoint`` are null if they are not known yet or do not apply.
+    """A preset.
 
+    ``pose`` and ``viewpoint`` are null if they are not known yet; ``viewpoint`` is also null for a camera that is not simulated.
     ``has_picture`` is true if there is a thumbnail.
     """
 
@@ -171,7 +179,7 @@ class PresetName(Body):
 
 
 class ControlRequestModel(BaseModel):
-    """A request for control. ``client`` identifies the client in the answer."""
+    """A request for control. ``client`` is the key to pass in the answer, ``name`` the name of the client that asks."""
 
     client: str
     name: str
@@ -179,9 +187,10 @@ class ControlRequestModel(BaseModel):
 
 
 class ControlModel(BaseModel):
-    """The control of a camera.
+    """Which client controls a camera, and which clients ask for control.
 
-    ``holder`` is the name of the client that has control; null if nobody has it. ``mine`` is true if the requesting client has it.
+    ``holder`` is the name of the client that has had control since ``since``; both are null if nobody has it. ``mine`` is true if
+    the client that sent this request has control.
     """
 
     holder: str | None
@@ -191,14 +200,14 @@ class ControlModel(BaseModel):
 
 
 class ControlAnswer(Body):
-    """The holder's answer to a client that requests control."""
+    """The answer of the client in control to a client that asks for control. ``grant`` hands control over."""
 
     client: Annotated[str, Field(min_length=1, max_length=200)]
     grant: bool
 
 
 class LimitsModel(BaseModel):
-    """The limits of a camera."""
+    """The limits of a camera's poses. With ``pan_endless``, the camera can turn through full circles."""
 
     min_pan_deg: float
     max_pan_deg: float
@@ -210,7 +219,7 @@ class LimitsModel(BaseModel):
 
 
 class SpeedModel(BaseModel):
-    """The top speed of a camera. An axis with 0 cannot be driven."""
+    """The top speed of a camera, in the units of ``Drive``. An axis with 0 cannot be driven."""
 
     pan_dps: float
     tilt_dps: float
@@ -218,7 +227,11 @@ class SpeedModel(BaseModel):
 
 
 class CameraSummary(BaseModel):
-    """A camera of the site. ``open`` is true if it has been used since the server started."""
+    """A camera of the site.
+
+    ``open`` is true if the camera has been opened since the server started. ``run`` is the id of the run in progress, and
+    ``holder`` the name of the client that has control; null if there is none.
+    """
 
     name: str
     open: bool
@@ -227,7 +240,7 @@ class CameraSummary(BaseModel):
 
 
 class RegionModel(BaseModel):
-    """A keep-out region: the camera is never aimed at it."""
+    """A keep-out region, at which the camera is never aimed: a minimum and a maximum for pan and for tilt."""
 
     name: str
     pan_deg: tuple[float, float]
@@ -235,7 +248,12 @@ class RegionModel(BaseModel):
 
 
 class CameraState(BaseModel):
-    """The state of a camera. ``fields_of_view`` lists magnifications with their horizontal field of view in degrees."""
+    """The state of a camera.
+
+    ``run`` is the id of the run in progress; null if there is none. ``edits_presets`` is true if presets can be saved and removed.
+    ``fields_of_view`` lists magnifications with their horizontal field of view in degrees. ``assumed`` lists the values that the
+    driver assumes because they have not been measured.
+    """
 
     name: str
     title: str
@@ -266,7 +284,7 @@ class RunStart(Body):
         camera: The name of the camera.
         instruction: The instruction in plain language.
         conversation: The id of the conversation that it continues; by default, none.
-        pair: The pair of models; by default, the one of the conversation, or the site's default.
+        pair: The pair of models; by default, the conversation's pair, or else the site's default.
         dry_run: Whether moves are only reported and not carried out. Pictures are taken in any case.
     """
 
@@ -278,7 +296,11 @@ class RunStart(Body):
 
 
 class RunState(BaseModel):
-    """The state of a run. ``events`` is the number of its records so far; ``preview`` lists the moves of a dry run."""
+    """The state of a run.
+
+    ``actor`` is the name of the client that started it. ``events`` is the number of records so far. ``preview`` lists the commands
+    that a dry run did not send to the camera.
+    """
 
     id: str
     camera: str
@@ -305,7 +327,8 @@ class RunDetails(BaseModel):
 class RunList(BaseModel):
     """A page of runs, newest first.
 
-    ``next`` is the cursor of the next page. ``count`` is the number of matching runs; a lower bound if ``count_is_limit`` is true.
+    ``next`` is the cursor of the next page; null on the last page. ``count`` is the number of runs that match the filters; if
+    ``count_is_limit`` is true, there may be more.
     """
 
     runs: list[RunRow]
@@ -315,14 +338,18 @@ class RunList(BaseModel):
 
 
 class Mark(BaseModel):
-    """A detection in a picture: a numbered box in fractions of the frame."""
+    """A detection in a picture: a numbered box, as fractions of the frame's width and height."""
 
     number: int
     box: dict[str, float | str | None]
 
 
 class PictureModel(BaseModel):
-    """A picture of a run: its name, the call that took it, and its marks."""
+    """A picture of a run.
+
+    ``position`` (counted from 0), ``tool`` and ``message`` describe the call to which it belongs. For the picture from the start of
+    the run, ``position`` and ``tool`` are null. ``marks`` are the detections in the picture.
+    """
 
     name: str
     position: int | None
@@ -332,7 +359,11 @@ class PictureModel(BaseModel):
 
 
 class ToolReply(BaseModel):
-    """The outcome of a tool call. Either ``result`` or ``error`` is set; ``fault`` names the component that failed."""
+    """The outcome of a tool call.
+
+    Either ``result`` or ``error`` is set. ``fault`` names the component that failed, if one did. ``run`` is the id under which the
+    call is stored, and ``pose`` the camera's pose after the call.
+    """
 
     run: str
     result: dict[str, Any] | None
@@ -342,7 +373,10 @@ class ToolReply(BaseModel):
 
 
 class FeedbackBody(Body):
-    """Feedback on a run, or on its call number ``position``, counted from 0. A rating of 0 is for a comment without a rating."""
+    """Feedback on a run or, if ``position`` (counted from 0) is given, on one of its calls.
+
+    A rating is 1 for good, -1 for bad, or 0 for a comment without a rating.
+    """
 
     rating: Literal[-1, 0, 1]
     comment: Annotated[str, Field(max_length=MAX_COMMENT_CHARS)] = ""
@@ -350,13 +384,13 @@ class FeedbackBody(Body):
 
 
 class Kept(Body):
-    """Whether a run is kept when old runs are removed."""
+    """Whether to keep a run when old runs are removed."""
 
     kept: bool
 
 
 class ConversationStart(Body):
-    """A new conversation."""
+    """The conversation to start. ``pair`` is the pair of models; by default, the site's default."""
 
     camera: Identifier
     pair: Identifier | None = None
@@ -364,7 +398,7 @@ class ConversationStart(Body):
 
 
 class ConversationChange(Body):
-    """A change of a conversation. Omitted fields stay the same."""
+    """A change to a conversation. Omitted fields stay the same."""
 
     title: Annotated[str, Field(max_length=120)] | None = None
     pair: Identifier | None = None
@@ -377,7 +411,10 @@ class SignIn(Body):
 
 
 class Me(BaseModel):
-    """The client that sends the request. ``signs_in`` is true if the server requires signing in with a token."""
+    """The client that sent the request.
+
+    ``client`` is its key, as in ``ControlRequestModel``. ``signs_in`` is true if the server requires a token to sign in.
+    """
 
     name: str
     role: Role
@@ -401,7 +438,7 @@ class PairHealth(BaseModel):
 
 
 class ServerInfo(BaseModel):
-    """The name and version of the server, its cameras and its pairs."""
+    """The name and version of the server, and the names of its cameras and of its pairs of models."""
 
     name: str
     version: str

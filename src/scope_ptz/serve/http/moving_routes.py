@@ -30,7 +30,7 @@ from scope_ptz.serve.site.station import Station
 from scope_ptz.tools.aiming import aim, aim_at_zoom, outline_in, view
 
 MIN_BOX = 0.005
-"""Minimum side of a box that can fill the view, in fractions of the frame. Requests with smaller boxes are refused."""
+"""Minimum side of the box in a ``frame-box`` request, as a fraction of the frame's width or height."""
 
 router = APIRouter(prefix="/cameras/{camera}", tags=["manual control"])
 Name = Annotated[str, Path(min_length=1, max_length=31)]
@@ -152,20 +152,23 @@ async def _known(site: Site, station: Station, name: str) -> PresetModel:
 
 @router.get("/control", responses=_ERRORS)
 async def control(station: StationDep, client: Viewer) -> ControlModel:
-    """Return the client that controls the camera and the clients that request control."""
+    """Return which client controls the camera, and which clients ask for control."""
     return control_model(station, client)
 
 
 @router.post("/control", responses=_ERRORS)
 async def ask_for_control(station: StationDep, client: Operator) -> ControlModel:
-    """Take control if nobody has it; otherwise, request it from the holder. In the reply, `mine` is true if the client has it."""
+    """Take control if nobody has it; otherwise, ask the client that has it.
+
+    In the reply, `mine` is true if the client that sent this request has control.
+    """
     await station.control.ask(client, await station.camera())
     return control_model(station, client)
 
 
 @router.post("/control/answer", responses=_ERRORS)
 async def answer_request(station: StationDep, client: Operator, body: ControlAnswer) -> ControlModel:
-    """Hand control over to a client that requests it, or refuse. Only the holder can answer."""
+    """Hand control over to a client that asks for it, or refuse. Only the client that has control can answer."""
     await station.control.answer(client, body.client, await station.camera(), grant=body.grant)
     return control_model(station, client)
 
@@ -179,5 +182,5 @@ async def release_control(station: StationDep, client: Operator) -> ControlModel
 
 @router.get("/pose", responses=_ERRORS)
 async def pose(station: StationDep, client: Viewer) -> PoseModel:  # noqa: ARG001 - checks the token
-    """Return the camera's pose."""
+    """Return the camera's current pose."""
     return PoseModel.of(await (await station.camera()).pose())

@@ -1,4 +1,4 @@
-"""Read runs for the API, both in progress and stored."""
+"""Read the state and the records of runs, both of those in progress and of stored ones."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from scope_ptz.store.request_file import read_request
 from scope_ptz.store.rows import UNFINISHED, RunFilter
 
 HEARTBEAT_S = 15.0
-"""Seconds without an event after which a comment is sent to keep the connection alive."""
+"""Seconds without an event after which a stream of events sends a comment, to keep the connection alive."""
 
 
 def state_of(handle: RunHandle) -> RunState:
@@ -88,7 +88,13 @@ def records_of(trace: Trace) -> list[Record]:
 
 
 async def live_events(handle: RunHandle, after: int, closing: asyncio.Event) -> AsyncIterator[str]:
-    """Yield the records of a run in progress as server-sent events, with comments during pauses."""
+    """Yield the records of a run in progress as server-sent events, with comments during pauses, until the run ends.
+
+    Args:
+        handle: The run.
+        after: Number of the record after which to begin; -1 for the first one.
+        closing: Set when the server shuts down, which ends the events.
+    """
     async with aclosing(handle.events(after)) as events:
         following = asyncio.ensure_future(anext(events, None))
         ending = asyncio.ensure_future(closing.wait())
@@ -112,7 +118,7 @@ async def live_events(handle: RunHandle, after: int, closing: asyncio.Event) -> 
 
 
 async def stored_events(trace: Trace, after: int) -> AsyncIterator[str]:
-    """Yield the records of a stored run as server-sent events."""
+    """Yield the records of a stored run whose number is above ``after`` as server-sent events."""
     for number, record in enumerate(records_of(trace)):
         if number > after:
             yield sse(number, record)
@@ -125,7 +131,13 @@ def sse(number: int, record: BaseModel) -> str:
 
 
 def run_filter(*, since: datetime | None, until: datetime | None, rating: str | None, **fields: Any) -> RunFilter:
-    """Create the filter for a request.
+    """Create the filter of stored runs that a request specifies.
+
+    Args:
+        since: Select runs that started at this time or later; None for no limit.
+        until: Select runs that started before this time; None for no limit.
+        rating: ``good`` or ``bad`` to select rated runs; None for all.
+        **fields: Further fields of ``RunFilter``.
 
     Raises:
         InputError: A time or a text is outside the supported range.

@@ -27,13 +27,13 @@ _ERRORS = responses(404, 409, 503)
 
 @router.post("/runs", status_code=202, responses=_ERRORS)
 async def start_run(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
-    """Start a run and return immediately. Follow it at `/runs/{run}/events`; it continues even if nobody follows it."""
+    """Start a run and reply immediately. The run continues even if no client follows it at `/runs/{run}/events`."""
     return state_of(await _start(site, client, body))
 
 
 @router.post("/ask", responses=_ERRORS)
 async def ask(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
-    """Run an instruction and return when it has ended."""
+    """Run an instruction, and reply when the run has ended."""
     handle = await _start(site, client, body)
     await handle.done.wait()
     if handle.failure is not None:
@@ -53,7 +53,7 @@ async def _start(site: Site, client: Client, body: RunStart) -> RunHandle:
             )
         pair = pair or conversation.pair
     kind: RunKind = "dry_run" if body.dry_run else "instruction"
-    # The default replaces a conversation's pair that is no longer configured.
+    # If a conversation's pair is no longer configured, the default pair is used instead.
     name = site.pairs.check(pair if pair in site.pairs.names or body.pair is not None else None)
     return await site.runner.start(station, Task(body.instruction, name, body.conversation, kind), client)
 

@@ -1,4 +1,4 @@
-"""Routes for simulated cameras only: scene time and virtual cameras."""
+"""Routes that work only for simulated cameras: scene time and virtual cameras."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ERRORS = responses(404, 409, 503)
 
 @router.get("/time", responses=_ERRORS)
 async def camera_time(station: StationDep, client: Viewer) -> SceneTimeModel:  # noqa: ARG001 - checks the token
-    """Return the scene time of a simulated camera. Other cameras reply `not_simulated`."""
+    """Return the scene time of a simulated camera. For other cameras, the request fails with the code `not_simulated`."""
     now = await read_scene_time(station)
     return SceneTimeModel(time_s=now.time_s, playing=now.playing, speed=now.speed)
 
@@ -24,8 +24,8 @@ async def camera_time(station: StationDep, client: Viewer) -> SceneTimeModel:  #
 async def change_camera_time(station: StationDep, client: Operator, body: SceneTimeBody) -> SceneTimeModel:
     """Play or pause scene time, seek, or change the speed. The change applies to all clients of the camera.
 
-    Like other commands, the request needs control and is refused during an instruction. If the camera is not simulated, the reply
-    is `not_simulated`.
+    Like other commands, the request needs control and is refused during a run. If the camera is not simulated, the request fails
+    with the code `not_simulated`.
     """
     now = await change_scene_time(station, client, SceneTimeChange(body.time_s, body.playing, body.speed))
     return SceneTimeModel(time_s=now.time_s, playing=now.playing, speed=now.speed)

@@ -1,4 +1,4 @@
-"""Routes for the nine tools, one operation each."""
+"""Routes for calling the nine tools of a camera directly, with one operation for each tool."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _schema(tool: Tool) -> dict[str, Any]:
 
 
 async def _arguments(request: Request, tool: Tool) -> dict[str, Any]:
-    """Return the arguments of a call. Mutually exclusive arguments pass here; the tool reports them in its reply.
+    """Return the arguments of a call. Conflicts between arguments pass this check, because the tool itself reports them.
 
     Raises:
         RequestValidationError: The body is not a JSON object, or an argument is unknown or has the wrong type.

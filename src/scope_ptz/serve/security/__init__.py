@@ -1,1 +1,1 @@
-"""Authentication and authorisation of clients."""
+"""Authentication and authorisation of the server's clients."""

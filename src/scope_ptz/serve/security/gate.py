@@ -26,15 +26,15 @@ MAX_BODY_BYTES = 256 * 1024
 OPEN_PATHS = frozenset({"/api/v1/session", "/api/v1/health", "/sign-in"})
 """Paths that need no token: those for signing in, and the health check."""
 
-SIGN_IN_PATH = "/sign-in"
+SIGN_IN_PATH = "/sign-in"  # where browsers without a session are redirected
 
 CHECK_S = 2.0
 """Seconds between checks that the client of a request in progress is still authorised."""
 
 API_POLICY = "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
-"""The content security policy of the API. Its replies are never pages."""
+"""The content security policy of the API. It allows nothing, because replies of the API are not pages."""
 
-_CLIENT = re.compile(r"[A-Za-z0-9_-]{1,64}")
+_CLIENT = re.compile(r"[A-Za-z0-9_-]{1,64}")  # valid values of the header ``Scope-Client``, which distinguishes browser tabs
 
 
 @dataclass(slots=True)
@@ -75,12 +75,16 @@ class Access:
         return self.tokens is not None
 
     def origins(self) -> Origins:
-        """Return the check of hosts and origins."""
+        """Return the object that checks the ``Host`` and ``Origin`` headers of requests."""
         listening = () if self.host in ("0.0.0.0", "::") else (self.host,)  # noqa: S104 - compared, not bound to
         return Origins({*LOOPBACK_NAMES, *listening, *self.hosts})
 
     def client(self, headers: dict[str, str]) -> Client | None:
-        """Return the client that sends a request; None if its token is missing or wrong."""
+        """Return the client that sends a request; None if it has neither a valid token nor a valid session.
+
+        Args:
+            headers: The headers of the request, by lower-case name.
+        """
         tab = headers.get("scope-client", "")
         tab = f":{tab}" if _CLIENT.fullmatch(tab) else ""
         if self.tokens is None:
@@ -98,7 +102,7 @@ class Access:
 class Gate:
     """ASGI middleware that admits only authorised clients and sets the security headers of replies.
 
-    It stores the client in ``scope["state"]["client"]``.
+    It stores the client in ``scope["state"]["client"]``; None for the paths that need no token.
 
     Args:
         app: The wrapped application.
@@ -141,7 +145,10 @@ class Gate:
     async def _serve_while_authorised(
         self, client: Client, headers: dict[str, str], scope: Scope, receive: Receive, reply: _Reply
     ) -> None:
-        """Serve a request, and end it if its token is removed or its session ends. Otherwise, a stream would never end."""
+        """Serve a request, and end it if its token is removed or its session ends in the meantime.
+
+        Without this check, a client could continue to watch a stream indefinitely.
+        """
         work = asyncio.ensure_future(self._app(scope, _limited(receive), reply.send))
         try:
             while not (await asyncio.wait({work}, timeout=CHECK_S))[0]:
@@ -186,7 +193,7 @@ class _Reply:
         if self._scope["type"] == "websocket":
             await self._send(
                 {"type": "websocket.close", "code": 1008, "reason": message[:120]}
-            )  # if the WebSocket has not been accepted yet, the client gets 403
+            )  # if the WebSocket has not been accepted yet, the client gets the HTTP status 403 instead
             return
         body = json.dumps({"error": {"code": code, "message": message}}).encode()
         extra = [(b"www-authenticate", b"Bearer")] if status == 401 else []
@@ -220,10 +227,10 @@ def cookie_of(headers: dict[str, str]) -> str:
 
 
 def _headers(scope: Scope) -> dict[str, str]:
-    """Return the headers by lower-case name.
+    """Return the headers of a request by lower-case name.
 
-    The values of a repeated header are joined. A joined value is valid only for cookies. An invalid content length is replaced with
-    one above the limit.
+    The values of a repeated header are joined, which results in a valid value only for cookies. An invalid content length is
+    replaced with one above the limit, so that the request is refused.
     """
     result: dict[str, str] = {}
     for name, value in scope["headers"]:
@@ -241,7 +248,7 @@ def _wants_page(scope: Scope, headers: dict[str, str]) -> bool:
 
 
 def _limited(receive: Receive) -> Receive:
-    """Wrap a source of messages so that it disconnects if the body exceeds the limit, whatever length the headers state."""
+    """Wrap ``receive`` so that it reports a disconnect once the body exceeds the limit, whatever length the headers state."""
     received_bytes = 0
 
     async def limited() -> Any:

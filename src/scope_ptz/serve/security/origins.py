@@ -18,11 +18,11 @@ def is_loopback(host: str) -> bool:
 
 
 class Origins:
-    """Checks where requests come from.
+    """Checks that requests do not come from pages of other sites.
 
-    A page of another site must not be able to use a browser's session, or a server on loopback that needs no token. Requests of
-    such a page carry the origin of the other site. If the name of that site resolves to this server (DNS rebinding), the requests
-    have a host name that is not one of the server's.
+    Such a page must not be able to use the session of the browser that shows it, or a server on loopback that needs no token. Its
+    requests have the other site in their ``Origin`` header. If the name of the other site resolves to this server (DNS rebinding),
+    the origin matches the host, but the ``Host`` header contains a name that is not one of the server's.
 
     Args:
         hosts: The host names and addresses of the server, without ports.
@@ -51,13 +51,13 @@ class Origins:
 
 
 def _is_link(headers: Mapping[str, str], method: str, websocket: bool) -> bool:
-    """Return whether the request follows a link to this server. Such a request only opens a page."""
+    """Return whether a browser sends the request to open a page, for example from a link on another site. This is harmless."""
     fetch = headers.get("sec-fetch-mode"), headers.get("sec-fetch-dest")
     return method == "GET" and not websocket and fetch == ("navigate", "document")
 
 
 def _host_name(host: str) -> str:
-    """Return the name in a Host header without the port and the brackets of IPv6; empty if the header is invalid."""
+    """Return the name in a ``Host`` header, without the port and the brackets of IPv6; empty if the header is invalid."""
     try:
         parts = urlsplit(f"//{host}")
         port_is_number = parts.port is None or parts.port >= 0

@@ -1,4 +1,4 @@
-"""Sessions of browsers. A browser presents its token once; afterwards, a cookie identifies its session."""
+"""Sessions of signed-in browsers. A browser sends its token once; afterwards, a cookie identifies its session."""
 
 from __future__ import annotations
 
@@ -18,7 +18,13 @@ MAX_SESSIONS = 1_000
 
 @dataclass(frozen=True, slots=True)
 class Session:
-    """A signed-in browser. ``key`` identifies the session but does not authorise anyone to use it."""
+    """The session of a signed-in browser.
+
+    Attributes:
+        token: The token that the browser signed in with.
+        key: A public identifier of the session, which the cookie cannot be derived from.
+        ends_s: The time on ``time.monotonic`` at which the session ends.
+    """
 
     token: Token
     key: str
@@ -42,7 +48,7 @@ class Sessions:
         return secret
 
     def find(self, secret: str) -> Session | None:
-        """Return the session of a cookie; None if there is none, or if it has ended."""
+        """Return the session with this cookie value; None if there is none, or if it has ended."""
         digest = _digest(secret)
         session = self._sessions.get(digest)
         if session is not None and monotonic() > session.ends_s:
@@ -51,7 +57,7 @@ class Sessions:
         return session
 
     def end(self, secret: str) -> None:
-        """End a session. Ending one that does not exist has no effect."""
+        """End the session with this cookie value. If there is none, the call has no effect."""
         self._sessions.pop(_digest(secret), None)
 
 

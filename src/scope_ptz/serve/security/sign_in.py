@@ -13,6 +13,7 @@ from scope_ptz.serve.security.gate import SIGN_IN_PATH, Access
 from scope_ptz.serve.security.sessions import COOKIE, LIFETIME_S
 from scope_ptz.serve.site.errors import TooManyRequestsError
 
+# The content security policy of the page.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'"
 
 _PAGE = """<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">

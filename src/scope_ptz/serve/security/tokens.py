@@ -16,7 +16,7 @@ from scope_ptz.errors import ConfigError, OutputError, UnknownNameError
 from scope_ptz.serve.site.clients import Role
 
 PREFIX = "scope_"
-"""The prefix of every token, which scanners for leaked secrets can search for."""
+"""The prefix of every token, so that scanners for leaked secrets can recognise tokens."""
 
 MAX_TOKEN_CHARS = 200
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._@-]{0,59}")
@@ -48,10 +48,10 @@ class _Content(BaseModel):
 
 
 class TokenFile:
-    """A file of tokens.
+    """The file that stores the tokens of a server. Changes to it take effect without a restart.
 
     Args:
-        path: The file. If it does not exist, there are no tokens.
+        path: The path of the file. If it does not exist, there are no tokens.
 
     Raises:
         ConfigError: The file cannot be read, or its content is invalid.
@@ -64,7 +64,7 @@ class TokenFile:
         self._read()
 
     def find(self, secret: str) -> Token | None:
-        """Return the stored token for a secret that a client presents; None if it is unknown. A changed file is read again."""
+        """Return the token with the secret that a client sent; None if there is none. If the file has changed, read it again."""
         self._read_again()
         digest, match = _digest(secret[:MAX_TOKEN_CHARS]), None
         for token in self.tokens:  # no early exit: the duration must not depend on which token matches
@@ -73,7 +73,7 @@ class TokenFile:
         return match
 
     def is_valid(self, token: Token) -> bool:
-        """Return whether a token that ``find`` returned earlier is still in the file."""
+        """Return whether a token that ``find`` returned earlier is still in the file, unchanged."""
         self._read_again()
         return token in self.tokens
 

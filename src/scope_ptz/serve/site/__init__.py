@@ -1,1 +1,1 @@
-"""The served site: cameras with their control, pairs of models, runs and conversations. This package does not depend on HTTP."""
+"""What a server offers, without HTTP: cameras and who controls them, pairs of models, runs, conversations and evaluations."""

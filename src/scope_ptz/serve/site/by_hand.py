@@ -1,4 +1,4 @@
-"""Tool calls that a person makes directly, without a planner. Each is recorded as a run with one step."""
+"""Tool calls that a client makes directly, without a model as planner. Each is recorded as a run with one step."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall
 
 BY_HAND = "by-hand"
-"""The planner name in the traces of these runs."""
+"""The planner name in the traces of runs with one direct tool call."""
 
 
 class SingleCallPlanner(Planner):

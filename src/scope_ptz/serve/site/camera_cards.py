@@ -22,15 +22,24 @@ Ability = Literal["move", "drive", "presets", "focus", "iris", "scene_time", "gr
 HealthState = Literal["connected", "ready", "failed"]
 
 CHECK_S = 20.0
-"""Seconds without an answer after which a camera counts as failed."""
+"""Seconds without an answer after which a check counts a camera as failed."""
 
 FRESH_S = 2.0
-"""Seconds for which the result of a check is reused. Several pages can share one check."""
+"""Seconds for which the result of a check is reused, so that several pages can share one check."""
 
 
 @dataclass(frozen=True, slots=True)
 class SceneFacts:
-    """Facts about a stored scene: its viewpoints, numbers of presets and moving objects, and whether it has ground truth."""
+    """Facts about a stored scene.
+
+    Attributes:
+        name: The name of the scene.
+        title: Its title.
+        viewpoints: The names of its viewpoints.
+        presets: Number of its presets.
+        moving: Number of its moving objects.
+        has_truth: Whether it has ground truth, which captured scenes do not have.
+    """
 
     name: str
     title: str
@@ -48,10 +57,10 @@ class CameraCard:
         title: The name of the device or the title of the scene; empty if it is not known yet.
         kind: The kind of the camera.
         scene: The stored scene that a simulated camera shows; None for other cameras.
-        abilities: The known abilities.
-        health: "connected" if it answers, "ready" if it will be opened on first use, "failed" with ``problem``.
-        problem: The reason why it cannot be used; None if it can.
-        configured: Whether it is a camera in ``scope.yaml``.
+        abilities: The abilities that are known. Those of a device are not known until it has been opened.
+        health: "connected" if the camera answers, "ready" if it will be opened on first use, "failed" if it cannot be used.
+        problem: The reason why the camera cannot be used; None if it can.
+        configured: Whether the camera is one of those in ``scope.yaml``.
         has_picture: Whether a thumbnail is available.
     """
 
@@ -66,7 +75,7 @@ class CameraCard:
 
 
 class CameraCards:
-    """Creates the cards of cameras. It connects to devices, but does not open scenes or start Blender."""
+    """Creates the cards of cameras. It connects to devices, but does not open simulated cameras or start Blender."""
 
     def __init__(self) -> None:
         self._scenes: dict[str, SceneFacts] = {}

@@ -22,7 +22,7 @@ MAX_REQUESTS = 20
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A request for control. ``key`` identifies the client in the answer."""
+    """A client's request for control: the key and the name of the client, and the time of the request."""
 
     key: str
     name: str
@@ -32,9 +32,9 @@ class Request:
 class CameraControl:
     """Control of one camera.
 
-    A command takes control if nobody has it. Otherwise, the client requests control, and the holder hands it over or keeps it.
-    Control expires if the holder sends no commands, so that a closed laptop does not block a camera. It cannot expire during a
-    run.
+    A client that sends a command gets control if nobody has it. If another client has it (the holder), the client can ask for
+    control, and the holder hands it over or keeps it. Control expires if the holder sends no commands, so that a closed laptop does
+    not block a camera. It cannot expire during a run.
 
     Args:
         camera: The camera's name.
@@ -74,7 +74,7 @@ class CameraControl:
 
         Raises:
             NotInControlError: Another client has control.
-            ControlHeldError: Another user of this camera object has control.
+            ControlHeldError: Another user of this camera object, outside the server, has control.
         """
         holder = self.holder
         if holder is not None and holder.key != client.key:
@@ -84,7 +84,11 @@ class CameraControl:
         self._used_s, self._left = monotonic(), False
 
     async def ask(self, client: Client, camera: Camera) -> bool:
-        """Take control if nobody has it; otherwise, ask for it. Return whether the client has control."""
+        """Take control if nobody has it; otherwise, ask the holder for it. Return whether the client has control.
+
+        Raises:
+            ControlHeldError: Another user of this camera object, outside the server, has control.
+        """
         holder = self.holder
         if holder is None or holder.key == client.key:
             await self.require(client, camera)
@@ -118,7 +122,7 @@ class CameraControl:
             await self._hand_to(to or Client(request.name, key, "operator"), camera)
 
     async def release(self, client: Client) -> None:
-        """Give control up, or withdraw a request for it. A client with neither is ignored.
+        """Give up control, or withdraw a request for it. If the client has neither, the call has no effect.
 
         During a run, control is given up when the run ends, unless the client sends another command first.
         """
@@ -142,7 +146,7 @@ class CameraControl:
     async def _hand_to(self, client: Client, camera: Camera) -> None:
         await self._lock.aclose()
         self._holder = None
-        # The camera's own lock shows other users of the same device who has control.
+        # Other programs that use the same device learn from the camera's own lock who has control.
         await self._lock.enter_async_context(camera.control(client.name))
         self._holder, self._since, self._used_s, self._left = client, datetime.now(UTC), monotonic(), False
         self._requests.pop(client.key, None)

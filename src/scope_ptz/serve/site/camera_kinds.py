@@ -25,7 +25,7 @@ def kind_of(spec: str) -> CameraKind:
 
 
 def has_scene_time(spec: str) -> bool:
-    """Return whether a camera shows a simulated world, whose time can be changed."""
+    """Return whether a camera shows a simulated world, in which time can be paused and changed."""
     return kind_of(spec) in ("simulated", "blender")
 
 
@@ -36,7 +36,7 @@ def scene_of(spec: str) -> str | None:
 
 
 def has_rules(spec: str) -> bool:
-    """Return whether ``scope.yaml`` changes the pictures of a camera or restricts its poses."""
+    """Return whether ``scope.yaml`` defines a mounting or rules for a camera, which change its pictures or restrict its poses."""
     name = parse_camera(spec).name
     if not name:
         return False

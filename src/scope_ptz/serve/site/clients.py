@@ -8,7 +8,7 @@ from typing import Literal
 Role = Literal["viewer", "operator"]
 
 LOCAL = "local"
-"""The name of every client where no token is needed."""
+"""The name of every client of a server that needs no tokens."""
 
 
 def shown_name(name: str) -> str:
@@ -18,12 +18,12 @@ def shown_name(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Client:
-    """One client: a program, or one tab of a browser.
+    """One client of the server: a program, or one browser tab.
 
     Attributes:
-        name: The name of the token; ``LOCAL`` if the server needs none. A conversation belongs to a name.
-        key: A key that distinguishes clients with the same name. Control of a camera belongs to a key.
-        role: The role, which determines the permissions.
+        name: The name of its token; ``LOCAL`` if the server needs none. Conversations are shared by all clients with the same name.
+        key: A key that distinguishes clients with the same name. Control of a camera is given to the client with one key.
+        role: The role, which determines what the client may do.
     """
 
     name: str

@@ -20,7 +20,7 @@ class NotInControlError(ScopeError):
 
 
 class BusyError(ScopeError):
-    """A run is in progress on the camera."""
+    """A run is in progress on the camera. ``run`` is its id."""
 
     def __init__(self, camera: str, run: str) -> None:
         self.run = run
@@ -43,7 +43,7 @@ class RefusedByCameraError(ScopeError):
 
 
 class TooManyRequestsError(ScopeError):
-    """A client sends more requests than are allowed. ``retry_s`` is the time until it may retry."""
+    """A client sends more requests than are allowed. ``retry_s`` is the number of seconds until it may retry."""
 
     def __init__(self, retry_s: float) -> None:
         self.retry_s = retry_s
@@ -51,7 +51,7 @@ class TooManyRequestsError(ScopeError):
 
 
 class EvaluationRunningError(ScopeError):
-    """An evaluation is in progress, and only one runs at a time."""
+    """An evaluation is in progress, so the command is not possible. ``evaluation`` is its id."""
 
     def __init__(self, evaluation: str) -> None:
         self.evaluation = evaluation

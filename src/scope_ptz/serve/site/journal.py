@@ -1,4 +1,4 @@
-"""The runs that the server stores: run folders and their index. A failure of the index never stops a run."""
+"""The stored runs of a server: their folders, their index, and the earlier turns of conversations."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MAX_TURNS = 20
 """Maximum number of conversation turns that the planner receives."""
 
 SETTLE_S = 2.0
-"""Maximum time in seconds that a request for a list of runs waits until runs that just ended are indexed."""
+"""Maximum time in seconds that a request for a list of runs waits for the indexing of runs that have just ended."""
 
 _T = TypeVar("_T")
 
@@ -31,7 +31,7 @@ logger = logging.getLogger(__name__)
 
 
 class Journal:
-    """The runs folder of a server.
+    """The runs folder of a server, and its index. A failure of the index never stops a run.
 
     Args:
         root: The runs folder.
@@ -52,7 +52,7 @@ class Journal:
         self._waiting.put_nowait(run_id)
 
     async def run(self) -> None:
-        """Index queued runs until cancelled. First index all runs, including those of a server that was killed."""
+        """Index all runs, including those of a server that was killed; then index queued runs until cancelled."""
         await self._try(self.store.index)
         while True:
             run_id = await self._waiting.get()
@@ -68,7 +68,7 @@ class Journal:
             await self._waiting.join()
 
     async def turns(self, conversation: str) -> tuple[PastTurn, ...]:
-        """Return the earlier turns of a conversation. After a restart, they are read from the run folders."""
+        """Return the earlier turns of a conversation, oldest first. After a restart, they are read from the run folders."""
         if conversation not in self._turns:
             self._turns[conversation] = await self.in_thread(lambda: self._stored_turns(conversation))
         return self._turns[conversation]

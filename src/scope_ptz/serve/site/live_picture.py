@@ -19,7 +19,7 @@ from scope_ptz.errors import CameraError
 
 RATE_HZ = 25.0
 JPEG_QUALITY = 80
-MAX_AGE_S = 5.0  # limits the error when a clock is set forward
+MAX_AGE_S = 5.0  # maximum age of a frame; limits the error if a clock is set forward between exposure and arrival
 RETRY_S = 1.0  # pause before the next attempt after a camera failure
 
 logger = logging.getLogger(__name__)
@@ -29,7 +29,7 @@ class LiveFrame:
     """A frame with its JPEG encodings. Clients that request the same width share one encoding.
 
     Attributes:
-        number: Number of the frame since the server started.
+        number: Number of the frame, counted since the server started.
         frame: The frame.
         taken: The time of exposure, in seconds since 1970.
 
@@ -65,13 +65,13 @@ def encode_jpeg(image: NDArray[Any], width: int, quality: int = JPEG_QUALITY) ->
 
 
 class LivePicture:
-    """Takes frames of a camera while at least one client watches.
+    """Takes frames of a camera while at least one client watches, and passes each client the newest one.
 
     A slow client skips frames and does not delay others. After a camera failure, clients wait until the camera works again.
 
     Args:
         name: The camera's name.
-        camera: A function that returns the open camera.
+        camera: A function that opens the camera if necessary, and returns it.
         rate_hz: Frames per second.
     """
 
@@ -103,7 +103,7 @@ class LivePicture:
                         self._publish(LiveFrame(number, frame, camera.clock.now_s() - frame.time_s))
                         if not self.watchers:
                             break
-            except Exception as error:  # the live picture must survive any failure of a driver
+            except Exception as error:  # the live picture must continue after any failure of a driver
                 self.problem = str(error)
                 logger.warning("The live picture of %s failed; retrying: %s", self._name, error)
                 self._wake()

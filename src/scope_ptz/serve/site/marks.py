@@ -16,11 +16,11 @@ from scope_ptz.perception.base import Box
 ACCENT = (76, 195, 247)
 INK = (14, 19, 26)
 MAX_NUMBERS = 40
-"""Marks are numbered up to this many. The numbers of more marks would cover the picture, so all of them are omitted."""
+"""Maximum number of marks with drawn numbers. With more marks, all numbers are omitted, because they would cover the picture."""
 
 
 def call_of(trace: Trace, name: str) -> Called | None:
-    """Return the call whose result refers to a picture; None if there is none."""
+    """Return the first call of a run whose result refers to a picture, by the picture's name; None if there is none."""
     for call in trace.calls:
         result = call.outcome.result or {}
         if name in (result.get("frames") or ()):
@@ -29,7 +29,10 @@ def call_of(trace: Trace, name: str) -> Called | None:
 
 
 def marks_of(call: Called | None, name: str) -> list[dict[str, Any]]:
-    """Return the marks of a call in a picture: its boxes as fractions of the frame, numbered from 1 in drawing order."""
+    """Return the detections of a call in the picture ``name``, numbered from 1 in drawing order.
+
+    Boxes are fractions of the frame's width and height. They belong to the last picture of a call; its other pictures have none.
+    """
     result = (call.outcome.result or {}) if call is not None else {}
     frames = list(result.get("frames") or ())
     if frames[-1:] != [name]:

@@ -24,7 +24,10 @@ HealthState = Literal["built_in", "ready", "unreachable", "not_configured"]
 
 @dataclass(frozen=True, slots=True)
 class Models:
-    """An open planner and perception backend. ``note`` is a sentence about the built-in perception; empty for a vision model."""
+    """The planner and the perception backend of a pair, ready for use with one camera.
+
+    ``note`` is a sentence that runs record about the built-in perception; it is empty for a vision model.
+    """
 
     planner: Planner
     perception: Perception
@@ -55,7 +58,7 @@ class Pairs:
         self.names = tuple(dict.fromkeys(names)) or (DEFAULT_PAIR,)
 
     def check(self, name: str | None) -> str:
-        """Return the name of a pair if it exists; for None, the default pair.
+        """Check that a pair exists, and return its name; for None, return the name of the default pair.
 
         Raises:
             UnknownNameError: There is no such pair.

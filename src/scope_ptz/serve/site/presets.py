@@ -25,7 +25,7 @@ from scope_ptz.serve.site.live_picture import encode_jpeg
 from scope_ptz.serve.site.station import Place, Station
 from scope_ptz.simulator.pack import Scene
 
-THUMBNAIL_WIDTH = 320
+THUMBNAIL_WIDTH = 320  # in pixels
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,8 @@ class KnownPreset:
 class Presets:
     """The presets of one camera.
 
-    A thumbnail is taken when a preset is saved or visited, and stored in a folder. Thumbnails of a scene's presets are rendered.
+    A thumbnail is taken when a preset is saved or visited, and stored in a folder. Missing thumbnails of a scene's presets are
+    rendered.
 
     Args:
         station: The camera.
@@ -51,7 +52,7 @@ class Presets:
         self._station, self._folder = station, folder / station.name
 
     async def known(self) -> list[KnownPreset]:
-        """Return the presets in a stable order, with what is known about them."""
+        """Return the presets in the camera's order, with what is known about each."""
         camera = await self._station.camera()
         scene = (await self._station.opened()).scene
         rendered = set() if scene is None or has_rules(self._station.spec) else {preset.name for preset in scene.file.presets}
@@ -78,7 +79,11 @@ class Presets:
         return arrival
 
     async def save(self, client: Client, name: str, description: str = "") -> PresetInfo:
-        """Save the current view as a preset. A preset of the same name is replaced."""
+        """Save the current view as a preset. A preset of the same name is replaced.
+
+        Raises:
+            RefusedByCameraError: The camera cannot save this preset.
+        """
         camera = await self._station.require_control(client)
         with _detecting_refusals():
             saved = await camera.save_preset(name, description)
@@ -200,7 +205,7 @@ class Presets:
 
 
 def _place_in_scene(camera: Camera, name: str) -> Place | None:
-    """Return the place of a preset of a simulated camera in the coordinates of ``camera``; None for other cameras."""
+    """Return where a preset of a simulated camera points, in the coordinates of ``camera``; None for other cameras."""
     presets = getattr(innermost(camera), "scene_presets", None)
     if presets is None:
         return None

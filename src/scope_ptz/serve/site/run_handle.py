@@ -27,12 +27,12 @@ class RunHandle:
     Attributes:
         id: The name of its folder.
         instruction: The instruction.
-        request: The client, camera and conversation of the run.
+        request: The client that started the run, and its camera and conversation.
         preview: The commands that a dry run would send, one sentence each.
         records: The records so far.
-        scope: The cancel scope of the run.
-        failure: The error that ended the run, if any.
-        done: Set when no more records will come.
+        scope: The cancel scope in which the run is executed.
+        failure: The error because of which the run could not start or finish; None if there is none.
+        done: Set when the run has ended and no more records will come.
     """
 
     def __init__(self, run_id: str, instruction: str, request: RunRequest) -> None:
@@ -50,7 +50,7 @@ class RunHandle:
         self._wake()
 
     def finish(self, failure: Exception | None = None) -> None:
-        """Notify all followers that no more records will come."""
+        """Record that the run has ended, and notify all followers that no more records will come."""
         self.failure = failure
         self.done.set()
         self._wake()

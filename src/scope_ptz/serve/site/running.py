@@ -1,4 +1,4 @@
-"""Start and execute runs on a station, independently of the clients that follow them."""
+"""Start and execute runs on a camera of the site, whether or not clients follow them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from scope_ptz.store.request_file import RunRequest
 from scope_ptz.store.rows import RunKind
 
 MAX_FINISHED = 50
-"""Maximum number of ended runs in memory. Older ones are read from their folders."""
+"""Maximum number of ended runs that are kept in memory. Older ones are read from their folders."""
 
 logger = logging.getLogger(__name__)
 
@@ -40,9 +40,9 @@ class Task:
         instruction: The instruction, or the text of a tool call.
         pair: The name of the pair of models.
         conversation: The id of its conversation, if any.
-        kind: Whether it is an instruction, a dry run, or a tool call by a person.
-        planner: A planner that replaces the pair's planner, if any.
-        snapshots: Whether camera views are stored in addition to the frames that perception reads.
+        kind: Whether the run is an instruction, a dry run, or a direct tool call.
+        planner: A planner that replaces the pair's planner; None to use the pair's.
+        snapshots: Whether pictures of the camera's view are stored in addition to the frames that perception reads.
     """
 
     instruction: str
@@ -60,7 +60,7 @@ class Task:
 
 
 class Runner:
-    """Executes runs. It holds their state, so that a client can disconnect and reconnect.
+    """Executes runs and keeps their state, so that a run continues if its client disconnects, and the client can reconnect.
 
     Args:
         journal: The store of the runs.

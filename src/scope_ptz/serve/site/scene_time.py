@@ -23,7 +23,7 @@ class SceneTime:
 
 @dataclass(frozen=True, slots=True)
 class SceneTimeChange:
-    """A change of scene time. None leaves a value unchanged."""
+    """A change to the scene time. Values that are None stay unchanged."""
 
     time_s: float | None = None
     playing: bool | None = None
@@ -37,7 +37,7 @@ def scene_time(camera: Camera) -> SceneTime | None:
 
 
 async def read_scene_time(station: Station) -> SceneTime:
-    """Return the scene time of a camera. The first use opens the camera.
+    """Return the scene time of a camera, which is opened if necessary.
 
     Raises:
         NotSimulatedError: The camera shows the real world.

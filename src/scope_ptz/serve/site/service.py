@@ -35,11 +35,11 @@ class SiteOptions:
 
     Attributes:
         runs_dir: The runs folder.
-        cameras: Names of cameras in ``scope.yaml`` and of scenes; empty for all.
-        pairs: Names of pairs, the default first; empty for the built-in pair.
+        cameras: The names of the cameras in ``scope.yaml`` and of the scenes to serve; empty for all.
+        pairs: The names of the pairs to offer, the default first; empty for the built-in pair.
         budgets: The limits of a run.
         idle: Where cameras return to when nobody uses them; None to leave them where they are.
-        idle_of: Overrides of ``idle`` for individual cameras, by name.
+        idle_of: What replaces ``idle`` for individual cameras, by name.
         lease_s: Seconds without a command after which control of a camera expires.
     """
 
@@ -53,7 +53,7 @@ class SiteOptions:
 
 
 class Site:
-    """The cameras, pairs, runs and evaluations of a server. An async context manager surrounds the server.
+    """The cameras, pairs, runs and evaluations of a server. It is an async context manager, to be entered while the server runs.
 
     Args:
         cameras: The spec of each camera, by the name that requests use.
@@ -89,7 +89,7 @@ class Site:
         return self
 
     async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        # Ctrl-C cancels the surrounding code, but cameras must still be stopped and runs recorded.
+        # Ctrl-C cancels the code around the context, but cameras must still be stopped and the ends of runs recorded.
         with anyio.CancelScope(shield=True):
             self.closing.set()
             await self.runner.close()

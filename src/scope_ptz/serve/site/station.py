@@ -28,20 +28,20 @@ from scope_ptz.serve.site.run_handle import RunHandle
 from scope_ptz.simulator.prefetch import Prefetch
 
 MAX_UNDO = 50
-"""Maximum number of poses that ``undo`` can return to."""
+"""Maximum number of earlier positions to which ``undo`` can return, one after the other."""
 
 PREFETCH_END_S = 20.0
-"""Maximum time to wait on close for a picture that is still being read in the background, in seconds."""
+"""Maximum time in seconds that ``close`` waits for a picture that is still being read in the background."""
 
 DRIVE_GROUP_S = 2.0
-"""Drive commands that follow each other within this many seconds are undone together."""
+"""Drive commands that follow each other within this many seconds count as one for ``undo``."""
 
 logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
 class IdleReturn:
-    """The preset to which an unused camera returns, and the delay in seconds. An empty name means the home position."""
+    """The preset to which a camera returns when nobody has used it for ``after_s`` seconds. An empty name means home."""
 
     after_s: float
     preset: str = ""
@@ -60,9 +60,9 @@ class Station:
 
     Args:
         name: The name that requests use.
-        spec: The camera's spec. It must not come from a request.
+        spec: The camera's spec. It must not come from a request, because a spec can name any device.
         pairs: The pairs of models.
-        actor: The name under which the camera is controlled, for its audit log and for other programs.
+        actor: The name under which the server appears in the camera's audit log, and to other programs that use the device.
         idle: Where the camera returns to when nobody uses it; None to leave it where it is.
         lease_s: Seconds without a command after which control expires.
     """
@@ -80,7 +80,7 @@ class Station:
         self.problem: ScopeError | None = None
         """The error of the last attempt to open the camera; None if the attempt succeeded."""
         self.visited: dict[str, Place] = {}
-        """The position of the camera at each visited preset, by preset name. Not all cameras report the poses of their presets."""
+        """Where each preset that was visited points, by preset name. Not all cameras report the poses of their presets."""
         self._driven_s = -DRIVE_GROUP_S
         self._commanded_s = monotonic()
         self._returned = True
@@ -91,7 +91,7 @@ class Station:
         """Number of preset changes so far. Watchers compare it to notice changes."""
 
     async def opened(self) -> OpenCamera:
-        """Return the open camera, which the first call opens.
+        """Return the open camera. The first call opens it.
 
         Raises:
             CameraError: The camera fails, does not answer, or is controlled by another program.
@@ -123,7 +123,7 @@ class Station:
         return self._opened
 
     async def models(self, pair: str) -> Models:
-        """Return the planner and the perception backend of a pair for this camera. The first call creates them."""
+        """Return the planner and the perception backend of a pair for this camera. The first call for a pair creates them."""
         if pair not in self._models:
             self._models[pair] = await self._pairs.open(pair, await self.opened())
         return self._models[pair]
@@ -144,7 +144,12 @@ class Station:
 
     @asynccontextmanager
     async def commanding(self, client: Client) -> AsyncIterator[Camera]:
-        """Return a context in which a client moves the camera. ``undo`` returns to the pose before it."""
+        """Return a context in which a client moves the camera. A later ``undo`` returns to the position before it.
+
+        Raises:
+            NotInControlError: Another client controls the camera.
+            BusyError: A run is in progress.
+        """
         camera = await self.require_control(client)
         await self.remember()
         try:
@@ -157,13 +162,21 @@ class Station:
         self._commanded_s, self._returned = monotonic(), False
 
     async def remember(self) -> None:
-        """Record the current pose, for ``undo``."""
+        """Record the current position, so that ``undo`` can return to it."""
         place = await self.place()
         if not self._places or self._places[-1] != place:
             self._places.append(place)
 
     async def drive(self, client: Client, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
-        """Drive the camera at constant velocities until the timeout."""
+        """Drive the camera at constant velocities until the timeout.
+
+        Args:
+            client: The client that sends the command.
+            pan_dps: Pan velocity in degrees per second.
+            tilt_dps: Tilt velocity in degrees per second.
+            zoom_rate: Zoom velocity in octaves of magnification per second.
+            timeout_s: Seconds after which the camera stops.
+        """
         camera = await self.require_control(client)
         if monotonic() - self._driven_s > DRIVE_GROUP_S:
             await self.remember()
@@ -203,7 +216,7 @@ class Station:
         return bool(self._places)
 
     async def watch_idle(self) -> None:
-        """Until cancelled, move the camera to its idle preset whenever nobody uses it."""
+        """Until cancelled, return the camera to its idle preset each time nobody has used it for long enough."""
         idle = self._idle
         while idle is not None:
             await anyio.sleep(min(1.0, idle.after_s / 2))

@@ -19,7 +19,7 @@ from scope_ptz.virtual_camera.accounts import Account
 from scope_ptz.virtual_camera.device import VirtualDevice
 
 HOST = "127.0.0.1"
-"""Virtual cameras can be reached only from this machine, regardless of the address of the server itself."""
+"""The address that virtual cameras listen on. Only this machine can reach them, whatever address the server itself listens on."""
 
 ACCOUNT = "root"
 """The account name of virtual cameras. A new password is generated each time a camera is turned on."""
@@ -28,7 +28,7 @@ MAX_ON = 4
 """Maximum number of virtual cameras that are on at a time. Each one keeps the pictures of a scene in memory."""
 
 START_S = 60.0
-"""Maximum time in seconds for the start of a virtual camera."""
+"""Maximum time in seconds that a virtual camera may take to start."""
 
 logger = logging.getLogger(__name__)
 
@@ -67,7 +67,7 @@ class VirtualCameras:
         self._changing = asyncio.Lock()
 
     def find(self, name: str) -> VirtualCamera | None:
-        """Return the virtual camera of a camera; None if it is off."""
+        """Return the virtual camera of a site's camera, by the camera's name; None if it is off."""
         running = self._running.get(name)
         return None if running is None else running.camera
 
@@ -120,7 +120,7 @@ class VirtualCameras:
                 raise
 
     async def turn_off(self, name: str) -> None:
-        """Stop the virtual camera of a camera. Its clients are disconnected. If it is off, the call has no effect."""
+        """Stop the virtual camera of a site's camera, which disconnects its clients. If it is off, the call has no effect."""
         async with self._changing:
             running = self._running.get(name)
             if running is not None and running.task is not None:

@@ -20,7 +20,7 @@ class Gate:
 
     Args:
         accounts: The accounts that may use the camera.
-        realm: The authentication realm, which clients show.
+        realm: The authentication realm, which clients show to their users.
     """
 
     def __init__(self, accounts: Accounts, realm: str) -> None:
@@ -28,7 +28,7 @@ class Gate:
         self._digest = DigestAuthenticator(accounts, realm)
 
     def for_role(self, role: Role, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
-        """Return an endpoint that admits accounts of a role and above."""
+        """Return an endpoint that calls a handler for accounts with at least the given role, and refuses others."""
 
         async def endpoint(request: Request) -> Response:
             client = self._client(request)
@@ -75,6 +75,6 @@ def is_local(connection: HTTPConnection) -> bool:
 
 
 def is_foreign_page(request: Request) -> bool:
-    """Return whether a browser sent a request on behalf of a web page from another site."""
+    """Return whether a browser sent a request for a web page of another site, according to the ``Origin`` header."""
     origin = request.headers.get("origin")
     return origin is not None and origin.partition("://")[2] != request.headers.get("host")

@@ -23,6 +23,7 @@ from scope_ptz.virtual_camera.truth import TruthLog
 from scope_ptz.virtual_camera.vapix.replies import Client
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
+# The start page of a camera.
 PAGE = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</title>
 <h1>{name}</h1><img src="/axis-cgi/mjpg/video.cgi" alt="Live picture" style="max-width:100%">"""
 
@@ -33,13 +34,13 @@ class CameraApplication:
     Args:
         unit: The VAPIX state of the camera.
         source: Its live picture.
-        truth: The ground truth of its frames; None if it is not served.
+        truth: The ground truth of its frames; None to keep it from clients.
         onvif: An application for the paths below ``/onvif/``, which authenticates its own clients; None if there is none.
 
     Attributes:
         app: The ASGI application.
         closing: Set when the server shuts down, which ends all streams.
-        jpegs: The encoder that all pictures share.
+        jpegs: The JPEG encoder that all clients share.
     """
 
     def __init__(self, unit: VapixUnit, source: LiveSource, truth: TruthLog | None, onvif: ASGIApp | None) -> None:

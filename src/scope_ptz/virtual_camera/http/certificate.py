@@ -37,7 +37,7 @@ class Certificate:
         """Return a TLS context for a server that presents this certificate."""
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
         context.minimum_version = ssl.TLSVersion.TLSv1_2
-        # Python reads certificates from files only. Only this user can read the folder, and it is deleted afterwards.
+        # Python reads certificates from files only. Only the current user can read the folder, which is deleted afterwards.
         with TemporaryDirectory(prefix="scope-certificate-") as folder:
             path = Path(folder) / "certificate.pem"
             path.write_text(self.pem + self.key_pem, encoding="ascii")

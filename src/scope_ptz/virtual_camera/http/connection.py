@@ -25,7 +25,7 @@ class AbortableProtocol(H11Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         super().connection_lost(exc)
-        # uvicorn keeps the timer of a reset connection, and therefore the connection, until the timer expires.
+        # uvicorn does not cancel the keep-alive timer of a reset connection, which would keep the connection in memory.
         self._unset_keepalive_if_required()
 
 

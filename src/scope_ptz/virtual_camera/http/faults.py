@@ -1,4 +1,4 @@
-"""Apply a camera's faults to HTTP requests, except requests that set faults."""
+"""Apply a camera's faults to HTTP requests, except those below ``/virtual/``, which can switch the faults off."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ CONTROL_PATH = "/virtual/"
 """Path prefix of requests that are exempt from faults, so that faults can be switched off."""
 
 GARBAGE = b"\x00\xff<<<%%garbage}{"
+"""The content that replaces reply bodies while the fault ``garbage`` is set."""
 
 
 class _ConnectionAbortedError(Exception):
@@ -22,7 +23,7 @@ class _ConnectionAbortedError(Exception):
 
 
 class FaultMiddleware:
-    """Drops, delays, refuses or corrupts replies according to the device's faults.
+    """Drops, delays, refuses or corrupts the replies to requests according to the device's faults.
 
     Args:
         app: The application that handles the requests.

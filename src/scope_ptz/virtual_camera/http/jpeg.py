@@ -34,7 +34,8 @@ def picture_format(device: VirtualDevice, resolution: str, compression: str) -> 
     """Return the format that a client requests. Empty strings mean the defaults.
 
     Raises:
-        InputError: The resolution is not WIDTHxHEIGHT or larger than the camera's, or the compression is not 0 to 100.
+        InputError: The resolution does not have the form WIDTHxHEIGHT, or is too small or larger than the camera's; or the
+            compression is not an integer from 0 to 100.
     """
     width, height = parse_resolution(device, resolution)
     if compression and not (compression.isdecimal() and int(compression[:6]) <= 100):
@@ -53,7 +54,7 @@ def encode(image: NDArray[np.uint8], requested: PictureFormat) -> bytes:
 
 
 def with_comment(jpeg: bytes, text: str) -> bytes:
-    """Return a JPEG with a comment segment after its start marker."""
+    """Return a JPEG with a comment segment inserted after its start marker."""
     content = text.encode()[:65_000]
     return jpeg[:2] + b"\xff\xfe" + (len(content) + 2).to_bytes(2, "big") + content + jpeg[2:]
 
@@ -72,7 +73,7 @@ class SharedJpegs:
         """Number of encodings so far."""
 
     async def snapshot(self, requested: PictureFormat) -> tuple[Exposure, bytes]:
-        """Take a picture and return it with its JPEG."""
+        """Capture an image, and return the exposure and its JPEG."""
         exposure = await to_thread.run_sync(self._device.expose)
         return exposure, await self.jpeg(exposure, requested)
 

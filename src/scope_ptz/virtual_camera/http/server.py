@@ -26,7 +26,7 @@ from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 SHUTDOWN_S = 3
 """Seconds that open replies have to finish when the server shuts down."""
 
-RETRY_S = 1.0  # pause of the live picture after a failure
+RETRY_S = 1.0  # seconds between a failure of the live picture and its restart
 
 logger = logging.getLogger(__name__)
 
@@ -38,10 +38,10 @@ class ServedCamera:
     Attributes:
         device: The camera.
         unit: Its VAPIX state.
-        source: Its live picture, for other servers of the same camera.
-        application: The web application on the port.
+        source: Its live picture, which other servers of the same camera, such as the RTSP server, also use.
+        application: The web application that answers requests.
         host: Address that the camera listens on.
-        port: Port of HTTP, or of HTTPS if there is a certificate.
+        port: Port of the HTTP server, or of the HTTPS server if there is a certificate.
         certificate: Its certificate for HTTPS; None for HTTP.
     """
 
@@ -55,12 +55,12 @@ class ServedCamera:
 
     @property
     def url(self) -> str:
-        """The address for a client on this machine, such as ``http://127.0.0.1:8080``."""
+        """The base URL for a client on this machine, such as ``http://127.0.0.1:8080``."""
         return f"{'http' if self.certificate is None else 'https'}://{self._reachable}:{self.port}"
 
     @property
     def rtsp_url(self) -> str | None:
-        """The address of the H.264 stream for a client on this machine; None if it is not served."""
+        """The URL of the H.264 stream for a client on this machine; None if there is no RTSP server."""
         port = self.unit.rtsp_port
         return None if port is None else f"rtsp://{self._reachable}:{port}/axis-media/media.amp"
 
@@ -89,13 +89,14 @@ async def serve(
         host: Address to listen on. Unless it is a loopback address, all cameras must have accounts.
         ports: A port for each camera; 0 for any free one. If the list is empty, the system chooses all ports.
         truth: Whether clients on this machine get the ground truth of frames.
-        onvif: A function that creates the application for the paths below ``/onvif/`` of a camera.
+        onvif: A function that creates the application for the paths below ``/onvif/`` of a camera; None for no ONVIF services.
         rate_hz: Frames per second of live pictures.
-        latency_s: Time from exposure until a frame is sent.
-        certificates: A certificate for each camera, which then serves HTTPS instead of HTTP; empty for HTTP.
+        latency_s: Simulated delay in seconds from the exposure of a live frame to its delivery.
+        certificates: A certificate for each camera, to serve HTTPS instead of HTTP; empty for HTTP.
 
     Raises:
-        ConfigError: A port is in use or not permitted, or a camera without accounts would be open to the network.
+        ConfigError: A port is in use or not permitted; a camera without accounts would be open to the network; or the number of
+            ports or certificates differs from the number of cameras.
     """
     ports = ports or [0] * len(devices)
     if len(ports) != len(devices):
@@ -181,7 +182,7 @@ def _configuration(camera: ServedCamera) -> uvicorn.Config:
 
 
 def listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
-    """Return listening sockets. If one cannot be opened, close all of them.
+    """Return a listening socket for each port. If one port cannot be used, close the sockets that are already open.
 
     Raises:
         ConfigError: A port is in use or not permitted.
@@ -208,7 +209,7 @@ def _is_loopback(host: str) -> bool:
 
 
 async def _keep_running(source: LiveSource) -> None:
-    """Run a live picture. After a failure, clients see no new frames until it works again."""
+    """Run a live picture, and restart it after each failure. Clients get no new frames in between."""
     while True:
         try:
             await source.run()

@@ -17,7 +17,7 @@ from scope_ptz.virtual_camera.pace import Pace
 
 BOUNDARY = "myboundary"
 STUCK_S = 20.0
-"""Seconds after which a client that reads nothing is disconnected."""
+"""Seconds for which sending a frame may block before the client is disconnected, because it does not read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +28,9 @@ class StreamOptions:
         picture: Size and compression.
         fps: Maximum number of frames per second.
         frames: Number of frames after which the stream ends.
-        duration_s: Seconds after which it ends.
-        truth: A function that returns the headers of a part and the comment of its JPEG; None if there are none.
+        duration_s: Seconds after which the stream ends.
+        truth: A function that returns the ground truth of a frame, as headers for its part and as a comment for its JPEG; None to
+            send no ground truth.
     """
 
     picture: PictureFormat

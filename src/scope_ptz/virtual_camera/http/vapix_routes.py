@@ -25,10 +25,12 @@ from scope_ptz.virtual_camera.vapix.ptz import ptz, ptz_config, ptz_queue
 from scope_ptz.virtual_camera.vapix.replies import Client, Reply
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
-MAX_BODY_BYTES = 64 * 1024
-MAX_FIELDS = 200
+MAX_BODY_BYTES = 64 * 1024  # maximum size of a request body
+MAX_FIELDS = 200  # maximum number of arguments in the query, and in the body
 
 METHODS = ["GET", "POST"]
+
+# The user groups that ``usergroup.cgi`` reports for each role.
 GROUPS = {Role.VIEWER: "viewer", Role.OPERATOR: "operator viewer ptz", Role.ADMINISTRATOR: "admin operator viewer ptz"}
 
 
@@ -39,7 +41,7 @@ class VapixRoutes:
         unit: The VAPIX state of the camera.
         source: Its live picture.
         gate: Authenticates clients.
-        truth: Adds the ground truth to pictures for local clients; None if it is not served.
+        truth: Builds the ground truth that is sent with pictures to clients on this machine; None to send none.
         closing: Set when the server shuts down.
     """
 
@@ -112,7 +114,13 @@ async def read_body(request: Request) -> bytes:
 
 
 async def read_arguments(request: Request) -> Arguments:
-    """Return the arguments in the query and in the body. The body is parsed regardless of its media type."""
+    """Return the arguments of a request, which may be in the query and in the body.
+
+    The body is parsed as a form, whatever its media type. If a name is repeated, its first value applies.
+
+    Raises:
+        HTTPException: The body is too large, there are too many arguments, or the client disconnected.
+    """
     query = request.scope["query_string"].decode("latin-1")
     body = (await read_body(request)).decode("utf-8", "replace").strip()
     try:

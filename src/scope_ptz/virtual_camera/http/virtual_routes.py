@@ -1,4 +1,4 @@
-"""Routes that a real camera does not have: faults, reboots and ground truth, for clients on the same machine only."""
+"""Routes that a real camera does not have: faults, simulated reboots and ground truth, for clients on the same machine only."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ DOWN_S = 10.0
 """Default number of seconds for which a rebooting camera is off the network."""
 
 MAX_WITHIN_S = 5.0
-"""Maximum difference between the requested time of a frame and the time of its exposure, in seconds."""
+"""Maximum value of the argument ``within``, the tolerance in seconds between the requested time and the time of an exposure."""
 
 
 class VirtualRoutes:
@@ -32,7 +32,7 @@ class VirtualRoutes:
     Args:
         device: The camera.
         gate: Authenticates clients.
-        truth: The ground truth; None if it is not served.
+        truth: The ground truth of frames; None for no route to it.
     """
 
     def __init__(self, device: VirtualDevice, gate: Gate, truth: TruthLog | None) -> None:
@@ -50,7 +50,7 @@ class VirtualRoutes:
         return found
 
     def close(self) -> None:
-        """End a reboot in progress."""
+        """Cancel the task of a reboot in progress. The camera then stays off the network until the fault ``down`` is cleared."""
         if self._reboot is not None:
             self._reboot.cancel()
 

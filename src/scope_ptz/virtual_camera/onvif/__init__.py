@@ -1,1 +1,1 @@
-"""The ONVIF interface of a virtual camera: Device, Media, Media2 and PTZ services, and WS-Discovery."""
+"""The ONVIF interface of a virtual camera: Device, Media, Media2, Imaging and PTZ services, and WS-Discovery."""

@@ -163,13 +163,18 @@ class OnvifApp:
         return self._messages[namespace, name].output.serialize(**reply).content
 
     def _capabilities(self, namespace: str) -> Any:
-        """Return the capabilities of a service as an element."""
+        """Return the capabilities of a service, by its namespace, as an XML element."""
         reply = self._operations[namespace]["GetServiceCapabilities"].run(Request(None, "", ""))
         return self._serialized(namespace, "GetServiceCapabilities", reply).find(f".//{{{namespace}}}Capabilities")
 
 
 def _address(scope: Scope, stated: str) -> tuple[str, str]:
-    """Return the host and the origin (scheme, host and port) of the server according to the client's ``Host`` header."""
+    """Return the host and the origin (scheme, host and port) at which the client reached the server.
+
+    Args:
+        scope: The ASGI scope, which contains the address to use if the header is invalid.
+        stated: The value of the ``Host`` header.
+    """
     found = _HOST.fullmatch(stated)
     if found is None:
         host, port = scope.get("server") or ("localhost", None)

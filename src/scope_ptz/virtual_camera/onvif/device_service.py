@@ -26,6 +26,7 @@ PATHS = {
 VERSION = {"Major": 19, "Minor": 12}
 """Version of the ONVIF specifications that the services implement."""
 
+# The categories that ``GetCapabilities`` can request: those with a service and its namespace, and those without a service.
 _CATEGORIES = {"Device": DEVICE, "Media": MEDIA, "PTZ": PTZ, "Imaging": IMAGING}
 _ABSENT = {"Analytics", "Events"}
 
@@ -42,7 +43,7 @@ class DeviceService:
 
     Args:
         device: The camera.
-        capabilities: A function that returns the capabilities of a service, given its namespace, as an element.
+        capabilities: A function that returns the capabilities of a service, by its namespace, as an XML element.
         rtsp_port: Port of its RTSP server.
     """
 
@@ -165,6 +166,16 @@ _DEVICE_DETAILS: Mapping[str, Any] = {
 
 
 def require_token(name: str, token: str | None, known: str, subcode: str) -> None:
-    """Raise a fault if a token differs from the only valid one."""
+    """Raise a fault if a token differs from the only valid one.
+
+    Args:
+        name: What the token identifies, for the message.
+        token: The token in the request.
+        known: The valid token.
+        subcode: The ONVIF subcode of the fault.
+
+    Raises:
+        SoapFault: The tokens differ.
+    """
     if token != known:
         raise invalid_argument(f"There is no {name} '{str(token)[:64]}'.", subcode)

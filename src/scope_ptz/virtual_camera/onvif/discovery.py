@@ -33,12 +33,12 @@ Address = tuple[str, int]
 
 @dataclass(frozen=True, slots=True)
 class Discoverable:
-    """A device with the port of its web server.
+    """A device that WS-Discovery announces, with the address of its web server.
 
     Attributes:
         device: The device.
-        http_port: The port.
-        tls: Whether the port serves HTTPS.
+        http_port: The port of its web server.
+        tls: Whether the port serves HTTPS instead of HTTP.
     """
 
     device: VirtualDevice
@@ -78,7 +78,7 @@ class _Responder(asyncio.DatagramProtocol):
 
 @asynccontextmanager
 async def discoverable(cameras: Sequence[Discoverable], *, host: str = "127.0.0.1", port: int = PORT) -> AsyncIterator[int]:
-    """Announce cameras and answer probes while the context is open, and yield the port.
+    """Announce cameras and answer probes while the context is open, and yield the UDP port.
 
     Args:
         cameras: The cameras.
@@ -110,7 +110,7 @@ def _listen(interface: str, port: int) -> socket.socket:
     try:
         # Other programs on this machine may share the port, because multicast reaches all of its sockets.
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        # Bind to the group where the system allows it (Windows does not), so that only multicast arrives.
+        # Bind to the multicast address where the system allows it (Windows does not), so that only multicast packets arrive.
         try:
             listener.bind((GROUP, port))
         except OSError:

@@ -1,4 +1,4 @@
-"""Parse the queries of WS-Discovery (April 2005, the version that ONVIF uses), and build the messages of a device."""
+"""Parse WS-Discovery queries, and build the messages of a device. ONVIF uses the version of WS-Discovery of April 2005."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_ptz.virtual_camera.onvif.wsdl import DEVICE
 
 DISCOVERY = "http://schemas.xmlsoap.org/ws/2005/04/discovery"
 NETWORK = "http://www.onvif.org/ver10/network/wsdl"
-EVERYONE = "urn:schemas-xmlsoap-org:ws:2005:04:discovery"
+EVERYONE = "urn:schemas-xmlsoap-org:ws:2005:04:discovery"  # the destination of messages to all clients
 
 TYPES = {(NETWORK, "NetworkVideoTransmitter"), (DEVICE, "Device")}
 """The types of the device, as pairs of namespace and name."""
@@ -34,9 +34,9 @@ class Target:
     """A discoverable device.
 
     Attributes:
-        uuid: Its identity.
-        scopes: The scopes that describe it.
-        xaddr: The address of its Device service; empty if it depends on the client.
+        uuid: The UUID that identifies the device.
+        scopes: The scopes that describe the device.
+        xaddr: The URL of its Device service; empty if it depends on the network through which a client asks.
     """
 
     uuid: UUID
@@ -45,7 +45,7 @@ class Target:
 
     @property
     def address(self) -> str:
-        """The identity as a URN."""
+        """The UUID as a URN, which serves as the address of the device in WS-Discovery."""
         return f"urn:uuid:{self.uuid}"
 
 
@@ -55,10 +55,10 @@ class Query:
 
     Attributes:
         message_id: The id of the message, to which the answer refers.
-        resolves: The address in a Resolve; None for a Probe.
-        types: The types in a Probe.
-        scopes: The scopes in a Probe.
-        match_by: The rule for comparing scopes.
+        resolves: The address of the device that a Resolve looks for; None for a Probe.
+        types: The types that a device must have to match a Probe.
+        scopes: The scopes that a device must have to match a Probe.
+        match_by: The URI of the rule for comparing scopes; empty for the default, which compares prefixes.
     """
 
     message_id: str
@@ -108,11 +108,11 @@ def parse_query(data: bytes) -> Query | None:
 
 
 class Sender:
-    """Builds the messages of one device, with sequence numbers for ordering.
+    """Builds the messages of one device, numbered so that clients can put them in order.
 
     Args:
         target: The device.
-        instance: A number that increases with each start of the device.
+        instance: A number that is higher after each start of the device. Message numbers begin again at each start.
     """
 
     def __init__(self, target: Target, instance: int) -> None:
@@ -131,7 +131,7 @@ class Sender:
 
         Args:
             query: The query.
-            xaddr: The address at which the client can reach the Device service.
+            xaddr: The URL at which the client can reach the Device service.
         """
         kind = "Probe" if query.resolves is None else "Resolve"
         found = _D(f"{kind}Match", *self._description(xaddr))

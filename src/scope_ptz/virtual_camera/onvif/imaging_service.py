@@ -12,13 +12,13 @@ from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Rep
 from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
 
 DARKEST_DB = 20.0
-"""Attenuation of light by the closed iris in dB. The open iris has 0 dB."""
+"""Attenuation of light by the closed iris in dB, in which ONVIF states iris values. The open iris has 0 dB."""
 
 _MODES = ["AUTO", "MANUAL"]
 _POSITIONS = {"Min": 0.0, "Max": 1.0}
 _DISTANCES = {"Min": -1.0, "Max": 1.0}
 _IRIS = {"Min": 0.0, "Max": DARKEST_DB}
-_TOLERANCE = 1e-4  # clients that calculate in single precision exceed the end of a range slightly
+_TOLERANCE = 1e-4  # clients that calculate in single precision may slightly exceed the end of a range
 
 
 class ImagingService:
@@ -70,7 +70,7 @@ class ImagingService:
         return {"Status": {"FocusStatus20": focus}}
 
     def _set(self, request: Request) -> Reply:
-        """Change the settings in a request, after checking all of them."""
+        """Apply the settings in a request. All of them are checked before the first is applied."""
         _require_source(request)
         lens, settings = self._device.lens, request.ImagingSettings
         focus, exposure = settings.Focus, settings.Exposure

@@ -27,7 +27,10 @@ _FRACTION = re.compile(r"\.\d")
 
 @dataclass(frozen=True, slots=True)
 class Stamp:
-    """The time at which a client created a request, as an interval in Unix seconds, because most clients state whole seconds."""
+    """The time at which a client created a request, in Unix seconds.
+
+    It is an interval, because most clients state their time only to whole seconds.
+    """
 
     earliest_s: float
     latest_s: float
@@ -35,7 +38,7 @@ class Stamp:
 
 @dataclass(frozen=True, slots=True)
 class Sender:
-    """An authenticated account, and the time at which it created the request."""
+    """The authenticated account that sent a request, and the time at which the request was created."""
 
     account: Account
     stamp: Stamp
@@ -51,7 +54,7 @@ class UsernameTokens:
 
     Args:
         accounts: The accounts that may sign in.
-        clock_s: The device's clock in Unix seconds.
+        clock_s: Returns the time of the device's clock in Unix seconds.
     """
 
     def __init__(self, accounts: Accounts, clock_s: Callable[[], float]) -> None:
@@ -86,7 +89,7 @@ class UsernameTokens:
 
     def _use(self, nonce: bytes, created: str) -> None:
         now_s = self._clock_s()
-        while self._used and next(iter(self._used.values())) <= now_s:  # in the order of their use
+        while self._used and next(iter(self._used.values())) <= now_s:  # expired tokens; the oldest is first
             del self._used[next(iter(self._used))]
         if (nonce, created) in self._used:
             raise not_authorized("The token was used before.")

@@ -16,8 +16,8 @@ SOURCE_CONFIGURATION = "video-source-configuration"
 FRAME_RATE = 25
 """Frames per second of the stream."""
 
-GOP_FRAMES = 25
-QUALITY = 70.0
+GOP_FRAMES = 25  # frames from one keyframe to the next
+QUALITY = 70.0  # a fixed value, which clients cannot change
 
 STREAM_PATH = "/axis-media/media.amp"
 SNAPSHOT_PATH = "/axis-cgi/jpg/image.cgi"
@@ -28,7 +28,17 @@ MULTICAST = {"Address": {"Type": "IPv4", "IPv4Address": "0.0.0.0"}, "Port": 0, "
 
 @dataclass(frozen=True, slots=True)
 class MediaProfile:
-    """A stream: its size in pixels and bit rate, and the tokens of the profile and of its encoder configuration."""
+    """A media profile: a stream of one size, with its encoder configuration.
+
+    Attributes:
+        token: The token of the profile.
+        encoder_token: The token of the encoder configuration.
+        name: The name that clients show.
+        width: Width in pixels.
+        height: Height in pixels.
+        bitrate_kbps: The maximum bit rate in kbit/s, as stated in replies.
+        query: The query of the stream's URL; empty for full size.
+    """
 
     token: str
     encoder_token: str
@@ -94,7 +104,7 @@ def selected_encoders(device: VirtualDevice, request: Request) -> tuple[MediaPro
 
 
 def require_configuration(token: str | None, known: str) -> None:
-    """Raise a fault if the token of a configuration differs from the only valid one."""
+    """Raise a fault if the token of a configuration differs from ``known``, the only valid one."""
     require_token("configuration", token, known, "NoConfig")
 
 
@@ -124,11 +134,11 @@ def source_options(device: VirtualDevice) -> dict[str, Any]:
 
 
 def stream_uri(request: Request, profile: MediaProfile, rtsp_port: int) -> str:
-    """Return the address at which the client can reach a stream."""
+    """Return the URL of a stream, at the host at which the client reached the device."""
     port = "" if rtsp_port == 554 else f":{rtsp_port}"
     return f"rtsp://{request.host}{port}{STREAM_PATH}{profile.query}"
 
 
 def snapshot_uri(request: Request, profile: MediaProfile) -> str:
-    """Return the address at which the client can get the current image."""
+    """Return the URL of the current image, at the host at which the client reached the device."""
     return f"{request.origin}{SNAPSHOT_PATH}?resolution={profile.width}x{profile.height}"

@@ -37,10 +37,16 @@ Reply = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """The function of an operation, and the role that it requires; None if it requires no login."""
+    """An operation of a service.
+
+    Attributes:
+        run: The function that carries out a request and returns the values of the reply.
+        role: The role that the sender must have; None if the operation requires no login.
+    """
 
     run: Callable[[Request], Reply]
     role: Role | None = Role.VIEWER
 
 
 Operations = Mapping[str, Operation]
+"""Operations by name."""

@@ -1,4 +1,4 @@
-"""The PTZ node and its configuration: spaces, defaults and limits."""
+"""The PTZ node and its configuration: coordinate spaces, defaults and limits."""
 
 from __future__ import annotations
 
@@ -26,12 +26,13 @@ def duration_s(value: Any) -> float | None:
 
 
 class PtzConfiguration:
-    """The PTZ configuration. Clients can change its defaults.
+    """The PTZ configuration. Clients can change its name and its defaults.
 
     Attributes:
-        spaces: The spaces of the camera.
-        position: The space of positions in status and presets, and the default space of absolute moves.
-        translation: The default space of relative moves.
+        spaces: The coordinate spaces of the camera.
+        name: The name of the configuration.
+        position: URI of the space of positions in status and presets, which is also the default space of absolute moves.
+        translation: URI of the default space of relative moves.
         timeout_s: The default duration of a continuous move in seconds.
         speed: The default speed of pan and tilt, as a fraction of the top speed.
         zoom_speed: The default speed of the zoom, as a fraction of the top speed.
@@ -57,7 +58,7 @@ class PtzConfiguration:
         }
 
     def values(self) -> dict[str, Any]:
-        """Return the configuration in the form of a reply."""
+        """Return the configuration as it appears in replies."""
         pan_tilt = self.spaces.positions[0]
         return {
             "token": CONFIGURATION,

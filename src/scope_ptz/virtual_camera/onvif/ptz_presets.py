@@ -18,7 +18,7 @@ class PresetOperations:
     Args:
         device: The camera.
         configuration: Its PTZ configuration.
-        service: The PTZ service, which converts positions.
+        service: The PTZ service, which converts poses to ONVIF positions.
     """
 
     def __init__(self, device: VirtualDevice, configuration: PtzConfiguration, service: PtzService) -> None:

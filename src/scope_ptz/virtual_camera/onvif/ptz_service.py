@@ -41,7 +41,7 @@ class PtzService:
         }
 
     def position(self, pose: Pose) -> dict[str, Any]:
-        """Return a pose as a vector in the default spaces."""
+        """Return a pose as an ONVIF vector in the default position spaces."""
         x, y = self._spaces.position(pose, self._configuration.position)
         return {
             "PanTilt": {"x": x, "y": y, "space": self._configuration.position},
@@ -49,7 +49,7 @@ class PtzService:
         }
 
     def _capabilities(self, _: Request) -> Reply:
-        # The last two are newer than the WSDL files of onvif-zeep-async.
+        # The attributes in ``more`` are newer than the WSDL files of onvif-zeep-async, so they are passed as additional attributes.
         reports = self._device.reported_moving() is not None
         more = {"MoveStatus": "true" if reports else "false", "StatusPosition": "true"}
         return {"Capabilities": {"EFlip": False, "Reverse": False, "GetCompatibleConfigurations": True, "_attr_1": more}}
@@ -121,9 +121,15 @@ class PtzService:
         return {}
 
     def _sent_s(self, request: Request, *, latest: bool) -> float | None:
-        """Return the creation time of a request in Unix seconds: the latest possible time for a move, the earliest for a stop.
+        """Return the time at which a request was created, in Unix seconds; None if the request does not state it.
 
-        In case of doubt, the move is therefore carried out. A client whose clock is ahead must not block others.
+        A time in the future is replaced with the current time. Otherwise, a stop from a client whose clock is ahead would block the
+        moves of other clients.
+
+        Args:
+            request: The request.
+            latest: Whether to return the latest possible time (for a move) instead of the earliest (for a stop). If it is not clear
+                which of the two was sent first, the move is therefore carried out.
         """
         if request.stamp is None:
             return None
@@ -136,7 +142,11 @@ class PtzService:
 
 
 def _axes(vector: Any) -> tuple[Any, Any]:
-    """Return the pan/tilt part and the zoom part of a vector."""
+    """Return the pan/tilt part and the zoom part of a vector. Either may be None.
+
+    Raises:
+        SoapFault: Both are missing.
+    """
     pan_tilt, zoom = getattr(vector, "PanTilt", None), getattr(vector, "Zoom", None)
     if pan_tilt is None and zoom is None:
         raise SoapFault("The move must specify pan and tilt, zoom, or both.", "InvalidArgs")

@@ -12,24 +12,24 @@ ENVELOPE = "http://www.w3.org/2003/05/soap-envelope"
 ERRORS = "http://www.onvif.org/ver10/error"
 SECURITY = "http://docs.oasis-open.org/wss/2004/01/oasis-200401-wss-wssecurity-secext-1.0.xsd"
 ADDRESSING = "http://www.w3.org/2005/08/addressing"
-MEMBER_ADDRESSING = "http://schemas.xmlsoap.org/ws/2004/08/addressing"
+MEMBER_ADDRESSING = "http://schemas.xmlsoap.org/ws/2004/08/addressing"  # W3C Member Submission, which WS-Discovery uses
 
 MAX_REQUEST_BYTES = 65536
 """Maximum size of a request in bytes. The largest common request (SetConfiguration) is about 4 kB."""
 
-_UNDERSTOOD = {SECURITY, ADDRESSING, MEMBER_ADDRESSING}
+_UNDERSTOOD = {SECURITY, ADDRESSING, MEMBER_ADDRESSING}  # namespaces of the headers that a request may mark as mandatory
 _E = ElementMaker(namespace=ENVELOPE, nsmap={"env": ENVELOPE, "ter": ERRORS})
 _LANGUAGE = "{http://www.w3.org/XML/1998/namespace}lang"
 
 
 class SoapFault(Exception):  # noqa: N818 - the term of the SOAP specification
-    """A refused request. The fault is sent as the reply.
+    """Raised to refuse a request. The fault is sent as the reply.
 
     Args:
         reason: A human-readable message.
-        subcodes: The subcodes of Sender or Receiver, in the namespace of ONVIF errors.
-        receiver: Whether the device rather than the request caused the fault.
-        status: Status of the HTTP reply; the default is 400 for a sender's fault, 500 for a receiver's.
+        subcodes: The subcodes in the namespace of ONVIF errors, from general to specific.
+        receiver: Whether the device rather than the request caused the fault (Receiver instead of Sender in SOAP).
+        status: Status of the HTTP response; the default is 400 for a sender's fault, 500 for a receiver's.
     """
 
     def __init__(self, reason: str, *subcodes: str, receiver: bool = False, status: int | None = None) -> None:
@@ -79,7 +79,7 @@ def parse_xml(data: bytes) -> Any:
     Raises:
         SoapFault: The document is not well-formed, or has a document type.
     """
-    # Each document needs a new parser, because a parser that failed must not be used in another thread.
+    # Create a new parser for each document, because a parser that failed must not be used in another thread.
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, dtd_validation=False, huge_tree=False, remove_comments=True,
         remove_pis=True,

@@ -1,4 +1,4 @@
-"""The coordinate spaces of ONVIF, and conversions between them and poses of this camera.
+"""Convert between poses and the coordinate spaces in which ONVIF states positions, translations and speeds.
 
 Positive x is right and positive y is up in all of them.
 """
@@ -27,7 +27,7 @@ ZOOM_TRANSLATION = _ZOOM + "TranslationGenericSpace"
 ZOOM_VELOCITY = _ZOOM + "VelocityGenericSpace"
 ZOOM_SPEED = _ZOOM + "ZoomGenericSpeedSpace"
 
-_TOLERANCE = 1e-4  # clients that calculate in single precision exceed the end of a range slightly
+_TOLERANCE = 1e-4  # clients that calculate in single precision may slightly exceed the end of a range
 
 Range = tuple[float, float]
 UNIT: Range = (-1.0, 1.0)
@@ -36,14 +36,14 @@ FRACTION: Range = (0.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """A space with its ranges. A one-dimensional space has no y."""
+    """A coordinate space: its URI, and the range of each coordinate. ``y`` is None if the space is one-dimensional."""
 
     uri: str
     x: Range
     y: Range | None = None
 
     def check(self, vector: Any, subcode: str) -> None:
-        """Raise a fault if a vector is outside the ranges or has a number that is not finite."""
+        """Raise a ``SoapFault`` if a coordinate of a vector is missing, not finite, or out of range."""
         for axis, limits in (("x", self.x), ("y", self.y)):
             if limits is None:
                 continue
@@ -53,7 +53,7 @@ class Space:
 
 
 def requested_space(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:
-    """Return the space that a vector names, or the default.
+    """Return the space that a vector names or, if it names none, the space with the URI ``default``.
 
     Raises:
         SoapFault: The device does not support the space.
@@ -67,7 +67,13 @@ def requested_space(spaces: tuple[Space, ...], vector: Any, default: str) -> Spa
 
 @dataclass(frozen=True, slots=True)
 class Spaces:
-    """All spaces of a camera."""
+    """All coordinate spaces of a camera.
+
+    Attributes:
+        limits: The limits of the camera's poses.
+        optics: The fields of view by zoom.
+        aspect: Width of the image divided by its height.
+    """
 
     limits: Limits
     optics: Optics
@@ -102,18 +108,18 @@ class Spaces:
     zoom_speeds = (Space(ZOOM_SPEED, FRACTION),)
 
     def at_position(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
-        """Return the pose at a position of pan and tilt, with the zoom of ``pose``."""
+        """Return the pose at a position ``x``, ``y`` of pan and tilt in a space, with the zoom of ``pose``."""
         if space.uri == POSITION:
             x, y = _from_unit(x, self._pan), _from_unit(y, self._tilt)
         return replace(pose, pan_deg=x, tilt_deg=y)
 
     def at_zoom_position(self, pose: Pose, x: float) -> Pose:
-        """Return ``pose`` with the zoom at a position."""
+        """Return ``pose`` with its zoom changed to the position ``x``, a fraction of the zoom range."""
         low, high = self._zoom
         return replace(pose, zoom=low + x * (high - low))
 
     def turned(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
-        """Return the pose after a translation of pan and tilt. It may lie beyond the limits."""
+        """Return the pose after a translation of pan and tilt in a space. The pose may lie beyond the limits."""
         if space.uri == TRANSLATION_FOV:
             return self._centred(pose, x, y)
         if space.uri == TRANSLATION:
@@ -121,23 +127,23 @@ class Spaces:
         return pose.turned(x, y)
 
     def zoomed(self, pose: Pose, x: float) -> Pose:
-        """Return the pose after a translation of the zoom, within its limits."""
+        """Return the pose after a translation of the zoom by ``x``, a signed fraction of its range, clamped to the range."""
         low, high = self._zoom
         return replace(pose, zoom=min(max(pose.zoom + x * (high - low), low), high))
 
     def position(self, pose: Pose, uri: str) -> tuple[float, float]:
-        """Return the position of pan and tilt in a space."""
+        """Return the pan and tilt of a pose as a position in the space with a URI."""
         if uri == POSITION:
             return _to_unit(pose.pan_deg, self._pan), _to_unit(pose.tilt_deg, self._tilt)
         return pose.pan_deg, pose.tilt_deg
 
     def zoom_position(self, pose: Pose) -> float:
-        """Return the position of the zoom."""
+        """Return the zoom of a pose as a fraction of the zoom range."""
         low, high = self._zoom
         return min(max((pose.zoom - low) / (high - low), 0.0), 1.0)
 
     def _centred(self, pose: Pose, x: float, y: float) -> Pose:
-        """Return the pose that centres a point of the image, in coordinates from -1 to 1."""
+        """Return the pose that centres the point ``x``, ``y`` of the image, whose edges are at -1 and 1."""
         size = 1000
         view = Perspective(pose.pan_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), size, round(size / self.aspect))
         pan_deg, tilt_deg = pan_tilt_deg(view.directions([0.5 + x / 2, 0.5 - y / 2]))

@@ -27,7 +27,7 @@ _PREFIXES = {
     "tptz": PTZ,
     "timg": IMAGING,
     "tt": SCHEMA,
-}  # the prefixes of the specifications
+}  # the namespace prefixes that the ONVIF specifications use
 _OWN_FOLDER = Path(__file__).parent / "wsdl"
 _INSTALL = "Install them with: pip install 'scope-ptz[serve]'"
 
@@ -62,7 +62,7 @@ def load_document() -> Document:
 
 @cache
 def load_operations() -> dict[tuple[str, str], Any]:
-    """Return the operations of all services by namespace and name of their request element."""
+    """Return the operations of all services by the namespace of their service and their name."""
     found = {}
     for service in load_document().services.values():
         for port in service.ports.values():

@@ -26,8 +26,8 @@ from scope_ptz.virtual_camera.rtsp.transport_header import TransportOffer, choos
 IDLE_S = 60.0
 """Seconds after which a connection without sessions is closed."""
 
-READ_S = 10.0  # maximum time in seconds to receive the rest of a message
-GARBAGE = b"\x00\xff<<<%%garbage}{\r\n\r\n"
+READ_S = 10.0  # maximum time in seconds to receive the rest of a message, or to send a reply
+GARBAGE = b"\x00\xff<<<%%garbage}{\r\n\r\n"  # sent instead of each reply while the fault ``garbage`` is set
 SERVER = "scope-ptz"
 
 logger = logging.getLogger(__name__)
@@ -41,11 +41,11 @@ class RtspConnection:
     Args:
         device: The camera.
         source: Its live picture.
-        sessions: The sessions of all connections.
-        digest: Checks passwords.
-        chance: Random generator that selects the requests to drop.
-        reader: The incoming stream.
-        writer: The outgoing stream.
+        sessions: The sessions of the camera, which all its connections share.
+        digest: Authenticates the client.
+        chance: Random number generator that decides which requests are dropped.
+        reader: The incoming data of the connection.
+        writer: The outgoing data of the connection.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class RtspConnection:
         self._device, self._source, self._sessions, self._digest = device, source, sessions, digest
         self._chance = chance
         self._reader, self._writer = reader, writer
-        self._here: str = writer.get_extra_info("sockname")[0]
+        self._local_address: str = writer.get_extra_info("sockname")[0]
         self._peer: str = writer.get_extra_info("peername")[0]
         self._account = ""
         self._own: dict[str, Session] = {}
@@ -98,7 +98,7 @@ class RtspConnection:
                 await self._writer.wait_closed()
 
     async def _serve_next(self) -> bool:
-        """Serve a message and return whether the connection stays open."""
+        """Wait for a message and handle it. Return whether the connection stays open."""
         try:
             async with asyncio.timeout(IDLE_S):
                 first = await self._reader.readexactly(1)
@@ -172,7 +172,7 @@ class RtspConnection:
 
     async def _options(self, request: Request) -> Reply:
         if "session" in request.headers:
-            with suppress(RefusedError):  # only a keep-alive
+            with suppress(RefusedError):  # the session is only kept alive, so an unknown one is not an error
                 self._session(request)
         return Reply(headers=(("Public", ", ".join(self._handlers)),))
 
@@ -183,7 +183,7 @@ class RtspConnection:
             raise RefusedError(406)
         requested = self._requested(url)
         sets = await to_thread.run_sync(parameter_sets, requested.width, requested.height, requested.fps)
-        body = describe(url, requested, sets, name=self._device.name, host=self._here)
+        body = describe(url, requested, sets, name=self._device.name, host=self._local_address)
         head = (("Content-Type", "application/sdp"), ("Content-Base", url.content_base), ("Cache-Control", "no-cache"))
         return Reply(headers=head, body=body)
 
@@ -225,7 +225,7 @@ class RtspConnection:
 
     async def _set_up_udp(self, session: Session, offer: TransportOffer) -> str:
         assert offer.pair is not None  # noqa: S101 - UDP is never offered without ports
-        session.sink = await open_udp(self._here, self._peer, offer.pair, session.touch, session.lost)
+        session.sink = await open_udp(self._local_address, self._peer, offer.pair, session.touch, session.lost)
         session.on_lost = lambda: self._sessions.end_soon(session)
         ports, own = offer.pair, session.sink.ports
         return f"RTP/AVP;unicast;client_port={ports[0]}-{ports[1]};server_port={own[0]}-{own[1]}"
@@ -248,7 +248,7 @@ class RtspConnection:
         return Reply()
 
     async def _parameter(self, request: Request) -> Reply:
-        """Answer a keep-alive request. There are no parameters."""
+        """Answer a request to get or set parameters. There are none, so only keep-alive requests, which name none, succeed."""
         head = (self._session_header(self._session(request)),) if "session" in request.headers else ()
         if request.body:
             raise RefusedError(451)

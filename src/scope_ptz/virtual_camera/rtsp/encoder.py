@@ -1,4 +1,4 @@
-"""Encode live pictures as H.264 with libx264, without reordering and look-ahead, in one thread."""
+"""Encode live pictures as H.264 with libx264, without frame reordering or look-ahead, in one thread."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ from scope_ptz.virtual_camera.rtsp.rtp import CLOCK_HZ
 if TYPE_CHECKING:
     from av.video.codeccontext import VideoCodecContext
 
-QUALITY_CRF = 23
+QUALITY_CRF = 23  # constant rate factor of libx264; a lower number means better quality
 BITS_PER_PIXEL_S = 6.5
 """Maximum bit rate in bits per second per pixel: 6 Mbit/s at 1280x720."""
 
-MIN_BITS_PER_S = 500_000  # maximum bit rate of small pictures, whose headers take up a larger part
+MIN_BITS_PER_S = 500_000  # the maximum bit rate is at least this, because headers take up a larger part of small pictures
 
 BURST_S = 0.33
-"""Maximum size of a picture, in seconds of the maximum bit rate. It limits keyframes."""
+"""Maximum size of an encoded picture, as its duration in seconds at the maximum bit rate. This limits the size of keyframes."""
 
 _START_CODE = re.compile(b"\x00{2,3}\x01")
-_SEI = 6
-_BT601 = 6  # matrix of the colour conversion below, which decoders read from the stream
+_SEI = 6  # type of the NAL units with supplemental information, which are not sent
+_BT601 = 6  # the colour matrix that ``encode`` uses, as a number in the stream for decoders
 _BT709 = 1
 _LIMITED_RANGE = 1
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterSets:
-    """The sequence and picture parameter sets that a decoder needs before the first picture, without start codes."""
+    """The sequence parameter set (SPS) and picture parameter set (PPS) that a decoder needs first, without start codes."""
 
     sps: bytes
     pps: bytes
 
     @property
     def profile_level_id(self) -> str:
-        """The profile and level, in the notation of SDP."""
+        """The H.264 profile and level, in the notation of SDP: six hexadecimal digits."""
         return self.sps[1:4].hex()
 
 
@@ -54,7 +54,7 @@ class H264Encoder:
     Args:
         width: Width in pixels, even.
         height: Height in pixels, even.
-        fps: Frames per second, for the control of the bit rate.
+        fps: Frames per second, for rate control.
 
     Raises:
         ConfigError: PyAV is missing, or lacks libx264.
@@ -72,7 +72,7 @@ class H264Encoder:
 
         Args:
             image: Array of shape ``(H, W, 3)``, RGB. An image of another size is fitted to that of the encoder.
-            time_s: The time at which it was taken, in seconds from an arbitrary origin.
+            time_s: The time at which the image was taken, in seconds from an arbitrary origin.
             keyframe: Whether decoding can begin at this picture. If so, the parameter sets come first.
 
         Raises:
@@ -121,7 +121,7 @@ def _open_codec(width: int, height: int, fps: float) -> VideoCodecContext:
         codec.width, codec.height, codec.pix_fmt = width, height, "yuv420p"
         codec.time_base, codec.framerate = Fraction(1, CLOCK_HZ), Fraction(fps).limit_denominator(1000)
         codec.thread_count = 1
-        codec.gop_size = 10_000  # the caller decides where keyframes are
+        codec.gop_size = 10_000  # so large that only the caller decides which pictures are keyframes
         codec.flags |= Flags.global_header
         codec.colorspace, codec.color_range = _BT601, _LIMITED_RANGE
         codec.color_primaries = codec.color_trc = _BT709

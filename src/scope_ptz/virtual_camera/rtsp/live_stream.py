@@ -21,12 +21,12 @@ from scope_ptz.virtual_camera.rtsp.messages import RefusedError
 from scope_ptz.virtual_camera.rtsp.rtp import payloads
 from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat
 
-KEYFRAME_INTERVAL_S = 1.0
+KEYFRAME_INTERVAL_S = 1.0  # normal time between keyframes, in seconds
 MIN_KEYFRAME_INTERVAL_S = 0.2  # minimum time between keyframes, so that new clients cannot make every picture a keyframe
 MAX_FORMATS = 8
-"""Number of formats that are encoded at the same time."""
+"""Maximum number of formats that are encoded at the same time."""
 
-_SETS = (7, 8)  # types of NAL units
+_SETS = (7, 8)  # NAL unit types of the sequence and picture parameter sets
 
 logger = logging.getLogger(__name__)
 
@@ -36,9 +36,9 @@ class AccessUnit:
     """An encoded picture.
 
     Attributes:
-        taken_s: The time at which it was taken, on ``time.monotonic``.
+        taken_s: The time at which the picture was taken, in seconds on the clock of ``time.monotonic``.
         keyframe: Whether decoding can begin at this picture.
-        contents: The payloads of its RTP packets.
+        contents: The payloads of its RTP packets, in order.
     """
 
     taken_s: float
@@ -53,7 +53,7 @@ class Viewer(Protocol):
         """Accept a picture without blocking."""
 
     def end(self) -> None:
-        """Record that the stream has failed."""
+        """Record that the stream has ended, for example because the encoder failed."""
 
 
 class LiveStreams:
@@ -78,7 +78,8 @@ class LiveStreams:
         Args:
             requested: The format.
             viewer: Receives the pictures.
-            start_s: Time on ``time.monotonic``; the first picture from then on is a keyframe.
+            start_s: The time, on ``time.monotonic``, from which the viewer needs pictures. A keyframe follows as soon after it as
+                ``MIN_KEYFRAME_INTERVAL_S`` allows.
 
         Raises:
             RefusedError: Too many formats are being played.
@@ -115,7 +116,7 @@ class _Stream:
         self._source, self._requested = source, requested
         self._random = random.Random(0)
         self.viewers: set[Viewer] = set()
-        self.keyframe_from_s = inf  # the next picture after this time must be a keyframe
+        self.keyframe_from_s = inf  # a viewer needs a keyframe from this time on
         self.task = asyncio.create_task(self._run())
 
     async def _run(self) -> None:
@@ -134,7 +135,7 @@ class _Stream:
         pace, key_s = Pace(self._source.rate_hz, fps), -inf
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
-                # The time stamps of a frozen picture continue, as on a camera whose sensor hangs.
+                # The time stamps of a frozen picture keep increasing, as on a camera whose sensor is stuck.
                 taken_s = exposure.taken_s if exposure is not before else monotonic() - self._source.latency_s
                 before = exposure
                 if not pace.accepts(taken_s):
@@ -167,7 +168,7 @@ class _Stream:
 
 
 def _size(device: VirtualDevice, requested: StreamFormat) -> tuple[int, int]:
-    """Return the size to encode: the requested size, or half of it if the camera has that fault."""
+    """Return the size to encode: the requested size, or half the width and height if the camera has the fault ``size``."""
     if device.faults.picture != "size":
         return requested.width, requested.height
     return max(2, requested.width // 4 * 2), max(2, requested.height // 4 * 2)

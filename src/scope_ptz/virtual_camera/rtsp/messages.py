@@ -43,7 +43,7 @@ class RefusedError(CameraError):
     """Raised to refuse a request with a status code.
 
     Args:
-        status: The status code of RTSP.
+        status: The RTSP status code.
         headers: Additional headers of the reply.
     """
 
@@ -53,7 +53,7 @@ class RefusedError(CameraError):
 
 
 class MalformedError(RefusedError):
-    """The data is not an RTSP request. The connection cannot be used any longer."""
+    """The received data is not an RTSP request. The connection cannot be used any longer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,11 @@ class Reply:
     body: bytes = field(default=b"", repr=False)
 
     def encoded(self, cseq: str | None) -> bytes:
-        """Return the bytes of the reply to a request with this sequence number; None if the request had none."""
+        """Return the bytes of the reply.
+
+        Args:
+            cseq: The sequence number of the request; None if the request could not be parsed.
+        """
         head = [f"RTSP/1.0 {self.status} {REASONS[self.status]}"]
         if cseq is not None:
             head.append(f"CSeq: {cseq}")

@@ -14,7 +14,7 @@ from scope_ptz.virtual_camera.rtsp.rtp import RtpClock
 from scope_ptz.virtual_camera.rtsp.sinks import BATCH_PACKETS, Sink
 
 MAX_AGE_S = 0.5
-"""Maximum age of a picture that is sent, in addition to the configured latency of the stream."""
+"""Maximum age of a picture in seconds, in addition to the configured latency of the stream. Older pictures are not sent."""
 
 MAX_QUEUED = 6  # maximum number of queued pictures for a client
 
@@ -27,7 +27,7 @@ class StreamStatistics:
         sessions: Number of sessions that were opened.
         sent: Number of pictures that were sent completely.
         dropped: Number of pictures that clients missed because they were slow.
-        oldest_s: Greatest age of a packet when it was sent, without the configured latency.
+        oldest_s: Greatest age in seconds that a picture had when one of its packets was sent, minus the configured latency.
     """
 
     sessions: int = 0
@@ -41,11 +41,11 @@ class Playback:
 
     Args:
         sink: The destination of the packets.
-        clock: The RTP sequence numbers and time stamps of the sender.
-        latency_s: The configured latency of the stream.
-        clock_skew_s: Returns the seconds by which the camera's clock is ahead.
+        clock: Numbers the packets and gives them time stamps.
+        latency_s: The configured latency of the stream, in seconds.
+        clock_skew_s: Returns the number of seconds by which the camera's clock is ahead.
         statistics: The counters to update.
-        on_sent: Called after each picture that was sent completely.
+        on_sent: Called each time a picture has been sent completely.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Playback:
         self._sink, self._clock, self._statistics = sink, clock, statistics
         self._latency_s, self._clock_skew_s, self._on_sent = latency_s, clock_skew_s, on_sent
         self.start_s = monotonic() - latency_s
-        """Pictures from before this time are not sent, so that no time stamp precedes the start."""
+        """Pictures taken before this time are not sent, so that no time stamp is before the one that the reply to PLAY states."""
         self._queue: deque[AccessUnit] = deque()
         self._changed = asyncio.Event()
         self._needs_keyframe, self._ended = True, False
@@ -123,7 +123,7 @@ class Playback:
         return True
 
     def _drop_waiting(self) -> None:
-        """Drop the queued pictures. Without them, later pictures cannot be decoded until the next keyframe."""
+        """Drop the queued pictures, and all later ones before the next keyframe, because they could not be decoded."""
         self._statistics.dropped += len(self._queue)
         self._queue.clear()
         self._needs_keyframe = True

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from struct import Struct
 
-REPORT_INTERVAL_S = 5.0
-CNAME = b"camera"
+REPORT_INTERVAL_S = 5.0  # seconds between sender reports
+CNAME = b"camera"  # the canonical name of the source, which each report must contain
 
-_NTP_EPOCH_S = 2_208_988_800  # from 1900 to 1970
+_NTP_EPOCH_S = 2_208_988_800  # seconds from 1900, where NTP time begins, to 1970, where Unix time begins
 _SENDER_REPORT = Struct("!BBHIIIIII")
 _HEAD = Struct("!BBHI")
 _SR, _SDES, _BYE = 200, 202, 203
@@ -18,7 +18,7 @@ def sender_report(ssrc: int, unix_s: float, timestamp: int, packets: int, octets
     """Return a sender report with a source description.
 
     Args:
-        ssrc: The source.
+        ssrc: The identifier of the RTP source.
         unix_s: Wall-clock time in Unix seconds.
         timestamp: The RTP time stamp of the same instant.
         packets: Number of packets sent so far.

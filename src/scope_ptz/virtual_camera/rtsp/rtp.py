@@ -1,4 +1,4 @@
-"""RTP packets of H.264 (RFC 3550, RFC 6184, packetization mode 1)."""
+"""Pack H.264 into RTP packets (RFC 3550, RFC 6184, packetization mode 1)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FU_A, _FU_START, _FU_END = 28, 0x80, 0x40
 
 
 def payloads(nal_units: Iterable[bytes]) -> list[bytes]:
-    """Return the payloads of a picture's NAL units. Units that are too large are split into fragments (FU-A)."""
+    """Return the RTP payloads of a picture's NAL units. Units that are too large are split into fragments (FU-A)."""
     found: list[bytes] = []
     for nal in nal_units:
         if len(nal) <= MAX_PAYLOAD_BYTES:
@@ -38,7 +38,7 @@ def _fragments(nal: bytes) -> Iterator[bytes]:
 
 
 class RtpClock:
-    """The source identifier, sequence numbers and time stamps of one sender, which start at random (RFC 3550, 5.1)."""
+    """The source identifier, sequence numbers and time stamps of one sender, with random initial values (RFC 3550, 5.1)."""
 
     def __init__(self) -> None:
         self.ssrc = secrets.randbits(32)
@@ -46,7 +46,7 @@ class RtpClock:
         self._offset = secrets.randbits(32)
 
     def timestamp(self, time_s: float) -> int:
-        """Return the time stamp of a time on ``time.monotonic``."""
+        """Return the RTP time stamp of a time on ``time.monotonic``."""
         return (round(time_s * CLOCK_HZ) + self._offset) & 0xFFFFFFFF
 
     def packets(self, contents: Sequence[bytes], taken_s: float) -> list[bytes]:

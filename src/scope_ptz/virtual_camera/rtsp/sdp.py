@@ -14,10 +14,10 @@ def describe(url: StreamUrl, requested: StreamFormat, sets: ParameterSets, *, na
 
     Args:
         url: The address that the client used.
-        requested: Size and rate.
+        requested: Size and frame rate of the stream.
         sets: The parameter sets of the encoder.
         name: Name of the camera.
-        host: Its address.
+        host: IP address of the camera.
     """
     family = "IP6" if ":" in host else "IP4"
     title = "".join(c if c.isprintable() else " " for c in name) or "camera"

@@ -31,7 +31,7 @@ class RtspServer:
 
     Args:
         source: The live picture. The caller runs it.
-        realm: The authentication realm, which clients show.
+        realm: The authentication realm, which clients show to their users.
         session_timeout_s: Seconds of client inactivity after which a session ends.
     """
 
@@ -95,7 +95,7 @@ class RtspServer:
             writer.transport.abort()
             return
         # Many RTSP clients do not support qop, and ignore replies to keep-alive requests.
-        # So a nonce is valid for the lifetime of one connection, and an intercepted response is useless on others.
+        # So each connection has its own nonce, valid as long as the connection, and an intercepted response is useless on others.
         digest = DigestAuthenticator(self.device.accounts, self._realm, qop=False, nonce_lifetime_s=inf)
         connection = RtspConnection(self.device, self._source, self._sessions, digest, self._chance, reader, writer)
         task = asyncio.create_task(connection.run())

@@ -29,12 +29,13 @@ class Session:
         statistics: The counters to update.
 
     Attributes:
-        token: The identifier that the client repeats.
+        token: The identifier of the session, which the client sends with its requests.
+        clock: Numbers the packets and gives them time stamps.
         sink: The destination of the packets; None until a transport is set up.
         alive_s: Time of the client's last activity, on ``time.monotonic``.
-        connected: Whether the connection that set it up is open.
+        connected: Whether the connection that set up the session is open.
         ended: Whether the session is over.
-        on_lost: Called when the client disconnects during playback.
+        on_lost: Called when the client disconnects during playback, or the stream fails.
     """
 
     def __init__(
@@ -67,14 +68,14 @@ class Session:
         self.alive_s = monotonic()
 
     def lost(self) -> None:
-        """Record that the client has disconnected."""
+        """Handle the loss of the client or of the stream: call ``on_lost``."""
         self.on_lost()
 
     def play(self) -> tuple[int, int]:
-        """Start sending.
+        """Start sending pictures. If pictures are being sent already, they continue.
 
         Returns:
-            Sequence number of the first packet, and the time stamp at which the stream starts.
+            The sequence number of the next packet, and the RTP time stamp at which the stream starts.
 
         Raises:
             RefusedError: Too many formats are being played.

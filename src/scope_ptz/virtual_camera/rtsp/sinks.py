@@ -17,7 +17,7 @@ UNSENT_BYTES = 32 * 1024
 """Maximum number of bytes in the kernel's send buffer. Packets there cannot be dropped when they become too old."""
 
 BATCH_PACKETS = 12  # packets per write; the age of a picture is checked before each write
-_PORT_ATTEMPTS = 50
+_PORT_ATTEMPTS = 50  # maximum number of attempts to find two adjacent free ports
 
 
 class Sink(Protocol):
@@ -38,7 +38,7 @@ class Sink(Protocol):
 
 
 def limit_send_buffers(writer: asyncio.StreamWriter) -> None:
-    """Limit the send buffers, so that writes wait when a client is too slow."""
+    """Limit the send buffers of a connection, so that writes wait when the client is too slow."""
     writer.transport.set_write_buffer_limits(high=0)
     raw = writer.get_extra_info("socket")
     if hasattr(socket, "TCP_NOTSENT_LOWAT"):
@@ -51,7 +51,7 @@ class InterleavedSink:
 
     Args:
         writer: The connection.
-        channels: Channels for RTP and RTCP.
+        channels: Numbers of the interleaved channels for RTP and RTCP.
     """
 
     def __init__(self, writer: asyncio.StreamWriter, channels: tuple[int, int]) -> None:
@@ -71,7 +71,7 @@ class InterleavedSink:
             self._writer.write(_framed(self.channels[1], packet))
 
     def close(self) -> None:
-        """Leave the connection open, because requests use it too."""
+        """Do nothing: the connection stays open, because requests use it too."""
 
 
 def _framed(channel: int, packet: bytes) -> bytes:
@@ -124,14 +124,14 @@ class _Receiver(asyncio.DatagramProtocol):
 async def open_udp(
     local_host: str, remote_host: str, ports: tuple[int, int], on_packet: Callable[[], None], on_gone: Callable[[], None]
 ) -> UdpSink:
-    """Open a pair of adjacent ports for a client.
+    """Open two adjacent UDP ports, for RTP and RTCP, and connect them to those of a client.
 
     Args:
         local_host: Address of this end of the RTSP connection.
         remote_host: Address of the other end. Packets are never sent elsewhere.
         ports: Ports of the client.
-        on_packet: Called for every report that the client sends.
-        on_gone: Called when the client's ports are closed.
+        on_packet: Called for every packet that the client sends, such as an RTCP report.
+        on_gone: Called when the client's ports turn out to be closed.
 
     Raises:
         RefusedError: No ports are free, or those of the client cannot be reached.

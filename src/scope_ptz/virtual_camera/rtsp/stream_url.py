@@ -38,19 +38,19 @@ class StreamFormat:
 
 @dataclass(frozen=True, slots=True)
 class StreamUrl:
-    """The URL of a stream as a client sent it, without credentials, trailing slash and track name."""
+    """The URL of a stream as a client sent it, but without credentials, trailing slash or track name."""
 
     base: str
     query: str
 
     @property
     def content_base(self) -> str:
-        """The address of the whole stream, as it appears in replies."""
+        """The URL of the whole stream, as it appears in replies."""
         return f"{self.base}/{self._suffix}"
 
     @property
     def track(self) -> str:
-        """The address of the track."""
+        """The URL of the track."""
         return f"{self.base}/{TRACK}{self._suffix}"
 
     @property
@@ -62,7 +62,7 @@ def parse_url(uri: str) -> StreamUrl:
     """Parse the URL of a stream.
 
     Raises:
-        RefusedError: The address is not an RTSP address, or there is no such stream.
+        RefusedError: The text is not an RTSP URL, or there is no such stream.
     """
     try:
         parts = urlsplit(uri)
@@ -71,7 +71,7 @@ def parse_url(uri: str) -> StreamUrl:
     authority = parts.netloc.rpartition("@")[2]
     if parts.scheme.lower() != "rtsp" or not _AUTHORITY.fullmatch(authority):
         raise RefusedError(400)
-    # Some clients append the track to the whole address, after the query.
+    # Some clients append the track name to the whole URL, after the query.
     path = parts.path.removesuffix("/").removesuffix(f"/{TRACK}")
     query = parts.query.removesuffix("/").removesuffix(f"/{TRACK}")
     if path not in PATHS:
@@ -83,9 +83,9 @@ def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> Stre
     """Return the format that a stream URL requests. Unknown options are ignored, as on AXIS cameras.
 
     Args:
-        url: The address.
+        url: The URL.
         device: The camera.
-        rate_hz: Its frames per second.
+        rate_hz: Frames per second of its live picture: the default and the maximum.
 
     Raises:
         RefusedError: An option has a value that the camera does not support.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from scope_ptz.virtual_camera.rtsp.messages import RefusedError
 
-MAX_OFFERS = 16
+MAX_OFFERS = 16  # further offers in a header are ignored
 MIN_PORT = 1024  # packets are never sent to the ports of system services
 
 _TCP, _UDP = ("RTP/AVP/TCP",), ("RTP/AVP", "RTP/AVP/UDP")
@@ -18,7 +18,7 @@ class TransportOffer:
 
     Attributes:
         interleaved: Whether packets go over the RTSP connection, instead of UDP.
-        pair: Channels (TCP) or ports of the client (UDP) for RTP and RTCP; None lets the server choose channels.
+        pair: Channel numbers (TCP) or the client's ports (UDP) for RTP and RTCP; None if the server may choose the channels.
     """
 
     interleaved: bool
@@ -47,7 +47,7 @@ def choose_transport(header: str) -> TransportOffer:
 
 
 def _pair(text: str, least: int, most: int) -> tuple[int, int] | None:
-    """Return two different numbers from ``a-b``, or from ``a`` alone, which stands for ``a`` and the next."""
+    """Parse two different numbers from ``a-b``, or from ``a`` alone, which means ``a`` and ``a + 1``; None if they are invalid."""
     first, dash, second = text.partition("-")
     if not (first.isdecimal() and len(first) < 6 and (not dash or (second.isdecimal() and len(second) < 6))):
         return None

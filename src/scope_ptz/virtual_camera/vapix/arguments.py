@@ -11,7 +11,7 @@ MAX_SHOWN_CHARS = 60  # longer text from a client is truncated in error messages
 
 
 class Arguments:
-    """The arguments of a request by name. All conversions raise ``InputError`` for an invalid value.
+    """The arguments of a request. All conversions raise ``InputError`` for an invalid value.
 
     Args:
         values: Argument texts by name. If a request repeats a name, its first value is used.
@@ -43,7 +43,7 @@ class Arguments:
         return int(self.number(name, low, high))
 
     def numbers(self, name: str, count: int) -> tuple[float, ...]:
-        """Return finite numbers from a comma-separated list."""
+        """Return ``count`` finite numbers from a comma-separated list."""
         return tuple(self._numbers(name, count))
 
     def choice(self, name: str, known: tuple[str, ...]) -> str:

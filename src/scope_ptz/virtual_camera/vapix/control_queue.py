@@ -14,11 +14,13 @@ CONTROL_S = 60.0
 """How long a client keeps control after its last command, in seconds."""
 
 PRIORITIES = {Role.ADMINISTRATOR: 10, Role.OPERATOR: 30, Role.VIEWER: 50}
-"""Priority of a client; the lowest number goes first."""
+"""Priority of the clients with each role. Clients with lower numbers come first in the queue."""
 
 
 @dataclass(slots=True)
 class _Place:
+    """A client in the queue, with the times of its last poll and, if it has control, of its last activity."""
+
     client: Client
     polled_s: float
     active_s: float
@@ -30,7 +32,7 @@ class QueueStatus:
 
     Attributes:
         position: 1 for the client in control, and 0 for a client that is not in the queue.
-        seconds: Time until control passes on.
+        seconds: Seconds until the client in control loses it, or the estimated seconds until a waiting client gets it.
         poll_s: Seconds after which a waiting client that does not poll loses its place.
     """
 
@@ -40,10 +42,10 @@ class QueueStatus:
 
 
 class ControlQueue:
-    """Gives control to one client at a time, by priority and then by arrival.
+    """Gives control to one client at a time, by priority and, among equals, in the order of arrival.
 
     Args:
-        now_s: The clock for timeouts, in seconds.
+        now_s: Returns the current time in seconds, for timeouts.
 
     Attributes:
         enabled: Whether clients need control to move the camera.
@@ -85,7 +87,7 @@ class ControlQueue:
         return self.status(client)
 
     def status(self, client: Client) -> QueueStatus:
-        """Return the place of a client, and record that it polled."""
+        """Return the status of a client, and record that it polled."""
         place = self._place(client)
         if place is None:
             return QueueStatus(0, 0, self.poll_s)
@@ -110,7 +112,7 @@ class ControlQueue:
         raise CameraError(f"{holder}; request control with /axis-cgi/com/ptzqueue.cgi?control=request")
 
     def _place(self, client: Client) -> _Place | None:
-        """Remove clients whose time has expired, and return the place of a client."""
+        """Remove the clients whose control or place has expired, and return the place of a client; None if it has none."""
         now_s = self._now_s()
         while self._places and now_s - self._places[0].active_s > CONTROL_S:
             over_s = self._places.pop(0).active_s + CONTROL_S

@@ -7,7 +7,7 @@ from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 
 def identity(unit: VapixUnit) -> dict[str, str]:
-    """Return brand, product, versions and serial number under the names of VAPIX."""
+    """Return brand, product, versions and serial number by their VAPIX names."""
     return {
         "Architecture": "aarch64",
         "Brand": BRAND,

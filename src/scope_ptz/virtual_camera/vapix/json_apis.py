@@ -1,4 +1,4 @@
-"""The JSON interfaces: ``apidiscovery.cgi`` and ``basicdeviceinfo.cgi``."""
+"""The VAPIX interfaces that use JSON: ``apidiscovery.cgi`` and ``basicdeviceinfo.cgi``."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ APIS = (
     ("ptz-control", "PTZ Control", "1.0"),
 )
 
+# Error codes in replies.
 INVALID_VALUE, ONLY_POST, WRONG_VERSION, UNKNOWN_METHOD, INVALID_JSON, MISSING = 1000, 2002, 2003, 2004, 4000, 4002
 
 
@@ -53,7 +54,7 @@ def basic_device_info(unit: VapixUnit, method: str, body: bytes) -> Reply:
 
 
 class _RequestError(Exception):
-    """A refused request, with its error code."""
+    """Raised to refuse a request, with an error code and a message."""
 
 
 def _answer(http_method: str, body: bytes, version: str, methods: dict[str, Callable[[dict[str, Any]], dict[str, Any]]]) -> Reply:

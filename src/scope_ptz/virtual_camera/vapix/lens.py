@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 MAX_POSITION = 9999
 COMMANDS = ("focus", "rfocus", "continuousfocusmove", "autofocus", "iris", "riris", "autoiris")
-"""Arguments that adjust the lens."""
+"""Arguments of ``ptz.cgi`` that adjust the lens."""
 
 LIMITS = {"MinIris": 1, "MaxIris": MAX_POSITION, "MinFocus": 1, "MaxFocus": MAX_POSITION}
 

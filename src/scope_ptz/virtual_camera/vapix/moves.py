@@ -34,11 +34,11 @@ CONTINUOUS = ("continuouspantiltmove", "continuouszoommove")
 PRESETS = ("gotoserverpresetname", "gotoserverpresetno", "gotodevicepreset")
 PIXELS = ("center", "areazoom")
 COMMANDS = ("move", *PRESETS, *PIXELS, *CONTINUOUS, *ABSOLUTE, *RELATIVE)
-"""Arguments that move the camera."""
+"""Arguments of ``ptz.cgi`` that move the camera."""
 
 
 def move(unit: VapixUnit, arguments: Arguments) -> None:
-    """Carry out the movement commands of one request.
+    """Carry out the movement commands of one request. If they are of several types, only one type is carried out.
 
     Raises:
         InputError: An argument is invalid, or there is no such preset. In that case, nothing moves.
@@ -93,7 +93,7 @@ def _target(device: VirtualDevice, arguments: Arguments) -> Pose:
 
 
 def _drive(device: VirtualDevice, arguments: Arguments) -> None:
-    """Drive pan and tilt, zoom, or all three. Axes that a request does not name keep their speed."""
+    """Drive pan and tilt, the zoom, or all three continuously. Axes that a request does not name keep their velocity."""
     velocity, head = device.commanded_velocity, device.head
     if "continuouspantiltmove" in arguments:
         pan, tilt = (scales.speed_fraction(value) for value in arguments.numbers("continuouspantiltmove", 2))
@@ -115,7 +115,7 @@ def _preset_pose(device: VirtualDevice, arguments: Arguments) -> Pose:
 
 
 def _pixel_pose(device: VirtualDevice, arguments: Arguments) -> Pose:
-    """Return the pose that brings a pixel to the centre, for ``areazoom`` with another magnification."""
+    """Return the pose that brings a pixel to the centre of the image; for ``areazoom``, also at a different magnification."""
     width = arguments.integer("imagewidth", 1, 100_000) if "imagewidth" in arguments else device.width
     height = arguments.integer("imageheight", 1, 100_000) if "imageheight" in arguments else device.height
     here = device.pose()

@@ -1,4 +1,4 @@
-"""``/axis-cgi/param.cgi``: the parameters of the camera, and the few that can be changed."""
+"""Answer ``/axis-cgi/param.cgi``, which lists the parameters of the camera and changes the few that are not read-only."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ UNSUPPORTED_ABILITIES = (
     "ProportionalSpeed", "RelativeBrightness",
 )  # fmt: skip
 
-QUEUE = "PTZ.Various.V1"
+QUEUE = "PTZ.Various.V1"  # the group of the parameters that configure the control queue
 
 
 def param(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
@@ -41,7 +41,7 @@ def param(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
 
 
 def parameters(unit: VapixUnit) -> dict[str, str]:
-    """Return all parameters, without the leading ``root``."""
+    """Return the values of all parameters by name, without the prefix ``root.``."""
     return {**_properties(unit), **_media(unit), **_ptz(unit), **_presets(unit)}
 
 

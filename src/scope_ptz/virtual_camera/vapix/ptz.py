@@ -1,4 +1,4 @@
-"""``/axis-cgi/com/ptz.cgi``, ``ptzconfig.cgi`` and ``ptzqueue.cgi``."""
+"""Answer ``/axis-cgi/com/ptz.cgi``, ``ptzconfig.cgi`` and ``ptzqueue.cgi``: moves, presets and the control queue."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 UNSUPPORTED = (
     "continuousirismove", "brightness", "rbrightness", "continuousbrightnessmove", "ircutfilter", "backlight", "auxiliary",
 )  # fmt: skip
-"""Commands of other AXIS cameras."""
+"""Commands that other AXIS cameras support. This one refuses them."""
 
 FORBIDDEN_IN_NAMES = '"<>~:'
 """Characters that preset names on AXIS cameras cannot contain."""
 
+# The reply to ``info=1``.
 COMMANDS = f"""Available commands:
 {{camera=[n]}}
 whoami=yes
@@ -58,7 +59,7 @@ query={{ {" | ".join(QUERIES)} }}
 
 
 def ptz(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
-    """Answer a request to ``ptz.cgi``: a query, or commands."""
+    """Answer a request to ``ptz.cgi``, which is either a query or contains commands."""
     try:
         _check_camera(arguments)
         if "query" in arguments:
@@ -124,7 +125,7 @@ def _configure(unit: VapixUnit, arguments: Arguments) -> None:
 
 
 def ptz_queue(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
-    """Answer a request to ``ptzqueue.cgi``: position in the queue, seconds left, and seconds between polls."""
+    """Answer a request to ``ptzqueue.cgi`` with the three values of ``QueueStatus``."""
     try:
         status = _queue_status(unit, arguments, client)
     except (InputError, CameraError) as problem:

@@ -12,7 +12,7 @@ from scope_ptz.virtual_camera.vapix.arguments import Arguments
 from scope_ptz.virtual_camera.vapix.replies import Reply
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
-GROUPS = ("zoom", "speed")
+GROUPS = ("zoom", "speed")  # the groups of attributes that ``query=attributes`` can select
 
 Attributes = Mapping[str, str | Sequence[Mapping[str, str]]]
 
@@ -38,7 +38,7 @@ def _position(unit: VapixUnit, _: Arguments) -> Reply:
 
 
 def limit_values(device: VirtualDevice) -> dict[str, object]:
-    """Return the limits of the camera. Field angles are in tenths of a degree."""
+    """Return the limits of the camera by their VAPIX names. Field angles are in tenths of a degree."""
     limits, optics = device.limits, device.optics
     return {
         "MinPan": f"{limits.min_pan_deg:g}",
@@ -97,7 +97,7 @@ def _attributes(unit: VapixUnit, arguments: Arguments) -> Reply:
 
 
 def _zoom_attributes(device: VirtualDevice) -> Attributes:
-    """Return the zoom calibration, with a row for each row of the lens's table."""
+    """Return the magnifications of selected zoom positions: both ends, and those in the field-of-view table of the optics."""
     limits = device.limits
     inside = [zoom for zoom, _ in device.optics.table if limits.min_zoom <= zoom <= limits.max_zoom]
     steps = sorted({1, scales.MAX_ZOOM_STEP, *(scales.zoom_step(zoom, limits) for zoom in inside)})

@@ -12,7 +12,7 @@ from scope_ptz.virtual_camera.accounts import Role
 
 @dataclass(frozen=True, slots=True)
 class Client:
-    """The client that sends a request. ``name`` is the account, or the address of a client of a camera without accounts."""
+    """The client that sends a request. ``name`` is its account name, or its address if the camera has no accounts."""
 
     name: str
     role: Role
@@ -42,17 +42,17 @@ def parameter_error(message: str) -> Reply:
 
 
 def lines(content: Iterable[str]) -> Reply:
-    """Return lines of text."""
+    """Return a reply that consists of lines of text."""
     return Reply(200, "".join(f"{line}\n" for line in content))
 
 
 def values(content: Mapping[str, object]) -> Reply:
-    """Return ``name=value`` lines."""
+    """Return a reply that consists of ``name=value`` lines."""
     return lines(f"{name}={value}" for name, value in content.items())
 
 
 def document(content: Mapping[str, Any]) -> Reply:
-    """Return a JSON document."""
+    """Return a reply that is a JSON document."""
     return Reply(200, json.dumps(content), "application/json")
 
 

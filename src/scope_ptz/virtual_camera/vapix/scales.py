@@ -15,7 +15,7 @@ SPEEDS = ((1, 0.0005), (20, 0.015), (40, 0.06), (60, 0.2), (80, 0.5), (100, 1.0)
 
 
 def zoom_step(zoom: float, limits: Limits) -> int:
-    """Return the zoom position of a magnification. It is linear in magnification."""
+    """Return the zoom position of a magnification. Positions are linear in magnification."""
     fraction = (zoom - limits.min_zoom) / (limits.max_zoom - limits.min_zoom)
     return round(1 + min(max(fraction, 0.0), 1.0) * (MAX_ZOOM_STEP - 1))
 

@@ -1,4 +1,4 @@
-"""The VAPIX state of a device in addition to the device itself: identity, move speed and control queue."""
+"""What VAPIX adds to the state of a device: identity, move speed and control queue."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ RESOLUTIONS = ((1920, 1080), (1280, 720), (1024, 576), (800, 450), (640, 360), (
 
 
 class VapixUnit:
-    """The VAPIX state of a device.
+    """A device together with the state that only VAPIX needs.
 
     Args:
         device: The camera.
@@ -31,7 +31,7 @@ class VapixUnit:
 
     @property
     def realm(self) -> str:
-        """The authentication realm, which clients show."""
+        """The authentication realm, which clients show to their users."""
         return f"AXIS_{self.serial}"
 
     def resolutions(self) -> list[str]:

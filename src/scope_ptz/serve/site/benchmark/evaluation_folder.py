@@ -19,11 +19,11 @@ _PREFIX = "scope: "
 """The prefix of each message that the command line prints to stderr."""
 
 State = Literal["running", "finished", "cancelled", "failed", "interrupted"]
-"""State of an evaluation. ``failed``: it ended with an error; ``interrupted``: its process was killed, or the machine shut down."""
+"""State of an evaluation. ``failed``: its process ended with an error; ``interrupted``: it was killed, or the machine shut down."""
 
 
 class EvaluationRecord(BaseModel):
-    """The stored record of an evaluation: its options, and the exit code of its process.
+    """The stored record of an evaluation: its options, who started it, and how its process ended.
 
     Attributes:
         id: The name of its folder.
@@ -35,7 +35,7 @@ class EvaluationRecord(BaseModel):
         resumed: The number of times it was resumed.
         actor: The name of the client that started it.
         cancelled: Whether a client cancelled it.
-        exit_code: Exit code of the last process; None while it runs, or if the server ended before the process did.
+        exit_code: Exit code of the last process; None while the process runs, or if the server ended before it.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -95,7 +95,7 @@ class EvaluationFolder:
             raise OutputError(f"The evaluation cannot be written to {self.path}: {error.strerror}.") from error
 
     def is_locked(self) -> bool:
-        """Return whether a process runs the evaluation, even if another server started it."""
+        """Return whether a process is running the evaluation, including a process that an earlier server started."""
         try:
             with (self.progress / LOCK_FILE).open("r+") as file:
                 return not lock_file(file)
@@ -103,14 +103,14 @@ class EvaluationFolder:
             return False
 
     def state(self) -> ProgressState | None:
-        """Return the progress; None if the evaluation has not stored it yet."""
+        """Return the progress of the evaluation; None if it has not stored any yet."""
         try:
             return ProgressState.model_validate_json((self.progress / STATE_FILE).read_bytes())
         except (OSError, ValidationError):
             return None
 
     def trials(self) -> list[Trial]:
-        """Return the finished runs. Incomplete lines are skipped."""
+        """Return the finished runs. Lines that are incomplete or invalid are skipped."""
         try:
             lines = (self.progress / TRIALS_FILE).read_bytes().split(b"\n")
         except OSError:
@@ -134,7 +134,10 @@ class EvaluationFolder:
         return page if page.is_file() and log is not None and modified(page) >= modified(log) else None
 
     def report_file(self, part: str, name: str) -> Path | None:
-        """Return a file of the report; None if it does not exist. Names are compared with a listing and never joined to a path."""
+        """Return a file of the report; None if it does not exist.
+
+        ``part`` and ``name`` come from a request, so they are compared with the existing names and never become part of a path.
+        """
         folder = next(
             (each for each in (self.report / known for known in ("tasks", "frames", "tables")) if each.name == part), None
         )
@@ -152,7 +155,7 @@ def modified(path: Path) -> float:
 
 
 def last_message(path: Path) -> str:
-    """Return the last message in the output file of a command, without its prefix; empty if there is none."""
+    """Return the last line in the stderr file of a command, without the prefix of messages; empty if there is none."""
     try:
         text = path.read_text("utf-8", errors="replace")[-20_000:]
     except OSError:

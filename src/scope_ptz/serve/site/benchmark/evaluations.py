@@ -1,4 +1,4 @@
-"""Start, monitor, cancel and resume evaluations. Only one runs at a time."""
+"""Start, monitor, cancel, resume and remove evaluations, each in its own process. Only one runs at a time."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from scope_ptz.serve.site.errors import EvaluationRunningError
 from scope_ptz.serve.site.pairs import DEFAULT_PAIR
 
 FOLDER = "evaluations"
-"""Name of the folder of evaluations in the runs folder."""
+"""Name of the folder in the runs folder that contains the evaluations."""
 KILL_AFTER_S = 20.0
-"""Time in seconds for a cancelled evaluation to write its log. If it is still running afterwards, it is killed."""
+"""Seconds that a cancelled evaluation has to write its log. If it is still running afterwards, it is killed."""
 NICENESS = 10
-"""Nice value of the processes of evaluations, which gives live pictures priority over them."""
+"""Nice value of the processes of evaluations, so that live pictures have priority over them."""
 
 ReportState = Literal["none", "making", "ready", "failed"]
 logger = logging.getLogger(__name__)
@@ -42,7 +42,7 @@ class EvaluationStatus:
     Attributes:
         record: Its stored record.
         state: Its state.
-        progress: Its counts and scores; None if it has not stored any yet.
+        progress: Its counts and scores so far; None if it has not stored any yet.
         message: The error message if it failed; empty otherwise.
         can_resume: Whether it has ended and has missing or broken runs.
         report: The state of its report.
@@ -80,7 +80,7 @@ class Evaluations:
 
     Args:
         runs_dir: The runs folder.
-        program: The command line that runs ``scope``.
+        program: The beginning of the command line that runs ``scope``, to which the arguments are added.
     """
 
     def __init__(self, runs_dir: Path, program: Sequence[str] = (sys.executable, "-m", "scope_ptz.cli")) -> None:
@@ -210,7 +210,7 @@ class Evaluations:
         threading.Thread(target=self._kill_later, args=(folder,), daemon=True).start()
 
     def remove(self, evaluation: str) -> None:
-        """Remove an evaluation with its logs and report.
+        """Remove an evaluation that has ended, with its logs and report.
 
         Raises:
             UnknownNameError: There is no such evaluation.

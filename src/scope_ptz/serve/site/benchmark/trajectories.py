@@ -22,7 +22,7 @@ MAX_OPEN = 4
 
 
 class Trajectories:
-    """Reads runs of evaluations. The last few are cached, because clients request each picture of a run separately."""
+    """Reads runs of evaluations. The runs read last are cached, because clients request each picture of a run separately."""
 
     def __init__(self) -> None:
         self._open: OrderedDict[tuple[str, str, float], SampleFiles] = OrderedDict()
@@ -78,7 +78,7 @@ class Trajectories:
 
 
 def picture_names_of(trace: Trace) -> dict[str, int | None]:
-    """Return the names of the pictures of a run, in order, each with the index of its tool call; None for the start picture."""
+    """Return the names of a run's pictures, in order, each with the index of its tool call, or None for the start picture."""
     return picture_names(trace)
 
 
