@@ -25,7 +25,7 @@ REPEATABLE = ("answered", "clarification", "refused", "step_limit")
 """Outcomes that a replay must reach again. Other outcomes, such as an exhausted budget or a failure, have external causes."""
 
 _FILE_NAME_FIELDS = ("frames", "file")  # not compared, because a replay stores no pictures
-_TOLERANCE = 0.011  # numbers that differ by at most this count as equal; results are rounded to hundredths or finer
+_TOLERANCE = 0.011  # numbers are equal if they differ by at most this; results are rounded to hundredths or finer
 
 
 @dataclass(frozen=True, slots=True)

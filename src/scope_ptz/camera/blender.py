@@ -93,7 +93,7 @@ class BlenderCamera(Camera):
 
     async def move(self, pose: Pose) -> Arrival:
         end, clamped = self._info.limits.clamp(pose)
-        self._motion.halt(end, self.clock.elapsed_s())
+        self._motion.jump_to(end, self.clock.elapsed_s())
         return Arrival(end, clamped)
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
@@ -127,7 +127,7 @@ class BlenderCamera(Camera):
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
     async def stop(self) -> None:
-        self._motion.halt(await self.pose(), self.clock.elapsed_s())
+        self._motion.jump_to(await self.pose(), self.clock.elapsed_s())
 
     async def _image(self, viewpoint: str, view: Perspective, time_s: float) -> NDArray[np.uint8]:
         """Render a view, or return the last picture if nothing has changed since it was rendered."""

@@ -86,7 +86,7 @@ class HeadMotion:
             aim = here if pan_tilt else end
             self._replace(_Move(command.head, here, Pose(aim.pan_deg, aim.tilt_deg, here.zoom if zoom else end.zoom)), now_s)
 
-    def halt(self, pose: Pose, now_s: float) -> None:
+    def jump_to(self, pose: Pose, now_s: float) -> None:
         """Jump to a pose immediately."""
         self._replace(_Move(self._head, pose, pose), now_s)
 

@@ -140,7 +140,7 @@ class SimulatedCamera(Camera):
 
     async def stop(self) -> None:
         """Stop any motion immediately. A simulated head has no braking distance."""
-        self._motion.halt(self._pose_now(), self.clock.elapsed_s())
+        self._motion.jump_to(self._pose_now(), self.clock.elapsed_s())
 
     @contextmanager
     def hold_time(self) -> Iterator[None]:
@@ -155,7 +155,7 @@ class SimulatedCamera(Camera):
             return await self.move(preset_pose(preset))
         end, clamped = self._info.limits.clamp(preset_pose(preset))
         self._viewpoint = preset.viewpoint
-        self._motion.halt(end, self.clock.elapsed_s())
+        self._motion.jump_to(end, self.clock.elapsed_s())
         await self.clock.sleep(CUT_S)
         return Arrival(end, clamped)
 
@@ -166,7 +166,7 @@ class SimulatedCamera(Camera):
         """
         motion = self._motion
         if self.clock.held:
-            motion.halt(end, self.clock.elapsed_s())
+            motion.jump_to(end, self.clock.elapsed_s())
             return
         motion.move(end, self.clock.elapsed_s())
         command = motion.commands

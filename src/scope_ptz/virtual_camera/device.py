@@ -199,7 +199,7 @@ class VirtualDevice:
             self._motion.stop_axes(now_s, pan_tilt=pan_tilt, zoom=zoom)
             return
         if self._motion.velocity(now_s) == Velocity():
-            self._motion.halt(self._motion.pose(now_s), now_s)
+            self._motion.jump_to(self._motion.pose(now_s), now_s)
         else:
             self._motion.brake(now_s)
 
@@ -208,7 +208,7 @@ class VirtualDevice:
 
         Earlier stop commands no longer cause ``drive`` commands to be dropped.
         """
-        self._motion.halt(self.home, self.now_s())
+        self._motion.jump_to(self.home, self.now_s())
         self.lens = VirtualLens(self.now_s)
         self._stopped_by_s = -np.inf
 

@@ -39,7 +39,7 @@ class SphereCamera(Camera):
 
     async def move(self, pose: Pose) -> Arrival:
         end, clamped = self.info.limits.clamp(pose)
-        self.motion.halt(end, self.clock.elapsed_s())
+        self.motion.jump_to(end, self.clock.elapsed_s())
         self.moves += 1
         return Arrival(end, clamped)
 
@@ -76,7 +76,7 @@ class SphereCamera(Camera):
         return Frame(image, pose, hfov_deg, self.clock.now_s(), view)
 
     async def stop(self) -> None:
-        self.motion.halt(await self.pose(), self.clock.elapsed_s())
+        self.motion.jump_to(await self.pose(), self.clock.elapsed_s())
 
 
 def pixel_points() -> NDArray[np.float64]:

@@ -118,7 +118,7 @@ class Connection:
             raise self._not_a_scope_server() from None
         return response.content, facts
 
-    def picture_now(self, path: str) -> bytes:
+    def picture_sync(self, path: str) -> bytes:
         """Return an encoded picture, for callers outside the event loop."""
         try:
             with httpx2.Client(headers=self._headers, timeout=TIMEOUT, follow_redirects=False, trust_env=False) as client:

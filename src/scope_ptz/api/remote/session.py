@@ -163,7 +163,7 @@ class RemoteSession(AsyncScope):
         from PIL import Image
 
         run_id, _, file = name.partition("/")
-        return Image.open(BytesIO(self._connection.picture_now(f"/runs/{run_id}/pictures/{file}")))
+        return Image.open(BytesIO(self._connection.picture_sync(f"/runs/{run_id}/pictures/{file}")))
 
 
 class _RemotePlanner(Planner):
@@ -210,7 +210,7 @@ class _RemotePictures(Mapping[str, bytes]):
 
 
 def _fetch(connection: Connection, run_id: str, name: str) -> bytes:
-    return connection.picture_now(f"/runs/{run_id}/pictures/{name}")
+    return connection.picture_sync(f"/runs/{run_id}/pictures/{name}")
 
 
 def _run(connection: Connection, run_id: str, records: list[Any]) -> Run | None:

@@ -185,7 +185,7 @@ def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[Na
 _ATTACHED = re.compile(r"\b(with( an?| the| its)?|on an?)$")
 """Words before a mention that show that it describes a part of a thing or what it stands on."""
 _CONNECTING_WORDS = frozenset({"and", "or", "with", "on", "in", "at", "is", "are", "but"})
-"""Words after a mention that show that it is complete: no noun follows to which it belongs ("yellow top")."""
+"""Words after a mention that show that it does not modify a following noun, unlike "yellow" in "yellow top"."""
 
 
 def is_reference(text: AnswerText, mention: NameMention) -> bool:

@@ -15,7 +15,7 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, Sighting, TextSighting, ViewTruth
 
-# Characters with the similar characters as which they are misread.
+# Lookalikes: each character and the one as which it is misread.
 _LOOKALIKES = {
     **dict(zip("0O1I5S8B2Z6G", "O0I1S5B8Z2G6", strict=True)),
     **dict(zip("aceoimnrtlhuvy", "oeacjnmvfibvuv", strict=True)),

@@ -20,7 +20,7 @@ MIN_TIMEOUT_S, MAX_TIMEOUT_S = 0.1, 60.0
 
 
 def duration_s(value: Any) -> float | None:
-    """Return a duration of a request in seconds; None if it is invalid or outside the limits."""
+    """Return a duration given in a request, in seconds; None if it is invalid or outside the limits."""
     seconds = value.total_seconds() if isinstance(value, timedelta) else None  # isodate has a separate type for months and years
     return seconds if seconds is not None and MIN_TIMEOUT_S <= seconds <= MAX_TIMEOUT_S else None
 
