@@ -205,7 +205,7 @@ def test_a_camera_that_fails_says_so_once(page: Page, scene: str) -> None:
     assert [each.is_visible() for each in page.get_by_text("cannot be reached").all()].count(True) == 1
     expect(page.locator(".notice")).to_have_count(0)
     expect(page.locator(".presets .tile")).to_have_count(0)  # those of the camera before
-    expect(page.locator(".thread")).to_contain_text("when the camera answers")
+    expect(page.locator(".thread")).to_contain_text("when the camera responds")
     choose(page, scene)
     expect(page.locator(".presets .tile").first).to_be_visible()
 
