@@ -220,7 +220,7 @@ def _needed(targets: Sequence[Target]) -> Mask:
 
 
 def _outlines(ids: NDArray[np.uint16], projection: Equirectangular) -> NDArray[np.float64]:
-    """Return a map like that of ``_needed`` with the length of the outlines in the full-circle panorama."""
+    """Return the length of the instances' outlines in each square of the grid of ``_needed``. The panorama spans 360 degrees."""
     edge = np.zeros(ids.shape, dtype=bool)
     edge[:, 1:] = ids[:, 1:] != ids[:, :-1]
     edge[1:] |= ids[1:] != ids[:-1]

@@ -25,7 +25,7 @@ def _fault_of(run: Run) -> str:
     return error.fault
 
 
-@pytest.mark.parametrize(("fault", "words"), [("truncated", "without its end"), ("black", "is black"), ("size", "160x90")])
+@pytest.mark.parametrize(("fault", "words"), [("truncated", "incomplete"), ("black", "is black"), ("size", "160x90")])
 async def test_broken_picture(driver: Driver, device: VirtualDevice, fault: str, words: str, tmp_path: Path) -> None:
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         run = await ask(camera, COUNT, tmp_path, when_started=partial(set_faults, device, picture=fault))

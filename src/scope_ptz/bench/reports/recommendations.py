@@ -152,7 +152,7 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
     text = (
         "This section compares the micro accuracy of tasks about the current view and about the full scene. These tasks also "
         "differ in category, so the panorama is not the only cause of the difference. The interval of the difference combines the "
-        "intervals of the two proportions (Newcombe 1998). It is unknown if one of these is unknown.",
+        "intervals of the two proportions (Newcombe 1998). It is missing if either of these is missing.",
     )
     return Section("scope", "Current view against full scene", text, (), (ReportTable("scope", "By scope", columns, tuple(rows)),))
 

@@ -47,7 +47,7 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
     if not data.startswith(_START):
         raise PictureError("The camera sent something that is not a JPEG picture. Check its model and firmware.", "damaged")
     if _END not in data[-64:]:
-        raise PictureError("The camera sent a picture without its end. Check the network, then try again.", "truncated")
+        raise PictureError("The camera sent an incomplete picture. Check the network, then try again.", "truncated")
     try:
         with Image.open(BytesIO(data), formats=("JPEG",)) as picture:
             size = picture.size
@@ -60,7 +60,7 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
             return np.array(picture.convert("RGB"))
     except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         fault: PictureFault = "truncated" if "truncated" in str(error) else "damaged"
-        what = "without its end" if fault == "truncated" else "that is damaged"
+        what = "that is incomplete" if fault == "truncated" else "that is damaged"
         raise PictureError(f"The camera sent a picture {what}. Check the network, then try again.", fault) from None
 
 
@@ -72,7 +72,7 @@ def is_black(image: NDArray[np.uint8]) -> bool:
 def check_not_black(image: NDArray[np.uint8]) -> None:
     """Raise ``PictureError`` if a picture is entirely black."""
     if is_black(image):
-        raise PictureError("The picture of the camera is black. Check its lens cover, its iris and the light.", "black")
+        raise PictureError("The camera's picture is black. Check the lens cover, the iris and the lighting.", "black")
 
 
 class FrozenCheck:
