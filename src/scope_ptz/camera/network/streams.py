@@ -161,7 +161,8 @@ class MjpegStream(LiveStream):
                     return max(last_s, self._last_s)
                 except TimeoutError:
                     raise PictureError(
-                        f"The camera's stream has delivered no new picture for {self._stalled_s:g} s. Check the network, or restart the camera.",
+                        f"The camera's stream has delivered no new picture for {self._stalled_s:g} s. "
+                        "Check the network, or restart the camera.",
                         "stalled",
                     ) from None
                 if pictures := parser.feed(chunk):
