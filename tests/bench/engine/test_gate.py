@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.engine.regression_gate import gate
-from scope_ptz.bench.engine.regression_text import comparison_lines, judge_change_note
+from scope_ptz.bench.engine.regression.gate import gate
+from scope_ptz.bench.engine.regression.text import comparison_lines, judge_change_note
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 from scope_ptz.errors import InputError
 from tests.cli.conftest import Scope

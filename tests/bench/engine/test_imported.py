@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.engine.regression_gate import gate
+from scope_ptz.bench.engine.regression.gate import gate
 from scope_ptz.bench.engine.run_totals import accuracy
 from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge, other_judges_note, reported_judge
 from scope_ptz.bench.judging.judgement_tally import needs_judgement

@@ -92,8 +92,8 @@ def gate(
 
     require_engine()
     from scope_ptz.bench.engine.logs import read_evaluation
-    from scope_ptz.bench.engine.regression_gate import gate as compare
-    from scope_ptz.bench.engine.regression_text import comparison_lines, judge_change_note
+    from scope_ptz.bench.engine.regression.gate import gate as compare
+    from scope_ptz.bench.engine.regression.text import comparison_lines, judge_change_note
 
     now, before = read_evaluation(log), read_evaluation(baseline)
     comparison = compare(now, before, alpha)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from scope_ptz.bench.engine.regression_gate import Comparison, Gate
+from scope_ptz.bench.engine.regression.gate import Comparison, Gate
 from scope_ptz.bench.judging.deciding_judge import reported_judge
 from scope_ptz.bench.scoring.trials import Evaluation
 
