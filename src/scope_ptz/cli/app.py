@@ -14,7 +14,18 @@ from scope_ptz.cli.bench import BenchGroup
 from scope_ptz.cli.camera import HELP as CAMERA_HELP
 from scope_ptz.cli.camera import CameraGroup
 from scope_ptz.cli.exit import EXIT_CODES
-from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
+from scope_ptz.cli.options import (
+    JsonOption,
+    ModelFlags,
+    OutputFile,
+    PairFlags,
+    SeedOption,
+    ServerFlags,
+    SessionFlags,
+    StartFlags,
+    TokensFile,
+    command,
+)
 from scope_ptz.cli.parameters import LeanGroup
 from scope_ptz.cli.runs import HELP as RUNS_HELP
 from scope_ptz.cli.runs import RunsGroup
@@ -48,7 +59,6 @@ app.add_typer(typer.Typer(cls=BenchGroup, help=BENCH_HELP, no_args_is_help=True)
 Instruction = Annotated[str, typer.Argument(help="What the camera should do, in plain words.")]
 SceneName = Annotated[str, typer.Argument(help="Name of the scene; see `scope scene list`.")]
 SceneSource = Annotated[str, typer.Argument(help="Name of a built-in scene, or a Python file with `build(stage)`.")]
-TokensFile = Annotated[Path | None, typer.Option("--tokens", help="File with the tokens (default: SCOPE_TOKENS).")]
 ModelName = Annotated[str, typer.Argument(metavar="NAME", help="Name of the model; see `scope models`.")]
 
 
@@ -135,63 +145,25 @@ def tools(as_json: Annotated[bool, typer.Option("--json", help="Print on one lin
 @app.command(rich_help_panel="Talk to a camera")
 @command
 def serve(
-    cameras: Annotated[
-        list[str] | None, typer.Option("--camera", help="Camera in scope.yaml, or scene, to serve (default: all; repeatable).")
-    ] = None,
-    pair: Annotated[
-        list[str] | None, typer.Option("--pair", help="Pair of models to offer, the default first; see `scope models pairs`.")
-    ] = None,
-    host: Annotated[
-        str, typer.Option("--host", help="Address to listen on. Addresses other than loopback need tokens.")
-    ] = "127.0.0.1",
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 for any free one.")] = 8000,
-    name: Annotated[
-        list[str] | None, typer.Option("--name", help="Additional host name of the server, such as that of a proxy (repeatable).")
-    ] = None,
-    tokens: TokensFile = None,
-    runs_dir: Annotated[Path | None, typer.Option("--runs-dir", help="Folder for the runs (default: SCOPE_RUNS_DIR).")] = None,
-    idle_after: Annotated[
-        float | None, typer.Option("--idle-after", min=1.0, help="Return an unused camera to a preset after N seconds.")
-    ] = None,
-    idle_preset: Annotated[str, typer.Option("--idle-preset", help="Preset to which unused cameras return (default: home).")] = "",
+    server: ServerFlags,
     as_json: JsonOption = False,
 ) -> None:
     """Serve cameras to programs through an HTTP API until Ctrl-C."""
     from scope_ptz.cli.serve import run_server
 
-    run_server(cameras or [], pair or [], host, port, name or [], tokens, runs_dir, idle_after, idle_preset, as_json=as_json)
+    run_server(server, as_json=as_json)
 
 
 @app.command(rich_help_panel="Talk to a camera")
 @command
 def console(
-    cameras: Annotated[
-        list[str] | None, typer.Option("--camera", help="Camera in scope.yaml, or scene, to serve (default: all; repeatable).")
-    ] = None,
-    pair: Annotated[
-        list[str] | None, typer.Option("--pair", help="Pair of models to offer, the default first; see `scope models pairs`.")
-    ] = None,
-    host: Annotated[
-        str, typer.Option("--host", help="Address to listen on. Addresses other than loopback need tokens.")
-    ] = "127.0.0.1",
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 for any free one.")] = 8000,
-    name: Annotated[
-        list[str] | None, typer.Option("--name", help="Additional host name of the server, such as that of a proxy (repeatable).")
-    ] = None,
-    tokens: TokensFile = None,
-    runs_dir: Annotated[Path | None, typer.Option("--runs-dir", help="Folder for the runs (default: SCOPE_RUNS_DIR).")] = None,
-    idle_after: Annotated[
-        float | None, typer.Option("--idle-after", min=1.0, help="Return an unused camera to a preset after N seconds.")
-    ] = None,
-    idle_preset: Annotated[str, typer.Option("--idle-preset", help="Preset to which unused cameras return (default: home).")] = "",
+    server: ServerFlags,
     as_json: JsonOption = False,
 ) -> None:
     """Serve the operator's page to browsers, together with the HTTP API, until Ctrl-C."""
     from scope_ptz.cli.serve import run_server
 
-    run_server(
-        cameras or [], pair or [], host, port, name or [], tokens, runs_dir, idle_after, idle_preset, page=True, as_json=as_json
-    )
+    run_server(server, page=True, as_json=as_json)
 
 
 # Tokens ----------------------------------------------------------------------------------------------------------------

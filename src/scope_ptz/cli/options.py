@@ -320,6 +320,34 @@ class JudgeFlags:
     ] = None
 
 
+TokensFile = Annotated[Path | None, typer.Option("--tokens", help="File with the tokens (default: SCOPE_TOKENS).")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ServerFlags:
+    """Options for a server: what it serves, where it listens, and what it does with unused cameras."""
+
+    cameras: Annotated[
+        list[str] | None, typer.Option("--camera", help="Camera in scope.yaml, or scene, to serve (default: all; repeatable).")
+    ] = None
+    pair: Annotated[
+        list[str] | None, typer.Option("--pair", help="Pair of models to offer, the default first; see `scope models pairs`.")
+    ] = None
+    host: Annotated[str, typer.Option("--host", help="Address to listen on. Addresses other than loopback need tokens.")] = (
+        "127.0.0.1"
+    )
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 for any free one.")] = 8000
+    name: Annotated[
+        list[str] | None, typer.Option("--name", help="Additional host name of the server, such as that of a proxy (repeatable).")
+    ] = None
+    tokens: TokensFile = None
+    runs_dir: Annotated[Path | None, typer.Option("--runs-dir", help="Folder for the runs (default: SCOPE_RUNS_DIR).")] = None
+    idle_after: Annotated[
+        float | None, typer.Option("--idle-after", min=1.0, help="Return an unused camera to a preset after N seconds.")
+    ] = None
+    idle_preset: Annotated[str, typer.Option("--idle-preset", help="Preset to which unused cameras return (default: home).")] = ""
+
+
 def command(function: Callable[..., int | None]) -> Callable[..., None]:
     """Convert a function with option groups to one that Typer can register.
 

@@ -9,26 +9,14 @@ from typing import TYPE_CHECKING
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
+    from scope_ptz.cli.options import ServerFlags
     from scope_ptz.serve.security.tokens import TokenFile
 
 SWITCH_INTERVAL_S = 0.001
 """Seconds for which a thread may run before others get a turn. With the default of 5 ms, rendering would delay a ``stop``."""
 
 
-def run_server(
-    cameras: list[str],
-    pairs: list[str],
-    host: str,
-    port: int,
-    names: list[str],
-    tokens: Path | None,
-    runs_dir: Path | None,
-    idle_after: float | None,
-    idle_preset: str,
-    *,
-    page: bool = False,
-    as_json: bool,
-) -> None:
+def run_server(flags: ServerFlags, *, page: bool = False, as_json: bool) -> None:
     """Serve cameras until Ctrl-C. If ``page`` is set, serve the operator's page as well."""
     from scope_ptz.cli.exit import put, put_json, run_async
     from scope_ptz.settings import load_settings
@@ -54,17 +42,19 @@ def run_server(
             f"The server needs {error.name}. Install it with: pip install 'scope-ptz[{'console' if page else 'serve'}]'."
         ) from error
     settings = load_settings()
-    needed = tokens is not None or not is_loopback(host) or bool(names)
-    access = Access(host, _tokens(tokens or settings.tokens) if needed else None, tuple(names))
+    host, cameras, names = flags.host, flags.cameras or [], flags.name or []
+    needed = flags.tokens is not None or not is_loopback(host) or bool(names)
+    access = Access(host, _tokens(flags.tokens or settings.tokens) if needed else None, tuple(names))
     chosen = site_cameras(cameras, settings)
-    idle = None if idle_after is None else IdleReturn(idle_after, idle_preset)
-    options = SiteOptions(runs_dir or settings.runs_dir, tuple(cameras), tuple(pairs), idle=idle, idle_of=idle_returns())
+    idle = None if flags.idle_after is None else IdleReturn(flags.idle_after, flags.idle_preset)
+    runs_dir, pairs = flags.runs_dir or settings.runs_dir, tuple(flags.pair or ())
+    options = SiteOptions(runs_dir, tuple(cameras), pairs, idle=idle, idle_of=idle_returns())
 
     async def work() -> None:
         import anyio
 
         site = Site(chosen, options)
-        async with serving(site, access, port=port) as bound:
+        async with serving(site, access, port=flags.port) as bound:
             shown = f"[{host}]" if ":" in host else host
             url = f"http://{shown}:{bound}"
             if as_json:
