@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -48,6 +49,16 @@ def running_console(folder: Path, scene: Path, cameras: list[str], settings: Map
             assert program.stdout is not None
             program.stdout.close()
     assert "Traceback" not in (folder / "errors").read_text()
+
+
+def wait_until_free(console: str) -> None:
+    """Wait until nobody controls a camera, so that the next test can. Control ends with the run in progress, if there is one."""
+    deadline_s = time.monotonic() + 60
+    with httpx2.Client(base_url=f"{console}/api/v1", trust_env=False, timeout=60) as client:
+        for name in client.get("/server").json()["cameras"]:
+            while (now := client.get(f"/cameras/{name}/control").json())["holder"] is not None:
+                assert time.monotonic() < deadline_s, f"{name} is still controlled: {now}"
+                time.sleep(0.05)
 
 
 def eventually(page: Page, holds: Callable[[], bool]) -> None:
@@ -115,7 +126,7 @@ def watching(console: str, browser: Browser) -> Iterator[Watched]:
     yield found
     for page in context.pages:
         page.goto("about:blank")  # leaving the page gives up control
-    httpx2.get(f"{console}/api/v1/health", trust_env=False)
+    wait_until_free(console)
     context.close()
     assert not found.problems
     assert not [url for url in found.foreign if not url.startswith(console.replace("http", "ws", 1))]

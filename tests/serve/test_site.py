@@ -67,6 +67,29 @@ async def test_control_shows_in_the_lock_of_the_camera(analytic_scene: Scene) ->
 
 
 @pytest.mark.anyio
+async def test_control_ends_soon_after_its_holder_has_disconnected(analytic_scene: Scene) -> None:
+    camera = SimulatedCamera(analytic_scene)
+    control = CameraControl("yard", lambda: False, absent_s=0.05)
+    await control.require(ANNA, camera)
+    await anyio.sleep(0.1)
+    assert control.holder == ANNA, "a program needs no live connection"
+    with control.connected(ANNA):
+        with control.connected(ANNA):
+            pass
+        with control.connected(BEN):
+            pass
+        await anyio.sleep(0.1)
+        assert control.holder == ANNA
+    with control.connected(ANNA):
+        await anyio.sleep(0.1)
+        assert control.holder == ANNA, "it has reconnected"
+    await anyio.sleep(0.1)
+    assert control.holder is None
+    await control.require(BEN, camera)
+    assert control.holder == BEN
+
+
+@pytest.mark.anyio
 async def test_control_ends_with_the_run_of_a_client_that_left(analytic_scene: Scene) -> None:
     camera, busy = SimulatedCamera(analytic_scene), True
     control = CameraControl("yard", lambda: busy)

@@ -4,7 +4,7 @@ import { notify } from "./dom.js";
 
 const ROOT = "/api/v1";
 
-function tabId() {
+export function tabId() {
   let id = sessionStorage.getItem("scope-tab");
   if (!id) {
     id = Array.from(crypto.getRandomValues(new Uint8Array(9)), (byte) => byte.toString(16).padStart(2, "0")).join("");

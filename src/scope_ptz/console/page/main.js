@@ -89,8 +89,9 @@ export async function mount(root) {
   let changes = null;
   addEventListener("pagehide", release);
   on("status", async (status) => {
-    if (status.control === changes) return;
-    changes = status.control;
+    const found = `${status.control} ${status.holder}`; // control that expires changes only the holder
+    if (found === changes) return;
+    changes = found;
     const name = shared.camera, now = await get(`/cameras/${part(name)}/control`).catch(() => null);
     if (now && name === shared.camera) showControl(now);
   });

@@ -1,6 +1,6 @@
 // The live picture: frames from a WebSocket, marks on top of them, and the manual camera controls.
 
-import { command, get, part, url } from "./api.js";
+import { command, get, part, tabId, url } from "./api.js";
 import { emit, on, shared } from "./app_state.js";
 import { h, icon, iconButton } from "./dom.js";
 import { drawMarks } from "./marks.js";
@@ -52,7 +52,7 @@ export function makeStage() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     // One of two widths, so that viewers with windows of different sizes share one encoding.
     const wide = element.clientWidth * Math.min(devicePixelRatio, 2) > 640 ? 1280 : 640;
-    const mine = (socket = new WebSocket(`${scheme}://${location.host}${url(`/cameras/${part(camera)}/live?width=${wide}`)}`));
+    const mine = (socket = new WebSocket(`${scheme}://${location.host}${url(`/cameras/${part(camera)}/live?width=${wide}&client=${tabId()}`)}`));
     mine.binaryType = "arraybuffer";
     mine.onmessage = async (event) => {
       if (typeof event.data === "string") {

@@ -83,7 +83,7 @@ async def motion_jpeg(
 @router.websocket("/live")
 async def live(socket: WebSocket, camera: str, width: int = 1280) -> None:
     """Stream the live picture to a page. ``docs/http-api.md`` describes the messages."""
-    client_of(socket)
+    client = client_of(socket)
     try:
         station = station_of(socket, camera)
         await station.opened()
@@ -92,7 +92,7 @@ async def live(socket: WebSocket, camera: str, width: int = 1280) -> None:
         return
     await socket.accept()
     watcher = _Watcher(socket, station, min(max(width, 160), 3840))
-    with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
+    with suppress(WebSocketDisconnect, RuntimeError, TimeoutError), station.control.connected(client):
         await watcher.run(site_of(socket).closing)
     with suppress(RuntimeError, WebSocketDisconnect):  # the client has already disconnected
         await socket.close(1001)

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
+from urllib.parse import parse_qs
 
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -124,6 +125,8 @@ class Gate:
         if problem := self._origins.problem(headers, method=scope.get("method", "GET"), websocket=websocket):
             await reply.refuse(403, "refused", problem)
             return
+        if websocket and (tab := parse_qs(scope.get("query_string", b"").decode("latin-1")).get("client")):
+            headers.setdefault("scope-client", tab[0])  # a page cannot set headers of a WebSocket
         client = self._access.client(headers)
         if client is None and scope["path"] not in OPEN_PATHS:
             if not websocket and _wants_page(scope, headers):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import AsyncExitStack
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import AsyncExitStack, contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from time import monotonic
@@ -15,6 +16,9 @@ from scope_ptz.serve.site.errors import NotInControlError
 
 LEASE_S = 120.0
 """Seconds without a command after which control expires."""
+
+ABSENT_S = 5.0
+"""Seconds after which control expires if its holder has closed its last live connection. A page reconnects within 2 s."""
 
 MAX_REQUESTS = 20
 """Maximum number of clients that can wait for control."""
@@ -33,21 +37,24 @@ class CameraControl:
     """Control of one camera.
 
     A client that sends a command gets control if nobody has it. If another client has it (the holder), the client can ask for
-    control, and the holder hands it over or keeps it. Control expires if the holder sends no commands, so that a closed laptop does
-    not block a camera. It cannot expire during a run.
+    control, and the holder hands it over or keeps it. Control expires if the holder sends no commands, or if it closes its live
+    connection, so that a closed laptop or a closed browser does not block a camera. It cannot expire during a run.
 
     Args:
         camera: The camera's name.
         busy: Returns whether a run is in progress.
         lease_s: Seconds without a command after which control expires.
+        absent_s: Seconds without a live connection after which control expires. It applies only to a holder that had one.
     """
 
-    def __init__(self, camera: str, busy: Callable[[], bool], *, lease_s: float = LEASE_S) -> None:
-        self._camera, self._busy, self._lease_s = camera, busy, lease_s
+    def __init__(self, camera: str, busy: Callable[[], bool], *, lease_s: float = LEASE_S, absent_s: float = ABSENT_S) -> None:
+        self._camera, self._busy, self._lease_s, self._absent_s = camera, busy, lease_s, absent_s
         self._holder: Client | None = None
         self._since = datetime.now(UTC)
         self._used_s = 0.0
         self._left = False
+        self._connections: Counter[str] = Counter()
+        self._absent_since_s: float | None = None
         self._requests: dict[str, Request] = {}
         self._lock = AsyncExitStack()
         self.changes = 0
@@ -56,7 +63,9 @@ class CameraControl:
     @property
     def holder(self) -> Client | None:
         """The client that has control; None if nobody has it."""
-        expired = not self._busy() and (self._left or monotonic() - self._used_s > self._lease_s)
+        now_s = monotonic()
+        absent = self._absent_since_s is not None and now_s - self._absent_since_s > self._absent_s
+        expired = not self._busy() and (self._left or absent or now_s - self._used_s > self._lease_s)
         return None if expired else self._holder
 
     @property
@@ -68,6 +77,21 @@ class CameraControl:
     def requests(self) -> tuple[Request, ...]:
         """The requests for control, the oldest first."""
         return tuple(self._requests.values())
+
+    @contextmanager
+    def connected(self, client: Client) -> Iterator[None]:
+        """Return a context in which a client has a live connection. Control expires soon after its holder's last one has ended."""
+        self._connections[client.key] += 1
+        if self._holder is not None and self._holder.key == client.key:
+            self._absent_since_s = None
+        try:
+            yield
+        finally:
+            self._connections[client.key] -= 1
+            if not self._connections[client.key]:
+                del self._connections[client.key]
+                if self._holder is not None and self._holder.key == client.key:
+                    self._absent_since_s = monotonic()
 
     async def require(self, client: Client, camera: Camera) -> None:
         """Make sure that a client has control, which it takes if nobody has it.
@@ -81,7 +105,7 @@ class CameraControl:
             raise NotInControlError(self._camera, holder.name)
         if holder is None:
             await self._hand_to(client, camera)
-        self._used_s, self._left = monotonic(), False
+        self._used_s, self._left, self._absent_since_s = monotonic(), False, None
 
     async def ask(self, client: Client, camera: Camera) -> bool:
         """Take control if nobody has it; otherwise, ask the holder for it. Return whether the client has control.
@@ -149,5 +173,6 @@ class CameraControl:
         # Other programs that use the same device learn from the camera's own lock who has control.
         await self._lock.enter_async_context(camera.control(client.name))
         self._holder, self._since, self._used_s, self._left = client, datetime.now(UTC), monotonic(), False
+        self._absent_since_s = None
         self._requests.pop(client.key, None)
         self.changes += 1
