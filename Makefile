@@ -26,9 +26,10 @@ console: $(DEV)
 test: $(DEV)
 	$(BIN)/pytest -q -n 4 --dist loadfile -m "not full" tests
 
-# In the order of the folders, because by default files of one test come last, and the longest tests are in such files.
+# In the order of the folders, because by default files of one test come last, and the longest tests are in such files. Tests of
+# browsers and live streams compete for the processor: one that fails runs up to twice more, and the summary lists it.
 test-full: test $(FULL)
-	$(BIN)/pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m full tests
+	$(BIN)/pytest -q -n 2 --dist loadfile --no-loadscope-reorder --reruns 2 --reruns-delay 1 -raR -m full tests
 
 # Both tiers again with line coverage of everything but the modelling code, which runs inside Blender.
 coverage: $(FULL)
