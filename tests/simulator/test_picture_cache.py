@@ -131,7 +131,7 @@ def test_a_sheet_of_another_size_loses_its_list(pictures: PictureCache, tmp_path
     assert sheet is not None
     with sheet.filling():
         sheet.array[...] = 7
-        sheet.completed(0, 2, (0, SHAPE[0]))
+        sheet.completed(0, 2)
     again = pictures.sheet("a", SHAPE, np.uint8)
     assert again is not None
     assert again.complete() == {(0, 2)}
@@ -147,7 +147,7 @@ def test_the_oldest_files_are_removed_first(pictures: PictureCache, tmp_path: Pa
         assert sheet is not None
         with sheet.filling():
             sheet.array[...] = 1
-            sheet.completed(0, 0, (0, SHAPE[0]))
+            sheet.completed(0, 0)
         os.utime(tmp_path / "pictures" / f"{name}.sheet", (1e9 - age, 1e9 - age))
     used = (tmp_path / "pictures" / "new.sheet").stat().st_blocks * 512
     monkeypatch.setattr(picture_cache, "MAX_BYTES", used)

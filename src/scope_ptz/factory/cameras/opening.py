@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -199,7 +200,10 @@ async def open_camera(
     if viewpoint and preset:
         raise InputError("Give --viewpoint or --preset, not both: a preset determines the viewpoint.")
     if spec.scheme == "sim":
-        opened = _open_simulated(spec, viewpoint, time_s, realtime=realtime)
+        from anyio import to_thread
+
+        # In a thread, because a server must continue to deliver pictures while it reads the tables of a scene.
+        opened = await to_thread.run_sync(partial(_open_simulated, spec, viewpoint, time_s, realtime=realtime))
     elif spec.scheme == "blender":
         from scope_ptz.factory.cameras.blender import open_live_blender
 

@@ -9,6 +9,8 @@ from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from anyio import to_thread
+
 from scope_ptz.errors import ConfigError, InputError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.settings import ScopeSettings
@@ -163,7 +165,7 @@ async def serve_virtual_cameras(
                 await stack.enter_async_context(discoverable(discoverable_cameras, host=options.host))
             except ConfigError as error:  # the cameras can be used without discovery
                 logger.warning("%s", error)
-        prefetches = [device.prefetch() for device in devices] if options.prefetch else []
+        prefetches = [await to_thread.run_sync(device.prefetch) for device in devices] if options.prefetch else []
         try:
             yield cameras
         finally:

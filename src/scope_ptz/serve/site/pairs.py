@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from anyio import to_thread
+
 from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR
 from scope_ptz.endpoints.catalogue import served_models
 from scope_ptz.endpoints.endpoint import Endpoint
@@ -82,8 +84,10 @@ class Pairs:
         if opened.scenes is None and name == DEFAULT_PAIR:
             perception, note = NoPerception("Choose another pair, with a vision model."), ""
         else:
-            perception, note = make_perception(pair.perception, opened.scenes, seed), perception_note(pair.perception)
-        return Models(make_planner(pair.planner), perception, note)
+            note = perception_note(pair.perception)
+            perception = await to_thread.run_sync(make_perception, pair.perception, opened.scenes, seed)
+        # In a thread, because the first call imports the planner, which would delay live pictures and stop commands.
+        return Models(await to_thread.run_sync(make_planner, pair.planner), perception, note)
 
     async def health(self, name: str) -> tuple[Health, Health]:
         """Return whether the planner and the perception backend of a pair can be used.

@@ -105,7 +105,7 @@ class Station:
                     raise
                 self.problem = None
                 if isinstance(camera := innermost(self._opened.camera), SimulatedCamera):
-                    self._prefetch = camera.prefetch()
+                    self._prefetch = await to_thread.run_sync(camera.prefetch)  # it reads the table of tiles
             return self._opened
 
     async def camera(self) -> Camera:

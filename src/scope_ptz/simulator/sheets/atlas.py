@@ -163,8 +163,7 @@ class Atlas:
             if missing:
                 self._fill_scales(index, missing)
             for scale in missing:
-                slot = self.slots[index][scale]
-                cached.completed(index, scale, (slot.y - BORDER_PX, slot.y + slot.height + BORDER_PX))
+                cached.completed(index, scale)
 
     @contextmanager
     def reading(self) -> Iterator[None]:

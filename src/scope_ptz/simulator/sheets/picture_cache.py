@@ -115,14 +115,13 @@ class CachedSheet:
     """
 
     def __init__(self, path: Path, size: int, shape: tuple[int, ...], dtype: type[np.generic]) -> None:
-        self._list = path.with_suffix(_LIST)
+        self._path, self._list = path, path.with_suffix(_LIST)
         with path.open("a+b") as file, self._locked() as listed:
             if os.fstat(file.fileno()).st_size != size:
                 listed.truncate(0)
                 file.truncate(size)
             os.utime(path)
             self._memory = mmap.mmap(file.fileno(), size)
-        self._row_bytes = size // shape[0]
         self._filling: IO[str] | None = None
         self.array: NDArray[Any] = np.frombuffer(self._memory, dtype).reshape(shape)
 
@@ -147,10 +146,14 @@ class CachedSheet:
             finally:
                 self._filling = None
 
-    def completed(self, picture: int, scale: int, rows: tuple[int, int]) -> None:
-        """Record that a picture is complete, after flushing its rows to disk. Call this inside ``filling``."""
-        start = rows[0] * self._row_bytes // mmap.ALLOCATIONGRANULARITY * mmap.ALLOCATIONGRANULARITY
-        self._memory.flush(start, min(rows[1] * self._row_bytes, len(self._memory)) - start)
+    def completed(self, picture: int, scale: int) -> None:
+        """Record that a picture is complete, after writing its pixels to disk. Call this inside ``filling``."""
+        # mmap.flush would hold the interpreter's lock, and all other threads would wait for the disk.
+        with (
+            suppress(FileNotFoundError),
+            self._path.open("rb") as file,
+        ):  # another process may have removed the file as the oldest one
+            os.fsync(file.fileno())
         if self._filling is not None:
             self._filling.write(f"{picture} {scale}\n")
             self._filling.flush()
