@@ -163,10 +163,10 @@ def test_slugs_keep_the_first_words() -> None:
 def test_pictures_never_overwrite(tmp_path: Path) -> None:
     folder = RunFolder.create(tmp_path, "x")
     frame = anyio.run(ScriptedCamera().frame)
-    assert {folder.save_picture(frame) for _ in range(3)} == {f"pictures/00{i}.png" for i in (1, 2, 3)}
+    assert {anyio.run(folder.save_picture, frame) for _ in range(3)} == {f"pictures/00{i}.png" for i in (1, 2, 3)}
     (folder.path / "pictures" / "004.png").write_bytes(b"kept by someone else")
     with pytest.raises(OutputError):
-        folder.save_picture(frame)
+        anyio.run(folder.save_picture, frame)
 
 
 def test_a_record_is_one_line_of_json(tmp_path: Path) -> None:

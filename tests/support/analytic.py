@@ -162,11 +162,11 @@ class MemoryStore:
     def __init__(self) -> None:
         self.frames: list[Frame] = []
 
-    def save_frame(self, frame: Frame) -> str:
+    async def save_frame(self, frame: Frame) -> str:
         self.frames.append(frame)
         return f"look-{len(self.frames)}.jpg"
 
-    def save_picture(self, frame: Frame) -> str:
+    async def save_picture(self, frame: Frame) -> str:
         self.frames.append(frame)
         return f"picture-{len(self.frames)}.png"
 

@@ -178,7 +178,7 @@ class _Episode:
                 budgets=agent.budgets,
                 labels=agent.labels,
                 conversation=self.conversation,
-                frame=agent.images.save_frame(frame) if agent.snapshots else None,
+                frame=await agent.images.save_frame(frame) if agent.snapshots else None,
             )
         )
         return Briefing(presets=presets, pose=self.start, limits=info.limits)
@@ -219,7 +219,7 @@ class _Episode:
         planner, view_name = self.agent.planner, None
         if planner.sees:
             frame = await self.camera.frame()
-            view_name = self.agent.images.save_frame(frame) if self.agent.snapshots else None
+            view_name = await self.agent.images.save_frame(frame) if self.agent.snapshots else None
             state = state.model_copy(update={"view": await newest_view(frame)})
         before = self.watch.read()
         with self.watch.measure("planner"):

@@ -35,11 +35,11 @@ class PictureStore:
         self._images = images
         self.last: tuple[str, Frame] | None = None
 
-    def save_frame(self, frame: Frame) -> str:
-        return self._images.save_frame(frame)
+    async def save_frame(self, frame: Frame) -> str:
+        return await self._images.save_frame(frame)
 
-    def save_picture(self, frame: Frame) -> str:
-        name = self._images.save_picture(frame)
+    async def save_picture(self, frame: Frame) -> str:
+        name = await self._images.save_picture(frame)
         self.last = (name, frame)
         return name
 

@@ -13,6 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import cv2
+from anyio import to_thread
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import OutputError
@@ -56,26 +57,26 @@ class NoImages:
     def __init__(self) -> None:
         self._names = Numbering()
 
-    def save_frame(self, frame: Frame) -> str:
+    async def save_frame(self, frame: Frame) -> str:
         return self._names.frame(frame)
 
-    def save_picture(self, frame: Frame) -> str:  # noqa: ARG002 - the contract's signature
+    async def save_picture(self, frame: Frame) -> str:  # noqa: ARG002 - the contract's signature
         return self._names.picture()
 
 
 class EncodedImages(ABC):
-    """An image store that encodes frames as JPEG, and pictures that the user requested as PNG."""
+    """An image store that encodes frames as JPEG, and pictures that the user requested as PNG, both in a worker thread."""
 
     def __init__(self) -> None:
         self._names = Numbering()
 
-    def save_frame(self, frame: Frame) -> str:
+    async def save_frame(self, frame: Frame) -> str:
         """Store a frame of the run, such as one that perception receives, and return its name. Raises ``OutputError``."""
-        return self._store(self._names.frame(frame), frame, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+        return await to_thread.run_sync(self._store, self._names.frame(frame), frame, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
 
-    def save_picture(self, frame: Frame) -> str:
+    async def save_picture(self, frame: Frame) -> str:
         """Store a picture that the user requested and return its name. Raises ``OutputError``."""
-        return self._store(self._names.picture(), frame, [])
+        return await to_thread.run_sync(self._store, self._names.picture(), frame, [])
 
     def _store(self, name: str, frame: Frame, options: list[int]) -> str:
         suffix = Path(name).suffix

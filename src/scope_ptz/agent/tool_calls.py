@@ -147,7 +147,7 @@ class CallRunner:
             result = await self._run(call, ToolContext(camera, perception, images))
             self.pose = await camera.pose()
             if self._snapshots and self.pose != pose and not getattr(result, "frames", ()):
-                frame = self._images.save_frame(await camera.frame())
+                frame = await self._images.save_frame(await camera.frame())
             last_picture = await images.last_picture() if self._accepts_images else None
             outcome = ToolOutcome(call=call, result=result.model_dump(mode="json"), picture=last_picture)
         except (ToolCallError, UnknownNameError) as error:

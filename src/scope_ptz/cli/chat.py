@@ -116,7 +116,7 @@ class _Chat:
             self.console.print(f"pan {pose['pan_deg']:g}°, tilt {pose['tilt_deg']:g}°, zoom {pose['zoom']:g}x")
         elif line == "/save":
             self.pictures = self.pictures or RunFolder.create(self.session.runs_dir, "chat pictures")
-            name = self.pictures.save_picture(await self.session.camera.frame())
+            name = await self.pictures.save_picture(await self.session.camera.frame())
             self.console.print(Text(f"Saved {self.pictures.path / name}"), soft_wrap=True)
         else:
             raise InputError(f"There is no command {plain(line.split()[0])}. Type /help for the commands.")

@@ -33,10 +33,10 @@ class DiscardedImages:
         self._count += 1
         return f"{self._count:04d}.png"
 
-    def save_frame(self, frame: Frame) -> str:  # noqa: ARG002
+    async def save_frame(self, frame: Frame) -> str:  # noqa: ARG002
         return self._next_name()
 
-    def save_picture(self, frame: Frame) -> str:  # noqa: ARG002
+    async def save_picture(self, frame: Frame) -> str:  # noqa: ARG002
         return self._next_name()
 
 

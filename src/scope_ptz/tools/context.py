@@ -12,11 +12,11 @@ from scope_ptz.perception.base import Perception
 class ImageStore(Protocol):
     """A store that saves pictures under unique names, relative to the run folder."""
 
-    def save_frame(self, frame: Frame) -> str:
+    async def save_frame(self, frame: Frame) -> str:
         """Save a frame of the run, such as one that perception received, with lossy compression, and return its name."""
         ...
 
-    def save_picture(self, frame: Frame) -> str:
+    async def save_picture(self, frame: Frame) -> str:
         """Save a picture that the user requested, losslessly, and return its name."""
         ...
 

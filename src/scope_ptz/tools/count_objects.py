@@ -47,7 +47,7 @@ async def count_objects(context: ToolContext, arguments: CountObjects) -> CountR
         pose=PoseData.of(frame.pose),
         source=detections.source,
         view=arguments.view,
-        frames=(context.images.save_frame(frame),),
+        frames=(await context.images.save_frame(frame),),
         description=arguments.description,
         count=count,
         complete=detections.complete,

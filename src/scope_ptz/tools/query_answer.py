@@ -41,7 +41,7 @@ async def query_answer(context: ToolContext, arguments: QueryAnswer) -> AnswerRe
         pose=PoseData.of(frame.pose),
         source=answer.source,
         view=arguments.view,
-        frames=(context.images.save_frame(frame),),
+        frames=(await context.images.save_frame(frame),),
         question=arguments.question,
         answer=answer.text,
         known=answer.known,

@@ -21,7 +21,7 @@ class ImageResult(Result):
 async def take_image(context: ToolContext, arguments: TakeImage) -> ImageResult:  # noqa: ARG001 - tools share one signature
     """Save a picture losslessly."""
     frame = await context.camera.frame()
-    name = context.images.save_picture(frame)
+    name = await context.images.save_picture(frame)
     return ImageResult(message=f"Saved the picture as {name}.", pose=PoseData.of(frame.pose), file=name)
 
 

@@ -134,7 +134,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
     camera, description = context.camera, arguments.description
     frame = await camera.frame()
     detections = await context.perception.detect(frame, description)
-    saved = [context.images.save_frame(frame)]
+    saved = [await context.images.save_frame(frame)]
     if not detections.boxes:
         return TrackResult(
             message=f"Nothing that fits '{description}' is in view; the camera stayed where it was.",
@@ -167,7 +167,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
             target.update(frame, seen)
         misses = 0 if seen is not None else misses + 1
         path.append(TrackPoint(time_s=round(frame.time_s - started, 3), pose=PoseData.of(frame.pose), seen=seen is not None))
-    saved.append(context.images.save_frame(frame))
+    saved.append(await context.images.save_frame(frame))
     return _report(arguments, detections.source, frame, path, clamped, saved)
 
 

@@ -92,7 +92,7 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
     if isinstance(first, Frame):
         return await _nothing_found(context, arguments.description, first)
     last, detections, target = first, 1, first.target
-    frames = [context.images.save_frame(first.frame)]
+    frames = [await context.images.save_frame(first.frame)]
     try:
         while True:
             plan = _plan(context.camera.info, await context.camera.pose(), last.box, target, detections)
@@ -165,7 +165,7 @@ async def _nothing_found(context: ToolContext, description: str, frame: Frame) -
         message=f"Nothing that fits '{description}' is in view; the camera stayed where it was.",
         pose=PoseData.of(frame.pose),
         source=context.perception.name,
-        frames=(context.images.save_frame(frame),),
+        frames=(await context.images.save_frame(frame),),
         description=description,
         found=False,
         matches=0,
@@ -187,7 +187,7 @@ async def _report(context: ToolContext, description: str, first: _Detection, tar
         pose=PoseData.of(frame.pose),
         clamped=limited,
         source=first.source,
-        frames=(*frames, context.images.save_frame(frame)),
+        frames=(*frames, await context.images.save_frame(frame)),
         description=description,
         found=True,
         matches=first.matches,

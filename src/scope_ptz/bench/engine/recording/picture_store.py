@@ -52,10 +52,10 @@ class PictureStore:
         self._lock = anyio.Lock()
         self.urls: dict[str, str] = {}
 
-    def save_frame(self, frame: Frame) -> str:
+    async def save_frame(self, frame: Frame) -> str:
         return self._enqueue(self._names.frame(frame), frame)
 
-    def save_picture(self, frame: Frame) -> str:
+    async def save_picture(self, frame: Frame) -> str:
         return self._enqueue(self._names.picture().replace(".png", ".jpg"), frame)
 
     def _enqueue(self, name: str, frame: Frame) -> str:
