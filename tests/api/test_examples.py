@@ -18,11 +18,14 @@ EXPECTED = {
     "own_perception.py": "Contract violations: none",
     "own_planner.py": "Most cars are at bridge-south: 8.",
 }
+FUNCTION_CALLING = ("function_calling_chat.py", "function_calling_responses.py", "pydantic_ai_agent.py")
+"""Programs that need a model server: see ``test_function_calling_examples.py``."""
+
 SLOW = {"evaluate.py", "batch_over_views.py", "own_planner.py"}  # 6 to 10 s each
 
 
 def test_every_example_is_run() -> None:
-    assert {path.name for path in EXAMPLES.glob("*.py")} == set(EXPECTED)
+    assert {path.name for path in EXAMPLES.glob("*.py")} == {*EXPECTED, *FUNCTION_CALLING}
 
 
 @pytest.mark.usefixtures("opened_once")
