@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import runpy
 from pathlib import Path
 
@@ -34,6 +36,15 @@ def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ca
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(EXAMPLES / name), run_name="__main__")
     assert EXPECTED[name] in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("opened_once")
+def test_the_program_on_the_page_about_function_calling(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (EXAMPLES.parent / "docs" / "how-to" / "function-calling.md").read_text(encoding="utf-8")
+    (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(program, "function-calling.md", "exec"), {})  # noqa: S102 - our own documentation
+    text, count = capsys.readouterr().out.splitlines()
+    assert json.loads(text)["count"] == int(count) == 7
 
 
 @pytest.mark.full
