@@ -19,7 +19,7 @@ INSTRUCTIONS = (
 MAX_STEPS = 20
 
 
-def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str) -> str:
+def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *, sees: bool = True) -> str:
     messages = [{"role": "system", "content": INSTRUCTIONS}, {"role": "user", "content": instruction}]
     for _ in range(MAX_STEPS):
         reply = client.chat.completions.create(model=model, messages=messages, tools=scope.tool_schemas("chat"))
@@ -33,7 +33,7 @@ def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str) ->
             print(f"  {call.function.name} {call.function.arguments} -> {output.text}")
             messages.append({"role": "tool", "tool_call_id": call.id, "content": output.text})
             pictures += output.pictures
-        for picture in pictures:  # the API accepts images only in messages of the user
+        for picture in pictures if sees else ():  # the API accepts images only in messages of the user
             image = {"type": "image_url", "image_url": {"url": picture.data_url}}
             messages.append({"role": "user", "content": [{"type": "text", "text": picture.caption}, image]})
     return f"The model gave no answer within {MAX_STEPS} steps."
@@ -45,11 +45,12 @@ def main() -> None:
     parser.add_argument("--model", required=True, help="the server's name for the model")
     parser.add_argument("--url", help="address of the model server")
     parser.add_argument("--camera", default="highway-works", help="a scene or another camera, as for scope_ptz.open")
+    parser.add_argument("--text-only", action="store_true", help="pass no pictures, for a model that accepts only text")
     options = parser.parse_args()
 
     key = os.environ.get("OPENAI_API_KEY", "none")  # local servers need no key
     with OpenAI(base_url=options.url, api_key=key) as client, scope_ptz.open(options.camera) as scope:
-        print(ask(client, options.model, scope, options.instruction))
+        print(ask(client, options.model, scope, options.instruction, sees=not options.text_only))
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ INSTRUCTIONS = (
 MAX_STEPS = 20
 
 
-def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str) -> str:
+def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *, sees: bool = True) -> str:
     items = [{"role": "user", "content": instruction}]
     for _ in range(MAX_STEPS):
         response = client.responses.create(
@@ -32,11 +32,10 @@ def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str) ->
         for call in calls:
             output = scope.dispatch(call.name, call.arguments)
             print(f"  {call.name} {call.arguments} -> {output.text}")
-            parts = [{"type": "input_text", "text": output.text}]
-            for picture in output.pictures:
-                parts.append({"type": "input_image", "image_url": picture.data_url, "detail": "auto"})
-            # Not every server accepts a list, so it is sent only if there is a picture.
-            content = parts if output.pictures else output.text
+            content = output.text
+            if sees and output.pictures:
+                images = [{"type": "input_image", "image_url": p.data_url, "detail": "auto"} for p in output.pictures]
+                content = [{"type": "input_text", "text": output.text}, *images]
             items.append({"type": "function_call_output", "call_id": call.call_id, "output": content})
     return f"The model gave no answer within {MAX_STEPS} steps."
 
@@ -47,11 +46,12 @@ def main() -> None:
     parser.add_argument("--model", required=True, help="the server's name for the model")
     parser.add_argument("--url", help="address of the model server")
     parser.add_argument("--camera", default="highway-works", help="a scene or another camera, as for scope_ptz.open")
+    parser.add_argument("--text-only", action="store_true", help="pass no pictures, for a model that accepts only text")
     options = parser.parse_args()
 
     key = os.environ.get("OPENAI_API_KEY", "none")  # local servers need no key
     with OpenAI(base_url=options.url, api_key=key) as client, scope_ptz.open(options.camera) as scope:
-        print(ask(client, options.model, scope, options.instruction))
+        print(ask(client, options.model, scope, options.instruction, sees=not options.text_only))
 
 
 if __name__ == "__main__":

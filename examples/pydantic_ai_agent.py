@@ -24,16 +24,19 @@ INSTRUCTIONS = (
 )
 
 
-async def call(scope: scope_ptz.AsyncScope, name: str, /, **arguments: Any) -> ToolReturn:
+async def call(scope: scope_ptz.AsyncScope, sees: bool, name: str, /, **arguments: Any) -> ToolReturn:
     output = await scope.dispatch(name, arguments)
     print(f"  {name} {arguments} -> {output.text}")
     content = [part for p in output.pictures for part in (p.caption, BinaryContent.from_data_uri(p.data_url))]
-    return ToolReturn(output.text, content=content)
+    return ToolReturn(output.text, content=content if sees else None)
 
 
-def camera_tools(scope: scope_ptz.AsyncScope) -> list[Tool]:
-    functions = [schema["function"] for schema in scope.tool_schemas("chat")]
-    return [Tool.from_schema(partial(call, scope, f["name"]), f["name"], f["description"], f["parameters"]) for f in functions]
+def camera_tools(scope: scope_ptz.AsyncScope, *, sees: bool = True) -> list[Tool]:
+    tools = []
+    for schema in scope.tool_schemas("chat"):
+        name, description, parameters = (schema["function"][key] for key in ("name", "description", "parameters"))
+        tools.append(Tool.from_schema(partial(call, scope, sees, name), name, description, parameters))
+    return tools
 
 
 async def main() -> None:
@@ -42,13 +45,14 @@ async def main() -> None:
     parser.add_argument("--model", required=True, help="the server's name for the model")
     parser.add_argument("--url", help="address of the model server")
     parser.add_argument("--camera", default="highway-works", help="a scene or another camera, as for scope_ptz.open")
+    parser.add_argument("--text-only", action="store_true", help="pass no pictures, for a model that accepts only text")
     options = parser.parse_args()
 
     key = os.environ.get("OPENAI_API_KEY", "none")  # local servers need no key
     model = OpenAIChatModel(options.model, provider=OpenAIProvider(base_url=options.url, api_key=key))
     async with (
         scope_ptz.open_async(options.camera) as scope,
-        Agent(model, instructions=INSTRUCTIONS, tools=camera_tools(scope)) as agent,
+        Agent(model, instructions=INSTRUCTIONS, tools=camera_tools(scope, sees=not options.text_only)) as agent,
     ):
         print((await agent.run(options.instruction)).output)
 

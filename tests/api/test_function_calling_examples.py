@@ -6,19 +6,25 @@ import base64
 import json
 import runpy
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import pytest
+from openai.types.chat.completion_create_params import CompletionCreateParamsNonStreaming
+from openai.types.responses.response_create_params import ResponseCreateParamsNonStreaming
 from PIL import Image
+from pydantic import TypeAdapter
 
+from scope_ptz.tools.registry import TOOLS
 from tests.api.test_examples import EXAMPLES, FUNCTION_CALLING
 from tests.support.misbehaving import MODEL, Misbehaving, Request, Say, good
 
 CAMERA = "sim:analytic-yard?width=320&height=180"
 BALLS = 2  # in the home view of the scene
+CHAT: TypeAdapter[Any] = TypeAdapter(CompletionCreateParamsNonStreaming)
+RESPONSES: TypeAdapter[Any] = TypeAdapter(ResponseCreateParamsNonStreaming)
 
 
 def texts_of_results(request: Request) -> list[str]:
@@ -49,29 +55,55 @@ def pictures_in(data: Any) -> Iterator[Image.Image]:
         yield from pictures_in(each)
 
 
-@pytest.mark.parametrize("name", FUNCTION_CALLING)
-def test_a_program_lets_a_model_operate_the_camera(
-    name: str, analytic_folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def check_request(data: dict[str, Any]) -> None:
+    """Check the body of a request against the types of the API. Writing the parsed body checks parts that are read lazily."""
+    adapter = CHAT if "messages" in data else RESPONSES
+    adapter.dump_json(adapter.validate_python(data))
+
+
+@pytest.fixture
+def run(analytic_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[Request]]:
+    """Return a function that runs a program with a scripted model, and returns the requests that the model server received."""
     monkeypatch.setenv("SCOPE_SCENES_DIR", str(analytic_folder.parent))
     monkeypatch.setenv("OPENAI_API_KEY", "sk-secret")
-    with Misbehaving([], then=good(scripted_model)) as server:
-        arguments = ["--url", server.url, "--model", MODEL, "--camera", CAMERA, "count the balls"]
-        monkeypatch.setattr(sys, "argv", [name, *arguments])
-        runpy.run_path(str(EXAMPLES / name), run_name="__main__")
+
+    def run_program(name: str, *options: str) -> list[Request]:
+        with Misbehaving([], then=good(scripted_model)) as server:
+            arguments = ["--url", server.url, "--model", MODEL, "--camera", CAMERA, *options, "count the balls"]
+            monkeypatch.setattr(sys, "argv", [name, *arguments])
+            runpy.run_path(str(EXAMPLES / name), run_name="__main__")
+        return server.requests
+
+    return run_program
+
+
+@pytest.mark.parametrize("name", FUNCTION_CALLING)
+def test_a_program_lets_a_model_operate_the_camera(
+    name: str, run: Callable[..., list[Request]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, second, third = run(name)
     printed = capsys.readouterr().out
     assert f"There are {BALLS} balls. Then: Wrong arguments for adjust_ptz: pan_deg: Input should be a valid number" in printed
     assert "sk-secret" not in printed
 
-    first, second, third = server.requests
-    assert first.headers["authorization"] == "Bearer sk-secret"
-    tools = [tool.get("function", tool) for tool in first.data["tools"]]
-    assert [tool["name"] for tool in tools][:2] == ["adjust_ptz", "go_to_preset"]
-    assert len(tools) == 9
-    assert "pattern" not in json.dumps(tools)
+    for request in (first, second, third):
+        assert request.headers["authorization"] == "Bearer sk-secret"
+        check_request(request.data)
+        tools = [tool.get("function", tool) for tool in request.data["tools"]]
+        assert [tool["name"] for tool in tools] == list(TOOLS)
+        assert "pattern" not in json.dumps(tools)
     assert not list(pictures_in(first.data))
     (picture,) = pictures_in(second.data)
     assert picture.size == (320, 180)
     assert len(list(pictures_in(third.data))) == 1
     count = json.loads(texts_of_results(second)[0])
     assert count["message"].startswith("<camera_text>"), "the model can tell what the camera saw from instructions"
+
+
+@pytest.mark.parametrize("name", FUNCTION_CALLING)
+def test_a_model_that_accepts_only_text_gets_no_picture(
+    name: str, run: Callable[..., list[Request]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    requests = run(name, "--text-only")
+    assert f"There are {BALLS} balls." in capsys.readouterr().out
+    assert not [picture for request in requests for picture in pictures_in(request.data)]
