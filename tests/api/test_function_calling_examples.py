@@ -12,10 +12,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from openai.types.chat import ChatCompletionContentPartParam
 from openai.types.chat.completion_create_params import CompletionCreateParamsNonStreaming
+from openai.types.responses import ResponseFunctionCallOutputItemListParam
 from openai.types.responses.response_create_params import ResponseCreateParamsNonStreaming
 from PIL import Image
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
+from pydantic_core import PydanticSerializationError
 
 from scope_ptz.tools.registry import TOOLS
 from tests.api.test_examples import EXAMPLES, FUNCTION_CALLING
@@ -24,7 +27,9 @@ from tests.support.misbehaving import MODEL, Misbehaving, Request, Say, good
 CAMERA = "sim:analytic-yard?width=320&height=180"
 BALLS = 2  # in the home view of the scene
 CHAT: TypeAdapter[Any] = TypeAdapter(CompletionCreateParamsNonStreaming)
+CHAT_PARTS: TypeAdapter[Any] = TypeAdapter(list[ChatCompletionContentPartParam])
 RESPONSES: TypeAdapter[Any] = TypeAdapter(ResponseCreateParamsNonStreaming)
+RESPONSE_PARTS: TypeAdapter[Any] = TypeAdapter(ResponseFunctionCallOutputItemListParam)
 
 
 def texts_of_results(request: Request) -> list[str]:
@@ -56,9 +61,27 @@ def pictures_in(data: Any) -> Iterator[Image.Image]:
 
 
 def check_request(data: dict[str, Any]) -> None:
-    """Check the body of a request against the types of the API. Writing the parsed body checks parts that are read lazily."""
-    adapter = CHAT if "messages" in data else RESPONSES
+    """Check the body of a request against the types of the API. Pydantic reads parts of it lazily: they are checked separately."""
+    chat = "messages" in data
+    adapter = CHAT if chat else RESPONSES
     adapter.dump_json(adapter.validate_python(data))
+    for entry in data["messages" if chat else "input"]:
+        content = entry.get("content" if chat else "output")
+        if isinstance(content, list):
+            (CHAT_PARTS if chat else RESPONSE_PARTS).validate_python(content)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"messages": [{"role": "user", "content": [{"type": "image_url", "image_url": "data:"}]}]},
+        {"messages": [{"role": "tool", "content": "x"}]},
+        {"input": [{"type": "function_call_output", "call_id": "1", "output": [{"type": "image_url"}]}]},
+    ],
+)
+def test_the_check_of_requests_finds_mistakes(data: dict[str, Any]) -> None:
+    with pytest.raises((ValidationError, PydanticSerializationError)):
+        check_request({"model": MODEL, **data})
 
 
 @pytest.fixture
