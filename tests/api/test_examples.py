@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import runpy
 from pathlib import Path
 
@@ -18,11 +20,14 @@ EXPECTED = {
     "own_perception.py": "Contract violations: none",
     "own_planner.py": "Most cars are at bridge-south: 8.",
 }
+FUNCTION_CALLING = ("function_calling_chat.py", "function_calling_responses.py", "pydantic_ai_agent.py")
+"""Programs that need a model server: see ``test_function_calling_examples.py``."""
+
 SLOW = {"evaluate.py", "batch_over_views.py", "own_planner.py"}  # 6 to 10 s each
 
 
 def test_every_example_is_run() -> None:
-    assert {path.name for path in EXAMPLES.glob("*.py")} == set(EXPECTED)
+    assert {path.name for path in EXAMPLES.glob("*.py")} == {*EXPECTED, *FUNCTION_CALLING}
 
 
 @pytest.mark.usefixtures("opened_once")
@@ -31,6 +36,15 @@ def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ca
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(EXAMPLES / name), run_name="__main__")
     assert EXPECTED[name] in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("opened_once")
+def test_the_program_on_the_page_about_function_calling(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (EXAMPLES.parent / "docs" / "how-to" / "function-calling.md").read_text(encoding="utf-8")
+    (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(program, "function-calling.md", "exec"), {})  # noqa: S102 - our own documentation
+    text, count = capsys.readouterr().out.splitlines()
+    assert json.loads(text)["count"] == int(count) == 7
 
 
 @pytest.mark.full

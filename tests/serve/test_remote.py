@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 import time
 from collections.abc import AsyncIterator
@@ -71,6 +72,20 @@ def test_the_nine_tools_are_methods(address: str) -> None:
             scope.go_to_preset("nowhere")
         with pytest.raises(InputError):
             scope.ask("  ")
+
+
+def test_models_call_the_tools_of_a_camera_on_a_server(address: str) -> None:
+    with scope_ptz.open(address) as remote, scope_ptz.open("sim:analytic-yard?width=320&height=180") as local:
+        for arguments in ('{"description": "balls"}', '{"description": ""}', "{", '{"self": 1}'):
+            theirs, ours = remote.dispatch("count_objects", arguments), local.dispatch("count_objects", arguments)
+            assert (theirs.ok, theirs.error) == (ours.ok, ours.error)
+            assert json.loads(theirs.text).keys() == json.loads(ours.text).keys()
+            assert type(theirs.result) is type(ours.result)
+        (picture,) = remote.dispatch("take_image").pictures
+        assert picture.data_url.startswith("data:image/jpeg;base64,")
+        missing = remote.dispatch("go_to_preset", {"name": "nowhere"})
+        assert "There is no preset 'nowhere'" in json.loads(missing.text)["error"]
+        assert remote.tool_schemas("responses") == local.tool_schemas("responses")
 
 
 @pytest.mark.full

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import stat
 from collections.abc import Iterator
@@ -75,6 +76,17 @@ def test_the_page_and_sockets_need_a_token_too(guarded: Served, tokens: dict[str
     assert refused.value.response.status_code == 403
     with connect(address, additional_headers={"Authorization": f"Bearer {tokens['vera']}"}, proxy=None) as socket:
         assert socket.recv(timeout=30)
+
+
+def test_a_token_is_also_accepted_as_the_password_of_basic_authentication(guarded: Served, tokens: dict[str, str]) -> None:
+    with guarded.client() as client:
+        me = client.get("/me", auth=("any name", tokens["vera"])).json()
+        assert (me["name"], me["role"]) == ("vera", "viewer")
+        assert client.get("/me", auth=("any name", tokens["anna"]), headers={"Origin": "http://evil.example"}).status_code == 403
+        for wrong in ("", "Basic", "Basic !", "Basic /w==", "Basic " + base64.b64encode(tokens["vera"].encode()).decode()):
+            assert client.get("/me", headers={"Authorization": wrong}).status_code == 401
+        for user, password in (("vera", ""), ("vera", "scope_wrong"), (tokens["vera"], "")):
+            assert client.get("/me", auth=(user, password)).status_code == 401
 
 
 @pytest.mark.parametrize(("method", "path", "body"), COMMANDS)

@@ -25,7 +25,7 @@ from tests.support.loopback import (
     nobody_listens,
     speaks_no_tls,
 )
-from tests.support.model_wire import MODEL, MOONDREAM, Mind, Say, completion, pieces
+from tests.support.model_wire import MODEL, MOONDREAM, Mind, Say, completion, pieces, response
 
 __all__ = [
     "JSON_TYPE",
@@ -53,6 +53,7 @@ __all__ = [
     "pieces",
     "redirect",
     "reset",
+    "response",
     "say",
     "slow_after_head",
     "slow_first_byte",
@@ -69,13 +70,15 @@ LONG = Say("The answer is long.")
 
 
 def good(mind: Mind | Say = ALL_DONE, moondream: Mapping[str, dict[str, Any]] = MOONDREAM) -> Behaviour:
-    """Answers as it should: chat, streaming or not; Moondream's paths; the list of models."""
+    """Answers as it should: chat, streaming or not; responses, not streaming; Moondream's paths; the list of models."""
 
     async def behave(x: Exchange) -> None:
         request = x.request
         if request.chat:
             say = mind(request) if callable(mind) else mind
             await _stream(x, pieces(say)) if request.streaming else await x.whole(json.dumps(completion(say)).encode())
+        elif request.path.endswith("/responses"):
+            await x.whole(json.dumps(response(mind(request) if callable(mind) else mind)).encode())
         elif request.path.endswith("/models"):
             await x.whole(json.dumps({"object": "list", "data": [{"id": MODEL, "object": "model"}]}).encode())
         elif (asked := request.path.rpartition("/")[2]) in moondream:

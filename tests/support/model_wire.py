@@ -1,4 +1,4 @@
-"""What a well-behaved model server says: OpenAI chat completions, whole and in pieces, and Moondream's four replies."""
+"""What a well-behaved model server says: OpenAI chat completions (whole, in pieces) and responses, and Moondream's four replies."""
 
 from __future__ import annotations
 
@@ -51,6 +51,28 @@ def completion(say: Say) -> dict[str, Any]:
         "model": MODEL,
         "choices": [{"index": 0, "message": message, "finish_reason": say.ending}],
         "usage": {"prompt_tokens": 11, "completion_tokens": 7, "total_tokens": 18, "prompt_tokens_details": {"cached_tokens": 4}},
+    }
+
+
+def response(say: Say) -> dict[str, Any]:
+    """The same as a reply of the responses API, whole."""
+    output: list[dict[str, Any]] = []
+    if say.text:
+        content = [{"type": "output_text", "text": say.text, "annotations": []}]
+        output.append({"id": "msg-1", "type": "message", "role": "assistant", "status": "completed", "content": content})
+    for call in say.calls():
+        item = {"id": f"fc-{call['id']}", "type": "function_call", "call_id": call["id"], "status": "completed"}
+        output.append(item | call["function"])
+    return {
+        "id": "resp-1",
+        "object": "response",
+        "created_at": 1,
+        "status": "completed",
+        "model": MODEL,
+        "output": output,
+        "parallel_tool_calls": True,
+        "tool_choice": "auto",
+        "tools": [],
     }
 
 

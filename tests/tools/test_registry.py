@@ -68,6 +68,8 @@ def test_its_properties_are_read_from_the_registry() -> None:
     assert EXTENDED.moving == TOOLS.moving | {"wobble"}
     assert EXTENDED.perceiving == TOOLS.perceiving
     assert EXTENDED["wobble"].defaults() == {"by_deg": 2.0}
+    assert EXTENDED["wobble"].result_type() is WobbleResult
+    assert all(issubclass(tool.result_type(), Result) for tool in TOOLS.values())
     with pytest.raises(ToolCallError, match=r"Wrong arguments for wobble: by_deg: .*It takes by_deg\."):
         EXTENDED.parse_call("wobble", {"by_deg": "far"})
     with pytest.raises(ToolCallError, match="There is no tool 'wobble'"):

@@ -6,17 +6,22 @@ import anyio
 
 from scope_ptz.agent.timing import Stopwatch, TimedCamera
 from scope_ptz.camera.base import Camera, Frame
-from scope_ptz.perception.models.encoding import picture_of
+from scope_ptz.perception.models.encoding import Size, picture_of
 from scope_ptz.planner.base import Picture
 from scope_ptz.tools.context import ImageStore
 
 MAX_SIDE_PX = 1280  # larger frames are scaled down, as vision models would do anyway
 
 
+def fitting_size(width: int, height: int) -> Size:
+    """Return the width and height of a picture for a planner: the given size, scaled down to at most ``MAX_SIDE_PX`` pixels."""
+    scale = min(1.0, MAX_SIDE_PX / max(width, height))
+    return round(width * scale), round(height * scale)
+
+
 async def picture(frame: Frame, caption: str) -> Picture:
     """Return a frame as a captioned JPEG for a planner, at most ``MAX_SIDE_PX`` pixels wide and high."""
-    scale = min(1.0, MAX_SIDE_PX / max(frame.width, frame.height))
-    encoded = await picture_of(frame, (round(frame.width * scale), round(frame.height * scale)))
+    encoded = await picture_of(frame, fitting_size(frame.width, frame.height))
     return Picture(data_url=encoded.data_url, caption=caption)
 
 

@@ -16,6 +16,7 @@ from scope_ptz.agent.records import Called, Decided, Ended, RunLabels, Started
 from scope_ptz.agent.store import MemoryImages, RunFolder
 from scope_ptz.agent.trace import TraceWriter, trace_of
 from scope_ptz.api.building import Parts, build
+from scope_ptz.api.function_calling import Arguments, SchemaForm, ToolOutput, output_of_call, schemas_in_form
 from scope_ptz.api.options import SessionOptions
 from scope_ptz.api.pictures import ToolCallImages
 from scope_ptz.api.run import Event, Run, event_of
@@ -71,6 +72,7 @@ class AsyncScope:
         self._runs: tuple[Run, ...] = ()
         self._conversation: tuple[PastTurn, ...] = ()
         self._images = ToolCallImages(options.runs_dir)
+        self._dispatching = anyio.Lock()
 
     async def __aenter__(self) -> Self:
         if self._closed:
@@ -245,6 +247,15 @@ class AsyncScope:
         """Keep a moving object in the middle of the view for some time. See ``Scope.track_object``."""
         return await self._run_tool(TrackResult, "track_object", description=description, duration_s=duration_s)
 
+    def tool_schemas(self, form: SchemaForm = "chat") -> list[dict[str, Any]]:
+        """Return the schemas of the tools for a model. See ``Scope.tool_schemas``."""
+        return schemas_in_form(form)
+
+    async def dispatch(self, name: str, arguments: Arguments = None) -> ToolOutput:
+        """Run a tool call that a model made, and return its outcome for the model. See ``Scope.dispatch``."""
+        async with self._dispatching:  # calls that a model makes together run one after the other
+            return await output_of_call(self._run_tool, self.picture, name, arguments)
+
     def __getattr__(self, name: str) -> Any:
         """Return a method that calls a registered tool for which this class defines no method."""
         if name in TOOLS:
@@ -312,7 +323,7 @@ class AsyncScope:
 
     def _open_parts(self) -> Parts:
         """Return the parts of the session. Raises ``InputError`` if the session is not open."""
-        if self._parts is None:
+        if self._parts is None or self._closed:
             state = "is closed" if self._closed else "is not open yet: use `async with` or `await`"
             raise InputError(f"This session {state}. Open one with scope_ptz.open() or scope_ptz.open_async().")
         return self._parts

@@ -136,6 +136,8 @@ def models(role: Role | None = None) -> dict[str, Model]:
 def tool_schemas() -> list[dict[str, Any]]:
     """Return the schemas of the nine tools in the OpenAI function format, as planners receive them.
 
+    ``Scope.tool_schemas`` returns them in the forms of several APIs, for function calling.
+
     Returns:
         One schema per tool.
 

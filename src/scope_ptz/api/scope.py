@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from scope_ptz.api.async_scope import View
 from scope_ptz.api.event_loop import EventLoopThread
+from scope_ptz.api.function_calling import Arguments, SchemaForm, ToolOutput
 from scope_ptz.api.options import SessionOptions
 from scope_ptz.api.run import Event, Run
 from scope_ptz.api.sessions import new_session
@@ -421,6 +422,61 @@ class Scope:
             CameraError: the camera failed.
         """
         return self._call(partial(self._session.track_object, description, duration_s))
+
+    def tool_schemas(self, form: SchemaForm = "chat") -> list[dict[str, Any]]:
+        """Return the schemas of the tools, to offer them to a model.
+
+        Except for "mcp", the schemas contain no keywords that some model servers refuse, such as patterns. ``dispatch`` checks
+        every call.
+
+        Args:
+            form: the API: "chat" for OpenAI chat completions, "responses" for OpenAI responses, "anthropic" for Anthropic
+                messages, "mcp" for the Model Context Protocol.
+
+        Returns:
+            One schema per tool.
+
+        Raises:
+            InputError: the form is unknown.
+
+        Example:
+            >>> import scope_ptz
+            >>> with scope_ptz.open("highway-works") as scope:
+            ...     print(scope.tool_schemas("responses")[2]["name"])
+            go_home
+        """
+        return self._session.tool_schemas(form)
+
+    def dispatch(self, name: str, arguments: Arguments = None) -> ToolOutput:
+        """Run a tool call that a model made, and return its outcome for the model.
+
+        A call that cannot be carried out raises no exception: the outcome tells the model the reason, such as an unknown tool,
+        arguments that are not valid JSON, an unknown preset, or a failure of perception. Calls that arrive at the same time, as
+        agent frameworks send them, run one after the other.
+
+        Args:
+            name: name of the tool, as the model sent it.
+            arguments: the arguments as a dictionary, or as the JSON text that the model sent.
+
+        Returns:
+            The outcome: ``text`` for the model, ``ok``, the ``result`` as an object or the ``error``, and in ``pictures`` the
+            picture that ``take_image`` took. A picture has a ``caption`` and a ``data_url``.
+
+        Raises:
+            InputError: the session is closed or busy, or the picture cannot be written.
+            CameraError: the camera failed.
+            ScopeError: the call was cancelled.
+
+        Example:
+            >>> import scope_ptz
+            >>> with scope_ptz.open("highway-works") as scope:
+            ...     output = scope.dispatch("count_objects", '{"description": "cones"}')
+            ...     print(output.result.count)
+            ...     print(scope.dispatch("go_to_preset", {"name": "nowhere"}).ok)
+            7
+            False
+        """
+        return self._call(partial(self._session.dispatch, name, arguments))
 
     def __getattr__(self, name: str) -> Any:
         """Return a method that calls a registered tool for which this class defines no method."""

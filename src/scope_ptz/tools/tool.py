@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, get_type_hints
 
 from scope_ptz.tools.arguments import Arguments
 from scope_ptz.tools.context import ToolContext
@@ -56,6 +56,11 @@ class Tool:
             "type": "function",
             "function": {"name": self.name, "description": description, "parameters": parameters},
         }
+
+    def result_type(self) -> type[Result]:
+        """Return the class of the tool's results."""
+        result: type[Result] = get_type_hints(self.run)["return"]
+        return result
 
     def defaults(self) -> dict[str, Any]:
         """Return the arguments that have a default other than None, with their defaults."""

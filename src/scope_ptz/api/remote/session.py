@@ -147,7 +147,8 @@ class RemoteSession(AsyncScope):
                 if reply["fault"] == "bad_call" and name == "go_to_preset":
                     raise RemoteNameError(reply["error"])
                 raise _FAULTS.get(str(reply["fault"]), CameraError)(reply["error"])
-            result = result_type.model_validate(reply["result"])
+            result = TOOLS[name].result_type().model_validate(reply["result"])
+            assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
             if (file := getattr(result, "file", None)) is not None:
                 # The server stores each call as a separate run, so the name of the picture is unique only with the id of the run.
                 result = result.model_copy(update={"file": f"{reply['run']}/{file}"})

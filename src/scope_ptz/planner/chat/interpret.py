@@ -17,7 +17,7 @@ from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Served, State, ToolCall, Usage
 from scope_ptz.planner.chat.reasoning_text import separate_reasoning
 from scope_ptz.planner.chat.tool_text import FoundCalls, find_calls
-from scope_ptz.planner.chat.written_calls import Signatures, WrittenCall, plain_name, read_arguments
+from scope_ptz.planner.chat.written_calls import Signatures, WrittenCall, plain_name, read_arguments, unreadable_arguments
 
 MAX_CALLS = 32
 """Maximum number of calls in one step. Further calls are not executed, and an error message tells the planner so."""
@@ -100,10 +100,7 @@ def _tool_calls(reply: ChatReply, parsed: FoundCalls, step: int) -> tuple[ToolCa
     ids = [raw.id for raw in reply.tool_calls] if parsed.notation == "native" else []
     calls = []
     for index, written in enumerate(parsed.calls[:MAX_CALLS]):
-        problem = None
-        if written.malformed is not None:
-            call = f"The call of {written.name or 'a tool'}"
-            problem = f"{call} cannot be read: its arguments must be a JSON object, got {written.malformed}"
+        problem = None if written.malformed is None else unreadable_arguments(written.name, written.malformed)
         call_id = ids[index] if index < len(ids) and ids[index] else f"s{step + 1:04d}c{index + 1:03d}"
         calls.append(ToolCall(id=call_id, name=written.name, arguments=written.arguments, problem=problem))
     if (excess := len(parsed.calls) - MAX_CALLS) > 0:

@@ -80,6 +80,11 @@ def read_arguments(text: str) -> tuple[dict[str, Any], str | None]:
     return (value, None) if isinstance(value, dict) else ({}, stripped[:MAX_QUOTED_CHARS])
 
 
+def unreadable_arguments(name: str, malformed: str) -> str:
+    """Return the error message for a call whose arguments are not a JSON object, for the model."""
+    return f"The call of {name or 'a tool'} cannot be read: its arguments must be a JSON object, got {malformed}"
+
+
 def call_from_object(value: Any) -> WrittenCall | None:
     """Return the call in a JSON object, or None.
 

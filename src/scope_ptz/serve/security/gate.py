@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 import json
 import re
 from collections.abc import Iterable
@@ -90,9 +91,8 @@ class Access:
         tab = f":{tab}" if _CLIENT.fullmatch(tab) else ""
         if self.tokens is None:
             return Client(LOCAL, f"{LOCAL}{tab}", "operator")
-        scheme, _, secret = headers.get("authorization", "").partition(" ")
-        if scheme.lower() == "bearer" and secret:
-            token = self.tokens.find(secret.strip())
+        if (secret := _secret(headers.get("authorization", ""))) is not None:
+            token = self.tokens.find(secret)
             return None if token is None else Client(token.name, f"{token.name}{tab}", token.role)
         session = self.sessions.find(cookie_of(headers))
         if session is None or not self.tokens.is_valid(session.token):
@@ -243,6 +243,22 @@ def _headers(scope: Scope) -> dict[str, str]:
     if not result.get("content-length", "0").isdecimal():
         result["content-length"] = str(MAX_BODY_BYTES + 1)
     return result
+
+
+def _secret(authorization: str) -> str | None:
+    """Return the token in a header ``Authorization``; None if there is none.
+
+    A bearer token is usual. With Basic authentication, the password is the token and the user name is ignored. Video players and
+    home automation support only this.
+    """
+    scheme, _, value = authorization.partition(" ")
+    if scheme.lower() == "basic":
+        try:
+            _, _, value = base64.b64decode(value, validate=True).decode("utf-8").partition(":")
+        except ValueError:
+            return None
+        return value or None
+    return value.strip() or None if scheme.lower() == "bearer" else None
 
 
 def _wants_page(scope: Scope, headers: dict[str, str]) -> bool:
