@@ -103,7 +103,9 @@ def _picture_names(calls: Sequence[Called]) -> list[str]:
     names: list[str] = []
     for called in calls:
         result = called.outcome.result or {}
-        names += [name for name in (*(result.get("frames") or ()), result.get("file")) if isinstance(name, str) and name]
+        names += [
+            name for name in (*(result.get("frames") or ()), result.get("file"), called.frame) if isinstance(name, str) and name
+        ]
     return list(dict.fromkeys(names))
 
 

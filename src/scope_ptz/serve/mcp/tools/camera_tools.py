@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Optional, get_type_hints
+from typing import Any, get_type_hints
 
 from anyio import to_thread
 from mcp_types import CallToolResult, ContentBlock, ResourceLink, ToolAnnotations
@@ -131,7 +131,8 @@ def _input_schema(tool: Tool, cameras: Sequence[str], pairs: Pairs) -> dict[str,
 
 def _output_schema(tool: Tool) -> dict[str, Any]:
     result: type[Result] = get_type_hints(tool.run)["return"]
-    model = create_model(f"{result.__name__}Report", __base__=ToolReport, result=(Optional[result], ...))  # noqa: UP045 - for the type checker
+    field: Any = (result | None, ...)
+    model = create_model(f"{result.__name__}Report", __base__=ToolReport, result=field)
     schema = output_schema(model)
     return without_titles(marked_schema(schema)) if tool.perceives else schema
 
