@@ -120,9 +120,9 @@ def _naming_extra(extra: str) -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        if (error.name or "").split(".")[0] not in _PACKAGES:
+        if (package := (error.name or "").split(".")[0]) not in _PACKAGES:
             raise
-        raise InputError(f"The server needs {error.name}. Install it with: pip install 'scope-ptz[{extra}]'.") from error
+        raise InputError(f"The server needs {package}. Install it with: pip install 'scope-ptz[{extra}]'.") from error
 
 
 def _serving(kind: Serving) -> Callable[[Site, Access, int], AbstractAsyncContextManager[int]]:

@@ -66,7 +66,7 @@ async def mcp_route(site: Site, access: Access) -> AsyncIterator[Route]:
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] not in ("mcp", "mcp_types"):
             raise
-        yield Route(MCP_PATH, _without_mcp)
+        yield Route(MCP_PATH, _without_mcp, methods=["GET", "POST", "DELETE"])
         return
     async with serving_mcp(site, access) as route:
         yield route

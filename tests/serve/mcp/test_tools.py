@@ -94,13 +94,13 @@ async def _presets(served: Served) -> list[Any]:
 @pytest.mark.anyio
 async def test_a_result_is_that_of_the_http_api(free: Served) -> None:
     with free.client(tab="mcp-twin") as http:
-        call = {"pan_deg": 500.0, "zoom_limit": "in"}
+        call = {"tilt_deg": 100.0, "zoom_limit": "in"}
         theirs = http.post(f"/cameras/{CAMERA}/tools/adjust_ptz", json=call).json()
         http.post(f"/cameras/{CAMERA}/home")
         async with agent(free, name="mcp-twin") as client:
             ours = (await client.call_tool("adjust_ptz", {"camera": CAMERA, **call})).structured_content
     assert (ours["result"], ours["pose"]) == (theirs["result"], theirs["pose"])
-    assert ours["result"]["clamped"] == ["pan"], "the limits of the camera hold"
+    assert ours["result"]["clamped"] == ["tilt"], "the limits of the camera hold"
 
 
 @pytest.mark.anyio

@@ -15,7 +15,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from scope_ptz.serve.http.errors import http_error
 from scope_ptz.serve.mcp.server import Context, mcp_server
@@ -54,8 +54,10 @@ def mcp_application(access: Access, mcp: Route) -> ASGIApp:
 
 
 def mcp_client(client: Client) -> Client:
-    """Return a client as MCP sees it. Its key differs from that of other programs with the same token, so that only one of them
-    controls a camera. A client that distinguishes itself by the header ``Scope-Client`` keeps its key.
+    """Return a client as MCP sees it.
+
+    Its key differs from that of other programs with the same token, so that only one of them controls a camera. A client that
+    distinguishes itself by the header ``Scope-Client`` keeps its key.
     """
     return replace(client, key=f"{client.key}:mcp") if client.key == client.name else client
 
@@ -74,7 +76,19 @@ class _Endpoint:
         if scope["method"] != "GET":
             await self._manager.handle_request(scope, receive, send)
             return
-        stream = asyncio.ensure_future(self._manager.handle_request(scope, receive, send))
+        await self._stream(scope, receive, send)
+
+    async def _stream(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve the stream of a session of the older protocol, which otherwise lasts until the client closes it."""
+        begun = ended = False
+
+        async def watched(message: Message) -> None:
+            nonlocal begun, ended
+            begun |= message["type"] == "http.response.start"
+            ended |= message["type"] == "http.response.body" and not message.get("more_body", False)
+            await send(message)
+
+        stream = asyncio.ensure_future(self._manager.handle_request(scope, receive, watched))
         closing = asyncio.ensure_future(self._closing.wait())
         try:
             await asyncio.wait({stream, closing}, return_when=asyncio.FIRST_COMPLETED)
@@ -84,6 +98,8 @@ class _Endpoint:
             for task in (stream, closing):
                 task.cancel()
             await asyncio.gather(stream, closing, return_exceptions=True)
+        if begun and not ended:
+            await send({"type": "http.response.body", "body": b""})
 
 
 def _client_of(context: Context) -> Client:
