@@ -65,10 +65,10 @@ async def check(client: Client, camera: str) -> None:
     """Use each part of the protocol once."""
     heard: list[str] = []
 
-    async def progress(number: float, total: float | None, message: str | None) -> None:
+    async def listen(progress: float, total: float | None, message: str | None) -> None:
         heard.append(message or "")
 
-    moved = await client.call_tool("adjust_ptz", {"camera": camera, "pan_deg": 5}, progress_callback=progress)
+    moved = await client.call_tool("adjust_ptz", {"camera": camera, "pan_deg": 5}, progress_callback=listen)
     assert not moved.is_error, text_of(moved)
     assert heard[0] == "The run has started."
     assert pictures_of(moved)[0].shape[2] == 3

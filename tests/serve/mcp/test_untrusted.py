@@ -71,12 +71,12 @@ async def test_exactly_what_the_sign_says_is_passed_on_and_marked(hostile: Serve
 async def test_an_instruction_passes_the_text_on_with_marks(hostile: Served) -> None:
     heard: list[str] = []
 
-    async def progress(number: float, total: float | None, message: str | None) -> None:
+    async def listen(progress: float, total: float | None, message: str | None) -> None:
         heard.append(message or "")
 
     async with agent(hostile) as client:
         asked = await client.call_tool(
-            "ask", {"camera": CAMERA, "instruction": "what does the sign say?"}, progress_callback=progress
+            "ask", {"camera": CAMERA, "instruction": "what does the sign say?"}, progress_callback=listen
         )
         check(asked, [".answer.untrusted_picture_text", ".steps[0].report.untrusted_picture_text"])
         run = asked.structured_content["run"]
