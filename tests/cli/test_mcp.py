@@ -48,13 +48,18 @@ async def test_the_documented_configuration_works(tmp_path: Path) -> None:
     commands = documented()
     assert len(commands) == 2 and commands[0] == commands[1]
     _, *arguments = commands[0]
-    program = StdioServerParameters(
-        command=sys.executable, args=["-m", "scope_ptz.cli", *arguments], env=dict(os.environ), cwd=tmp_path
-    )
+    empty = tmp_path / "empty"
+    empty.mkdir(mode=0o555)
+    environment = {**os.environ, "XDG_DATA_HOME": str(tmp_path / "data")}
+    environment.pop("SCOPE_RUNS_DIR", None)
+    program = StdioServerParameters(command=sys.executable, args=["-m", "scope_ptz.cli", *arguments], env=environment, cwd=empty)
     async with Client(program, read_timeout_seconds=120.0) as client:
         cameras = (await client.call_tool("list_cameras", {})).structured_content["cameras"]
         assert [each["name"] for each in cameras] == ["highway-works"]
         names = {tool.name for tool in (await client.list_tools()).tools}
         templates = {each.uri_template for each in (await client.list_resource_templates()).resource_templates}
+    assert list(empty.iterdir()) == [], "nothing is stored in the folder in which the command starts"
+    if sys.platform == "linux":
+        assert (tmp_path / "data" / "scope-ptz" / "runs").is_dir()
     assert names <= set(re.findall(r"`(\w+)`", PAGE)), "the page lists every tool"
     assert templates <= set(re.findall(r"`(scope://[^`]+)`", PAGE)), "the page lists every resource"

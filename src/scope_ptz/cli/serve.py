@@ -93,13 +93,15 @@ def run_mcp(flags: ServerFlags, transport: str, role: str, *, as_json: bool) -> 
     if as_json:
         raise InputError("--json applies to --transport http, because standard output carries protocol messages.")
     from scope_ptz.cli.exit import run_async
+    from scope_ptz.settings import load_settings
 
     _prepare_process()
     with _naming_extra("serve"):
         from scope_ptz.serve.mcp.stdio import serve_stdio
     if sys.stdin.isatty():
         sys.stderr.write("This command speaks MCP on standard input and output. Configure it in an assistant; see docs/mcp.md.\n")
-    site = _site(flags)
+    # Desktop programs start commands in any folder, which may not be writable.
+    site = _site(flags, load_settings().user_runs_folder())
     run_async(lambda: serve_stdio(site(), role="operator" if role == "operator" else "viewer"))
 
 
@@ -145,8 +147,13 @@ def _serving(kind: Serving) -> Callable[[Site, Access, int], AbstractAsyncContex
     return only_mcp
 
 
-def _site(flags: ServerFlags) -> Callable[[], Site]:
-    """Check the options of a site, and return a function that creates it, to be called in the event loop."""
+def _site(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[[], Site]:
+    """Check the options of a site, and return a function that creates it, to be called in the event loop.
+
+    Args:
+        flags: The options.
+        runs_dir: The default of the runs folder; None for that of the settings.
+    """
     from scope_ptz.serve.site.service import Site, SiteOptions, idle_returns, site_cameras
     from scope_ptz.serve.site.station import IdleReturn
     from scope_ptz.settings import load_settings
@@ -154,8 +161,8 @@ def _site(flags: ServerFlags) -> Callable[[], Site]:
     settings, cameras = load_settings(), flags.cameras or []
     chosen = site_cameras(cameras, settings)
     idle = None if flags.idle_after is None else IdleReturn(flags.idle_after, flags.idle_preset)
-    runs_dir, pairs = flags.runs_dir or settings.runs_dir, tuple(flags.pair or ())
-    options = SiteOptions(runs_dir, tuple(cameras), pairs, idle=idle, idle_of=idle_returns())
+    folder, pairs = flags.runs_dir or runs_dir or settings.runs_dir, tuple(flags.pair or ())
+    options = SiteOptions(folder, tuple(cameras), pairs, idle=idle, idle_of=idle_returns())
     return lambda: Site(chosen, options)
 
 

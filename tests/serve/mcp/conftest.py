@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from scope_ptz.camera.base import Frame
+from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Points
 from scope_ptz.serve.site.pairs import DEFAULT_PAIR, Models
 from tests.serve.serving import CAMERA, Served
@@ -27,6 +28,8 @@ class HostileSign(Perception):
         return Answer(source=self.name, text=HOSTILE)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
+        if description == "nonsense":
+            raise PerceptionError(f"The model replied: {HOSTILE}")
         return Detections(source=self.name, boxes=(Box(x_min=0.4, y_min=0.4, x_max=0.6, y_max=0.6, label=HOSTILE),))
 
     async def point(self, frame: Frame, description: str) -> Points:

@@ -103,44 +103,47 @@ async def test_a_result_is_that_of_the_http_api(free: Served) -> None:
     assert ours["result"]["clamped"] == ["tilt"], "the limits of the camera hold"
 
 
+SPECS = ("sim:analytic-yard", "axis://root@10.0.0.1", "../../etc/passwd", "blender:x.py", "", "x" * 300)
+
+
 @pytest.mark.anyio
-@pytest.mark.parametrize("camera", ["sim:analytic-yard", "axis://root@10.0.0.1", "../../etc/passwd", "blender:x.py", "", "x" * 300])
-async def test_a_camera_is_a_configured_name_and_never_a_spec(free: Served, camera: str) -> None:
+async def test_a_camera_is_a_configured_name_and_never_a_spec(free: Served) -> None:
     async with agent(free) as client:
-        for name in ("go_home", "get_presets", "camera_state", "ask", "start_run"):
-            more = {"instruction": "go home"} if name in ("ask", "start_run") else {}
-            result = await client.call_tool(name, {"camera": camera, **more})
-            assert result.is_error
-            assert CAMERA in text_of(result) or "at most 120 characters" in text_of(result)
-        with pytest.raises(MCPError):
-            await client.read_resource(f"scope://cameras/{camera}/presets")
+        for camera in SPECS:
+            for name in ("go_home", "get_presets", "camera_state", "ask", "start_run"):
+                more = {"instruction": "go home"} if name in ("ask", "start_run") else {}
+                result = await client.call_tool(name, {"camera": camera, **more})
+                assert result.is_error
+                assert CAMERA in text_of(result) or "at most 120 characters" in text_of(result), (camera, name)
+            with pytest.raises(MCPError):
+                await client.read_resource(f"scope://cameras/{camera}/presets")
 
 
-@pytest.mark.anyio
-@pytest.mark.parametrize(
-    ("tool", "arguments", "message"),
-    [
-        ("adjust_ptz", {"camera": CAMERA, "pan_deg": "left"}, "pan_deg: Input should be a valid number"),
-        ("adjust_ptz", {"camera": CAMERA, "zoom_factor": 2, "zoom_limit": "in"}, "give at most one of"),
-        ("adjust_ptz", {"camera": CAMERA, "url": "http://x"}, "url: Extra inputs are not permitted"),
-        ("adjust_ptz", {"pan_deg": 1}, "camera: Field required"),
-        ("count_objects", {"camera": CAMERA, "description": " "}, "description"),
-        ("count_objects", {"camera": CAMERA, "description": "cones", "pair": "gpt"}, "There is no pair 'gpt'"),
-        ("start_run", {"camera": CAMERA}, "give either instruction or tool"),
-        ("start_run", {"camera": CAMERA, "tool": "rm"}, "There is no tool 'rm'"),
-        ("start_run", {"camera": CAMERA, "tool": "go_home", "dry_run": True}, "apply to instructions"),
-        ("run_status", {"run": "../../etc"}, "There is no run"),
-        ("run_status", {"run": "x", "wait_s": 1e9}, "wait_s"),
-        ("ask", {"camera": CAMERA, "instruction": "go home", "conversation": "nobody's"}, "nobody's"),
-    ],
+WRONG: tuple[tuple[str, dict[str, Any], str], ...] = (
+    ("adjust_ptz", {"camera": CAMERA, "pan_deg": "left"}, "pan_deg: Input should be a valid number"),
+    ("adjust_ptz", {"camera": CAMERA, "zoom_factor": 2, "zoom_limit": "in"}, "give at most one of"),
+    ("adjust_ptz", {"camera": CAMERA, "url": "http://x"}, "url: Extra inputs are not permitted"),
+    ("adjust_ptz", {"pan_deg": 1}, "camera: Field required"),
+    ("count_objects", {"camera": CAMERA, "description": " "}, "description"),
+    ("count_objects", {"camera": CAMERA, "description": "cones", "pair": "gpt"}, "There is no pair 'gpt'"),
+    ("start_run", {"camera": CAMERA}, "give either instruction or tool"),
+    ("start_run", {"camera": CAMERA, "tool": "rm"}, "There is no tool 'rm'"),
+    ("start_run", {"camera": CAMERA, "tool": "go_home", "dry_run": True}, "apply to instructions"),
+    ("run_status", {"run": "../../etc"}, "There is no run"),
+    ("run_status", {"run": "x", "wait_s": 1e9}, "wait_s"),
+    ("ask", {"camera": CAMERA, "instruction": "go home", "conversation": "nobody's"}, "nobody's"),
 )
-async def test_a_wrong_call_is_answered_with_what_to_do(free: Served, tool: str, arguments: dict[str, Any], message: str) -> None:
+
+
+@pytest.mark.anyio
+async def test_a_wrong_call_is_answered_with_what_to_do(free: Served) -> None:
     async with agent(free) as client:
-        result = await client.call_tool(tool, arguments)
-        assert result.is_error
-        assert message in text_of(result)
+        for tool, arguments, message in WRONG:
+            result = await client.call_tool(tool, arguments)
+            assert result.is_error
+            assert message in text_of(result), (tool, arguments)
         state = (await client.call_tool("camera_state", {"camera": CAMERA})).structured_content
-    assert state["run"] is None
+    assert (state["run"], state["control"]["holder"]) == (None, None), "nothing was started"
 
 
 @pytest.mark.anyio

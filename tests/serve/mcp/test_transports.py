@@ -39,8 +39,8 @@ DISCOVER = {
 HEADERS = {"Accept": "application/json, text/event-stream", "Content-Type": "application/json"}
 
 
-def command(folder: Path, *options: str) -> list[str]:
-    return ["-m", "scope_ptz.cli", "mcp", "--camera", SCENE, "--runs-dir", str(folder / "runs"), *options]
+def command(folder: Path, *options: str, name: str = "mcp") -> list[str]:
+    return ["-m", "scope_ptz.cli", name, "--camera", SCENE, "--runs-dir", str(folder / "runs"), *options]
 
 
 @pytest.mark.anyio
@@ -128,11 +128,11 @@ def test_a_session_of_the_older_protocol_belongs_to_its_token(guarded: Served, t
 
 
 @contextmanager
-def started(folder: Path, *options: str) -> Iterator[subprocess.Popen[str]]:
-    """Run ``scope mcp`` with pipes."""
+def started(folder: Path, *options: str, name: str = "mcp") -> Iterator[subprocess.Popen[str]]:
+    """Run ``scope mcp``, or another command, with pipes."""
     with (folder / "errors").open("w") as errors:
         program = subprocess.Popen(
-            [sys.executable, *command(folder, *options)],
+            [sys.executable, *command(folder, *options, name=name)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=errors,
@@ -196,6 +196,7 @@ def test_a_signal_ends_the_program_although_its_input_is_open(scenes: None, tmp_
     assert "Traceback" not in (tmp_path / "errors").read_text()
 
 
+@pytest.mark.full
 def test_only_mcp_is_served_by_the_command_over_http(scenes: None, tmp_path: Path) -> None:
     with started(tmp_path, "--transport", "http", "--port", "0", "--json") as program:
         assert program.stdout is not None
@@ -208,6 +209,7 @@ def test_only_mcp_is_served_by_the_command_over_http(scenes: None, tmp_path: Pat
         assert program.wait(60) == 130
 
 
+@pytest.mark.full
 def test_streams_end_when_the_server_stops(scenes: None, tmp_path: Path) -> None:
     with started(tmp_path, "--transport", "http", "--port", "0", "--json") as program:
         assert program.stdout is not None
@@ -224,9 +226,20 @@ def test_streams_end_when_the_server_stops(scenes: None, tmp_path: Path) -> None
     assert (tmp_path / "errors").read_text() == "scope: cancelled.\n"
 
 
+@pytest.mark.full
+def test_the_console_serves_mcp_too(scenes: None, tmp_path: Path) -> None:
+    with started(tmp_path, "--port", "0", "--json", name="console") as program:
+        assert program.stdout is not None
+        url = json.loads(program.stdout.readline())["url"]
+        assert post(f"{url}/mcp", DISCOVER).json()["result"]["capabilities"]["tools"] is not None
+        assert post(f"{url}/mcp", INITIALIZE).status_code == 200
+        assert post(f"{url}/mcp", DISCOVER, Origin="https://evil.example").status_code == 403
+
+
 MISSING = "import sys\nsys.modules['mcp'] = None\nsys.argv = ['scope', {options}]\nfrom scope_ptz.cli import main\nmain()"
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("options", ["'mcp'", "'mcp', '--transport', 'http'"])
 def test_a_missing_package_is_named_with_its_extra(options: str) -> None:
     program = [sys.executable, "-c", MISSING.format(options=options)]
@@ -235,6 +248,7 @@ def test_a_missing_package_is_named_with_its_extra(options: str) -> None:
     assert done.stderr == "scope: The server needs mcp. Install it with: pip install 'scope-ptz[serve]'.\n"
 
 
+@pytest.mark.full
 def test_the_server_works_without_mcp_and_says_so(served: Served, tmp_path: Path) -> None:
     options = f"'serve', '--port', '0', '--json', '--runs-dir', {str(tmp_path)!r}"
     with subprocess.Popen([sys.executable, "-c", MISSING.format(options=options)], stdout=subprocess.PIPE, text=True) as program:

@@ -64,6 +64,9 @@ async def test_exactly_what_the_sign_says_is_passed_on_and_marked(hostile: Serve
         zoom = await client.call_tool("zoom_to_object", {"camera": CAMERA, "description": "sign"})
         marks = [".result.message", ".result.chosen", ".result.box.label"]
         check(zoom, [f"{path}.untrusted_picture_text" for path in marks])
+        failed = await client.call_tool("count_objects", {"camera": CAMERA, "description": "nonsense"})
+        check(failed, [".error.untrusted_picture_text"])
+        assert (failed.is_error, failed.structured_content["fault"]) == (True, "perception")
         assert all(len(pictures_of(each)) == 1 for each in (answer, count, zoom))
 
 
