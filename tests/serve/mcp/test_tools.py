@@ -256,6 +256,8 @@ cameras:
         async with agent(server) as client:
             state = (await client.call_tool("camera_state", {"camera": "quiet-yard"})).structured_content
             assert [region["name"] for region in state["keep_out"]] == ["windows"]
+            said = text_of(await client.call_tool("camera_state", {"camera": "quiet-yard"}))
+            assert "Keep-out regions: windows (pan (100.0, 120.0), tilt (-90.0, 90.0))." in said
             turn = 110.0 - state["pose"]["pan_deg"]
             result = await client.call_tool("adjust_ptz", {"camera": "quiet-yard", "pan_deg": turn})
             assert "windows" in text_of(result)
@@ -291,6 +293,23 @@ async def test_a_cancelled_call_reports_progress_and_stops_the_camera(free: Serv
     with free.client() as http:
         newest = http.get("/runs", params={"camera": CAMERA, "limit": 1}).json()["runs"][0]
     assert (newest["outcome"], newest["kind"]) == ("cancelled", "tool")
+
+
+@pytest.mark.anyio
+async def test_progress_is_reported_while_a_camera_is_being_opened(free: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scope_ptz.serve.mcp.following.HEARTBEAT_S", 0.05)
+    opening, heard = free.site.station(CAMERA)._opening, list[str]()
+    await anyio.to_thread.run_sync(lambda: free.call(opening.acquire))
+
+    async def listen(progress: float, total: float | None, message: str | None) -> None:
+        heard.append(message or "")
+        if len(heard) == 3:
+            await anyio.to_thread.run_sync(lambda: free.call(opening.release))
+
+    async with agent(free) as client:
+        assert not (await client.call_tool("go_home", {"camera": CAMERA}, progress_callback=listen)).is_error
+    assert all(message.startswith("In progress for ") for message in heard[:3])
+    assert "The run has started." in heard
 
 
 @pytest.mark.anyio

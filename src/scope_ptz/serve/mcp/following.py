@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Awaitable
 from contextlib import aclosing, suppress
 from time import monotonic
 
@@ -19,21 +20,33 @@ HEARTBEAT_S = 2.0
 """Seconds between progress notifications while nothing else is reported. Many clients give up on a call that is silent."""
 
 
-async def follow(call: Call, station: Station, handle: RunHandle) -> None:
-    """Wait until a run has ended. If the call is cancelled or the server shuts down, cancel the run, which stops the camera."""
-    sender = _Sender(call)
+async def follow(call: Call, station: Station, start: Awaitable[RunHandle]) -> RunHandle:
+    """Start a run, wait until it has ended, and return it.
+
+    If the call is cancelled or the server shuts down, the run is cancelled, which stops the camera.
+
+    Args:
+        call: The call, whose client receives the progress.
+        station: The camera.
+        start: Starts the run. The first run of a camera opens the camera, which can take a while.
+    """
+    sender, handle = _Sender(call), None
+    heartbeat = asyncio.ensure_future(_report_time(sender, station))
     try:
+        handle = await start
         async with anyio.create_task_group() as group:
             group.start_soon(_report_records, sender, handle)
-            group.start_soon(_report_time, sender, station)
             group.start_soon(_cancel_when_closing, call.site.closing, handle)
             await handle.done.wait()
             group.cancel_scope.cancel()
     finally:
-        if not handle.done.is_set():
-            handle.cancel()
-            with anyio.CancelScope(shield=True):
+        heartbeat.cancel()
+        with anyio.CancelScope(shield=True):
+            await asyncio.gather(heartbeat, return_exceptions=True)
+            if handle is not None and not handle.done.is_set():
+                handle.cancel()
                 await handle.done.wait()
+    return handle
 
 
 class _Sender:
@@ -60,7 +73,7 @@ async def _report_records(sender: _Sender, handle: RunHandle) -> None:
 async def _report_time(sender: _Sender, station: Station) -> None:
     while True:
         await anyio.sleep(HEARTBEAT_S)
-        where = ""
+        where = "; the camera is being opened"
         if (opened := station.open_camera) is not None:
             with suppress(ScopeError):
                 pose = (await opened.camera.pose()).as_dict()

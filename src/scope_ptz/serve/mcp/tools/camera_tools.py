@@ -142,8 +142,7 @@ async def _run(tool: Tool, call: Call, arguments: dict[str, Any]) -> CallToolRes
     own = {name: value for name, value in arguments.items() if name not in _Handles.model_fields}
     station = call.site.station(handles.camera)
     parse_call(tool.name, own)
-    handle = await start_tool_call(call.site, call.client, station, tool.name, own, handles.pair)
-    await follow(call, station, handle)
+    handle = await follow(call, station, start_tool_call(call.site, call.client, station, tool.name, own, handles.pair))
     called = finished_call(handle)
     more = await _pictures(call, station, handle, called, inline=handles.picture)
     return reply(_text(tool, station, handle, called), _data(tool, station, handle, called), *more, failed=_failed(called))

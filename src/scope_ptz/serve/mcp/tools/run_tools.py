@@ -27,6 +27,9 @@ from scope_ptz.tools.registry import TOOLS, parse_call
 MAX_WAIT_S = 30.0
 """Maximum time for which ``run_status`` waits for the end of a run. Many clients give up on a call after 60 s."""
 
+MAX_LINES = 10
+"""Maximum number of steps and answers in the plain text of a report. The structured result contains all of them."""
+
 _EFFECTS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False, open_world_hint=True)
 _READS = ToolAnnotations(read_only_hint=True, destructive_hint=False, idempotent_hint=True, open_world_hint=True)
 
@@ -129,9 +132,8 @@ def _start_schema(cameras: Sequence[str]) -> dict[str, Any]:
 
 async def _ask(call: Call, arguments: dict[str, Any]) -> CallToolResult:
     given = parsed(Ask, "ask", arguments)
-    fields = given.model_dump(exclude={"picture"})
-    handle = await start_instruction(call.site, call.client, **fields)
-    await follow(call, call.site.station(given.camera), handle)
+    station, fields = call.site.station(given.camera), given.model_dump(exclude={"picture"})
+    handle = await follow(call, station, start_instruction(call.site, call.client, **fields))
     if handle.failure is not None:
         raise handle.failure
     return await _reported(call, handle.id, picture=given.picture)
@@ -197,8 +199,15 @@ async def _reported(call: Call, run: str, *, picture: bool) -> CallToolResult:
 
 
 def _text(report: RunReport) -> str:
+    count = f"{len(report.steps)} tool call{'' if len(report.steps) == 1 else 's'}"
     if report.running:
-        return f"The run {report.run} on {report.camera} is in progress, with {len(report.steps)} tool calls so far."
-    head = f"The run {report.run} on {report.camera} has ended: {report.outcome}, after {len(report.steps)} tool calls."
-    said = report.answer.untrusted_picture_text
-    return f"{head}\n{between_markers(said)}" if said else head
+        head = f"The run {report.run} on {report.camera} is in progress, with {count} so far."
+    else:
+        head = f"The run {report.run} on {report.camera} has ended: {report.outcome}, after {count}."
+    lines = [
+        f"{number}. {step.tool} {step.arguments.untrusted_picture_text}: {step.report.untrusted_picture_text}"
+        for number, step in enumerate(report.steps, 1)
+    ]
+    if said := report.answer.untrusted_picture_text:
+        lines.append(f"Answer: {said}")
+    return f"{head}\n{between_markers(chr(10).join(lines[-MAX_LINES:]))}" if lines else head

@@ -106,15 +106,30 @@ async def _list(call: Call, arguments: dict[str, Any]) -> CallToolResult:
     parsed(NoArguments, "list_cameras", arguments)
     found = await list_cameras(call.site, call.client)
     lines = [f"{each.name}{f' (run {each.run} in progress)' if each.run else ''}" for each in found]
-    return reply(f"Cameras: {', '.join(lines)}.", CameraList(cameras=found, pairs=list(call.site.pairs.names)))
+    text = f"Cameras: {', '.join(lines)}. Pairs of models: {', '.join(call.site.pairs.names)}."
+    return reply(text, CameraList(cameras=found, pairs=list(call.site.pairs.names)))
 
 
 async def _state(call: Call, arguments: dict[str, Any]) -> CallToolResult:
     given = parsed(OneCamera, "camera_state", arguments)
     state = await camera_state(call.site, call.site.station(given.camera), call.client)
-    presets = ", ".join(each.name for each in state.presets) or "none"
-    text = f"{state.name}: {pose_text(Arrival(state.pose.pose()))}. Presets: {presets}."
-    return reply(text, state)
+    return reply(_state_text(state), state)
+
+
+def _state_text(state: CameraState) -> str:
+    limits, control = state.limits, state.control
+    tilt, zoom = f"{limits.min_tilt_deg:g} to {limits.max_tilt_deg:g}", f"{limits.min_zoom:g} to {limits.max_zoom:g}"
+    pan = "endless" if limits.pan_endless else f"{limits.min_pan_deg:g} to {limits.max_pan_deg:g}"
+    regions = [f"{each.name} (pan {each.pan_deg}, tilt {each.tilt_deg})" for each in state.keep_out]
+    holder = "nobody" if control.holder is None else "you" if control.mine else shown_name(control.holder)
+    sentences = (
+        f"{state.name}: {pose_text(Arrival(state.pose.pose()))}, with a field of view of {state.hfov_deg:.1f} degrees.",
+        f"Limits: pan {pan}, tilt {tilt}, zoom {zoom}.",
+        f"Presets: {', '.join(each.name for each in state.presets) or 'none'}.",
+        f"Keep-out regions: {', '.join(regions) or 'none'}.",
+        f"In control: {holder}. Run in progress: {state.run or 'none'}.",
+    )
+    return " ".join(sentences)
 
 
 async def _picture(call: Call, arguments: dict[str, Any]) -> CallToolResult:
