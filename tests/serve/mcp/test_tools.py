@@ -309,7 +309,9 @@ async def test_progress_is_reported_while_a_camera_is_being_opened(free: Served,
     async with agent(free) as client:
         assert not (await client.call_tool("go_home", {"camera": CAMERA}, progress_callback=listen)).is_error
     assert all(message.startswith("In progress for ") for message in heard[:3])
-    assert "The run has started." in heard
+    steps = [message for message in heard if not message.startswith("In progress for ")]
+    assert steps[:3] == ["The run has started.", "Step 1: go_home.", "go_home is done."]
+    assert steps[3:] == ["The planner has finished.", "The run has ended: answered."]
 
 
 @pytest.mark.anyio

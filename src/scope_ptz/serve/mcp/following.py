@@ -35,9 +35,8 @@ async def follow(call: Call, station: Station, start: Awaitable[RunHandle]) -> R
     try:
         handle = await start
         async with anyio.create_task_group() as group:
-            group.start_soon(_report_records, sender, handle)
             group.start_soon(_cancel_when_closing, call.site.closing, handle)
-            await handle.done.wait()
+            await _report_records(sender, handle)
             group.cancel_scope.cancel()
     finally:
         heartbeat.cancel()
@@ -65,6 +64,7 @@ class _Sender:
 
 
 async def _report_records(sender: _Sender, handle: RunHandle) -> None:
+    """Report the records of a run until it has ended."""
     async with aclosing(handle.events()) as events:
         async for event in events:
             await sender.send(record_text(event.record))
