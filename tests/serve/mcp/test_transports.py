@@ -127,6 +127,36 @@ def test_a_session_of_the_older_protocol_belongs_to_its_token(guarded: Served, t
     assert post(url, listing, Authorization=f"Bearer {tokens['anna']}", **session).status_code == 200
 
 
+HOSTILE_ARGUMENTS = (
+    '{"camera": "yard", "description": "\\ud800"}',
+    '{"camera": "\\ud800"}',
+    '{"\\udfff": 1}',
+    '{"camera": "yard", "pan_deg": NaN}',
+    '{"camera": "yard", "pan_deg": 1' + "0" * 400 + "}",
+    '{"camera": "yard", "pan_deg": 1e999}',
+    '{"camera": "yard", "wait_s": -1, "run": "\\u0000"}',
+    '{"camera": ["yard"], "run": {"a": []}, "instruction": 7}',
+    '{"camera": "yard", "arguments": ' + "[" * 500 + "]" * 500 + "}",
+    "null",
+    "{}",
+)
+
+
+def test_hostile_arguments_are_answered_with_an_error_of_the_call(free: Served) -> None:
+    version = {"Mcp-Protocol-Version": PRESENT, "Mcp-Method": "tools/call"}
+    meta = json.dumps(DISCOVER["params"]["_meta"])
+    with httpx2.Client(timeout=60.0, trust_env=False) as client:
+        for tool in ("count_objects", "adjust_ptz", "ask", "start_run", "run_status", "camera_state", "start_conversation"):
+            for arguments in HOSTILE_ARGUMENTS:
+                params = f'{{"name": "{tool}", "arguments": {arguments}, "_meta": {meta}}}'
+                body = f'{{"jsonrpc": "2.0", "id": 1, "method": "tools/call", "params": {params}}}'
+                reply = client.post(f"{free.root}/mcp", content=body, headers={**HEADERS, **version, "Mcp-Name": tool})
+                answer = reply.json()
+                failed = answer["error"]["message"] if "error" in answer else answer["result"]["content"][0]["text"]
+                assert "error" in answer or answer["result"]["isError"], (tool, arguments)
+                assert "unexpectedly" not in failed and "Internal" not in failed, (tool, arguments, failed)
+
+
 @contextmanager
 def started(folder: Path, *options: str, name: str = "mcp") -> Iterator[subprocess.Popen[str]]:
     """Run ``scope mcp``, or another command, with pipes."""

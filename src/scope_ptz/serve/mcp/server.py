@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 from collections.abc import Callable
 from typing import Any
@@ -27,7 +28,7 @@ from mcp_types import (
     ReadResourceResult,
 )
 
-from scope_ptz.errors import ScopeError
+from scope_ptz.errors import ScopeError, ToolCallError
 from scope_ptz.serve.mcp import prompt, resources
 from scope_ptz.serve.mcp.tool import Call, McpTool, failure
 from scope_ptz.serve.mcp.tools.camera_tools import camera_tools
@@ -94,8 +95,8 @@ class _Handlers:
         """Call a tool. An error of the call is a result, so that the agent can read it and correct the call."""
         tool = self._tools.get(params.name)
         if tool is None:
-            known = ", ".join(self._tools)
-            raise MCPError(code=INVALID_PARAMS, message=f"There is no tool '{params.name[:60]}'. The tools are {known}.")
+            name, known = _encodable(params.name[:60]), ", ".join(self._tools)
+            raise MCPError(code=INVALID_PARAMS, message=f"There is no tool '{name}'. The tools are {known}.")
         client = self._client_of(context)
         if tool.operates and not client.operates:
             return failure(f"{tool.name} needs the operator role, but your token has the viewer role.", "not_allowed")
@@ -106,6 +107,7 @@ class _Handlers:
         try:
             if tool.kind is not None:
                 self._limits.count(client.key, tool.kind, client.name)
+            _check_text(tool.name, params.arguments)
             return await tool.run(Call(self._site, client, progress), params.arguments or {})
         except ScopeError as error:
             return failure(str(error), status_of(error)[1])
@@ -160,6 +162,21 @@ class _Handlers:
         return client
 
 
+def _check_text(tool: str, arguments: dict[str, Any] | None) -> None:
+    """Check that all texts in the arguments of a call can be stored. JSON can contain half of a surrogate pair, which cannot.
+
+    Raises:
+        ToolCallError: A text cannot be encoded, or the arguments are nested too deeply.
+    """
+    try:
+        json.dumps(arguments, ensure_ascii=False).encode()
+    except (ValueError, RecursionError) as error:
+        raise ToolCallError(f"Wrong arguments for {tool}: they contain text that is not valid Unicode.") from error
+
+
 def _protocol_error(error: ScopeError) -> MCPError:
-    message = str(error).encode("utf-8", "replace").decode()
-    return MCPError(code=INVALID_PARAMS, message=message, data={"error": status_of(error)[1]})
+    return MCPError(code=INVALID_PARAMS, message=_encodable(str(error)), data={"error": status_of(error)[1]})
+
+
+def _encodable(text: str) -> str:
+    return text.encode("utf-8", "replace").decode()
