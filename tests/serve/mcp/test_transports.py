@@ -22,13 +22,13 @@ from tests.serve.mcp.agents import MODES, OLDER, PRESENT, agent, pictures_of, te
 from tests.serve.serving import CAMERA, Served
 
 SCENE = "analytic-yard"
-INITIALIZE = {
+INITIALIZE: dict[str, Any] = {
     "jsonrpc": "2.0",
     "id": 1,
     "method": "initialize",
     "params": {"protocolVersion": OLDER, "capabilities": {}, "clientInfo": {"name": "test", "version": "1"}},
 }
-DISCOVER = {
+DISCOVER: dict[str, Any] = {
     "jsonrpc": "2.0",
     "id": 1,
     "method": "server/discover",

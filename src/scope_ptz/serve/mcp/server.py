@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 from collections.abc import Callable
 from typing import Any
@@ -28,7 +27,7 @@ from mcp_types import (
     ReadResourceResult,
 )
 
-from scope_ptz.errors import ScopeError, ToolCallError
+from scope_ptz.errors import ScopeError
 from scope_ptz.serve.mcp import prompt, resources
 from scope_ptz.serve.mcp.tool import Call, McpTool, failure
 from scope_ptz.serve.mcp.tools.camera_tools import camera_tools
@@ -107,7 +106,6 @@ class _Handlers:
         try:
             if tool.kind is not None:
                 self._limits.count(client.key, tool.kind, client.name)
-            _check_text(tool.name, params.arguments)
             return await tool.run(Call(self._site, client, progress), params.arguments or {})
         except ScopeError as error:
             return failure(str(error), status_of(error)[1])
@@ -160,18 +158,6 @@ class _Handlers:
         except ScopeError as error:
             raise _protocol_error(error) from error
         return client
-
-
-def _check_text(tool: str, arguments: dict[str, Any] | None) -> None:
-    """Check that all texts in the arguments of a call can be stored. JSON can contain half of a surrogate pair, which cannot.
-
-    Raises:
-        ToolCallError: A text cannot be encoded, or the arguments are nested too deeply.
-    """
-    try:
-        json.dumps(arguments, ensure_ascii=False).encode()
-    except (ValueError, RecursionError) as error:
-        raise ToolCallError(f"Wrong arguments for {tool}: they contain text that is not valid Unicode.") from error
 
 
 def _protocol_error(error: ScopeError) -> MCPError:
