@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Literal
 
-from platformdirs import user_cache_path, user_config_path
+from platformdirs import user_cache_path, user_config_path, user_data_path
 from pydantic import BaseModel, Field, SecretStr, ValidationError
 
 from scope_ptz.errors import ConfigError
@@ -54,6 +54,13 @@ class ScopeSettings(BaseModel):
     def tile_bytes(self) -> int | None:
         """Return the memory limit for a viewpoint's tiles in bytes; None if there is no limit."""
         return None if self.tile_cache_mb is None else self.tile_cache_mb * 1_000_000
+
+    def user_runs_folder(self) -> Path:
+        """Return the runs folder for a program that does not start in a folder of the user's choice.
+
+        It is the setting or, without one, a folder in the user's data folder.
+        """
+        return self.runs_dir if "runs_dir" in self.model_fields_set else user_data_path("scope-ptz") / "runs"
 
     def pictures_folder(self) -> Path:
         """Return the folder for decoded pictures of scenes."""

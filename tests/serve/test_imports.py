@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-HEAVY = ("fastapi", "starlette", "uvicorn", "websockets", "sqlalchemy", "sqlite3")
+HEAVY = ("fastapi", "mcp", "starlette", "uvicorn", "websockets", "sqlalchemy", "sqlite3")
 
 
 def loaded(code: str) -> set[str]:

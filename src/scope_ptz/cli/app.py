@@ -163,7 +163,25 @@ def console(
     """Serve the operator's page to browsers, together with the HTTP API, until Ctrl-C."""
     from scope_ptz.cli.serve import run_server
 
-    run_server(server, page=True, as_json=as_json)
+    run_server(server, kind="page", as_json=as_json)
+
+
+@app.command(rich_help_panel="Talk to a camera")
+@command
+def mcp(
+    server: ServerFlags,
+    transport: Annotated[
+        str, typer.Option("--transport", help="Transport: stdio (for a program that starts this command) or http.")
+    ] = "stdio",
+    role: Annotated[
+        str, typer.Option("--role", help="Role of the stdio client: operator, or viewer (can watch but not send commands).")
+    ] = "operator",
+    as_json: JsonOption = False,
+) -> None:
+    """Serve cameras to assistants and coding agents that speak MCP, on standard input and output or over HTTP."""
+    from scope_ptz.cli.serve import run_mcp
+
+    run_mcp(server, transport, role, as_json=as_json)
 
 
 # Tokens ----------------------------------------------------------------------------------------------------------------

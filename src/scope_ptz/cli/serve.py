@@ -1,71 +1,67 @@
-"""``scope serve``, ``scope console`` and ``scope token``: run the server and manage its tokens."""
+"""``scope serve``, ``scope console``, ``scope mcp`` and ``scope token``: run the server and manage its tokens."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+    from contextlib import AbstractAsyncContextManager
+
     from scope_ptz.cli.options import ServerFlags
+    from scope_ptz.serve.security.gate import Access
     from scope_ptz.serve.security.tokens import TokenFile
+    from scope_ptz.serve.site.service import Site
 
 SWITCH_INTERVAL_S = 0.001
 """Seconds for which a thread may run before others get a turn. With the default of 5 ms, rendering would delay a ``stop``."""
 
 
-def run_server(flags: ServerFlags, *, page: bool = False, as_json: bool) -> None:
-    """Serve cameras until Ctrl-C. If ``page`` is set, serve the operator's page as well."""
+Serving = Literal["api", "page", "mcp"]
+"""What a server offers: the HTTP API with MCP, the operator's page in addition, or only MCP."""
+
+_PACKAGES = ("fastapi", "mcp", "mcp_types", "sqlalchemy", "starlette", "streamlit", "uvicorn", "websockets")
+
+
+def run_server(flags: ServerFlags, *, kind: Serving = "api", as_json: bool) -> None:
+    """Serve cameras over HTTP until Ctrl-C."""
     from scope_ptz.cli.exit import put, put_json, run_async
     from scope_ptz.settings import load_settings
-    from scope_ptz.virtual_camera.heap import use_one_heap
 
-    use_one_heap()
-    sys.setswitchinterval(SWITCH_INTERVAL_S)
-    try:
+    _prepare_process()
+    with _naming_extra("console" if kind == "page" else "serve"):
         from scope_ptz.serve.security.gate import Access
         from scope_ptz.serve.security.origins import is_loopback
-        from scope_ptz.serve.server import serve
-        from scope_ptz.serve.site.service import Site, SiteOptions, idle_returns, site_cameras
-        from scope_ptz.serve.site.station import IdleReturn
 
-        if page:
-            from scope_ptz.console.server import serve_console as serving
-        else:
-            serving = serve
-    except ModuleNotFoundError as error:
-        if (error.name or "").split(".")[0] not in ("fastapi", "sqlalchemy", "starlette", "streamlit", "uvicorn", "websockets"):
-            raise
-        raise InputError(
-            f"The server needs {error.name}. Install it with: pip install 'scope-ptz[{'console' if page else 'serve'}]'."
-        ) from error
-    settings = load_settings()
-    host, cameras, names = flags.host, flags.cameras or [], flags.name or []
+        serving = _serving(kind)
+    site = _site(flags)
+    host, names = flags.host, flags.name or []
     needed = flags.tokens is not None or not is_loopback(host) or bool(names)
-    access = Access(host, _tokens(flags.tokens or settings.tokens) if needed else None, tuple(names))
-    chosen = site_cameras(cameras, settings)
-    idle = None if flags.idle_after is None else IdleReturn(flags.idle_after, flags.idle_preset)
-    runs_dir, pairs = flags.runs_dir or settings.runs_dir, tuple(flags.pair or ())
-    options = SiteOptions(runs_dir, tuple(cameras), pairs, idle=idle, idle_of=idle_returns())
+    access = Access(host, _tokens(flags.tokens or load_settings().tokens) if needed else None, tuple(names))
 
     async def work() -> None:
         import anyio
 
-        site = Site(chosen, options)
-        async with serving(site, access, port=flags.port) as bound:
+        opened = site()
+        async with serving(opened, access, flags.port) as bound:
             shown = f"[{host}]" if ":" in host else host
             url = f"http://{shown}:{bound}"
+            allowed = "with tokens" if needed else "on this machine only"
             if as_json:
-                put_json({"url": url, "cameras": list(site.stations), "pairs": list(site.pairs.names), "tokens": needed})
-            elif page:
-                put(f"Open {url} in a browser ({'with tokens' if needed else 'on this machine only'}). Press Ctrl-C to stop.")
+                put_json({"url": url, "cameras": list(opened.stations), "pairs": list(opened.pairs.names), "tokens": needed})
+            elif kind == "page":
+                put(f"Open {url} in a browser ({allowed}). Press Ctrl-C to stop.")
+            elif kind == "mcp":
+                put(f"Serving {len(opened.stations)} cameras to MCP clients at {url}/mcp ({allowed}). Press Ctrl-C to stop.")
             else:
-                first = next(iter(site.stations))
-                put(
-                    f"Serving {len(site.stations)} cameras at {url}/api/v1 ({'with tokens' if needed else 'on this machine only'})."
-                )
+                first = next(iter(opened.stations))
+                put(f"Serving {len(opened.stations)} cameras at {url}/api/v1, and to MCP clients at {url}/mcp ({allowed}).")
                 put("")
                 put("Try:")
                 put(f"  curl {url}/api/v1/cameras")
@@ -76,6 +72,98 @@ def run_server(flags: ServerFlags, *, page: bool = False, as_json: bool) -> None
             await anyio.sleep_forever()
 
     run_async(work)
+
+
+def run_mcp(flags: ServerFlags, transport: str, role: str, *, as_json: bool) -> None:
+    """Serve cameras to MCP clients, on standard input and output or over HTTP.
+
+    Args:
+        flags: The options of the server. On standard input and output, those about the network do not apply.
+        transport: ``stdio`` or ``http``.
+        role: The role of the client on standard input and output. Over HTTP, tokens determine the roles.
+        as_json: Whether to print the address as JSON.
+    """
+    if transport not in ("stdio", "http"):
+        raise InputError(f"--transport must be stdio or http; got '{transport[:40]}'.")
+    if role not in ("viewer", "operator"):
+        raise InputError(f"--role must be viewer or operator; got '{role[:40]}'.")
+    if transport == "http":
+        run_server(flags, kind="mcp", as_json=as_json)
+        return
+    if as_json:
+        raise InputError("--json applies to --transport http, because standard output carries protocol messages.")
+    from scope_ptz.cli.exit import run_async
+    from scope_ptz.settings import load_settings
+
+    _prepare_process()
+    with _naming_extra("serve"):
+        from scope_ptz.serve.mcp.stdio import serve_stdio
+    if sys.stdin.isatty():
+        sys.stderr.write("This command speaks MCP on standard input and output. Configure it in an assistant; see docs/mcp.md.\n")
+    # Desktop programs start commands in any folder, which may not be writable.
+    site = _site(flags, load_settings().user_runs_folder())
+    run_async(lambda: serve_stdio(site(), role="operator" if role == "operator" else "viewer"))
+
+
+def _prepare_process() -> None:
+    from scope_ptz.virtual_camera.heap import use_one_heap
+
+    use_one_heap()
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
+
+
+@contextmanager
+def _naming_extra(extra: str) -> Iterator[None]:
+    """Convert the error about a missing package of the server to a message that names the extra with the package.
+
+    Raises:
+        InputError: A package is missing.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if (package := (error.name or "").split(".")[0]) not in _PACKAGES:
+            raise
+        raise InputError(f"The server needs {package}. Install it with: pip install 'scope-ptz[{extra}]'.") from error
+
+
+def _serving(kind: Serving) -> Callable[[Site, Access, int], AbstractAsyncContextManager[int]]:
+    """Return the function that serves a site with access rules on a port, and yields the port."""
+    if kind == "page":
+        from scope_ptz.console.server import serve_console
+
+        return lambda site, access, port: serve_console(site, access, port=port)
+    from scope_ptz.serve.server import serve
+
+    if kind == "api":
+        return lambda site, access, port: serve(site, access, port=port)
+    from scope_ptz.serve.mcp.http import mcp_application, serving_mcp
+
+    @asynccontextmanager
+    async def only_mcp(site: Site, access: Access, port: int) -> AsyncIterator[int]:
+        async with serving_mcp(site, access) as route, serve(site, access, port=port, app=mcp_application(access, route)) as bound:
+            yield bound
+
+    return only_mcp
+
+
+def _site(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[[], Site]:
+    """Check the options of a site, and return a function that creates it, to be called in the event loop.
+
+    Args:
+        flags: The options.
+        runs_dir: The default of the runs folder; None for that of the settings.
+    """
+    from scope_ptz.serve.site.service import Site, SiteOptions, idle_returns, site_cameras
+    from scope_ptz.serve.site.station import IdleReturn
+    from scope_ptz.settings import load_settings
+
+    settings, cameras = load_settings(), flags.cameras or []
+    chosen = site_cameras(cameras, settings)
+    idle = None if flags.idle_after is None else IdleReturn(flags.idle_after, flags.idle_preset)
+    folder, pairs = flags.runs_dir or runs_dir or settings.runs_dir, tuple(flags.pair or ())
+    options = SiteOptions(folder, tuple(cameras), pairs, idle=idle, idle_of=idle_returns())
+    return lambda: Site(chosen, options)
 
 
 def add_token(name: str, role: str, tokens: Path | None, *, as_json: bool) -> None:

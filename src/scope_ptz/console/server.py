@@ -17,7 +17,7 @@ from streamlit import config
 from scope_ptz.serve.http.app import API_PREFIX, api_application
 from scope_ptz.serve.security.gate import Access, Gate
 from scope_ptz.serve.security.sign_in import sign_in_route
-from scope_ptz.serve.server import serve
+from scope_ptz.serve.server import mcp_route, serve
 from scope_ptz.serve.site.service import Site
 
 FOLDER = Path(__file__).parent
@@ -51,7 +51,7 @@ _SETTINGS: dict[str, Any] = {
 
 @asynccontextmanager
 async def serve_console(site: Site, access: Access, *, port: int = 8000) -> AsyncIterator[int]:
-    """Serve the page and the API while the context is open, and yield the port.
+    """Serve the page, the API and MCP while the context is open, and yield the port.
 
     Call this at most once per process, because Streamlit supports only one page in a process.
 
@@ -66,10 +66,12 @@ async def serve_console(site: Site, access: Access, *, port: int = 8000) -> Asyn
     for name, value in _SETTINGS.items():
         config.set_option(name, value)
     assets = Mount(ASSETS_PREFIX, _Assets(directory=FOLDER / "page"))
-    page = st.App(FOLDER / "ui.py", routes=[sign_in_route(access), Mount(API_PREFIX, api_application(site, access)), assets])
-    gate = Gate(page, access, page_policy=PAGE_POLICY)
-    async with page.lifespan()(Starlette()), serve(site, access, port=port, app=gate) as bound:
-        yield bound
+    api = Mount(API_PREFIX, api_application(site, access))
+    async with mcp_route(site, access) as mcp:
+        page = st.App(FOLDER / "ui.py", routes=[sign_in_route(access), api, mcp, assets])
+        gate = Gate(page, access, page_policy=PAGE_POLICY)
+        async with page.lifespan()(Starlette()), serve(site, access, port=port, app=gate) as bound:
+            yield bound
 
 
 class _Assets(StaticFiles):

@@ -5,14 +5,18 @@ from __future__ import annotations
 import asyncio
 import socket
 from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, contextmanager
+from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 
 import anyio
 import uvicorn
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
 from starlette.types import ASGIApp
 
 from scope_ptz.serve.http.app import application
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.http.errors import error_reply
+from scope_ptz.serve.security.gate import MCP_PATH, Access
 from scope_ptz.serve.site.service import Site
 from scope_ptz.virtual_camera.http.server import listen
 
@@ -30,14 +34,16 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
         site: The cameras, models and runs to serve. This function enters the site's context.
         access: The access rules. The server listens on their host.
         port: The port; 0 for any free one.
-        app: The application, wrapped in a ``Gate``; by default, the API alone.
+        app: The application, wrapped in a ``Gate``; by default, the API and MCP.
 
     Raises:
         ConfigError: The port is in use or not permitted.
     """
     (listener,) = listen(access.host, [port])
-    async with site:
-        server = _Server(configuration(app or application(site, access)))
+    async with site, AsyncExitStack() as stack:
+        if app is None:
+            app = application(site, access, await stack.enter_async_context(mcp_route(site, access)))
+        server = _Server(configuration(app))
         running = asyncio.create_task(server.serve([listener]))
         try:
             await _until_ready(server, running)
@@ -47,6 +53,27 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
                 site.closing.set()
                 server.should_exit = True
                 await asyncio.gather(running, return_exceptions=True)
+
+
+@asynccontextmanager
+async def mcp_route(site: Site, access: Access) -> AsyncIterator[Route]:
+    """Serve MCP while the context is open, and yield its route, which must be mounted behind a ``Gate``.
+
+    If the package ``mcp`` is not installed, the route replies that it is missing.
+    """
+    try:
+        from scope_ptz.serve.mcp.http import serving_mcp
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] not in ("mcp", "mcp_types"):
+            raise
+        yield Route(MCP_PATH, _without_mcp, methods=["GET", "POST", "DELETE"])
+        return
+    async with serving_mcp(site, access) as route:
+        yield route
+
+
+async def _without_mcp(_: Request) -> Response:
+    return error_reply(501, "not_installed", "This server has no MCP. Install it with: pip install 'scope-ptz[serve]'.")
 
 
 def configuration(app: ASGIApp) -> uvicorn.Config:

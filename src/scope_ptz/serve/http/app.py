@@ -10,7 +10,7 @@ from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
-from starlette.routing import Mount, Route
+from starlette.routing import BaseRoute, Mount, Route
 from starlette.types import ASGIApp
 
 from scope_ptz.serve.http import (
@@ -77,14 +77,17 @@ def api_application(site: Site, access: Access) -> FastAPI:
     return app
 
 
-def application(site: Site, access: Access) -> ASGIApp:
-    """Return the API behind its gate, for a server without the console."""
+def application(site: Site, access: Access, *routes: BaseRoute) -> ASGIApp:
+    """Return the API behind its gate, for a server without the console. ``routes`` are further routes, such as that of MCP."""
 
     async def root(_: Request) -> Response:
         return PlainTextResponse(f"SCOPE {__version__}. The API is at {API_PREFIX}{VERSION_PREFIX}.\n")
 
-    routes = [Route("/", root), sign_in_route(access), Mount(API_PREFIX, api_application(site, access))]
-    return Gate(Starlette(routes=routes, exception_handlers={HTTPException: http_error}), access)
+    api = Mount(API_PREFIX, api_application(site, access))
+    return Gate(
+        Starlette(routes=[Route("/", root), sign_in_route(access), api, *routes], exception_handlers={HTTPException: http_error}),
+        access,
+    )
 
 
 def _operation_id(route: APIRoute) -> str:

@@ -10,8 +10,9 @@ from fastapi import APIRouter, Query, Response
 from scope_ptz.serve.http.camera_models import CameraCardModel, HealthModel, SceneModel, SceneTimeModel, VirtualCameraModel
 from scope_ptz.serve.http.camera_routes import control_model
 from scope_ptz.serve.http.dependencies import SiteDep, StationDep, Viewer, presets_of
-from scope_ptz.serve.http.errors import responses, status_of
+from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import Problem
+from scope_ptz.serve.site.error_codes import status_of
 from scope_ptz.serve.site.live_picture import encode_jpeg
 from scope_ptz.serve.site.scene_time import scene_time
 

@@ -13,15 +13,16 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 
 from scope_ptz.agent.filmstrip import write_filmstrip
-from scope_ptz.agent.trace import picture_names, picture_of
-from scope_ptz.errors import InputError, TraceError, UnknownNameError
+from scope_ptz.agent.trace import picture_names
+from scope_ptz.errors import InputError, TraceError
 from scope_ptz.factory.run_export import AnyFormat, run_drafts
 from scope_ptz.factory.run_export import export_runs as write_export
 from scope_ptz.serve.http.dependencies import Operator, SiteDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import FeedbackBody, Kept, Mark, Moment, PictureModel, RunDetails, RunList
-from scope_ptz.serve.http.run_reading import run_filter, trace_of_run
-from scope_ptz.serve.site.marks import call_of, draw_marks, marks_of
+from scope_ptz.serve.http.run_reading import run_filter
+from scope_ptz.serve.site.marks import call_of, marks_of
+from scope_ptz.serve.site.stored_runs import stored_picture, trace_of_run
 from scope_ptz.store.conversations import load_conversation
 from scope_ptz.store.feedback import add_feedback, feedback_on, remove_feedback
 from scope_ptz.store.queries import MAX_COUNT, distinct_values
@@ -193,19 +194,9 @@ async def run_picture(
     marks: Annotated[bool, Query(description="Draw the marks on the picture")] = False,
 ) -> Response:
     """Return a picture of a run, either as it was taken or with numbered boxes drawn on it."""
-    trace, file = await trace_of_run(site, run), f"{part}/{name}"
-    if file not in picture_names(trace):
-        raise UnknownNameError("picture", file[:80], ())
-
-    def read() -> bytes:
-        try:
-            data = picture_of(trace.folder, file).read_bytes()
-        except OSError as error:
-            raise TraceError(f"The file of the picture {file} of this run is missing.") from error
-        return draw_marks(data, marks_of(call_of(trace, file), file)) if marks else data
-
+    data = await stored_picture(site, run, f"{part}/{name}", marks=marks)
     kind = "image/jpeg" if marks or name.endswith(".jpg") else "image/png"
-    return Response(await site.journal.in_thread(read), media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
+    return Response(data, media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
 
 
 @router.get(

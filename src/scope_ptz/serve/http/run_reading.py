@@ -11,11 +11,12 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from scope_ptz.agent.trace import Trace, read_trace
-from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.agent.trace import Trace
+from scope_ptz.errors import InputError
 from scope_ptz.serve.http.models import RunState
-from scope_ptz.serve.site.run_handle import Record, RunHandle
+from scope_ptz.serve.site.run_handle import RunHandle
 from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.stored_runs import records_of, trace_of_run
 from scope_ptz.store.request_file import read_request
 from scope_ptz.store.rows import UNFINISHED, RunFilter
 
@@ -63,28 +64,6 @@ async def stored_state(site: Site, run_id: str) -> RunState:
         events=len(records_of(trace)),
         preview=[],
     )
-
-
-async def trace_of_run(site: Site, run_id: str) -> Trace:
-    """Return the trace of a run.
-
-    Raises:
-        UnknownNameError: There is no such run.
-        TraceError: Its trace is damaged.
-    """
-    folder = site.journal.store.folder(run_id)
-    if not await site.journal.in_thread((folder / "trace.jsonl").is_file):
-        raise UnknownNameError("run", run_id[:120], ())
-    return await site.journal.in_thread(partial(read_trace, folder))
-
-
-def records_of(trace: Trace) -> list[Record]:
-    """Return the records of a trace in the order in which they were written: the calls of a step follow its decision."""
-    records: list[Record] = [trace.started]
-    for decision in trace.decisions:
-        records.append(decision)
-        records += [call for call in trace.calls if call.step == decision.step]
-    return [*records, *([] if trace.ended is None else [trace.ended])]
 
 
 async def live_events(handle: RunHandle, after: int, closing: asyncio.Event) -> AsyncIterator[str]:

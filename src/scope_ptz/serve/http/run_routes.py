@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Query
 from fastapi.responses import StreamingResponse
 
-from scope_ptz.errors import InputError
 from scope_ptz.serve.http.dependencies import RunOperator, SiteDep, StoppingOperator, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import RunStart, RunState
-from scope_ptz.serve.http.run_reading import live_events, state_of, stored_events, stored_state, trace_of_run
-from scope_ptz.serve.site.clients import Client
-from scope_ptz.serve.site.run_handle import RunHandle
-from scope_ptz.serve.site.running import Task
-from scope_ptz.serve.site.service import Site
-from scope_ptz.store.conversations import load_conversation
-from scope_ptz.store.rows import RunKind
+from scope_ptz.serve.http.run_reading import live_events, state_of, stored_events, stored_state
+from scope_ptz.serve.site.starting import start_instruction
+from scope_ptz.serve.site.stored_runs import trace_of_run
 
 router = APIRouter(tags=["runs"])
 RunId = Annotated[str, Path(min_length=1, max_length=120)]
@@ -28,34 +22,17 @@ _ERRORS = responses(404, 409, 503)
 @router.post("/runs", status_code=202, responses=_ERRORS)
 async def start_run(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
     """Start a run and reply immediately. The run continues even if no client follows it at `/runs/{run}/events`."""
-    return state_of(await _start(site, client, body))
+    return state_of(await start_instruction(site, client, **dict(body)))
 
 
 @router.post("/ask", responses=_ERRORS)
 async def ask(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
     """Run an instruction, and reply when the run has ended."""
-    handle = await _start(site, client, body)
+    handle = await start_instruction(site, client, **dict(body))
     await handle.done.wait()
     if handle.failure is not None:
         raise handle.failure
     return state_of(handle)
-
-
-async def _start(site: Site, client: Client, body: RunStart) -> RunHandle:
-    station, pair = site.station(body.camera), body.pair
-    if body.conversation is not None:
-        conversation = await site.journal.in_thread(
-            partial(load_conversation, site.journal.store.database, body.conversation, owner=client.name)
-        )
-        if conversation.camera != station.name:
-            raise InputError(
-                f"This conversation is about {conversation.camera}, not about {station.name}. Start another conversation."
-            )
-        pair = pair or conversation.pair
-    kind: RunKind = "dry_run" if body.dry_run else "instruction"
-    # If a conversation's pair is no longer configured, the default pair is used instead.
-    name = site.pairs.check(pair if pair in site.pairs.names or body.pair is not None else None)
-    return await site.runner.start(station, Task(body.instruction, name, body.conversation, kind), client)
 
 
 @router.get("/runs/{run}", responses=_ERRORS)

@@ -8,12 +8,10 @@ from fastapi import APIRouter, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import Field, ValidationError
 
-from scope_ptz.agent.records import Called
-from scope_ptz.errors import ScopeError
 from scope_ptz.serve.http.dependencies import Operator, SiteDep, StationDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import PoseModel, ToolReply
-from scope_ptz.serve.site.running import Task
+from scope_ptz.serve.site.starting import finished_call, start_tool_call
 from scope_ptz.tools.registry import TOOLS, schemas
 from scope_ptz.tools.tool import Tool
 
@@ -39,12 +37,9 @@ def _add(tool: Tool) -> None:
         pair: Annotated[str | None, Field(min_length=1, max_length=120)] = None,
     ) -> ToolReply:
         given = await _arguments(request, tool)
-        task = Task.tool_call(tool.name, given, site.pairs.check(pair))
-        handle = await site.runner.start(station, task, client)
+        handle = await start_tool_call(site, client, station, tool.name, given, pair)
         await handle.done.wait()
-        called = next((record for record in handle.records if isinstance(record, Called)), None)
-        if called is None or handle.failure is not None:
-            raise handle.failure or ScopeError("The call was cancelled.")
+        called = finished_call(handle)
         outcome = called.outcome
         return ToolReply(
             run=handle.id, result=outcome.result, error=outcome.error, fault=called.fault, pose=PoseModel.of(called.pose.pose())

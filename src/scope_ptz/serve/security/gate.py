@@ -28,6 +28,12 @@ MAX_BODY_BYTES = 256 * 1024
 OPEN_PATHS = frozenset({"/api/v1/session", "/api/v1/health", "/sign-in"})
 """Paths that need no token: those for signing in, and the health check."""
 
+MCP_PATH = "/mcp"
+"""The path of the MCP server."""
+
+PROGRAM_PATHS = ("/api", MCP_PATH)
+"""Prefixes of the paths that serve programs instead of browsers."""
+
 SIGN_IN_PATH = "/sign-in"  # where browsers without a session are redirected
 
 CHECK_S = 2.0
@@ -108,7 +114,7 @@ class Gate:
     Args:
         app: The wrapped application.
         access: The access rules.
-        page_policy: The content security policy of everything outside ``/api``.
+        page_policy: The content security policy of everything outside ``PROGRAM_PATHS``.
     """
 
     def __init__(self, app: ASGIApp, access: Access, *, page_policy: str = API_POLICY) -> None:
@@ -121,7 +127,7 @@ class Gate:
             return
         headers = _headers(scope)
         websocket = scope["type"] == "websocket"
-        reply = _Reply(scope, send, API_POLICY if scope["path"].startswith("/api") else self._page_policy)
+        reply = _Reply(scope, send, API_POLICY if scope["path"].startswith(PROGRAM_PATHS) else self._page_policy)
         if problem := self._origins.problem(headers, method=scope.get("method", "GET"), websocket=websocket):
             await reply.refuse(403, "refused", problem)
             return
@@ -188,7 +194,7 @@ class _Reply:
             headers["Cross-Origin-Resource-Policy"] = "same-origin"
             headers["Cross-Origin-Opener-Policy"] = "same-origin"
             headers["Permissions-Policy"] = "camera=(), microphone=(), geolocation=()"
-            if self._scope["path"].startswith("/api"):
+            if self._scope["path"].startswith(PROGRAM_PATHS):
                 headers.setdefault("Cache-Control", "no-store")
         await self._send(message)
 
@@ -262,7 +268,7 @@ def _secret(authorization: str) -> str | None:
 
 
 def _wants_page(scope: Scope, headers: dict[str, str]) -> bool:
-    is_page = not scope["path"].startswith("/api") and "text/html" in headers.get("accept", "")
+    is_page = not scope["path"].startswith(PROGRAM_PATHS) and "text/html" in headers.get("accept", "")
     return bool(scope.get("method") == "GET" and is_page)
 
 

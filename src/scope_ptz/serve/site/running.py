@@ -94,7 +94,11 @@ class Runner:
         work = asyncio.create_task(self._execute(station, camera, task, folder, handle))
         self._tasks.add(work)
         work.add_done_callback(self._tasks.discard)
-        await handle.started()
+        try:
+            await handle.started()
+        except asyncio.CancelledError:
+            handle.cancel()  # the client does not know the id yet, so nobody else could cancel the run
+            raise
         return handle
 
     async def close(self) -> None:

@@ -1,0 +1,213 @@
+"""Tools for instructions and for long work: ask and wait, or start, look at the state, and cancel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import anyio
+from mcp_types import CallToolResult, ContentBlock, ToolAnnotations
+from pydantic import BaseModel, Field
+
+from scope_ptz.errors import ToolCallError
+from scope_ptz.serve.http.models import Identifier, Instruction
+from scope_ptz.serve.mcp.following import follow
+from scope_ptz.serve.mcp.pictures import MAX_PICTURE_BYTES, PICTURE_WIDTH, image_content, stored_jpeg
+from scope_ptz.serve.mcp.reports import SUCCESSES, RunReport, run_report
+from scope_ptz.serve.mcp.tool import Call, McpTool, ToolArguments, input_schema, output_schema, parsed, reply
+from scope_ptz.serve.mcp.tools.camera_tools import is_panorama, picture_link, run_link
+from scope_ptz.serve.mcp.untrusted import between_markers
+from scope_ptz.serve.site.starting import start_instruction, start_tool_call
+from scope_ptz.serve.site.stored_runs import stored_picture
+from scope_ptz.store.conversations import add_conversation
+from scope_ptz.store.rows import UNFINISHED
+from scope_ptz.tools.registry import TOOLS, parse_call
+
+MAX_WAIT_S = 30.0
+"""Maximum time for which ``run_status`` waits for the end of a run. Many clients give up on a call after 60 s."""
+
+MAX_LINES = 10
+"""Maximum number of steps and answers in the plain text of a report. The structured result contains all of them."""
+
+_EFFECTS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False, open_world_hint=True)
+_READS = ToolAnnotations(read_only_hint=True, destructive_hint=False, idempotent_hint=True, open_world_hint=True)
+
+
+class Ask(ToolArguments):
+    """The arguments of ``ask``."""
+
+    camera: str = Field(max_length=120)
+    instruction: Instruction = Field(description="The instruction in plain language.")
+    conversation: Identifier | None = Field(None, description="Conversation to continue, as start_conversation reports it.")
+    pair: Identifier | None = Field(None, description="Pair of models; by default the conversation's, or the server's first.")
+    dry_run: bool = Field(False, description="Whether moves are only reported and not made.")
+    picture: bool = Field(True, description="Whether the result contains the last picture of the run.")
+
+
+class StartRun(ToolArguments):
+    """The arguments of ``start_run``."""
+
+    camera: str = Field(max_length=120)
+    instruction: Instruction | None = Field(None, description="Instruction in plain language; or give tool instead.")
+    tool: str | None = Field(None, description="One of the nine camera tools; or give instruction instead.")
+    arguments: dict[str, Any] = Field(default_factory=dict, description="Arguments of the tool.")
+    conversation: Identifier | None = Field(None, description="Conversation that an instruction continues.")
+    pair: Identifier | None = Field(None, description="Pair of models; by default the conversation's, or the server's first.")
+    dry_run: bool = Field(False, description="Whether the moves of an instruction are only reported and not made.")
+
+
+class RunStatus(ToolArguments):
+    """The arguments of ``run_status``."""
+
+    run: Identifier = Field(description="The id of the run, as start_run reports it.")
+    wait_s: float = Field(0.0, ge=0.0, le=MAX_WAIT_S, allow_inf_nan=False, description="Seconds to wait for the end of the run.")
+
+
+class CancelRun(ToolArguments):
+    """The arguments of ``cancel_run``."""
+
+    run: Identifier = Field(description="The id of the run, as start_run reports it.")
+
+
+class StartConversation(ToolArguments):
+    """The arguments of ``start_conversation``."""
+
+    camera: str = Field(max_length=120)
+    title: str = Field("", max_length=120, description="A title for people.")
+    pair: Identifier | None = Field(None, description="Pair of models; by default the server's first.")
+
+
+class Conversation(BaseModel):
+    """A conversation about a camera."""
+
+    conversation: str = Field(description="The handle, for ask and start_run.")
+    camera: str
+    pair: str
+    title: str
+
+
+def run_tools(cameras: Sequence[str]) -> list[McpTool]:
+    """Return the tools for instructions, runs and conversations."""
+    report = output_schema(RunReport)
+    return [
+        McpTool(
+            "ask", "Give an instruction",
+            "Run an instruction in plain language, such as 'sweep the scene and count all cars', and return when it has ended. "
+            "The camera's own planner decides on the steps. For work that may take longer than a minute, use start_run.",
+            input_schema(Ask, cameras), report, _EFFECTS, operates=True, kind="run", run=_ask,
+        ),
+        McpTool(
+            "start_run", "Start long work",
+            "Start an instruction, or a call of one camera tool such as track_object or a count with view='full', and return "
+            "immediately. Follow it with run_status, and end it with cancel_run.",
+            _start_schema(cameras), report, _EFFECTS, operates=True, kind="run", run=_start,
+        ),
+        McpTool(
+            "run_status", "State of a run",
+            "Return the state of a run: its steps so far and, when it has ended, its outcome, answer or result, and pictures.",
+            input_schema(RunStatus, cameras), report, _READS, operates=False, kind="read", run=_status,
+        ),
+        McpTool(
+            "cancel_run", "Cancel a run",
+            "Cancel a run and stop its camera. A run that has ended does not change.",
+            input_schema(CancelRun, cameras), report,
+            _EFFECTS.model_copy(update={"idempotent_hint": True}), operates=True, kind=None, run=_cancel,
+        ),
+        McpTool(
+            "start_conversation", "Start a conversation",
+            "Start a conversation about a camera. Instructions with its handle can refer to earlier ones ('and the other one?').",
+            input_schema(StartConversation, cameras), output_schema(Conversation),
+            _EFFECTS.model_copy(update={"open_world_hint": False}), operates=True, kind="command", run=_start_conversation,
+        ),
+    ]  # fmt: skip
+
+
+def _start_schema(cameras: Sequence[str]) -> dict[str, Any]:
+    schema = input_schema(StartRun, cameras)
+    tool = schema["properties"]["tool"]
+    schema["properties"]["tool"] = {**tool, "anyOf": [{"type": "string", "enum": list(TOOLS)}, {"type": "null"}]}
+    return schema
+
+
+async def _ask(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+    given = parsed(Ask, "ask", arguments)
+    station, fields = call.site.station(given.camera), given.model_dump(exclude={"picture"})
+    handle = await follow(call, station, start_instruction(call.site, call.client, **fields))
+    if handle.failure is not None:
+        raise handle.failure
+    return await _reported(call, handle.id, picture=given.picture)
+
+
+async def _start(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+    given = parsed(StartRun, "start_run", arguments)
+    if (given.instruction is None) == (given.tool is None):
+        raise ToolCallError("Wrong arguments for start_run: give either instruction or tool.")
+    if given.instruction is not None:
+        fields = given.model_dump(include={"camera", "conversation", "pair", "dry_run"})
+        handle = await start_instruction(call.site, call.client, instruction=given.instruction, **fields)
+        return await _reported(call, handle.id, picture=False)
+    if given.conversation is not None or given.dry_run:
+        raise ToolCallError("Wrong arguments for start_run: conversation and dry_run apply to instructions, not to tools.")
+    station, tool = call.site.station(given.camera), str(given.tool)
+    parse_call(tool, given.arguments)
+    handle = await start_tool_call(call.site, call.client, station, tool, given.arguments, given.pair)
+    return await _reported(call, handle.id, picture=False)
+
+
+async def _status(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+    given = parsed(RunStatus, "run_status", arguments)
+    handle = call.site.runner.find(given.run)
+    if handle is not None and given.wait_s > 0:
+        with anyio.move_on_after(given.wait_s):
+            await handle.done.wait()
+    return await _reported(call, given.run, picture=handle is None or handle.done.is_set())
+
+
+async def _cancel(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+    given = parsed(CancelRun, "cancel_run", arguments)
+    if (handle := call.site.runner.find(given.run)) is not None:
+        handle.cancel()
+        with anyio.move_on_after(MAX_WAIT_S):
+            await handle.done.wait()
+    return await _reported(call, given.run, picture=False)
+
+
+async def _start_conversation(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+    given = parsed(StartConversation, "start_conversation", arguments)
+    site = call.site
+    camera, pair = site.station(given.camera).name, site.pairs.check(given.pair)
+    title = given.title.encode("utf-8", "replace").decode()
+    add = partial(add_conversation, site.journal.store.database, camera=camera, pair=pair, owner=call.client.name, title=title)
+    row = await site.journal.in_thread(add)
+    text = f"Started the conversation {row.id} about {camera}. Pass conversation='{row.id}' to ask or start_run."
+    return reply(text, Conversation(conversation=row.id, camera=row.camera, pair=row.pair, title=row.title))
+
+
+async def _reported(call: Call, run: str, *, picture: bool) -> CallToolResult:
+    """Return the state of a run, with links, and with its last picture if requested."""
+    report = await run_report(call.site, run)
+    content: list[ContentBlock] = [run_link(run)]
+    names = [uri.partition(f"{run}/")[2] for uri in report.pictures]
+    content += [picture_link(run, name) for name in names if is_panorama(name)]
+    views = [name for name in names if not is_panorama(name)]
+    if picture and views:
+        stored = await stored_picture(call.site, run, views[-1])
+        content += [picture_link(run, views[-1]), image_content(await stored_jpeg(stored, MAX_PICTURE_BYTES, PICTURE_WIDTH))]
+    failed = not report.running and report.outcome not in (*SUCCESSES, "cancelled", UNFINISHED)
+    return reply(_text(report), report, *content, failed=failed)
+
+
+def _text(report: RunReport) -> str:
+    count = f"{len(report.steps)} tool call{'' if len(report.steps) == 1 else 's'}"
+    if report.running:
+        head = f"The run {report.run} on {report.camera} is in progress, with {count} so far."
+    else:
+        head = f"The run {report.run} on {report.camera} has ended: {report.outcome}, after {count}."
+    lines = [
+        f"{number}. {step.tool} {step.arguments.untrusted_picture_text}: {step.report.untrusted_picture_text}"
+        for number, step in enumerate(report.steps, 1)
+    ]
+    if said := report.answer.untrusted_picture_text:
+        lines.append(f"Answer: {said}")
+    return f"{head}\n{between_markers(chr(10).join(lines[-MAX_LINES:]))}" if lines else head

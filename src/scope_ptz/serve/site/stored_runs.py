@@ -1,0 +1,60 @@
+"""Read stored runs: their traces, records and pictures."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from scope_ptz.agent.trace import Trace, picture_names, picture_of, read_trace
+from scope_ptz.errors import TraceError, UnknownNameError
+from scope_ptz.serve.site.marks import call_of, draw_marks, marks_of
+from scope_ptz.serve.site.run_handle import Record
+from scope_ptz.serve.site.service import Site
+
+
+async def trace_of_run(site: Site, run_id: str) -> Trace:
+    """Return the trace of a run.
+
+    Raises:
+        UnknownNameError: There is no such run.
+        TraceError: Its trace is damaged.
+    """
+    folder = site.journal.store.folder(run_id)
+    if not await site.journal.in_thread((folder / "trace.jsonl").is_file):
+        raise UnknownNameError("run", run_id[:120], ())
+    return await site.journal.in_thread(partial(read_trace, folder))
+
+
+def records_of(trace: Trace) -> list[Record]:
+    """Return the records of a trace in the order in which they were written: the calls of a step follow its decision."""
+    records: list[Record] = [trace.started]
+    for decision in trace.decisions:
+        records.append(decision)
+        records += [call for call in trace.calls if call.step == decision.step]
+    return [*records, *([] if trace.ended is None else [trace.ended])]
+
+
+async def stored_picture(site: Site, run_id: str, name: str, *, marks: bool = False) -> bytes:
+    """Return an encoded picture of a run, as it was stored or, with ``marks``, as a JPEG with numbered boxes.
+
+    Args:
+        site: The site.
+        run_id: The id of the run.
+        name: The name of the picture in the run folder, such as ``frames/001-view.jpg``.
+        marks: Whether to draw the detections on the picture.
+
+    Raises:
+        UnknownNameError: There is no such run, or its trace names no such picture.
+        TraceError: The trace is damaged, or the file is missing.
+    """
+    trace = await trace_of_run(site, run_id)
+    if name not in picture_names(trace):
+        raise UnknownNameError("picture", name[:80], ())
+
+    def read() -> bytes:
+        try:
+            data = picture_of(trace.folder, name).read_bytes()
+        except OSError as error:
+            raise TraceError(f"The file of the picture {name} of this run is missing.") from error
+        return draw_marks(data, marks_of(call_of(trace, name), name)) if marks else data
+
+    return await site.journal.in_thread(read)
