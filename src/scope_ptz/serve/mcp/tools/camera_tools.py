@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, get_type_hints
+from typing import Any
 
 from anyio import to_thread
 from mcp_types import CallToolResult, ContentBlock, ResourceLink, ToolAnnotations
@@ -34,7 +34,6 @@ from scope_ptz.serve.site.stored_runs import stored_picture
 from scope_ptz.tools.context import ToolContext, pose_text
 from scope_ptz.tools.get_presets import GET_PRESETS
 from scope_ptz.tools.registry import TOOLS, parse_call
-from scope_ptz.tools.results import Result
 from scope_ptz.tools.tool import Tool
 
 _TITLES = {
@@ -130,7 +129,7 @@ def _input_schema(tool: Tool, cameras: Sequence[str], pairs: Pairs) -> dict[str,
 
 
 def _output_schema(tool: Tool) -> dict[str, Any]:
-    result: type[Result] = get_type_hints(tool.run)["return"]
+    result = tool.result_type()
     field: Any = (result | None, ...)
     model = create_model(f"{result.__name__}Report", __base__=ToolReport, result=field)
     schema = output_schema(model)
