@@ -45,7 +45,7 @@ class Move:
     finish: bool
 
 
-def move_space() -> spaces.Box:
+def move_space() -> spaces.Box[np.float32]:
     """Return the space of actions: pan, tilt, zoom and finish, each from -1 to 1."""
     return spaces.Box(-1.0, 1.0, (4,), np.float32)
 

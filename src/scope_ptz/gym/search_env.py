@@ -16,7 +16,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.gym.move_actions import Move, MoveScale, move_of, move_space
 from scope_ptz.gym.observations import Observation, clean_text, frame_space, pose_array, pose_space, text_space
 from scope_ptz.gym.search_scores import search_score
-from scope_ptz.gym.search_targets import choose_search, is_central, true_boxes
+from scope_ptz.gym.search_targets import Targets, is_central, true_boxes
 from scope_ptz.gym.world import World
 from scope_ptz.perception.base import Perception
 
@@ -74,10 +74,10 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
             raise InputError("A search needs at least one scene, at least one look, and a finite look_cost.")
         if not frames and perception is None:
             raise InputError("Without frames and without perception the agent sees nothing. Set perception, such as 'noisy'.")
-        self._targets, self._target_zoom, self._frames = tuple(targets), target_zoom, frames
-        self._perceives, self._scale = perception is not None, move_scale or MoveScale()
+        self._frames, self._perceives, self._scale = frames, perception is not None, move_scale or MoveScale()
         self.max_looks, self._look_cost, self.render_mode = max_looks, look_cost, render_mode
         self._world = World(GROUND_TRUTH if perception is None else perception, frame_size, frame_size)
+        self._targets = Targets(self._world, tuple(targets), target_zoom)
         self._ended = True
         parts: dict[str, spaces.Space[Any]] = {
             "pose": pose_space(),
@@ -100,13 +100,11 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         """
         super().reset(seed=seed)
         rng, world = self.np_random, self._world
-        target = (options or {}).get("target")
-        targets = self._targets if target is None else (str(target),)
         name = self._names[int(rng.integers(len(self._names)))]
         file = world.scene_named(name).file
         preset = file.presets[int(rng.integers(len(file.presets)))].name
         world.open(name, preset, file.start_s, int(rng.integers(2**31)))
-        start, self.target = choose_search(world, rng, targets, self._target_zoom)
+        start, self.target = self._targets.choose(rng, (options or {}).get("target"))
         world.place(start)
         self.looks, self._ended = 1, False
         return self._observe(), self._info({})
@@ -135,7 +133,7 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         self._ended = success is not None
         return self._observe(), sum(terms.values()), move.finish, truncated, self._info(terms, success)
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """Return the present view as (H, W, 3) RGB; None without a render mode."""
         return None if self.render_mode is None else self._world.picture(self._world.pose)
 
@@ -144,8 +142,7 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         self._world.close()
 
     def _move(self, move: Move) -> None:
-        pose = self._world.pose.turned(move.pan_deg, move.tilt_deg).zoomed(move.zoom_factor)
-        self._world.run(lambda: self._world.camera.move(pose))
+        self._world.move(self._world.pose.turned(move.pan_deg, move.tilt_deg).zoomed(move.zoom_factor))
 
     def _observe(self) -> Observation:
         pose = self._world.pose

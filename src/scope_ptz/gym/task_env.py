@@ -136,9 +136,9 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         terms = self._rewards.terms(checks, verdict)
         return observation, sum(terms.values()), terminated, truncated, self._info(checks, terms, verdict)
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """Return the present view at 1280x720 as (H, W, 3) RGB; None without a render mode."""
-        return None if self.render_mode is None else self._world.picture(self._world.pose, CAMERA_SIZE)
+        return None if self.render_mode is None else self._world.picture(self._recorder.position.pose, CAMERA_SIZE)
 
     def close(self) -> None:
         """Close perception and let go of the scenes."""
@@ -169,6 +169,7 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
     ) -> dict[str, Any]:
         info: dict[str, Any] = {
             "task": self.task.id,
+            "viewpoint": self._recorder.position.viewpoint,
             "scene_time_s": self._world.time_s,
             "checks": {check.name: _UNDECIDED[check.passed] for check in checks},
             "reward_terms": dict(terms or {}),

@@ -33,6 +33,12 @@ class World:
     The camera's coroutines run in a thread of the world, so that environments also work in a notebook. The thread starts with the
     first episode. Scene time advances by the time that moves take, and never follows the wall clock.
 
+    Attributes:
+        scene: The scene of the episode.
+        camera: The camera. Tools may move it.
+        perception: The perception backend of the episode.
+        pose: The camera's pose after the last move of this world.
+
     Args:
         perception: Name of a perception backend, as in ``--perception``, or a backend, which the caller closes.
         frame_size: Width and height, in pixels, of the frames that the agent receives.
@@ -42,6 +48,7 @@ class World:
     scene: Scene
     camera: SimulatedCamera
     perception: Perception
+    pose: Pose
 
     def __init__(self, perception: str | Perception, frame_size: tuple[int, int], camera_size: tuple[int, int]) -> None:
         check_frame_size(frame_size)
@@ -79,23 +86,22 @@ class World:
         camera_class = BlankCamera if self._options in (GROUND_TRUTH, NOISY) else SimulatedCamera
         self.camera = camera_class(self.scene, clock=clock, width=width, height=height)
         with clock.hold():
-            self.run(lambda: self.camera.go_to_preset(preset))
+            self.pose = self.run(lambda: self.camera.go_to_preset(preset)).pose
+
+    def move(self, pose: Pose) -> None:
+        """Move the camera to a pose, or as near as its limits allow. Scene time advances by the time that the head takes."""
+        self.pose = self.run(lambda: self.camera.move(pose)).pose
 
     def place(self, pose: Pose) -> None:
         """Put the camera at a pose without letting time pass."""
         with self.camera.clock.hold():
-            self.run(lambda: self.camera.move(pose))
+            self.move(pose)
 
     def run(self, work: Callable[[], Awaitable[_T]]) -> _T:
         """Run a coroutine of the camera, the tools or perception, and return its result."""
         if self._loop is None:
             self._loop = EventLoopThread(self._close_perception)
         return self._loop.call(work)
-
-    @property
-    def pose(self) -> Pose:
-        """The camera's present pose."""
-        return self.run(self.camera.pose)
 
     @property
     def time_s(self) -> float:
