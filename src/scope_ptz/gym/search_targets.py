@@ -67,8 +67,8 @@ class Targets:
         wanted = [name] if name is not None else self._names
         raise InputError(
             f"In the scene '{self._world.scene.name}' from {self._world.camera.viewpoint}, "
-            f"{'none of ' + ', '.join(wanted) if wanted else 'nothing'} can be searched for at zoom {self._zoom:g} in frames of this "
-            "size. Name other targets, raise target_zoom or choose larger frames."
+            f"{'none of ' + ', '.join(wanted) if wanted else 'nothing'} can be searched for at zoom {self._zoom:g} in frames of "
+            "this size. Name other targets, raise target_zoom or choose larger frames."
         )
 
     def _is_suitable(self, name: str, aim: Pose) -> bool:

@@ -70,13 +70,13 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         """
         if max_steps < 1:
             raise InputError(f"max_steps must be at least 1; got {max_steps}.")
+        self._world = World(perception, frame_size, CAMERA_SIZE)
         self.tasks = self._allowed(chosen_tasks(task))
         self.render_mode = render_mode
         self.observation_space = spaces.Dict(
             {"frame": frame_space(frame_size), "pose": pose_space(), "instruction": text_space(), "result": text_space()}
         )
         self._max_steps, self._rewards = max_steps, CheckRewards(reward_weights)
-        self._world = World(perception, frame_size, CAMERA_SIZE)
         self._steps = 0
 
     def _allowed(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:

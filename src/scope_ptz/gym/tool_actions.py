@@ -110,7 +110,7 @@ def _adjustment(action: Mapping[str, Any]) -> dict[str, Any]:
     return arguments
 
 
-def tool_action(name: str, **arguments: Any) -> dict[str, Any]:
+def tool_action(name: str, /, **arguments: Any) -> dict[str, Any]:
     """Return the action for a tool call.
 
     Args:
