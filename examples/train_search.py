@@ -33,9 +33,9 @@ class Policy:
         self.last_pan = pan
         w, dx, dy = self.weights, x - 0.5, y - 0.5
         if found:
-            move = [w[0] * dx, w[1] * dy, 0.0, w[2] - 4 * w[3] * max(abs(dx), abs(dy))]
+            move = [0.4 * w[0] * dx, 0.4 * w[1] * dy, 0.0, w[2] - 4 * w[3] * max(abs(dx), abs(dy))]
         else:
-            move = [w[4] * self.direction, w[5] + w[6] * tilt / 30, 0.0, w[7]]
+            move = [0.4 * w[4] * self.direction, 0.2 * w[5] + 0.3 * w[6] * tilt / 30, 0.0, w[7]]
         return np.tanh(move).astype(np.float32)
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gymnasium import Space
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -17,7 +18,7 @@ from scope_ptz.gym.observations import CHARSET, clean_text, text_space
 from scope_ptz.gym.tool_actions import CHOICES, MAX_PHRASE_CHARS, OUTCOMES, Call, Finish, decode_action, tool_space
 from scope_ptz.tools.registry import TOOLS, parse_call
 
-SPACE = tool_space()
+SPACE: Space[Any] = tool_space()
 phrases = st.text(sorted(CHARSET), min_size=1, max_size=60).filter(lambda text: bool(text.strip()))
 views = st.sampled_from(["current", "full"])
 degrees = st.floats(-180, 180, allow_nan=False)

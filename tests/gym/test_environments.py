@@ -21,7 +21,7 @@ from tests.gym.conftest import COUNTING, TURNING, YARD
 Make = Callable[..., Any]
 TASK, MOVES, SEARCH = "scope_ptz/Task-v0", "scope_ptz/TaskContinuous-v0", "scope_ptz/Search-v0"
 SMALL = (160, 90)
-VARIANTS = {
+VARIANTS: dict[str, tuple[str, dict[str, Any]]] = {
     "tools": (TASK, {"task": COUNTING, "frame_size": SMALL}),
     "tools, noisy": (TASK, {"task": COUNTING, "frame_size": SMALL, "perception": "noisy"}),
     "moves": (MOVES, {"task": TURNING, "frame_size": SMALL}),
@@ -80,7 +80,7 @@ def test_same_seed_same_rollout(variant: str, make: Make) -> None:
 
 @pytest.mark.usefixtures("yard")
 def test_a_vector_steps_like_its_environments_and_shares_their_scene(make: Make) -> None:
-    options = {"scene": YARD, "perception": "noisy"}
+    options: dict[str, Any] = {"scene": YARD, "perception": "noisy"}
     vector = gymnasium.make_vec(SEARCH, num_envs=2, vectorization_mode="sync", **options)
     singles = [make(SEARCH, **options) for _ in range(2)]
     vector.action_space.seed(1)

@@ -209,3 +209,20 @@ def test_the_weights_of_rewards() -> None:
         CheckRewards({"poses": 1.0})
     with pytest.raises(InputError, match="finite"):
         CheckRewards({"pose": float("nan")})
+
+
+@pytest.mark.full
+def test_moves_alone_reach_the_final_pose_of_every_movement_task(make: Make) -> None:
+    """At 1280x720, so that the agent's own looks cover the evidence of the tasks that have some."""
+    env = make(MOVES, frame_size=(1280, 720))
+    wrong = {}
+    for task in env.tasks:
+        final = task.behaviour.final
+        observation, _ = env.reset(seed=1, options={"task": task})
+        for _ in range(2 if final else 0):  # one action turns by at most 180 degrees
+            pan_deg, tilt_deg, zoom = (float(v) for v in observation["pose"])
+            observation, *_ = env.step(move_action(final.pan_deg - pan_deg, final.tilt_deg - tilt_deg, final.zoom / zoom))
+        *_, info = env.step(move_action(finish=True))
+        if final and info["verdict"] != "correct":
+            wrong[task.id] = info["reason"]
+    assert not wrong
