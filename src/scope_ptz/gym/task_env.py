@@ -33,7 +33,7 @@ CAMERA_SIZE = (1280, 720)
 """Width and height, in pixels, of the frames that the tools take: those of the benchmark."""
 MAX_STEPS = 60  # T_max of the benchmark
 _Action = TypeVar("_Action")
-_UNDECIDED = {True: "passed", False: "failed", None: "undecided"}
+_STATES = {True: "passed", False: "failed", None: "undecided"}
 
 
 class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
@@ -171,7 +171,7 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
             "task": self.task.id,
             "viewpoint": self._recorder.position.viewpoint,
             "scene_time_s": self._world.time_s,
-            "checks": {check.name: _UNDECIDED[check.passed] for check in checks},
+            "checks": {check.name: _STATES[check.passed] for check in checks},
             "reward_terms": dict(terms or {}),
         }
         if verdict is not None:
