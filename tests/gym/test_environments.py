@@ -130,8 +130,10 @@ def test_environments_work_inside_an_event_loop_such_as_a_notebook(make: Make) -
 def test_the_order_of_calls(variant: str, make: Make) -> None:
     name, options = VARIANTS[variant]
     env = make(name, **options)
-    env.reset(seed=1)
     end = scope_gym.finish_action("Done.") if name == TASK else scope_gym.move_action(finish=True)
+    with pytest.raises(InputError, match=r"reset\(\)"):
+        env.step(end)
+    env.reset(seed=1)
     assert env.step(end)[2]
     with pytest.raises(InputError, match=r"reset\(\)"):
         env.step(end)

@@ -113,10 +113,10 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         """Move and look, or submit the present view.
 
         Raises:
-            InputError: The action is not four finite numbers, or the episode has ended.
+            InputError: The action is not four finite numbers, or no episode is running.
         """
         if self._ended:
-            raise InputError("The episode has ended. Call reset() before the next step.")
+            raise InputError("The episode has not begun, or it has ended. Call reset() before the next step.")
         move = move_of(action, self._scale)
         terms: dict[str, float] = {}
         success: bool | None = None

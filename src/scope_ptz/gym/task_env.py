@@ -24,7 +24,7 @@ from scope_ptz.gym.move_actions import MoveScale, move_of, move_space
 from scope_ptz.gym.observations import FRAME_SIZE, Observation, clean_text, frame_space, pose_array, pose_space, text_space
 from scope_ptz.gym.rewards import CheckRewards
 from scope_ptz.gym.task_choice import TaskChoice, chosen_tasks, other_need
-from scope_ptz.gym.tool_actions import Finish, decode_action, tool_space
+from scope_ptz.gym.tool_actions import Call, Finish, decode_action, tool_space
 from scope_ptz.gym.world import World
 from scope_ptz.perception.base import Perception
 from scope_ptz.tools.context import ToolContext
@@ -77,19 +77,15 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
             {"frame": frame_space(frame_size), "pose": pose_space(), "instruction": text_space(), "result": text_space()}
         )
         self._max_steps, self._rewards = max_steps, CheckRewards(reward_weights)
-        self._steps = 0
+        self._steps, self._ended = 0, True
 
     def _allowed(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
         """Return the tasks that the actions of this environment can fulfil. Raises ``InputError`` if there are none."""
         return tasks
 
     @abstractmethod
-    def _finish_of(self, action: _Action) -> Finish | None:
-        """Return how an action ends the run; None if it does not."""
-
-    @abstractmethod
-    def _call_of(self, action: _Action) -> tuple[str, dict[str, Any]]:
-        """Return the tool call that an action stands for."""
+    def _decode(self, action: _Action) -> Call | Finish:
+        """Return the tool call that an action stands for, or how it ends the run."""
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode.
@@ -117,16 +113,13 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         """Make a tool call, or end the run.
 
         Raises:
-            InputError: The action is not an element of the action space, or the episode has ended.
+            InputError: The action is not an element of the action space, or no episode is running.
         """
         if self._ended:
-            raise InputError("The episode has ended. Call reset() before the next step.")
-        finish = self._finish_of(action)
-        result = ""
-        if finish is None:
-            name, arguments = self._call_of(action)
-            call = self._world.run(lambda: self._recorder.call(name, arguments))
-            result = f"Error: {call.error}" if call.error is not None else str((call.result or {}).get("message", ""))
+            raise InputError("The episode has not begun, or it has ended. Call reset() before the next step.")
+        decoded = self._decode(action)
+        finish = decoded if isinstance(decoded, Finish) else None
+        result = self._call(decoded) if isinstance(decoded, Call) else ""
         self._steps += 1
         terminated, truncated = finish is not None, finish is None and self._steps >= self._max_steps
         self._ended = terminated or truncated
@@ -143,6 +136,11 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
     def close(self) -> None:
         """Close perception and let go of the scenes."""
         self._world.close()
+
+    def _call(self, call: Call) -> str:
+        """Make a tool call and return its result in words."""
+        made = self._world.run(lambda: self._recorder.call(call.name, call.arguments))
+        return f"Error: {made.error}" if made.error is not None else str((made.result or {}).get("message", ""))
 
     def _observe(self, result: str, *, counts: bool) -> Observation:
         """Return an observation. ``counts``: whether the agent can still act on the frame, so that it is a look."""
@@ -187,14 +185,8 @@ class ToolTaskEnv(_TaskEnv[dict[str, Any]]):
         super().__init__(task, **options)
         self.action_space = tool_space()
 
-    def _finish_of(self, action: dict[str, Any]) -> Finish | None:
-        decoded = decode_action(action)
-        return decoded if isinstance(decoded, Finish) else None
-
-    def _call_of(self, action: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-        decoded = decode_action(action)
-        assert not isinstance(decoded, Finish)  # noqa: S101 - step has asked _finish_of
-        return decoded.name, decoded.arguments
+    def _decode(self, action: dict[str, Any]) -> Call | Finish:
+        return decode_action(action)
 
 
 class MoveTaskEnv(_TaskEnv[NDArray[np.float32]]):
@@ -223,10 +215,9 @@ class MoveTaskEnv(_TaskEnv[NDArray[np.float32]]):
             )
         return allowed
 
-    def _finish_of(self, action: NDArray[np.float32]) -> Finish | None:
-        return Finish("answered", "Done.") if move_of(action, self._scale).finish else None
-
-    def _call_of(self, action: NDArray[np.float32]) -> tuple[str, dict[str, Any]]:
+    def _decode(self, action: NDArray[np.float32]) -> Call | Finish:
         move = move_of(action, self._scale)
+        if move.finish:
+            return Finish("answered", "Done.")
         arguments = {"pan_deg": move.pan_deg, "tilt_deg": move.tilt_deg}
-        return "adjust_ptz", arguments if move.zoom_factor == 1.0 else {**arguments, "zoom_factor": move.zoom_factor}
+        return Call("adjust_ptz", arguments if move.zoom_factor == 1.0 else {**arguments, "zoom_factor": move.zoom_factor})
