@@ -15,7 +15,7 @@ from scope_ptz.gym import SearchEnv, SearchOutcome, search_score
 
 MAX_LOOKS = 12
 WEIGHTS = 8
-ELITE_SHARE, MIN_STD = 0.25, 0.1
+ELITE_SHARE, MIN_STD = 0.2, 0.05
 HELD_OUT_SEED = 1_000_000  # searches of the evaluation, which training never sees
 
 
@@ -69,8 +69,8 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--minutes", type=float, default=10.0)
     parser.add_argument("--generations", type=int, default=1000, help="stop after this many, even if time is left")
-    parser.add_argument("--population", type=int, default=20)
-    parser.add_argument("--episodes", type=int, default=10, help="searches of each policy, always the same")
+    parser.add_argument("--population", type=int, default=24)
+    parser.add_argument("--episodes", type=int, default=5, help="searches of each policy")
     parser.add_argument("--held-out", type=int, default=50, help="searches of the evaluation")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
@@ -82,7 +82,8 @@ def main():
     deadline = time.monotonic() + 60 * options.minutes
     for generation in range(1, options.generations + 1):
         policies = mean + std * rng.normal(size=(options.population, mean.size))
-        runs = [[search(env, weights, seed) for seed in range(options.episodes)] for weights in policies]
+        seeds = rng.integers(HELD_OUT_SEED, size=options.episodes).tolist()  # the same searches for all policies
+        runs = [[search(env, weights, seed) for seed in seeds] for weights in policies]
         fitness = np.array([np.mean([value for _, value in run]) for run in runs])
         elite = policies[np.argsort(fitness)[-max(2, round(ELITE_SHARE * options.population)) :]]
         mean, std = elite.mean(axis=0), np.maximum(elite.std(axis=0), MIN_STD)
