@@ -52,6 +52,8 @@ def test_a_benchmark_can_be_imported_and_has_help(
     ("model_overhead", ["--rounds", "6"]),
     ("reading", ["--scene", "highway-works", "--views", "1"]),
     ("bench_numbers", ["--split", "lite"]),
+    ("gym_steps", ["--rounds", "4", "--vector"]),
+    ("search_baselines", ["--episodes", "2", "--scene", "highway-works"]),
 ])  # fmt: skip
 def test_a_longer_benchmark_runs(name: str, arguments: list[str], tmp_path: Path) -> None:
     assert run(name, *arguments, folder=tmp_path).strip()

@@ -7,7 +7,8 @@
         print(run.answer)
 
 The public interface consists of the names in ``__all__`` and the module ``scope_ptz.contracts``, which contains the types needed to
-implement a camera, a planner or a perception backend. Every other module is internal and may change in any release.
+implement a camera, a planner or a perception backend, and of ``scope_ptz.gym``, which needs the extra ``gym``. Every other module
+is internal and may change in any release.
 
 Sessions: ``open``, ``open_async``, ``Scope``, ``AsyncScope``, ``Run``, ``CallResult``, ``Event``.
 Scenes, models and tools: ``scenes``, ``SceneInfo``, ``models``, ``tool_schemas``.

@@ -19,6 +19,10 @@ EXPECTED = {
     "own_camera.py": "Contract violations: none",
     "own_perception.py": "Contract violations: none",
     "own_planner.py": "Most cars are at bridge-south: 8.",
+    "train_search.py": "score before and after training:",
+}
+ARGUMENTS = {
+    "train_search.py": ["--minutes", "0", "--population", "2", "--episodes", "1", "--held-out", "1"],
 }
 FUNCTION_CALLING = ("function_calling_chat.py", "function_calling_responses.py", "pydantic_ai_agent.py")
 """Programs that need a model server: see ``test_function_calling_examples.py``."""
@@ -34,6 +38,7 @@ def test_every_example_is_run() -> None:
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.full] if name in SLOW else []) for name in EXPECTED])
 def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.argv", [name, *ARGUMENTS.get(name, [])])
     runpy.run_path(str(EXAMPLES / name), run_name="__main__")
     assert EXPECTED[name] in capsys.readouterr().out
 

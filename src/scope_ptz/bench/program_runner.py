@@ -6,11 +6,20 @@ ground truth.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, FrameGeometry, SavedPicture, observations_of
+from scope_ptz.bench.scoring.episode import (
+    CameraPosition,
+    Episode,
+    EpisodeCall,
+    FrameGeometry,
+    Observation,
+    SavedPicture,
+    observations_of,
+)
 from scope_ptz.bench.tasks.task import ProgramCall, Task
 from scope_ptz.camera.base import Camera, Frame, FrameOrigin
 from scope_ptz.camera.simulated import SimulatedCamera
@@ -66,25 +75,72 @@ class ProgramRunner:
         camera = BlankCamera(self.scene, clock=clock, width=self.geometry.width, height=self.geometry.height)
         with clock.hold():
             await camera.go_to_preset(task.preset)
-        context = self.make_context(camera)
-        start = CameraPosition(camera.viewpoint, await camera.pose())
-        calls, pictures, before = list[EpisodeCall](), list[SavedPicture](), start
+        recorder = await EpisodeRecorder.begin(task.instruction, camera, self.make_context(camera), self.geometry)
         for step in program:
-            time_s = clock.now_s()
-            result, error, fault = None, None, None
-            try:
-                result = (await run_tool(context, step.tool, dict(step.arguments))).model_dump(mode="json")
-            except (ToolCallError, UnknownNameError) as exception:
-                error, fault = str(exception), "bad_call"
-            except PerceptionError as exception:
-                error, fault = str(exception), "perception"
-            after = CameraPosition(camera.viewpoint, await camera.pose())
-            call = EpisodeCall(step.tool, step.arguments, before, after, result, error, fault, time_s)
-            calls.append(with_observations(call, self.geometry))
-            if result is not None and step.tool == "take_image":
-                pictures.append(SavedPicture(str(result["file"])))
-            before = after
-        return Episode(task.instruction, start, tuple(calls), before, text, outcome, tuple(pictures))
+            await recorder.call(step.tool, step.arguments)
+        return recorder.episode(text, outcome)
+
+
+class EpisodeRecorder:
+    """Makes tool calls one at a time and records them as an episode.
+
+    Attributes:
+        position: The camera's present viewpoint and pose.
+        calls: The calls in order.
+        planner_views: The frames that the agent was shown.
+    """
+
+    def __init__(
+        self, instruction: str, camera: SimulatedCamera, context: ToolContext, geometry: FrameGeometry, start: CameraPosition
+    ) -> None:
+        self.position = start
+        self.calls = list[EpisodeCall]()
+        self.planner_views = list[Observation]()
+        self._instruction, self._camera, self._context, self._geometry, self._start = instruction, camera, context, geometry, start
+        self._pictures = list[SavedPicture]()
+
+    @classmethod
+    async def begin(
+        cls, instruction: str, camera: SimulatedCamera, context: ToolContext, geometry: FrameGeometry
+    ) -> EpisodeRecorder:
+        """Start an episode at the camera's present position.
+
+        Args:
+            instruction: The instruction to record.
+            camera: The camera.
+            context: The context of the tool calls.
+            geometry: Size and lens of the frames that the tools take.
+        """
+        return cls(instruction, camera, context, geometry, CameraPosition(camera.viewpoint, await camera.pose()))
+
+    async def call(self, name: str, arguments: Mapping[str, Any]) -> EpisodeCall:
+        """Make a tool call and record it. A wrong call and a failure of perception become the error of the recorded call."""
+        time_s, before = self._camera.clock.now_s(), self.position
+        result, error, fault = None, None, None
+        try:
+            result = (await run_tool(self._context, name, dict(arguments))).model_dump(mode="json")
+        except (ToolCallError, UnknownNameError) as exception:
+            error, fault = str(exception), "bad_call"
+        except PerceptionError as exception:
+            error, fault = str(exception), "perception"
+        self.position = CameraPosition(self._camera.viewpoint, await self._camera.pose())
+        call = with_observations(EpisodeCall(name, arguments, before, self.position, result, error, fault, time_s), self._geometry)
+        self.calls.append(call)
+        if result is not None and name == "take_image":
+            self._pictures.append(SavedPicture(str(result["file"])))
+        return call
+
+    def episode(self, text: str, outcome: str | None) -> Episode:
+        """Return the episode so far.
+
+        Args:
+            text: The final answer to record.
+            outcome: The outcome to record; None for an episode that has not ended.
+        """
+        return Episode(
+            self._instruction, self._start, tuple(self.calls), self.position, text, outcome, tuple(self._pictures),
+            tuple(self.planner_views), aspect=self._geometry.width / self._geometry.height, optics=self._geometry.optics,
+        )  # fmt: skip
 
 
 def with_observations(call: EpisodeCall, geometry: FrameGeometry) -> EpisodeCall:

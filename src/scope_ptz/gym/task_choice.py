@@ -1,0 +1,74 @@
+"""Find the tasks that an environment uses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+
+from scope_ptz.bench.tasks.expected import ActionOnly
+from scope_ptz.bench.tasks.splits import SPLITS, load_split
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.errors import InputError, UnknownNameError
+
+TaskChoice = str | Task | Sequence[str | Task]
+"""A task, the id of one, the name of a split, or several of these."""
+
+
+@cache
+def _split(name: str) -> tuple[Task, ...]:
+    return load_split(name)
+
+
+def chosen_tasks(choice: TaskChoice) -> tuple[Task, ...]:
+    """Return the tasks that a choice names.
+
+    Raises:
+        UnknownNameError: A name is neither an id of a task nor a split.
+        InputError: The choice is empty.
+    """
+    parts = [choice] if isinstance(choice, str | Task) else list(choice)
+    tasks = tuple(task for part in parts for task in _tasks_of(part))
+    if not tasks:
+        raise InputError("No task was given. Give the id of a task, or a split such as 'core'.")
+    return tasks
+
+
+def _tasks_of(part: str | Task) -> tuple[Task, ...]:
+    if isinstance(part, Task):
+        return (part,)
+    if not isinstance(part, str):
+        raise InputError(f"A task must be an id, the name of a split, or a Task; got {type(part).__name__}.")
+    if part in SPLITS:
+        return _split(part)
+    for split in ("core", "paraphrase", "reaction", "unseen"):
+        for task in _split(split):
+            if task.id == part:
+                return (task,)
+    known = [task.id for task in _split("core")]
+    message = UnknownNameError("task", part, known)
+    close = message.args[0].partition(" Known: ")[0]
+    raise InputError(f"{close} scope_ptz.load_tasks() lists the tasks. Splits: {', '.join(SPLITS)}.")
+
+
+def movement_tasks(choice: TaskChoice = "core") -> tuple[Task, ...]:
+    """Return the tasks that pan, tilt and zoom alone can fulfil.
+
+    They expect no answer in words, no picture, no other tool and no change of the viewpoint.
+    """
+    return tuple(task for task in chosen_tasks(choice) if other_need(task) is None)
+
+
+def other_need(task: Task) -> str | None:
+    """Return what a task requires besides pan, tilt and zoom; None if they suffice."""
+    behaviour = task.behaviour
+    if not isinstance(task.expected, ActionOnly):
+        return "an answer in words"
+    if "answered" not in behaviour.outcomes:
+        return f"the outcome {behaviour.outcomes[0]}"
+    if tools := sorted({call.tool for call in behaviour.calls} - {"adjust_ptz"}):
+        return f"the tool {tools[0]}"
+    if behaviour.pictures:
+        return "the tool take_image"
+    if "preset" in task.needs or any(call.tool in ("go_to_preset", "go_home") for call in task.reference):
+        return "the tool go_to_preset or go_home"
+    return None
