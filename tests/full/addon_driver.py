@@ -1,0 +1,112 @@
+"""Runs inside Blender: opens a scene, registers the add-on, and executes statements that it reads from standard input.
+
+Arguments after ``--``: the folder with the add-on's package, and optionally the Python file of a scene. Each line of the input is an
+expression, whose value is printed as JSON. The names ``bpy``, ``session``, ``wake`` and ``scene`` are defined. Blender ends when its
+input is closed. With a window, Blender's own timers work; without one, this script calls the timer's function.
+"""
+
+import importlib
+import json
+import math
+import queue
+import sys
+import threading
+import time
+
+import bpy
+
+LINES: "queue.SimpleQueue[str]" = queue.SimpleQueue()
+
+
+def build() -> None:
+    """Build a scene: a floor, a red box to the north, cones around, and two cameras."""
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    scene = bpy.context.scene
+    bpy.ops.mesh.primitive_plane_add(size=80)
+    paint(bpy.context.object, "floor", (0.35, 0.4, 0.32, 1))
+    bpy.ops.mesh.primitive_cube_add(size=2, location=(0, 8, 1))
+    paint(bpy.context.object, "box", (0.8, 0.03, 0.02, 1))
+    for k in range(12):
+        bpy.ops.mesh.primitive_cone_add(radius1=1, depth=3, location=(14 * math.sin(k / 2 + 0.3), 14 * math.cos(k / 2 + 0.3), 1.5))
+        paint(bpy.context.object, f"cone {k}", (0.9, 0.25 + k / 24, 0.05, 1) if k % 2 else (0.1, 0.3, 0.9 - k / 24, 1))
+    light = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
+    light.data.energy = 3
+    light.rotation_euler = (0.8, 0.3, 0)
+    scene.collection.objects.link(light)
+    for name, place, turn, lens in (("Main Gate", (0, 0, 2), (90, 0, 0), 24), ("roof", (0, -8, 12), (60, 0, 0), 35)):
+        camera = bpy.data.objects.new(name, bpy.data.cameras.new(name))
+        camera.data.lens = lens
+        camera.location, camera.rotation_euler = place, [math.radians(a) for a in turn]
+        scene.collection.objects.link(camera)
+    scene.camera = bpy.data.objects["Main Gate"]
+    scene.display.shading.color_type = "OBJECT"
+    bpy.context.view_layer.update()
+
+
+def paint(item, name, colour) -> None:
+    """Give an object a colour, in solid shading and in renders."""
+    item.name, item.color = name, colour
+    material = bpy.data.materials.new(name)
+    material.diffuse_color = colour
+    material.use_nodes = True
+    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = colour
+    item.data.materials.append(material)
+
+
+def read_lines() -> None:
+    """Read the input in a thread, because Blender's main thread must not wait for it."""
+    for line in sys.stdin:
+        LINES.put(line)
+    LINES.put("")
+
+
+def execute(names) -> bool:
+    """Execute what has arrived. Return whether the input is still open."""
+    while not LINES.empty():
+        line = LINES.get()
+        if not line:
+            return False
+        try:
+            reply = {"value": eval(line, names)}  # noqa: S307 - the test's own expressions
+        except Exception as error:
+            reply = {"error": f"{type(error).__name__}: {error}"}
+        print("@reply " + json.dumps(reply, default=str), flush=True)
+    return True
+
+
+def finish(addon) -> None:
+    """Remove the add-on, and print what is left of it in the scene."""
+    addon.unregister()
+    scene = bpy.context.scene
+    found = sorted(item.name for item in scene.objects if item.type == "CAMERA")
+    print("@end " + json.dumps({"cameras": found, "active": scene.camera.name}), flush=True)
+
+
+def main() -> None:
+    folder, *_ = sys.argv[sys.argv.index("--") + 1 :]
+    sys.path.insert(0, folder)
+    addon = importlib.import_module("scope_addon")
+    build()
+    addon.register()
+    module = importlib.import_module("scope_addon.ui.session")
+    names = {"bpy": bpy, "session": module.session, "wake": module.wake, "scene": bpy.context.scene, "addon": addon}
+    threading.Thread(target=read_lines, daemon=True).start()
+    print("@reply " + json.dumps({"value": bpy.app.version_string}), flush=True)
+    if not bpy.app.background:
+
+        def work():
+            if execute(names):
+                return 0.02
+            finish(addon)
+            bpy.ops.wm.quit_blender()
+            return None
+
+        bpy.app.timers.register(work, first_interval=0.5)
+        return
+    while execute(names):
+        time.sleep(module.session.tick() or 0.02)
+    finish(addon)
+
+
+main()
