@@ -1,8 +1,9 @@
-"""Runs inside Blender: opens a scene, registers the add-on, and executes statements that it reads from standard input.
+"""Runs inside Blender: opens a scene, registers the add-on, and executes expressions that it reads from standard input.
 
-Arguments after ``--``: the folder with the add-on's package, and optionally the Python file of a scene. Each line of the input is an
-expression, whose value is printed as JSON. The names ``bpy``, ``session``, ``wake`` and ``scene`` are defined. Blender ends when its
-input is closed. With a window, Blender's own timers work; without one, this script calls the timer's function.
+The argument after ``--`` is the folder with the add-on's package; without it, the add-on is enabled as an installed one, with the name
+``scope_addon``. Each line of the input is an expression, whose value is printed as JSON. The names ``bpy``, ``session``, ``wake``,
+``scene``, ``view`` (a context of the 3D viewport) and ``addon`` are defined. Blender ends when its input is closed. With a window,
+Blender's own timers work; without one, this script calls the timer's function.
 """
 
 import importlib
@@ -71,7 +72,7 @@ def execute(names) -> bool:
             reply = {"value": eval(line, names)}  # noqa: S307 - the test's own expressions
         except Exception as error:
             reply = {"error": f"{type(error).__name__}: {error}"}
-        print("@reply " + json.dumps(reply, default=str), flush=True)
+        say("reply", reply)
     return True
 
 
@@ -80,19 +81,39 @@ def finish(addon) -> None:
     addon.unregister()
     scene = bpy.context.scene
     found = sorted(item.name for item in scene.objects if item.type == "CAMERA")
-    print("@end " + json.dumps({"cameras": found, "active": scene.camera.name}), flush=True)
+    say("end", {"cameras": found, "active": scene.camera.name})
+
+
+def say(kind, content) -> None:
+    """Print a line that the test reads."""
+    sys.stdout.write(f"@{kind} {json.dumps(content, default=str)}\n")
+    sys.stdout.flush()
+
+
+def view():
+    """Return the context of the first 3D viewport, for ``with``."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return bpy.context.temp_override(window=window, area=area, region=region)
+
+
+def run(operator: str, **values):
+    """Call an operator of the add-on in the 3D viewport, as a button does."""
+    with view():
+        return list(getattr(bpy.ops.scope, operator)("EXEC_DEFAULT", **values))
 
 
 def main() -> None:
-    folder, *_ = sys.argv[sys.argv.index("--") + 1 :]
-    sys.path.insert(0, folder)
-    addon = importlib.import_module("scope_addon")
+    sys.path[:0] = sys.argv[sys.argv.index("--") + 1 :]
     build()
-    addon.register()
-    module = importlib.import_module("scope_addon.ui.session")
-    names = {"bpy": bpy, "session": module.session, "wake": module.wake, "scene": bpy.context.scene, "addon": addon}
+    bpy.context.preferences.view.show_splash = False
+    bpy.ops.preferences.addon_enable(module="scope_addon")
+    addon, module = (importlib.import_module(f"scope_addon{name}") for name in ("", ".ui.session"))
+    names = {"bpy": bpy, "session": module.session, "wake": module.wake, "scene": bpy.context.scene, "addon": addon, "run": run}
+    names |= {"cameras": importlib.import_module("scope_addon.scene.cameras"), "math": math}
     threading.Thread(target=read_lines, daemon=True).start()
-    print("@reply " + json.dumps({"value": bpy.app.version_string}), flush=True)
+    say("reply", {"value": bpy.app.version_string})
     if not bpy.app.background:
 
         def work():

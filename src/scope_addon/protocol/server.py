@@ -64,7 +64,7 @@ class ServerProcess:
             threading.Thread(target=self._listen, name="scope-server", daemon=True),
             threading.Thread(target=self._collect, name="scope-server-errors", daemon=True),
         ]
-        for thread in self._threads:
+        for thread in reversed(self._threads):  # the first one waits for the second
             thread.start()
 
     @property
@@ -101,8 +101,9 @@ class ServerProcess:
                     continue
         self._process.wait()
         self._threads[1].join(QUIT_S)
-        last = next((line for line in reversed(self._errors) if line.strip()), "")
-        self.problem = self.problem or f"The server ended. {last.strip()[:400]}".strip()
+        texts = [line.strip(" │╭╮╰╯─\r\n") for line in self._errors]
+        last = next((text for text in reversed(texts) if text), "")
+        self.problem = self.problem or f"The server ended. {last[:400]}".strip()
 
     def _collect(self) -> None:
         assert self._process.stderr is not None

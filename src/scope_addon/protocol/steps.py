@@ -65,7 +65,12 @@ def end_of(record: dict[str, Any]) -> End:
     timings = record["timings"]
     parts = [
         Timing(label, float(timings[name]))
-        for name, label in (("planner_s", "planner"), ("perception_s", "perception"), ("camera_s", "camera"), ("render_s", "pictures"))
+        for name, label in (
+            ("planner_s", "planner"),
+            ("perception_s", "perception"),
+            ("camera_s", "camera"),
+            ("render_s", "pictures"),
+        )
         if name in timings
     ]
     outcome = str(record["outcome"])

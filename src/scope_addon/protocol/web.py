@@ -111,6 +111,8 @@ class Web:
         connection.request(method, self._path(path), body=body, headers=headers)
         reply = connection.getresponse()
         data = reply.read(MAX_REPLY_BYTES)
+        if reply.length:  # reading at most N bytes does not notice by itself that a reply was cut off
+            raise http.client.IncompleteRead(data, reply.length)
         if not 200 <= reply.status < 300:
             raise _refusal(reply.status, data)
         return data
@@ -147,14 +149,14 @@ def part(name: str) -> str:
 
 
 def _events(reply: http.client.HTTPResponse) -> Iterator[Event | None]:
-    name, data = "message", []
+    name, data = "message", list[str]()
     while line := reply.readline(MAX_REPLY_BYTES):
         text = line.decode("utf-8", "replace").rstrip("\r\n")
         field, _, value = text.partition(":")
         if not text:
             if data:
                 yield Event(name, _parsed("\n".join(data).encode()))
-            name, data = "message", []
+            name, data = "message", list[str]()
         elif not field:
             yield None
         elif field == "event":

@@ -48,8 +48,9 @@ def on_update(_scene: Any, graph: Any = None) -> None:
 
 @persistent
 def on_frame(_scene: Any, _graph: Any = None) -> None:
-    """Handle a change of the current frame of the animation."""
-    changed()
+    """Handle a change of the current frame of the animation. Rendering a picture reports one, too."""
+    if not _state["own"]:
+        changed()
 
 
 def add_handlers() -> None:

@@ -29,7 +29,10 @@ class ViewCamera:
         self._since_s = 0.0
         before = cameras.previous_camera(scene)
         self._previous = before.name if before is not None else ""
-        self.object()
+        if before is not None:
+            self.settle(cameras.view_through(scene, before, ""))
+        else:
+            self.object()
 
     @property
     def view(self) -> View | None:

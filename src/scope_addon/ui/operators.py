@@ -30,7 +30,7 @@ class _Operator(bpy.types.Operator):
 
 
 class SCOPE_OT_connect(_Operator):
-    """Connect the open scene to a server, which is started if the preferences say so"""
+    """Connect the open scene to a server, which is started first if the preferences say so"""
 
     bl_idname, bl_label = "scope.connect", "Connect"
 
@@ -85,6 +85,7 @@ class SCOPE_OT_look(_Operator):
 
     def work(self, context):
         context.space_data.region_3d.view_perspective = "CAMERA"
+        bpy.ops.view3d.view_center_camera()
 
 
 class SCOPE_OT_preset_add(_Operator):

@@ -30,7 +30,10 @@ class ScopePreferences(bpy.types.AddonPreferences):
     )
     address: bpy.props.StringProperty(name="Address", description="Address of the server", default="http://127.0.0.1:8000")
     token: bpy.props.StringProperty(
-        name="Token", description="Token of a server that needs one, with the operator role", subtype="PASSWORD", options={"SKIP_SAVE"}
+        name="Token",
+        description="Token of a server that needs one, with the operator role",
+        subtype="PASSWORD",
+        options={"SKIP_SAVE"},
     )
     camera: bpy.props.StringProperty(name="Camera", description="Name of the camera on the server", default="blender-window")
 

@@ -35,7 +35,10 @@ class ScopeWindowSettings(bpy.types.PropertyGroup):
     """What the user types and chooses. It is not stored in the file."""
 
     question: bpy.props.StringProperty(
-        name="", description="Ask about the scene, or tell the camera what to do", options={"SKIP_SAVE", "TEXTEDIT_UPDATE"}, maxlen=2000
+        name="",
+        description="Ask about the scene, or tell the camera what to do",
+        options={"SKIP_SAVE", "TEXTEDIT_UPDATE"},
+        maxlen=2000,
     )
     pair: bpy.props.EnumProperty(name="Pair", description="Planner and perception", items=_pairs, options={"SKIP_SAVE"})
     preset: bpy.props.StringProperty(name="", description="Name of the new preset", maxlen=31, options={"SKIP_SAVE"})

@@ -50,7 +50,7 @@ class BlenderWindowCamera(Camera):
         self.clock = WallClock()
         self._slot = slot
         self._taking = anyio.Lock()
-        self._last: tuple[tuple[str, Perspective, SceneDescription], str, NDArray[np.uint8]] | None = None
+        self._last: tuple[tuple[str, str, Perspective, SceneDescription], str, NDArray[np.uint8]] | None = None
         self._scene = window_scene(slot.connection.description)
         self._info = _info(self._scene)
         self._viewpoint = self._scene.home.viewpoint
@@ -58,6 +58,8 @@ class BlenderWindowCamera(Camera):
 
     @property
     def info(self) -> CameraInfo:
+        if self._slot.current is not None:
+            self._connected()  # another file may have been opened
         return self._info
 
     @property
@@ -171,7 +173,7 @@ class BlenderWindowCamera(Camera):
 
     async def _image(self, connection: AddOnConnection, view: Perspective, place: dict[str, Any]) -> NDArray[np.uint8]:
         """Let Blender take a picture, unless neither the view nor the scene has changed since the last one."""
-        key = (self._viewpoint, view, self._scene.description)
+        key = (connection.id, self._viewpoint, view, self._scene.description)
         version = self._last[1] if self._last is not None and self._last[0] == key else ""
         arguments = {**place, "width": view.width, "height": view.height, "version": version}
         reply = await connection.request("frame", arguments, timeout_s=FRAME_TIMEOUT_S)

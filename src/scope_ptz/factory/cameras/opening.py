@@ -321,7 +321,9 @@ def _check_built_in(spec: CameraSpec) -> None:
         return
     if spec.scheme == BLENDER_WINDOW:
         if spec.address or spec.options:
-            raise InputError(f"The camera spec {BLENDER_WINDOW}: has neither an address nor options. Set the picture size in Blender.")
+            raise InputError(
+                f"The camera spec {BLENDER_WINDOW}: has neither an address nor options. Set the picture size in Blender."
+            )
         return
     if not spec.address:
         raise InputError(

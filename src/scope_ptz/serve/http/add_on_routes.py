@@ -71,7 +71,9 @@ async def connect_add_on(station: StationDep, client: StoppingOperator, body: Sc
     response_class=StreamingResponse,
     responses={200: {"content": {"text/event-stream": {}}, "description": "The requests to the add-on"}, **_ERRORS},
 )
-async def add_on_requests(site: SiteDep, station: StationDep, client: StoppingOperator, connection: Connection) -> StreamingResponse:
+async def add_on_requests(
+    site: SiteDep, station: StationDep, client: StoppingOperator, connection: Connection
+) -> StreamingResponse:
     """Stream the requests to the add-on as server-sent events with the name `request`, until the add-on disconnects.
 
     The data of an event has the fields `number`, `operation` and `arguments`. When the stream ends, the connection ends.

@@ -240,6 +240,7 @@ class Station:
 
     async def close(self) -> None:
         """Stop and close the camera, and close the connections to models."""
+        self.add_on.end()  # first, so that nothing waits for a Blender that has not read its requests
         opened, self._opened = self._opened, None
         for models in self._models.values():
             await models.close()
