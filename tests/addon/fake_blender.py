@@ -28,7 +28,6 @@ from scope_ptz.serve.site.service import Site, SiteOptions
 CAMERA = "blender-window"
 
 
-
 def place(name: str, bearing_deg: float = 0.0, hfov_deg: float = 60.0, **others: Any) -> dict[str, Any]:
     """Return the description of a camera of a scene."""
     where = {"position_m": [1.0, 2.0, 3.0], "bearing_deg": bearing_deg, "tilt_deg": -5.0, "hfov_deg": hfov_deg}
@@ -118,6 +117,6 @@ async def window_camera(connect: Callable[[str], object], runs: Path) -> AsyncIt
     async with serve(site, Access("127.0.0.1", limits=RateLimits(None)), port=0) as port:
         await to_thread.run_sync(connect, f"http://127.0.0.1:{port}")
         with anyio.fail_after(60):
-            while site.station(CAMERA).add_on.current is None:
+            while site.station(CAMERA).add_on.current is None:  # noqa: ASYNC110 - a thread connects
                 await anyio.sleep(0.005)
         yield await site.station(CAMERA).camera(), site

@@ -38,7 +38,11 @@ def test_addresses_are_parsed() -> None:
     assert parse_address(" http://127.0.0.1:8123/ ").url == "http://127.0.0.1:8123"
     assert parse_address("https://ptz.example").port == 443
     assert parse_address("http://[::1]:8000", "abc").url == "http://[::1]:8000"
-    assert [parse_address(url).is_local for url in ("http://localhost", "http://127.8.0.1", "https://example.org")] == [True, True, False]
+    assert [parse_address(url).is_local for url in ("http://localhost", "http://127.8.0.1", "https://example.org")] == [
+        True,
+        True,
+        False,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -86,7 +90,14 @@ def test_a_glide_turns_the_shorter_way_and_ends_exactly() -> None:
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"position_m": [1, 2]}, {"tilt_deg": 91}, {"hfov_deg": 0}, {"hfov_deg": "x"}, {"bearing_deg": float("nan")}, {"position_m": None}],
+    [
+        {"position_m": [1, 2]},
+        {"tilt_deg": 91},
+        {"hfov_deg": 0},
+        {"hfov_deg": "x"},
+        {"bearing_deg": float("nan")},
+        {"position_m": None},
+    ],
 )
 def test_wrong_views_are_refused(wrong: dict[str, Any]) -> None:
     assert view_of(VIEW).position_m == (1.0, 2.0, 3.0)

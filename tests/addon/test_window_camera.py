@@ -270,7 +270,7 @@ async def test_a_blender_that_disconnects_fails_waiting_requests(tmp_path: Path)
                     failures.append(str(error))
 
             group.start_soon(take)
-            while blenders[0].link.requests.empty():
+            while blenders[0].link.requests.empty():  # noqa: ASYNC110 - a thread fills the queue
                 await anyio.sleep(0.005)
             blenders[0].link.stop()
         assert failures == ["Blender disconnected before it answered."]

@@ -1,9 +1,9 @@
 """Runs inside Blender: opens a scene, registers the add-on, and executes expressions that it reads from standard input.
 
-The argument after ``--`` is the folder with the add-on's package; without it, the add-on is enabled as an installed one, with the name
-``scope_addon``. Each line of the input is an expression, whose value is printed as JSON. The names ``bpy``, ``session``, ``wake``,
-``scene``, ``view`` (a context of the 3D viewport) and ``addon`` are defined. Blender ends when its input is closed. With a window,
-Blender's own timers work; without one, this script calls the timer's function.
+The argument after ``--`` is the folder with the add-on's package. Without it, the installed add-on ``scope_addon`` is enabled. Each line
+of the input is an expression, whose value is printed as JSON. The names ``bpy``, ``math``, ``session``, ``wake``, ``scene``,
+``cameras``, ``addon`` and ``run`` are defined. Blender ends when its input is closed. With a window, Blender's own timers work; without
+one, this script calls the timer's function.
 """
 
 import importlib

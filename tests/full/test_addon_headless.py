@@ -118,7 +118,9 @@ def test_presets_are_cameras_of_the_scene(blender: DrivenBlender, served: Served
     blender(f"bpy.ops.wm.save_as_mainfile(filepath={str(path)!r}, copy=True) and None")
     look = "import bpy; bpy.ops.wm.open_mainfile(filepath={!r}); s = bpy.context.scene; "
     look += "print('found', sorted(o.name for o in s.objects if o.type == 'CAMERA'), s.camera.name)"
-    done = subprocess.run([str(worker_python()), "-c", look.format(str(path))], capture_output=True, text=True, check=True, timeout=120)
+    done = subprocess.run(
+        [str(worker_python()), "-c", look.format(str(path))], capture_output=True, text=True, check=True, timeout=120
+    )
     assert "found ['Main Gate', 'The box', 'roof'] Main Gate" in done.stdout, "the file has its own active camera"
     assert blender("scene.camera.name") == "SCOPE camera", "and SCOPE's camera is back after saving"
     with served.client() as client:
@@ -154,7 +156,7 @@ def program(tmp_path: Path) -> Path:
 
 def test_a_server_that_cannot_start_is_explained(blender: DrivenBlender, tmp_path: Path) -> None:
     path = tmp_path / "scope"
-    path.write_text("#!/bin/sh\necho \'error: There are no cameras.\' >&2\nexit 2\n")
+    path.write_text("#!/bin/sh\necho 'error: There are no cameras.' >&2\nexit 2\n")
     path.chmod(0o755)
     blender(f"session.start_server({str(path)!r}, [])")
     blender.wait_for("session.state == 'off'")

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import threading
+from contextlib import suppress
 from pathlib import Path
 
 from .errors import AddOnError
@@ -31,7 +32,7 @@ class ServerProcess:
     """
 
     def __init__(self, program: str, pairs: list[str], runs_dir: Path) -> None:
-        found = shutil.which(os.path.expanduser(program))
+        found = shutil.which(str(Path(program).expanduser()))
         if found is None:
             raise AddOnError(
                 f"There is no program '{program}'. Install it with pip install 'scope-ptz[serve]', and set its path in the "
@@ -76,10 +77,8 @@ class ServerProcess:
         """Ask the server to end. It ends by itself when its input is closed, also if Blender crashes."""
         self.problem = self.problem or "stopped"
         if self._process.stdin is not None:
-            try:
+            with suppress(OSError):
                 self._process.stdin.close()
-            except OSError:
-                pass
 
     def wait(self) -> None:
         """Wait until the server has ended; kill it if it does not."""

@@ -7,6 +7,7 @@ import json
 import socket
 import ssl
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any, NamedTuple
 from urllib.parse import quote
 
@@ -47,10 +48,8 @@ class Web:
         if connection is not None:
             opened = connection.sock
             if opened is not None:
-                try:  # closing alone would not wake a thread that reads
+                with suppress(OSError):  # closing alone would not wake a thread that reads
                     opened.shutdown(socket.SHUT_RDWR)
-                except OSError:
-                    pass
             connection.close()
 
     def ask(self, method: str, path: str, body: object = None) -> Any:

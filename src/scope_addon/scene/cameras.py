@@ -34,10 +34,10 @@ def describe(scene: Any) -> dict[str, Any]:
         raise AddOnError("The scene has no camera. Add one with Add > Camera, and press Connect again.")
     saved = {str(o[PRESET]): o for o in objects if PRESET in o}
     names = _kebab_names([o.name for o in plain], set(saved))
-    places = {name: o.matrix_world.translation for name, o in zip(names, plain)}
+    places = {name: o.matrix_world.translation for name, o in zip(names, plain, strict=True)}
     places.update((name, o.matrix_world.translation) for name, o in saved.items() if VIEWPOINT not in o)
     active = previous_camera(scene)
-    cameras = [_described(scene, o, name, o.name, None) for name, o in zip(names, plain)]
+    cameras = [_described(scene, o, name, o.name, None) for name, o in zip(names, plain, strict=True)]
     for name, o in saved.items():
         viewpoint = o.get(VIEWPOINT)
         if viewpoint not in places or (places[viewpoint] - o.matrix_world.translation).length > SAME_PLACE_M:

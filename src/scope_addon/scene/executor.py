@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from contextlib import suppress
 from typing import Any
 
 import bpy
@@ -125,7 +126,5 @@ class Executor:
         now_s = time.monotonic()
         if now_s >= self._describe_s:
             self._describe_s = now_s + DESCRIBE_S
-            try:
+            with suppress(AddOnError):  # the user has deleted the last camera; the server keeps the last description
                 self.describe_now()
-            except AddOnError:  # the user has deleted the last camera; the server keeps the last description
-                pass

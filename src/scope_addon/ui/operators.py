@@ -13,7 +13,7 @@ from .session import session, tag_redraw, wake
 class _Operator(bpy.types.Operator):
     """Base class: errors are shown in the sidebar and in Blender's status bar."""
 
-    bl_options = {"INTERNAL"}
+    bl_options = {"INTERNAL"}  # noqa: RUF012 - Blender requires a set
 
     def execute(self, context):
         session.problem = ""

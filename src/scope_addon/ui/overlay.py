@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from typing import Any
 
 import blf
 import bpy
@@ -43,16 +44,28 @@ def _draw() -> None:
     scale = bpy.context.preferences.system.ui_scale
     size, margin = 15 * scale, 14 * scale
     _set_size(size)
-    letters = max(20, int((region.width * 0.62) / (size * 0.55)))
+    start, end = _free(region)
+    letters = max(20, int((0.8 * (end - start) - 2 * margin) / (size * 0.55)))
     lines = [heading[:letters], *textwrap.wrap(body, letters)[:4]]
     width = max(blf.dimensions(0, line)[0] for line in lines)
     height = len(lines) * size * 1.45
-    left, bottom = (region.width - width) / 2, 24 * scale
+    left, bottom = (start + end - width) / 2, 24 * scale
     _rectangle(left - margin, bottom - margin, width + 2 * margin, height + 1.6 * margin)
     for number, line in enumerate(lines):
         blf.color(0, *(_ACCENT if number == 0 else _INK))
         blf.position(0, left, bottom + height - (number + 1) * size * 1.45 + size * 0.4, 0)
         blf.draw(0, line)
+
+
+def _free(region: Any) -> tuple[float, float]:
+    """Return the part of the viewport, in pixels from its left edge, that the toolbar and the sidebar do not cover."""
+    start, end = 0.0, float(region.width)
+    for other in bpy.context.area.regions:
+        if other.type == "TOOLS" and other.x <= region.x:
+            start = max(start, float(other.width))
+        elif other.type == "UI" and other.width > 1 and other.x > region.x:
+            end = min(end, float(other.x - region.x))
+    return start, end
 
 
 def _set_size(size: float) -> None:

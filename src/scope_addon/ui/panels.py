@@ -16,7 +16,7 @@ STATES = {
     "connecting": ("Connecting", "SORTTIME"),
     "connected": ("Connected", "LINKED"),
 }
-PIXELS_PER_LETTER = 7.0  # of Blender's interface font at scale 1, on average
+PIXELS_PER_LETTER = 6.3  # of Blender's interface font at scale 1, on average
 
 
 def draw_banner(header: Any, context: Any) -> None:
@@ -46,14 +46,14 @@ class SCOPE_PT_connection(_Panel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         layout, state = self.layout, session.state
         text, icon = STATES[state]
-        row = layout.row()
-        row.label(text=text, icon=icon)
+        place = session.place.partition("//")[2]
+        layout.label(text=text, icon=icon)
+        if place:
+            layout.label(text=place, icon="URL")
         if state == "off":
-            row.operator("scope.connect", text="Connect")
+            layout.operator("scope.connect")
         else:
-            row.operator("scope.disconnect", text="Disconnect")
-        if session.place:
-            layout.label(text=session.place.partition("//")[2], icon="URL")
+            layout.operator("scope.disconnect")
         if session.problem:
             _lines(layout.box(), context, session.problem, icon="ERROR")
 
@@ -90,14 +90,16 @@ class SCOPE_PT_steps(_Panel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         layout = self.layout
         if not session.steps:
-            layout.label(text="The steps of an instruction appear here.")
+            _lines(layout, context, "The steps of an instruction appear here.")
         for number, step in enumerate(session.steps, 1):
             column = layout.box().column(align=True)
             row = column.row()
-            row.label(text=f"{number}  {step.call}", icon="ERROR" if step.failed else "CHECKMARK")
+            row.label(text=f"Step {number}", icon="ERROR" if step.failed else "CHECKMARK")
             time = row.row()
             time.alignment = "RIGHT"
             time.label(text=f"{step.duration_s:.2f} s")
+            _lines(column, context, step.call)
+            column.separator()
             _lines(column, context, step.text)
         if session.end is not None:
             row = layout.column(align=True)

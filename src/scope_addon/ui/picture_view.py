@@ -30,13 +30,15 @@ def open_editor(context: Any) -> None:
     image = bpy.data.images.get(IMAGE)
     editors = list(_editors())
     if not editors:
-        area = context.area
-        with context.temp_override(area=area):
-            bpy.ops.screen.area_split(direction="HORIZONTAL", factor=0.45)
+        with context.temp_override(area=context.area):
+            bpy.ops.screen.area_split(direction="VERTICAL", factor=0.4)
         new = context.screen.areas[-1]
         new.type = "IMAGE_EDITOR"
         editors = [new]
     editors[0].spaces.active.image = image
+    region = next(region for region in editors[0].regions if region.type == "WINDOW")
+    with context.temp_override(area=editors[0], region=region):
+        bpy.ops.image.view_all(fit_view=True)
 
 
 def _editors() -> list[Any]:

@@ -130,7 +130,7 @@ def window_scene(description: SceneDescription) -> WindowScene:
 
 
 def _combined(description: SceneDescription, own: list[SceneCamera]) -> FileCameras:
-    """Return optics and limits by the rules for .blend files, which know cameras by number here, because titles may be free text."""
+    """Return optics and limits by the rules for .blend files. The cameras are numbered, because their names may be free text."""
     cameras = [{**camera.model_dump(), "name": f"camera-{number}"} for number, camera in enumerate(own)]
     active = next(number for number, camera in enumerate(own) if camera.name == description.active)
     return file_cameras(
