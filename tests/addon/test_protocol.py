@@ -135,7 +135,7 @@ def test_a_run_is_followed_with_its_marked_pictures(served: Served, tmp_path: Pa
     assert [timing.part for timing in end.timings] == ["planner", "perception", "camera", "pictures", "total"]
     assert any(isinstance(each, Deciding) for each in news)
     shown = next(each for each in news if isinstance(each, Shown))
-    assert cv2.imread(str(shown.path)).shape == (180, 320, 3)
+    assert np.asarray(cv2.imread(str(shown.path))).shape == (180, 320, 3)
     assert [path.name for path in tmp_path.iterdir()] == ["scope-frame.jpg"]
 
 

@@ -306,3 +306,17 @@ async def test_the_camera_exists_only_on_a_server() -> None:
     assert CAMERA not in site_cameras([], load_settings())
     with pytest.raises(UnknownNameError):
         site_cameras(["blender-windows"], load_settings())
+
+
+@pytest.mark.anyio
+async def test_the_rules_of_scope_yaml_apply(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from scope_ptz.camera.blender_addon.connection import AddOnSlot
+
+    (tmp_path / "scope.yaml").write_text(
+        "cameras:\n  stage:\n    camera: 'blender-window:'\n    rules:\n      soft_limits: {min_pan_deg: -30, max_pan_deg: 30}\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    slot = AddOnSlot()
+    slot.connect(SceneDescription.model_validate(description()), "blender-test")
+    async with await open_camera("stage", add_on=slot) as opened:
+        assert opened.camera.info.limits.max_pan_deg == 30.0

@@ -1,9 +1,9 @@
 """Runs inside Blender: opens a scene, registers the add-on, and executes expressions that it reads from standard input.
 
-The argument after ``--`` is the folder with the add-on's package. Without it, the installed add-on ``scope_addon`` is enabled. Each line
-of the input is an expression, whose value is printed as JSON. The names ``bpy``, ``math``, ``session``, ``wake``, ``scene``,
-``cameras``, ``addon`` and ``run`` are defined. Blender ends when its input is closed. With a window, Blender's own timers work; without
-one, this script calls the timer's function.
+The argument after ``--`` is the folder with the add-on's package. Without it, the installed add-on ``scope_addon`` is enabled. Each
+line of the input is an expression, whose value is printed as JSON. The names ``bpy``, ``math``, ``session``, ``wake``, ``scene``,
+``cameras``, ``addon`` and ``run`` are defined. Blender ends when its input is closed. With a window, Blender's own timers work;
+without one, this script calls the timer's function.
 """
 
 import importlib
@@ -13,6 +13,7 @@ import queue
 import sys
 import threading
 import time
+from typing import Any
 
 import bpy
 
@@ -45,7 +46,7 @@ def build() -> None:
     bpy.context.view_layer.update()
 
 
-def paint(item, name, colour) -> None:
+def paint(item: Any, name: str, colour: tuple[float, ...]) -> None:
     """Give an object a colour, in solid shading and in renders."""
     item.name, item.color = name, colour
     material = bpy.data.materials.new(name)
@@ -62,12 +63,13 @@ def read_lines() -> None:
     LINES.put("")
 
 
-def execute(names) -> bool:
+def execute(names: dict[str, Any]) -> bool:
     """Execute what has arrived. Return whether the input is still open."""
     while not LINES.empty():
         line = LINES.get()
         if not line:
             return False
+        names["scene"] = bpy.context.scene  # another file may have been opened
         try:
             reply = {"value": eval(line, names)}  # noqa: S307 - the test's own expressions
         except Exception as error:
@@ -76,7 +78,7 @@ def execute(names) -> bool:
     return True
 
 
-def finish(addon) -> None:
+def finish(addon: Any) -> None:
     """Remove the add-on, and print what is left of it in the scene."""
     addon.unregister()
     scene = bpy.context.scene
@@ -84,13 +86,13 @@ def finish(addon) -> None:
     say("end", {"cameras": found, "active": scene.camera.name})
 
 
-def say(kind, content) -> None:
+def say(kind: str, content: object) -> None:
     """Print a line that the test reads."""
     sys.stdout.write(f"@{kind} {json.dumps(content, default=str)}\n")
     sys.stdout.flush()
 
 
-def view():
+def view() -> Any:
     """Return the context of the first 3D viewport, for ``with``."""
     window = bpy.context.window_manager.windows[0]
     area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
@@ -98,7 +100,7 @@ def view():
     return bpy.context.temp_override(window=window, area=area, region=region)
 
 
-def run(operator: str, **values):
+def run(operator: str, **values: Any) -> list[str]:
     """Call an operator of the add-on in the 3D viewport, as a button does."""
     with view():
         return list(getattr(bpy.ops.scope, operator)("EXEC_DEFAULT", **values))
@@ -110,13 +112,13 @@ def main() -> None:
     bpy.context.preferences.view.show_splash = False
     bpy.ops.preferences.addon_enable(module="scope_addon")
     addon, module = (importlib.import_module(f"scope_addon{name}") for name in ("", ".ui.session"))
-    names = {"bpy": bpy, "session": module.session, "wake": module.wake, "scene": bpy.context.scene, "addon": addon, "run": run}
+    names = {"bpy": bpy, "session": module.session, "wake": module.wake, "addon": addon, "run": run}
     names |= {"cameras": importlib.import_module("scope_addon.scene.cameras"), "math": math}
     threading.Thread(target=read_lines, daemon=True).start()
     say("reply", {"value": bpy.app.version_string})
     if not bpy.app.background:
 
-        def work():
+        def work() -> float | None:
             if execute(names):
                 return 0.02
             finish(addon)

@@ -74,7 +74,7 @@ def test_pictures_show_the_scene(blender: DrivenBlender, served: Served) -> None
     with served.client() as client:
         client.post(f"/cameras/{CAMERA}/home")
         data = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
-    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR).astype(int)
+    picture = np.asarray(cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)).astype(int)
     middle, corner = picture[55, 80], picture[10, 10]
     assert middle[2] > 1.5 * max(middle[0], middle[1]), "the red box is straight ahead"
     assert abs(corner - corner.mean()).max() < 30, "the background is grey"
@@ -127,6 +127,34 @@ def test_presets_are_cameras_of_the_scene(blender: DrivenBlender, served: Served
         assert client.delete(f"/cameras/{CAMERA}/presets/The box").status_code == 204
         assert client.delete(f"/cameras/{CAMERA}/presets/roof").json()["error"]["code"] == "refused_by_camera"
     assert blender("[o.name for o in scene.objects if 'box' in o.name]") == ["box"]
+
+
+def test_the_camera_goes_on_with_another_file(blender: DrivenBlender, served: Served, tmp_path: Path) -> None:
+    path = str(tmp_path / "other.blend")
+    blender(f"bpy.ops.wm.save_as_mainfile(filepath={path!r}, copy=True) and None")
+    with served.client() as client:
+        client.post(f"/cameras/{CAMERA}/presets/roof/go")
+        before = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
+        blender(f"bpy.ops.wm.open_mainfile(filepath={path!r}) and None")
+        blender.wait_for("session.state == 'connected'")
+        state = client.get(f"/cameras/{CAMERA}").json()
+        assert state["title"].startswith("camera in other.blend")
+        client.post(f"/cameras/{CAMERA}/presets/roof/go")
+        assert client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content == before
+    assert blender("sorted(o.name for o in scene.objects if o.type == 'CAMERA')") == ["Main Gate", "SCOPE camera", "roof"]
+
+
+def test_the_token_is_not_stored(tmp_path: Path) -> None:
+    with without_window(tmp_path) as blender:
+        preferences = "bpy.context.preferences.addons['scope_addon'].preferences"
+        blender(f"setattr({preferences}, 'token', 'a-secret-token')")
+        assert blender(f"{preferences}.token") == "a-secret-token"
+        blender("bpy.ops.wm.save_userpref() and None")
+        blender(f"bpy.ops.wm.save_as_mainfile(filepath={str(tmp_path / 'a.blend')!r}, compress=False) and None")
+        files = [path for path in tmp_path.rglob("*") if path.is_file()]
+        assert any(path.name == "userpref.blend" for path in files)
+        assert not any(b"a-secret-token" in path.read_bytes() for path in files)
+        blender.end()
 
 
 def test_a_silent_server_does_not_stop_blender(blender: DrivenBlender) -> None:

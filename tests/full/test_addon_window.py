@@ -72,7 +72,7 @@ def test_a_question_is_answered_in_the_window(blender: DrivenBlender, display: s
     assert blender("cameras.view_through(scene, scene.camera, '')[3]") == pytest.approx(-30.0, abs=0.01)
     blender.wait_for("not session.executor.camera.gliding")
     screenshot(display, tmp_path / "after.png")
-    first, second = (cv2.imread(str(path)).astype(int) for path in (before, tmp_path / "after.png"))
+    first, second = (np.asarray(cv2.imread(str(path))).astype(int) for path in (before, tmp_path / "after.png"))
     assert abs(first - second)[100:800, 100:1000].mean() > 3.0, "the viewport shows that the camera has moved"
 
 

@@ -7,6 +7,17 @@ PACKAGE = __package__.rpartition(".")[0]
 """The name of the add-on's package, which an extension has under ``bl_ext``."""
 
 
+_secrets = {"token": ""}  # kept in memory only: Blender would write a stored property to its preferences file, in plain text
+
+
+def _token(_self: object) -> str:
+    return _secrets["token"]
+
+
+def _set_token(_self: object, value: str) -> None:
+    _secrets["token"] = value
+
+
 class ScopePreferences(bpy.types.AddonPreferences):
     """How to reach a server."""
 
@@ -31,9 +42,10 @@ class ScopePreferences(bpy.types.AddonPreferences):
     address: bpy.props.StringProperty(name="Address", description="Address of the server", default="http://127.0.0.1:8000")
     token: bpy.props.StringProperty(
         name="Token",
-        description="Token of a server that needs one, with the operator role",
+        description="Token of a server that needs one, with the operator role. It is not stored",
         subtype="PASSWORD",
-        options={"SKIP_SAVE"},
+        get=_token,
+        set=_set_token,
     )
     camera: bpy.props.StringProperty(name="Camera", description="Name of the camera on the server", default="blender-window")
 

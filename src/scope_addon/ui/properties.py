@@ -32,7 +32,7 @@ class ScopeSceneSettings(bpy.types.PropertyGroup):
 
 
 class ScopeWindowSettings(bpy.types.PropertyGroup):
-    """What the user types and chooses. It is not stored in the file."""
+    """What the user types and chooses."""
 
     question: bpy.props.StringProperty(
         name="",

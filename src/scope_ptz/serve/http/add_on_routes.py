@@ -1,7 +1,7 @@
 """Routes for the add-on in a Blender, whose open scene is a camera of the server.
 
-The add-on posts a description of its scene, and reads requests from a stream of server-sent events. It sends each reply or picture as
-a request of its own.
+The add-on posts a description of its scene, and reads requests from a stream of server-sent events. It sends each reply or picture
+as a request of its own.
 """
 
 from __future__ import annotations
