@@ -52,6 +52,8 @@ class CameraLink:
         self._outbox: queue.SimpleQueue[Callable[[Web], None] | None] = queue.SimpleQueue()
         self._stopping = threading.Event()
         self.requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
+        self.updates = 0
+        """Number of descriptions that the server has received through ``update``."""
         self.connected = False
         self.ended = False
         self.problem = ""
@@ -83,7 +85,12 @@ class CameraLink:
 
     def update(self, description: Description) -> None:
         """Send a new description of the scene, in the background."""
-        self._outbox.put(lambda web: web.ask("PUT", f"{self._path}/scene", description))
+
+        def send(web: Web) -> None:
+            web.ask("PUT", f"{self._path}/scene", description)
+            self.updates += 1
+
+        self._outbox.put(send)
 
     def _read(self) -> None:
         try:

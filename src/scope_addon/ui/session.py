@@ -54,7 +54,7 @@ class Session:
         self._address: Address | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._greeted = False
-        self._known_cameras: list[Any] = []
+        self._updates = 0
 
     @property
     def state(self) -> str:
@@ -155,7 +155,6 @@ class Session:
         """Send the description of the scene, after the add-on itself has changed its cameras."""
         if self.executor is not None:
             self.executor.describe_now()
-            self._refresh_presets()
 
     def file_opened(self) -> None:
         """Go on with the scene of another file."""
@@ -208,7 +207,7 @@ class Session:
         description = cameras.describe(bpy.context.scene)
         self._link = CameraLink(address, self.camera, self.client, description)
         self._link.start()
-        self.executor, self._greeted = Executor(self._link, description), False
+        self.executor, self._greeted, self._updates = Executor(self._link, description), False, 0
 
     def _watch_link(self, link: CameraLink) -> bool:
         if link.ended:
@@ -223,6 +222,9 @@ class Session:
             self._task("GET", "/pairs", done=self._set_pairs)
             self._refresh_presets()
             return True
+        if link.updates != self._updates:  # the server knows the new cameras of the scene
+            self._updates = link.updates
+            self._refresh_presets()
         return self.executor is not None and self.executor.tick()
 
     def _watch_run(self, asking: Asking) -> bool:
