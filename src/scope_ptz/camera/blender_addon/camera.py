@@ -19,7 +19,7 @@ from scope_ptz.camera.capabilities import Capabilities, Velocity, check_drive, c
 from scope_ptz.camera.clocks import WallClock
 from scope_ptz.camera.head_motion import HeadMotion
 from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, top_speed
-from scope_ptz.errors import CameraError, UnknownNameError
+from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.geometry import Perspective, Pose
 
 COMMAND_TIMEOUT_S = 30.0
@@ -166,7 +166,7 @@ class BlenderWindowCamera(Camera):
         reply = await connection.request(operation, arguments, timeout_s=COMMAND_TIMEOUT_S)
         try:
             description = SceneDescription.model_validate(reply)
-        except ValidationError as error:
+        except (ValidationError, InputError) as error:
             raise CameraError("Blender's description of the scene is invalid. Update the add-on.") from error
         self._slot.update(connection, description)
         self._connected()

@@ -9,6 +9,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from scope_ptz.blender.file_cameras import FileCameras, file_cameras
 from scope_ptz.camera.base import PresetInfo
+from scope_ptz.errors import InputError
 from scope_ptz.geometry import Limits, Optics, Pose, wrap_pan_deg
 
 MAX_CAMERAS = 500
@@ -21,8 +22,9 @@ def _number(given: object) -> object:
 
 
 Name = Annotated[str, Field(min_length=1, max_length=80)]
-Number = Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False, ge=-1e9, le=1e9)]
-FieldOfView = Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False, ge=0.05, le=170.0)]
+Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9, strict=True), BeforeValidator(_number)]
+Tilt = Annotated[float, Field(allow_inf_nan=False, ge=-90.0, le=90.0, strict=True), BeforeValidator(_number)]
+FieldOfView = Annotated[float, Field(allow_inf_nan=False, ge=0.05, le=170.0, strict=True), BeforeValidator(_number)]
 
 
 class _Model(BaseModel):
@@ -47,14 +49,19 @@ class SceneCamera(_Model):
     title: Annotated[str, Field(max_length=200)] = ""
     position_m: tuple[Number, Number, Number]
     bearing_deg: Number
-    tilt_deg: Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False, ge=-90.0, le=90.0)]
+    tilt_deg: Tilt
     hfov_deg: FieldOfView
     viewpoint: Name | None = None
     saved: bool = False
 
 
 class SceneDescription(_Model):
-    """The open scene of a Blender: its cameras, the active one, and the size of a picture in pixels."""
+    """The open scene of a Blender: its cameras, the active one, and the size of a picture in pixels.
+
+    Raises:
+        InputError: The names of the cameras contradict each other. It is no ``ValidationError``, because no JSON schema can state
+            this rule.
+    """
 
     name: Name
     title: Annotated[str, Field(max_length=200)]
@@ -68,12 +75,12 @@ class SceneDescription(_Model):
     def _check_names(self) -> Self:
         names = [camera.name for camera in self.cameras]
         if len(set(names)) != len(names):
-            raise ValueError("two cameras have the same name")
+            raise InputError("Two cameras of the scene have the same name.")
         viewpoints = {camera.name for camera in self.cameras if camera.viewpoint is None}
         if self.active not in viewpoints:
-            raise ValueError("the active camera must be one of the cameras, and its own viewpoint")
+            raise InputError("The active camera must be one of the cameras of the scene, and its own viewpoint.")
         if any(camera.viewpoint not in viewpoints for camera in self.cameras if camera.viewpoint is not None):
-            raise ValueError("the viewpoint of a preset must be a camera that is its own viewpoint")
+            raise InputError("The viewpoint of a preset must be a camera of the scene that is its own viewpoint.")
         return self
 
 
