@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import threading
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
@@ -201,7 +200,7 @@ def test_a_connection_belongs_to_its_client(served: Served, blender: FakeBlender
 )
 def test_wrong_descriptions_are_refused(served: Served, cameras: list[dict[str, object]], status: int) -> None:
     with served.client() as client:
-        reply = client.post(PATH, content=json.dumps({**description(), "cameras": cameras}))
+        reply = client.post(PATH, json={**description(), "cameras": cameras})
     assert reply.status_code == status
 
 
