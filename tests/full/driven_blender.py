@@ -120,19 +120,19 @@ def without_window(home: Path) -> Iterator[DrivenBlender]:
 
 
 @contextmanager
-def screen(number: int, size: str = "1500x900") -> Iterator[str]:
-    """Start an X server without a screen, and return its name."""
+def screen(size: str = "1500x900") -> Iterator[str]:
+    """Start an X server without a screen, and return its name. The server chooses a free number."""
     program = shutil.which("Xvfb")
     assert program is not None, "install xvfb"
-    name = f":{number}"
-    server = subprocess.Popen([program, name, "-screen", "0", f"{size}x24", "-nolisten", "tcp"], stderr=subprocess.DEVNULL)
+    reading, writing = os.pipe()
+    command = [program, "-displayfd", str(writing), "-screen", "0", f"{size}x24", "-nolisten", "tcp"]
+    server = subprocess.Popen(command, stderr=subprocess.DEVNULL, pass_fds=(writing,))
+    os.close(writing)
     try:
-        deadline_s = time.monotonic() + 60.0
-        while not Path(f"/tmp/.X11-unix/X{number}").exists():  # noqa: S108 - where X servers put their sockets
-            assert time.monotonic() < deadline_s
-            assert server.poll() is None, "the X server ended"
-            time.sleep(0.05)
-        yield name
+        with os.fdopen(reading) as numbers:
+            number = numbers.readline().strip()  # empty if the server ends
+        assert number, "the X server did not start"
+        yield f":{number}"
     finally:
         server.terminate()
         server.wait(30)
