@@ -1,4 +1,4 @@
-"""Names of the built-in planners and perception backends, as used in options, traces, evaluation logs and reports."""
+"""Names of the built-in planners, perception backends and cameras, as used in options, traces, evaluation logs and reports."""
 
 GRAMMAR = "grammar"
 """The rule-based planner."""
@@ -24,3 +24,6 @@ DETERMINISTIC = (GRAMMAR, GROUND_TRUTH, NOISY, SERVED_TRUTH)
 
 DEFAULT_SCENE = "highway-works"
 """The scene that commands use by default."""
+
+BLENDER_WINDOW = "blender-window"
+"""The camera in the scene that is open in a Blender, to which the add-on connects."""

@@ -35,7 +35,7 @@ def test_schemes_are_case_insensitive_and_options_follow_a_question_mark() -> No
     [
         ("", "The camera spec does not name a scene"),
         ("sim:", "The camera spec does not name a scene"),
-        ("rtsp://10.0.0.7", "There is no camera scheme 'rtsp'. Known: axis, blender, onvif, sim"),
+        ("rtsp://10.0.0.7", "There is no camera scheme 'rtsp'. Known: axis, blender, blender-window, onvif, sim"),
         ("axis://", "user@host"),
         ("axis://op@host:0", "port"),
         ("axis://op@host?stream=hls", "mjpeg or rtsp; got 'hls'"),

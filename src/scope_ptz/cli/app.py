@@ -47,6 +47,8 @@ models_app = typer.Typer(
     cls=LeanGroup, help="List models, pairs and plug-ins, and print how to serve a model.", invoke_without_command=True
 )
 token_app = typer.Typer(cls=LeanGroup, help="Add, list and remove tokens for `scope serve`.", no_args_is_help=True)
+addon_app = typer.Typer(cls=LeanGroup, help="Build the add-on for Blender.", no_args_is_help=True)
+app.add_typer(addon_app, name="blender-addon", rich_help_panel="Set up")
 app.add_typer(scene_app, name="scene", rich_help_panel="Set up")
 app.add_typer(models_app, name="models", rich_help_panel="Set up")
 app.add_typer(token_app, name="token", rich_help_panel="Set up")
@@ -182,6 +184,19 @@ def mcp(
     from scope_ptz.cli.serve import run_mcp
 
     run_mcp(server, transport, role, as_json=as_json)
+
+
+# The add-on for Blender --------------------------------------------------------------------------------------------------
+@addon_app.command("build")
+@command
+def addon_build(
+    out: Annotated[Path, typer.Option("--out", "-o", help="File to write (default: scope-addon.zip).")] = Path("scope-addon.zip"),
+    as_json: JsonOption = False,
+) -> None:
+    """Build one zip file that Blender 3.4 to 4.1 installs as an add-on, and Blender 4.2 or later as an extension."""
+    from scope_ptz.cli.blender_addon import build
+
+    build(out, as_json=as_json)
 
 
 # Tokens ----------------------------------------------------------------------------------------------------------------

@@ -346,6 +346,9 @@ class ServerFlags:
         float | None, typer.Option("--idle-after", min=1.0, help="Return an unused camera to a preset after N seconds.")
     ] = None
     idle_preset: Annotated[str, typer.Option("--idle-preset", help="Preset to which unused cameras return (default: home).")] = ""
+    until_eof: Annotated[
+        bool, typer.Option("--until-eof", help="End when the standard input is closed, for programs that start the server.")
+    ] = False
 
 
 def command(function: Callable[..., int | None]) -> Callable[..., None]:

@@ -69,7 +69,7 @@ def run_server(flags: ServerFlags, *, kind: Serving = "api", as_json: bool) -> N
                 put("")
                 put("Press Ctrl-C to stop.")
             sys.stdout.flush()
-            await anyio.sleep_forever()
+            await (_end_of_input() if flags.until_eof else anyio.sleep_forever())
 
     run_async(work)
 
@@ -164,6 +164,26 @@ def _site(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[[], Site
     folder, pairs = flags.runs_dir or runs_dir or settings.runs_dir, tuple(flags.pair or ())
     options = SiteOptions(folder, tuple(cameras), pairs, idle=idle, idle_of=idle_returns())
     return lambda: Site(chosen, options)
+
+
+async def _end_of_input() -> None:
+    """Wait until the standard input is closed, which also happens when the program that started the server crashes."""
+    import asyncio
+    import os
+    import threading
+    from contextlib import suppress
+
+    ended, loop = asyncio.Event(), asyncio.get_running_loop()
+
+    def read() -> None:
+        with suppress(OSError):
+            while os.read(0, 4096):
+                pass
+        with suppress(RuntimeError):  # the loop has ended
+            loop.call_soon_threadsafe(ended.set)
+
+    threading.Thread(target=read, name="end-of-input", daemon=True).start()
+    await ended.wait()
 
 
 def add_token(name: str, role: str, tokens: Path | None, *, as_json: bool) -> None:

@@ -11,6 +11,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 from urllib.parse import parse_qsl
 
+from scope_ptz.builtin_names import BLENDER_WINDOW
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.clocks import Clock
 from scope_ptz.camera.control import user_name
@@ -22,12 +23,13 @@ from scope_ptz.factory.scenes import scene_search
 from scope_ptz.settings import find_camera_file, load_settings
 
 if TYPE_CHECKING:
+    from scope_ptz.camera.blender_addon.connection import AddOnSlot
     from scope_ptz.perception.ground_truth.served import ServedTruth
     from scope_ptz.simulator.pack import Scene
 
 __all__ = ["BUILT_IN_SCHEMES", "CameraSpec", "OpenCamera", "camera_names", "open_camera", "parse_camera"]
 
-BUILT_IN_SCHEMES = ("sim", "blender", *NETWORK_SCHEMES)
+BUILT_IN_SCHEMES = ("sim", "blender", BLENDER_WINDOW, *NETWORK_SCHEMES)
 
 _FRAME_OPTIONS = ("width", "height")
 _OPTIONS = {"sim": _FRAME_OPTIONS, "blender": (*_FRAME_OPTIONS, "samples")}
@@ -48,6 +50,8 @@ def parse_camera(text: str) -> CameraSpec:
     """
     text = text.strip()
     scheme, colon, rest = text.partition(":")
+    if text == BLENDER_WINDOW:
+        colon = ":"
     if not colon:
         if (named := _named(text)) is not None:
             return named
@@ -170,6 +174,7 @@ async def open_camera(
     actor: str | None = None,
     measuring: bool = False,
     dry_run: Callable[[str], None] | None = None,
+    add_on: AddOnSlot | None = None,
 ) -> OpenCamera:
     """Open a camera. A camera named in ``scope.yaml`` follows the rules in that file.
 
@@ -185,6 +190,7 @@ async def open_camera(
             assume values that are not known yet.
         dry_run: If given, commands are not executed. Instead, this function is called with a sentence about each. A simulated
             camera still starts at its preset.
+        add_on: The connection of the add-on in a Blender, for ``blender-window``; None outside a server.
 
     Returns:
         The open camera, which the caller closes.
@@ -209,6 +215,9 @@ async def open_camera(
 
         live = await open_live_blender(spec, viewpoint=viewpoint, time_s=time_s, realtime=realtime)
         opened = OpenCamera(spec, live.camera, live.scene, live.release)
+    elif spec.scheme == BLENDER_WINDOW:
+        _reject_scene_options(spec, viewpoint, time_s, "the scene that is open in Blender")
+        opened = _open_blender_window(spec, add_on)
     elif spec.scheme in NETWORK_SCHEMES:
         opened = await _open_network(spec, viewpoint, time_s, actor, measuring=measuring)
     else:
@@ -244,6 +253,17 @@ def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | Non
     clock = SceneClock(scene.file.start_s if time_s is None else time_s, realtime=realtime)
     width, height = frame_size(spec)
     return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, width=width, height=height), scene)
+
+
+def _open_blender_window(spec: CameraSpec, add_on: AddOnSlot | None) -> OpenCamera:
+    from scope_ptz.camera.blender_addon.camera import BlenderWindowCamera
+
+    if add_on is None:
+        raise InputError(
+            f"The camera {BLENDER_WINDOW} exists only on a server, to which the add-on in Blender connects. Start the server with "
+            f"`scope serve --camera {BLENDER_WINDOW}`."
+        )
+    return OpenCamera(spec, BlenderWindowCamera(add_on))
 
 
 async def _open_network(
@@ -302,6 +322,12 @@ def _unknown_scheme(scheme: str, text: str) -> str:
 def _check_built_in(spec: CameraSpec) -> None:
     if spec.scheme in NETWORK_SCHEMES:
         check_network_spec(spec)
+        return
+    if spec.scheme == BLENDER_WINDOW:
+        if spec.address or spec.options:
+            raise InputError(
+                f"The camera spec {BLENDER_WINDOW}: has neither an address nor options. Set the picture size in Blender."
+            )
         return
     if not spec.address:
         raise InputError(

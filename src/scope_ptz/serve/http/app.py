@@ -14,6 +14,7 @@ from starlette.routing import BaseRoute, Mount, Route
 from starlette.types import ASGIApp
 
 from scope_ptz.serve.http import (
+    add_on_routes,
     benchmark_routes,
     camera_routes,
     card_routes,
@@ -47,6 +48,7 @@ _MODULES = (
     run_routes,
     conversation_routes,
     benchmark_routes,
+    add_on_routes,
 )
 
 

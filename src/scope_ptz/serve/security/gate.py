@@ -25,6 +25,11 @@ from scope_ptz.serve.site.clients import LOCAL, Client
 MAX_BODY_BYTES = 256 * 1024
 """Maximum size of a request body, in bytes."""
 
+MAX_PICTURE_BYTES = 32 * 1024 * 1024
+"""Maximum size of a picture that the add-on in a Blender sends, in bytes. A PNG of 3840 x 2160 pixels rarely exceeds it."""
+
+_PICTURE_PATH = re.compile(r"/api/v1/cameras/[^/]+/add-on/[^/]+/pictures/[0-9]+")
+
 OPEN_PATHS = frozenset({"/api/v1/session", "/api/v1/health", "/sign-in"})
 """Paths that need no token: those for signing in, and the health check."""
 
@@ -142,14 +147,15 @@ class Gate:
                     401, "sign_in", "This request needs a token. Send it as `Authorization: Bearer TOKEN`, or sign in."
                 )
             return
-        if int(headers.get("content-length", "0") or 0) > MAX_BODY_BYTES:
-            await reply.refuse(413, "too_large", f"The body of a request must have at most {MAX_BODY_BYTES} bytes.")
+        max_bytes = max_body_bytes(scope["path"])
+        if int(headers.get("content-length", "0") or 0) > max_bytes:
+            await reply.refuse(413, "too_large", f"The body of a request must have at most {max_bytes} bytes.")
             return
         scope.setdefault("state", {})["client"] = client
         if client is None or not self._access.needs_token:
-            await self._app(scope, _limited(receive), reply.send)
+            await self._app(scope, _limited(receive, max_bytes), reply.send)
         else:
-            await self._serve_while_authorised(client, headers, scope, receive, reply)
+            await self._serve_while_authorised(client, headers, scope, _limited(receive, max_bytes), reply)
 
     async def _serve_while_authorised(
         self, client: Client, headers: dict[str, str], scope: Scope, receive: Receive, reply: _Reply
@@ -158,7 +164,7 @@ class Gate:
 
         Without this check, a client could continue to watch a stream indefinitely.
         """
-        work = asyncio.ensure_future(self._app(scope, _limited(receive), reply.send))
+        work = asyncio.ensure_future(self._app(scope, receive, reply.send))
         try:
             while not (await asyncio.wait({work}, timeout=CHECK_S))[0]:
                 if self._access.client(headers) != client:
@@ -247,7 +253,7 @@ def _headers(scope: Scope) -> dict[str, str]:
         text = value.decode("latin-1")
         result[key] = f"{result[key]}; {text}" if key in result else text
     if not result.get("content-length", "0").isdecimal():
-        result["content-length"] = str(MAX_BODY_BYTES + 1)
+        result["content-length"] = str(MAX_PICTURE_BYTES + 1)
     return result
 
 
@@ -272,7 +278,12 @@ def _wants_page(scope: Scope, headers: dict[str, str]) -> bool:
     return bool(scope.get("method") == "GET" and is_page)
 
 
-def _limited(receive: Receive) -> Receive:
+def max_body_bytes(path: str) -> int:
+    """Return the maximum size of the body of a request, in bytes."""
+    return MAX_PICTURE_BYTES if _PICTURE_PATH.fullmatch(path) else MAX_BODY_BYTES
+
+
+def _limited(receive: Receive, max_bytes: int) -> Receive:
     """Wrap ``receive`` so that it reports a disconnect once the body exceeds the limit, whatever length the headers state."""
     received_bytes = 0
 
@@ -280,6 +291,6 @@ def _limited(receive: Receive) -> Receive:
         nonlocal received_bytes
         message = await receive()
         received_bytes += len(message.get("body", b"")) if message["type"] == "http.request" else 0
-        return {"type": "http.disconnect"} if received_bytes > MAX_BODY_BYTES else message
+        return {"type": "http.disconnect"} if received_bytes > max_bytes else message
 
     return limited

@@ -10,11 +10,12 @@ from typing import Literal
 import anyio
 from anyio import to_thread
 
-from scope_ptz.camera.base import CameraInfo
+from scope_ptz.camera.base import Camera
 from scope_ptz.errors import CameraError, ScopeError
 from scope_ptz.factory.cameras import parse_camera
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.serve.site.camera_kinds import CameraKind, has_rules, kind_of, scene_of
+from scope_ptz.serve.site.scene_time import scene_time
 from scope_ptz.serve.site.station import Station
 from scope_ptz.simulator.models import SceneFile
 
@@ -101,7 +102,7 @@ class CameraCards:
         problem = await self._check(station)
         opened = station.open_camera
         if opened is not None and scene is None:
-            card = replace(card, title=opened.camera.info.name, abilities=_of_device(opened.camera.info))
+            card = replace(card, title=opened.camera.info.name, abilities=_of_device(opened.camera))
         works = problem is None
         return replace(card, health="connected" if works else "failed", problem=problem, has_picture=works)
 
@@ -144,10 +145,10 @@ def _of_scene(scene: SceneFacts, *, ruled: bool) -> tuple[Ability, ...]:
     return tuple(name for name, has in known if has)
 
 
-def _of_device(info: CameraInfo) -> tuple[Ability, ...]:
-    can = info.capabilities
+def _of_device(camera: Camera) -> tuple[Ability, ...]:
+    can = camera.info.capabilities
     known: list[tuple[Ability, bool]] = [
         ("move", True), ("drive", can.drives), ("presets", can.edits_presets), ("focus", bool(can.focus)),
-        ("iris", bool(can.iris)), ("scene_time", info.simulated),
+        ("iris", bool(can.iris)), ("scene_time", scene_time(camera) is not None),
     ]  # fmt: skip
     return tuple(name for name, has in known if has)

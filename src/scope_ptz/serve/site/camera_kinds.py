@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
+from scope_ptz.builtin_names import BLENDER_WINDOW
 from scope_ptz.camera.guard.rules import CameraRules, Mounting
 from scope_ptz.factory.cameras import parse_camera
 from scope_ptz.factory.cameras.named import named_cameras
 
 CameraKind = Literal["simulated", "blender", "axis", "onvif", "plug_in"]
 
-_KINDS = {"sim": "simulated"}
+_KINDS = {"sim": "simulated", BLENDER_WINDOW: "blender"}
 
 
 def kind_of(spec: str) -> CameraKind:
@@ -26,7 +27,12 @@ def kind_of(spec: str) -> CameraKind:
 
 def has_scene_time(spec: str) -> bool:
     """Return whether a camera shows a simulated world, in which time can be paused and changed."""
-    return kind_of(spec) in ("simulated", "blender")
+    return parse_camera(spec).scheme in ("sim", "blender")
+
+
+def is_blender_window(spec: str) -> bool:
+    """Return whether a camera is the open scene of a Blender, to which an add-on connects."""
+    return parse_camera(spec).scheme == BLENDER_WINDOW
 
 
 def scene_of(spec: str) -> str | None:

@@ -12,6 +12,7 @@ from typing import Self
 import anyio
 
 from scope_ptz.agent.records import Budgets
+from scope_ptz.builtin_names import BLENDER_WINDOW
 from scope_ptz.camera.control import user_name
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.factory.cameras.named import named_cameras
@@ -129,6 +130,8 @@ def site_cameras(names: Sequence[str], settings: ScopeSettings) -> dict[str, str
     """
     named = {name: name for name in named_cameras()}
     known = named | {name: f"sim:{name}" for name in list_scenes(scene_search(settings)) if name not in named}
+    if BLENDER_WINDOW in names:  # it works only with an add-on, so it is not among all cameras
+        known.setdefault(BLENDER_WINDOW, f"{BLENDER_WINDOW}:")
     for name in names:
         if name not in known:
             raise UnknownNameError("camera or scene", name, known)

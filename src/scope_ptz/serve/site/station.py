@@ -14,6 +14,7 @@ import anyio
 from anyio import to_thread
 
 from scope_ptz.camera.base import Arrival, Camera
+from scope_ptz.camera.blender_addon.connection import AddOnSlot
 from scope_ptz.camera.guard.wrapper import innermost
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import CameraError, InputError, PackError, ScopeError
@@ -85,6 +86,8 @@ class Station:
         self._commanded_s = monotonic()
         self._returned = True
         self.running: RunHandle | None = None
+        self.add_on = AddOnSlot()
+        """The connection of the add-on in a Blender. Only a camera of the kind ``blender-window`` uses it."""
         self.control = CameraControl(name, lambda: self.running is not None, lease_s=lease_s)
         self.live = LivePicture(name, self.camera)
         self.preset_changes = 0
@@ -99,7 +102,7 @@ class Station:
         async with self._opening:
             if self._opened is None:
                 try:
-                    self._opened = await open_camera(self.spec, realtime=True, actor=self._actor)
+                    self._opened = await open_camera(self.spec, realtime=True, actor=self._actor, add_on=self.add_on)
                 except ScopeError as error:
                     self.problem = error
                     raise
@@ -237,6 +240,7 @@ class Station:
 
     async def close(self) -> None:
         """Stop and close the camera, and close the connections to models."""
+        self.add_on.end()  # first, so that nothing waits for a Blender that has not read its requests
         opened, self._opened = self._opened, None
         for models in self._models.values():
             await models.close()

@@ -1,0 +1,136 @@
+"""Run an instruction on the server and follow it, in a thread."""
+
+from __future__ import annotations
+
+import queue
+import re
+import threading
+from pathlib import Path
+from typing import NamedTuple
+
+from .address import Address
+from .errors import AddOnError
+from .steps import End, Step, end_of, step_of
+from .web import Web, part
+
+_PICTURE = re.compile(r"(?:frames|pictures)/[A-Za-z0-9._-]{1,60}")
+
+
+class Deciding(NamedTuple):
+    """The planner is about to decide its next step; ``step`` is the number of the last one."""
+
+    step: int
+
+
+class Shown(NamedTuple):
+    """A picture of the run, with the detections marked, was stored in a file."""
+
+    path: Path
+
+
+class Problem(NamedTuple):
+    """The run cannot be started or followed."""
+
+    text: str
+
+
+News = Step | End | Deciding | Shown | Problem
+
+
+class Asking:
+    """An instruction and its run.
+
+    Args:
+        address: The server.
+        client: The name of this client.
+        camera: The name of the camera on the server.
+        instruction: What the user typed.
+        pair: The name of the pair of models.
+        folder: The folder for the pictures of the run.
+    """
+
+    def __init__(self, address: Address, client: str, camera: str, instruction: str, pair: str, folder: Path) -> None:
+        self._address, self._client, self._folder = address, client, folder
+        self._body = {"camera": camera, "instruction": instruction, **({"pair": pair} if pair else {})}
+        self._run = ""
+        self._cancelled = threading.Event()
+        self._stream = Web(address, client)
+        self._thread = threading.Thread(target=self._work, name="scope-run", daemon=True)
+        self.instruction = instruction
+        self.news: queue.SimpleQueue[News] = queue.SimpleQueue()
+        """What happens, for the main thread. The last entry is an ``End`` or a ``Problem``."""
+
+    def start(self) -> None:
+        """Start the run, in the background."""
+        self._thread.start()
+
+    def cancel(self) -> None:
+        """Cancel the run, in the background."""
+        self._cancelled.set()
+        threading.Thread(target=self._cancel, name="scope-cancel", daemon=True).start()
+
+    def abandon(self) -> None:
+        """Stop following the run. It continues on the server."""
+        self._stream.close()
+
+    def join(self, timeout_s: float) -> None:
+        """Wait until the thread has ended."""
+        if self._thread.is_alive():
+            self._thread.join(timeout_s)
+
+    def _work(self) -> None:
+        web = Web(self._address, self._client)
+        try:
+            self._run = str(web.ask("POST", "/runs", self._body)["id"])
+            if self._cancelled.is_set():
+                self._cancel()
+            if not self._follow(web):
+                self.news.put(Problem("The server ended the connection before the run was over."))
+        except AddOnError as error:
+            self.news.put(Problem(str(error)))
+        except Exception as error:  # a thread that fails silently would leave the sidebar at "working"
+            self.news.put(Problem(f"The run cannot be followed: {type(error).__name__}."))
+        finally:
+            web.close()
+
+    def _follow(self, web: Web) -> bool:
+        """Pass on the records of the run. Return whether it has ended."""
+        for event in self._stream.events(f"/runs/{part(self._run)}/events"):
+            if event is None:
+                continue
+            if event.name == "decision":
+                self.news.put(Deciding(int(event.data["step"])))
+            elif event.name == "call":
+                step = step_of(event.data)
+                self.news.put(step)
+                self._fetch(web, step.picture)
+            elif event.name == "end":
+                self.news.put(end_of(event.data))
+                return True
+        return False
+
+    def _fetch(self, web: Web, picture: str) -> None:
+        """Download a picture with its marks. A picture that is not available is not shown."""
+        if not _PICTURE.fullmatch(picture):
+            return
+        try:
+            data = web.data("GET", f"/runs/{part(self._run)}/pictures/{picture}?marks=true")
+        except AddOnError:
+            return
+        # The name is our own, so that nothing from the server becomes part of a path.
+        path = self._folder / "scope-frame.jpg"
+        fresh = path.with_suffix(".new")
+        fresh.write_bytes(data)
+        fresh.replace(path)
+        self.news.put(Shown(path))
+
+    def _cancel(self) -> None:
+        if not self._run:
+            return
+        web = Web(self._address, self._client)
+        try:
+            web.ask("POST", f"/runs/{part(self._run)}/cancel")
+        except AddOnError as error:
+            self.news.put(Problem(f"The run could not be cancelled: {error}"))
+        finally:
+            web.close()

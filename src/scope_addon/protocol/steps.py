@@ -1,0 +1,83 @@
+"""What the sidebar shows of a run, from the records that the server streams."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+MAX_TEXT = 300  # characters of a text in the sidebar
+
+OUTCOMES = {
+    "answered": "Answered",
+    "clarification": "Question back",
+    "refused": "Refused",
+    "step_limit": "Too many steps",
+    "budget": "Out of time or tokens",
+    "planner_error": "The planner failed",
+    "camera_error": "The camera failed",
+    "cancelled": "Cancelled",
+}
+
+
+class Step(NamedTuple):
+    """A finished tool call: the call, its result or error, its duration in seconds, and the name of its picture, if any."""
+
+    call: str
+    text: str
+    failed: bool
+    duration_s: float
+    picture: str
+
+
+class Timing(NamedTuple):
+    """One part of the duration of a run, in seconds."""
+
+    part: str
+    duration_s: float
+
+
+class End(NamedTuple):
+    """The end of a run: its outcome, the answer, and how long each part took."""
+
+    outcome: str
+    text: str
+    timings: tuple[Timing, ...]
+
+
+def step_of(record: dict[str, Any]) -> Step:
+    """Return the step of a ``call`` record."""
+    outcome = record["outcome"]
+    call, result = outcome["call"], outcome.get("result") or {}
+    arguments = ", ".join(f"{name}={_short(value)}" for name, value in call["arguments"].items() if value is not None)
+    error = outcome.get("error")
+    text = str(error) if error else str(result.get("message", "done"))
+    pictures = result.get("frames") or ([record["frame"]] if record.get("frame") else [])
+    return Step(
+        f"{call['name']}({arguments})"[:MAX_TEXT],
+        text[:MAX_TEXT],
+        bool(error),
+        float(record["timings"]["total_s"]),
+        str(pictures[-1]) if pictures else "",
+    )
+
+
+def end_of(record: dict[str, Any]) -> End:
+    """Return the end of an ``end`` record."""
+    timings = record["timings"]
+    parts = [
+        Timing(label, float(timings[name]))
+        for name, label in (
+            ("planner_s", "planner"),
+            ("perception_s", "perception"),
+            ("camera_s", "camera"),
+            ("render_s", "pictures"),
+        )
+        if name in timings
+    ]
+    outcome = str(record["outcome"])
+    return End(OUTCOMES.get(outcome, outcome), str(record["text"])[:4000], (*parts, Timing("total", float(timings["total_s"]))))
+
+
+def _short(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:g}"
+    return repr(value) if isinstance(value, str) else str(value)

@@ -1,0 +1,62 @@
+"""Short requests to the server in the background, whose results the main thread collects."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from .address import Address
+from .errors import AddOnError
+from .web import Web
+
+Done = Callable[[Any, str], None]
+"""Receives the result, and the reason for a failure or an empty text. The main thread calls it."""
+
+
+class Tasks:
+    """Sends requests one after the other in a thread.
+
+    Args:
+        address: The server.
+        client: The name of this client.
+    """
+
+    def __init__(self, address: Address, client: str) -> None:
+        self._address, self._client = address, client
+        self._waiting: queue.SimpleQueue[tuple[Callable[[Web], Any], Done] | None] = queue.SimpleQueue()
+        self._finished: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._work, name="scope-tasks", daemon=True)
+        self._thread.start()
+
+    def add(self, task: Callable[[Web], Any], done: Done) -> None:
+        """Carry out a task in the background. ``collect`` calls ``done`` when it has finished."""
+        self._waiting.put((task, done))
+
+    def collect(self) -> None:
+        """Call the functions of finished tasks. Only the main thread calls this."""
+        while not self._finished.empty():
+            self._finished.get()()
+
+    def stop(self) -> None:
+        """End the thread after the current task."""
+        self._waiting.put(None)
+
+    def join(self, timeout_s: float) -> None:
+        """Wait until the thread has ended."""
+        self._thread.join(timeout_s)
+
+    def _work(self) -> None:
+        web = Web(self._address, self._client)
+        while (entry := self._waiting.get()) is not None:
+            task, done = entry
+            result, problem = None, ""
+            try:
+                result = task(web)
+            except AddOnError as error:
+                problem = str(error)
+            except (KeyError, TypeError, ValueError):
+                problem = "The server's reply has an unknown form. Update the add-on."
+            self._finished.put(lambda done=done, result=result, problem=problem: done(result, problem))  # type: ignore[misc]
+        web.close()

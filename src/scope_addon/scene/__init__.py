@@ -1,0 +1,1 @@
+"""The camera in the open scene. These modules run on Blender's main thread only."""

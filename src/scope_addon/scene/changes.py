@@ -1,0 +1,73 @@
+"""Notice changes of the scene, so that an unchanged picture is not taken again."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import cameras
+
+_NUMBERS = itertools.count(1)
+_state = {"version": next(_NUMBERS), "own": 0}
+
+
+def version() -> int:
+    """Return a number that changes whenever something in the scene other than SCOPE's camera changes."""
+    return _state["version"]
+
+
+def changed() -> None:
+    """Record a change."""
+    _state["version"] = next(_NUMBERS)
+
+
+@contextmanager
+def own_change() -> Iterator[None]:
+    """Within the context, changes of the scene are SCOPE's own and do not count."""
+    _state["own"] += 1
+    try:
+        yield
+        bpy.context.view_layer.update()
+    finally:
+        _state["own"] -= 1
+
+
+@persistent
+def on_update(_scene: Any, graph: Any = None) -> None:
+    """Handle an update of the scene."""
+    if _state["own"]:
+        return
+    if graph is None or any(not _is_ours(update.id) for update in graph.updates):
+        changed()
+
+
+@persistent
+def on_frame(_scene: Any, _graph: Any = None) -> None:
+    """Handle a change of the current frame of the animation. Rendering a picture reports one, too."""
+    if not _state["own"]:
+        changed()
+
+
+def add_handlers() -> None:
+    """Start to notice changes."""
+    bpy.app.handlers.depsgraph_update_post.append(on_update)
+    bpy.app.handlers.frame_change_post.append(on_frame)
+
+
+def remove_handlers() -> None:
+    """Stop to notice changes."""
+    for handlers, handler in ((bpy.app.handlers.depsgraph_update_post, on_update), (bpy.app.handlers.frame_change_post, on_frame)):
+        if handler in handlers:
+            handlers.remove(handler)
+
+
+def _is_ours(item: Any) -> bool:
+    original = item.original
+    if isinstance(original, bpy.types.Object):
+        return cameras.VIEW_CAMERA in original
+    return isinstance(original, bpy.types.Camera) and original.name.startswith("SCOPE camera")

@@ -1,0 +1,130 @@
+"""Carry out the server's requests on the main thread, a little at a time."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from contextlib import suppress
+from typing import Any
+
+import bpy
+
+from ..protocol.errors import AddOnError
+from ..protocol.link import CameraLink, Picture, Reply, Request
+from ..protocol.view import size_of, view_of
+from . import cameras, changes, pictures
+from .view_camera import ViewCamera
+
+MAX_REST_S = 0.5
+"""Maximum pause in seconds after a picture, in which Blender's window responds. A pause is half as long as its picture took."""
+
+DESCRIBE_S = 1.0
+"""Seconds between checks whether the user has changed the cameras of the scene."""
+
+
+class Executor:
+    """The camera of one connection.
+
+    Args:
+        link: The connection to the server.
+        description: The description of the scene that the link sent.
+    """
+
+    def __init__(self, link: CameraLink, description: dict[str, Any]) -> None:
+        self._link, self._description = link, description
+        self._pictures: deque[Request] = deque()
+        self._rest_until_s = self._describe_s = 0.0
+        self.picture_s = 0.0
+        """Seconds that the last picture took."""
+        self.pictures = 0
+        """Number of pictures so far."""
+        with changes.own_change():
+            self.camera = ViewCamera(bpy.context.scene)
+
+    def tick(self) -> bool:
+        """Carry out what has arrived. At most one picture is taken. Return whether something visible changed."""
+        seen = False
+        while not self._link.requests.empty():
+            request = self._link.requests.get()
+            if request.operation == "frame":
+                self._pictures.append(request)
+            else:
+                self._link.reply(request, self._attempt(request))
+                seen = True
+        if self._pictures and time.monotonic() >= self._rest_until_s:
+            request = self._pictures.popleft()
+            self._link.reply(request, self._attempt(request))
+        if self.camera.gliding:
+            with changes.own_change():
+                self.camera.tick()
+            seen = True
+        self._describe_again()
+        return seen
+
+    def close(self) -> None:
+        """Restore the scene's own camera."""
+        with changes.own_change():
+            self.camera.remove()
+
+    def restore_camera(self) -> None:
+        """Put SCOPE's camera back into the scene, after it was removed to save the file."""
+        with changes.own_change():
+            if self.camera.view is not None:
+                self.camera.settle(self.camera.view)
+            else:
+                self.camera.object()
+
+    def describe_now(self) -> None:
+        """Send the description of the scene if it has changed."""
+        description = cameras.describe(bpy.context.scene)
+        if description != self._description:
+            self._description = description
+            self._link.update(description)
+
+    def _attempt(self, request: Request) -> Reply:
+        """Carry out a request. Any failure becomes its reply, because an exception would end the timer."""
+        try:
+            return self._carry_out(request)
+        except AddOnError as error:
+            return error
+        except Exception as error:
+            return AddOnError(f"Blender failed: {type(error).__name__}: {error}")
+
+    def _carry_out(self, request: Request) -> Reply:
+        scene, arguments = bpy.context.scene, request.arguments
+        if request.operation == "look":
+            with changes.own_change():
+                self.camera.look(view_of(arguments), glide=not bpy.app.background)
+            return {}
+        if request.operation == "frame":
+            return self._picture(scene, arguments)
+        if request.operation == "save_preset":
+            cameras.save_preset(scene, arguments)
+        elif request.operation == "remove_preset":
+            cameras.remove_preset(scene, str(arguments.get("name", "")))
+        else:
+            raise AddOnError("The server sent a request that this add-on does not understand. Update the add-on.")
+        self._description = cameras.describe(scene)
+        return self._description
+
+    def _picture(self, scene: Any, arguments: dict[str, Any]) -> Reply:
+        view, size, source = view_of(arguments), size_of(arguments), scene.scope.source
+        version = f"{changes.version()}-{pictures.look_of(source)}"[:60]
+        if arguments.get("version") == version:
+            return {"unchanged": version}
+        began_s = time.monotonic()
+        with changes.own_change():
+            camera = self.camera.settle(view)
+            bpy.context.view_layer.update()
+            encode = pictures.take(scene, camera, size, source)
+        self.picture_s = time.monotonic() - began_s
+        self._rest_until_s = time.monotonic() + min(MAX_REST_S, self.picture_s / 2)
+        self.pictures += 1
+        return Picture(encode, version)
+
+    def _describe_again(self) -> None:
+        now_s = time.monotonic()
+        if now_s >= self._describe_s:
+            self._describe_s = now_s + DESCRIBE_S
+            with suppress(AddOnError):  # the user has deleted the last camera; the server keeps the last description
+                self.describe_now()

@@ -1,0 +1,296 @@
+"""The state of the add-on: its server, its connection, the current run, and the timer that works on the main thread."""
+
+from __future__ import annotations
+
+import secrets
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..protocol.address import Address, parse_address
+from ..protocol.asking import Asking, Deciding, Problem, Shown
+from ..protocol.errors import AddOnError
+from ..protocol.link import CameraLink
+from ..protocol.server import CAMERA, ServerProcess
+from ..protocol.steps import End, Step
+from ..protocol.tasks import Tasks
+from ..protocol.web import part
+from ..scene import cameras
+from ..scene.executor import Executor
+from . import picture_view, properties
+
+ACTIVE_S, WAITING_S = 0.02, 0.1
+"""Seconds between two calls of the timer, while connected and while the server starts."""
+
+MAX_STEPS = 60
+START_S = 60.0  # until a server that was started must be ready
+
+
+class Session:
+    """One use of the add-on, from Connect to Disconnect.
+
+    All methods are called on the main thread and return at once. ``tick`` must be called repeatedly.
+    """
+
+    def __init__(self) -> None:
+        self.client = f"blender-{secrets.token_hex(6)}"
+        self.camera = CAMERA
+        self.problem = ""
+        self.presets: list[str] = []
+        self.steps: list[Step] = []
+        self.end: End | None = None
+        self.activity = ""
+        self.asked_s = 0.0
+        self.asking: Asking | None = None
+        self.executor: Executor | None = None
+        self._server: ServerProcess | None = None
+        self._server_since_s = 0.0
+        self._link: CameraLink | None = None
+        self._tasks: Tasks | None = None
+        self._address: Address | None = None
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._greeted = False
+        self._updates = 0
+
+    @property
+    def state(self) -> str:
+        """``off``, ``starting``, ``connecting`` or ``connected``."""
+        if self._link is not None:
+            return "connected" if self._link.connected else "connecting"
+        return "starting" if self._server is not None else "off"
+
+    @property
+    def place(self) -> str:
+        """The address of the server; empty if there is none."""
+        return self._address.url if self._address is not None else ""
+
+    def start_server(self, program: str, pairs: list[str]) -> None:
+        """Start a server, and connect to it when it is ready.
+
+        Raises:
+            AddOnError: The program cannot be started, or the scene has no camera.
+        """
+        self.disconnect()
+        self.problem = ""
+        cameras.describe(bpy.context.scene)  # report a scene without a camera before anything is started
+        runs = Path(bpy.utils.user_resource("DATAFILES", path="scope_runs", create=True))
+        self._server, self._server_since_s, self.camera = ServerProcess(program, pairs, runs), time.monotonic(), CAMERA
+
+    def connect(self, url: str, token: str, camera: str) -> None:
+        """Connect the open scene to a server.
+
+        Raises:
+            AddOnError: The address is invalid, or the scene has no camera.
+        """
+        self.disconnect()
+        self.problem = ""
+        address = parse_address(url, token)
+        if not address.is_local and not getattr(bpy.app, "online_access", True):
+            raise AddOnError("Blender's online access is off. Allow it in Preferences > System, or use a server on this machine.")
+        self.camera = camera
+        self._open(address)
+
+    def disconnect(self) -> None:
+        """Disconnect, and end the server if the add-on started it."""
+        if self.asking is not None:
+            self.asking.abandon()
+        if self._tasks is not None:
+            self._tasks.stop()
+        if self._link is not None:
+            self._link.stop()
+        if self.executor is not None:
+            self.executor.close()
+        if self._server is not None:
+            self._server.stop()
+            threading.Thread(target=self._server.wait, name="scope-server-end", daemon=True).start()
+        self.asking = self._tasks = self._link = self.executor = self._server = self._address = None
+        self.presets, self._greeted, self.activity = [], False, ""
+        properties.set_pairs([])
+
+    def ask(self, instruction: str, pair: str) -> None:
+        """Run an instruction.
+
+        Raises:
+            AddOnError: Blender is not connected, or a run is in progress.
+        """
+        if self._address is None or self.state != "connected":
+            raise AddOnError("Connect to a server first.")
+        if self.asking is not None:
+            raise AddOnError("An instruction is in progress. Wait until it ends, or cancel it.")
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="scope-", ignore_cleanup_errors=True)
+        self.steps, self.end, self.activity, self.problem = [], None, "Planning the first step", ""
+        self.asked_s = time.monotonic()
+        chosen = "" if pair == "NONE" else pair
+        self.asking = Asking(self._address, self.client, self.camera, instruction, chosen, Path(self._folder.name))
+        self.asking.start()
+
+    def cancel(self) -> None:
+        """Cancel the run in progress, if any."""
+        if self.asking is not None:
+            self.activity = "Cancelling"
+            self.asking.cancel()
+
+    def go_to_preset(self, name: str) -> None:
+        """Go to a preset, in the background."""
+        self._task("POST", f"/cameras/{part(self.camera)}/presets/{part(name)}/go")
+
+    def go_home(self) -> None:
+        """Go to the view of the scene's own camera, in the background."""
+        self._task("POST", f"/cameras/{part(self.camera)}/home")
+
+    def save_preset(self, name: str) -> None:
+        """Save the view of SCOPE's camera as a preset, in the background."""
+        self._task("PUT", f"/cameras/{part(self.camera)}/presets/{part(name)}", {"description": ""})
+
+    def remove_preset(self, name: str) -> None:
+        """Remove a preset, in the background."""
+        self._task("DELETE", f"/cameras/{part(self.camera)}/presets/{part(name)}")
+
+    def scene_changed(self) -> None:
+        """Send the description of the scene, after the add-on itself has changed its cameras."""
+        if self.executor is not None:
+            self.executor.describe_now()
+
+    def file_opened(self) -> None:
+        """Go on with the scene of another file."""
+        if self._link is not None and self._address is not None:
+            address, self.executor = self._address, None
+            self._link.stop()
+            try:
+                self._connect_link(address)
+            except AddOnError as error:
+                self.disconnect()
+                self.problem = str(error)
+
+    def tick(self) -> float | None:
+        """Do what is due. Return the seconds until the next call; None if there is nothing left to do."""
+        redraw = self._watch_server()
+        if self._link is not None:
+            redraw |= self._watch_link(self._link)
+        if self._tasks is not None:
+            self._tasks.collect()
+        if self.asking is not None:
+            redraw |= self._watch_run(self.asking)
+        if redraw:
+            tag_redraw()
+        return ACTIVE_S if self._link is not None else WAITING_S if self._server is not None else None
+
+    def _watch_server(self) -> bool:
+        server = self._server
+        if server is None or self._link is not None:
+            return False
+        problem = server.problem
+        if not problem and time.monotonic() - self._server_since_s > START_S:
+            problem = f"The server did not start within {START_S:g} s."
+        if problem:
+            self.disconnect()
+            self.problem = problem
+        elif server.url:
+            try:
+                self._open(parse_address(server.url))
+            except AddOnError as error:
+                self.disconnect()
+                self.problem = str(error)
+        return True
+
+    def _open(self, address: Address) -> None:
+        self._connect_link(address)
+        self._address = address
+        self._tasks = Tasks(address, self.client)
+
+    def _connect_link(self, address: Address) -> None:
+        description = cameras.describe(bpy.context.scene)
+        self._link = CameraLink(address, self.camera, self.client, description)
+        self._link.start()
+        self.executor, self._greeted, self._updates = Executor(self._link, description), False, 0
+
+    def _watch_link(self, link: CameraLink) -> bool:
+        if link.ended:
+            problem = link.problem or "The connection has ended."
+            if self._server is not None and self._server.problem:
+                problem = self._server.problem
+            self.disconnect()
+            self.problem = problem
+            return True
+        if link.connected and not self._greeted:
+            self._greeted = True
+            self._task("GET", "/pairs", done=self._set_pairs)
+            self._refresh_presets()
+            return True
+        if link.updates != self._updates:  # the server knows the new cameras of the scene
+            self._updates = link.updates
+            self._refresh_presets()
+        return self.executor is not None and self.executor.tick()
+
+    def _watch_run(self, asking: Asking) -> bool:
+        seen = False
+        while not asking.news.empty():
+            news, seen = asking.news.get(), True
+            if isinstance(news, Step):
+                self.steps = [*self.steps, news][-MAX_STEPS:]
+                self.activity = f"Planning step {len(self.steps) + 1}"
+            elif isinstance(news, Deciding):
+                self.activity = f"Working on step {news.step}"
+            elif isinstance(news, Shown):
+                picture_view.show(news.path)
+            else:
+                if isinstance(news, End):
+                    self.end = news
+                elif isinstance(news, Problem):
+                    self.problem = news.text
+                self.asking, self.activity = None, ""
+                self._refresh_presets()
+        return seen
+
+    def _refresh_presets(self) -> None:
+        self._task("GET", f"/cameras/{part(self.camera)}/presets", done=self._set_presets)
+
+    def _set_presets(self, reply: Any) -> None:
+        self.presets = [str(each["name"]) for each in reply]
+
+    def _set_pairs(self, reply: Any) -> None:
+        properties.set_pairs([str(name) for name in reply])
+
+    def _task(self, method: str, path: str, body: object = None, done: Any = None) -> None:
+        if self._tasks is None:
+            raise AddOnError("Connect to a server first.")
+
+        def finished(reply: Any, problem: str) -> None:
+            if problem:
+                self.problem = problem
+            elif done is not None:
+                done(reply)
+            else:
+                self.problem = ""
+                self._refresh_presets()
+            tag_redraw()
+
+        self._tasks.add(lambda web: web.ask(method, path, body), finished)
+
+
+def tag_redraw() -> None:
+    """Let all 3D viewports be drawn again."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in ("VIEW_3D", "IMAGE_EDITOR"):
+                area.tag_redraw()
+
+
+session = Session()
+"""The session of this Blender."""
+
+
+def on_timer() -> float | None:
+    """Call ``tick``; registered with ``bpy.app.timers`` while there is something to do."""
+    return session.tick()
+
+
+def wake() -> None:
+    """Make sure that the timer runs."""
+    if not bpy.app.timers.is_registered(on_timer):
+        bpy.app.timers.register(on_timer, first_interval=0.0, persistent=True)

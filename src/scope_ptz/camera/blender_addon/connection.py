@@ -1,0 +1,179 @@
+"""The connection between a server and the add-on in a Blender: requests to the add-on, and its replies.
+
+The add-on opens the connection and reads requests from a stream. It sends each reply, or a picture, as a request of its own.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import deque
+from collections.abc import AsyncGenerator
+from dataclasses import dataclass, field
+from secrets import token_urlsafe
+from typing import Any
+
+import anyio
+
+from scope_ptz.camera.blender_addon.scene import SceneDescription
+from scope_ptz.errors import CameraError
+
+HEARTBEAT_S = 5.0
+"""Seconds without a request after which the stream of requests contains a heartbeat, so that both ends notice a lost connection."""
+
+MAX_WAITING = 100
+"""Maximum number of requests that Blender has not answered."""
+
+NOT_CONNECTED = "Blender is not connected. In Blender, open the SCOPE tab of the 3D viewport's sidebar and press Connect."
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture as a PNG file. ``version`` identifies the state of the scene that it shows."""
+
+    png: bytes
+    version: str
+
+
+Reply = dict[str, Any] | Picture | CameraError
+"""The reply to a request: the result, a picture, or the reason for a failure."""
+
+
+@dataclass(slots=True)
+class _Waiting:
+    """A request whose reply has not arrived."""
+
+    arrived: anyio.Event = field(default_factory=anyio.Event)
+    reply: Reply | None = None
+
+
+class AddOnConnection:
+    """A connection to the add-on of one Blender.
+
+    Args:
+        description: The scene that is open in Blender.
+        owner: The name of the client that opened the connection.
+    """
+
+    def __init__(self, description: SceneDescription, owner: str) -> None:
+        self.id = token_urlsafe(16)
+        self.description, self.owner = description, owner
+        self.lost = False
+        self._numbers = itertools.count(1)
+        self._waiting: dict[int, _Waiting] = {}
+        self._unsent: deque[dict[str, Any]] = deque()
+        self._changed = anyio.Event()
+
+    async def request(self, operation: str, arguments: dict[str, Any], *, timeout_s: float) -> dict[str, Any] | Picture:
+        """Let the add-on carry out an operation, and return its result.
+
+        Args:
+            operation: The name of the operation.
+            arguments: Its arguments, as JSON data.
+            timeout_s: Seconds to wait for the reply.
+
+        Raises:
+            CameraError: The operation failed, Blender did not reply in time, or it disconnected.
+        """
+        if self.lost:
+            raise CameraError(NOT_CONNECTED)
+        if len(self._waiting) >= MAX_WAITING:
+            raise CameraError("Blender has too many unanswered requests. Wait until it responds again.")
+        number, waiting = next(self._numbers), _Waiting()
+        self._waiting[number] = waiting
+        self._unsent.append({"number": number, "operation": operation, "arguments": arguments})
+        self._wake()
+        try:
+            with anyio.fail_after(timeout_s):
+                await waiting.arrived.wait()
+        except TimeoutError:
+            raise CameraError(
+                f"Blender did not answer within {timeout_s:g} s. It may be rendering, or waiting for input in a dialog."
+            ) from None
+        finally:
+            self._waiting.pop(number, None)
+        if isinstance(waiting.reply, CameraError):
+            raise waiting.reply
+        assert waiting.reply is not None  # noqa: S101 - set before the event
+        return waiting.reply
+
+    def answer(self, number: int, reply: Reply) -> bool:
+        """Pass on the reply to a request. Return whether the request is still waiting for it."""
+        waiting = self._waiting.get(number)
+        if waiting is None or waiting.arrived.is_set():
+            return False
+        waiting.reply = reply
+        waiting.arrived.set()
+        return True
+
+    async def requests(self) -> AsyncGenerator[dict[str, Any] | None]:
+        """Yield the requests for the add-on, and None as a heartbeat, until the connection ends.
+
+        When the consumer stops, the connection is lost, and all waiting requests fail.
+        """
+        try:
+            while not self.lost:
+                changed = self._changed
+                if not self._unsent:
+                    with anyio.move_on_after(HEARTBEAT_S):
+                        await changed.wait()
+                yield self._unsent.popleft() if self._unsent else None
+        finally:
+            self.end()
+
+    def end(self) -> None:
+        """End the connection. Waiting requests fail."""
+        self.lost = True
+        self._unsent.clear()
+        self._wake()
+        for number in list(self._waiting):
+            self.answer(number, CameraError("Blender disconnected before it answered."))
+
+    def _wake(self) -> None:
+        changed, self._changed = self._changed, anyio.Event()
+        changed.set()
+
+
+class AddOnSlot:
+    """The place of a camera's current connection. One Blender at a time can be connected.
+
+    Attributes:
+        changes: Number of changes of the connection or of its scene so far.
+    """
+
+    def __init__(self) -> None:
+        self._current: AddOnConnection | None = None
+        self.changes = 0
+
+    @property
+    def current(self) -> AddOnConnection | None:
+        """The connection; None if no Blender is connected."""
+        return None if self._current is None or self._current.lost else self._current
+
+    @property
+    def connection(self) -> AddOnConnection:
+        """The connection.
+
+        Raises:
+            CameraError: No Blender is connected.
+        """
+        if self.current is None:
+            raise CameraError(NOT_CONNECTED)
+        return self.current
+
+    def connect(self, description: SceneDescription, owner: str) -> AddOnConnection:
+        """Create the connection of a Blender. An earlier one ends."""
+        if self._current is not None:
+            self._current.end()
+        self._current = AddOnConnection(description, owner)
+        self.changes += 1
+        return self._current
+
+    def update(self, connection: AddOnConnection, description: SceneDescription) -> None:
+        """Replace the description of a connection's scene, for example after another file was opened."""
+        connection.description = description
+        self.changes += 1
+
+    def end(self) -> None:
+        """End the connection, if there is one."""
+        if self._current is not None:
+            self._current.end()

@@ -1,0 +1,151 @@
+"""The description of an open Blender scene, as the add-on sends it, and the pan-tilt-zoom camera that it defines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from scope_ptz.blender.file_cameras import FileCameras, file_cameras
+from scope_ptz.camera.base import PresetInfo
+from scope_ptz.errors import InputError
+from scope_ptz.geometry import Limits, Optics, Pose, wrap_pan_deg
+
+MAX_CAMERAS = 500
+MAX_WIDTH, MAX_HEIGHT = 3840, 2160  # of a picture, in pixels
+
+
+def _number(given: object) -> object:
+    """Convert an integer to a float; JSON does not distinguish the two."""
+    return float(given) if isinstance(given, int) and not isinstance(given, bool) else given
+
+
+Name = Annotated[str, Field(min_length=1, max_length=80)]
+Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9, strict=True), BeforeValidator(_number)]
+Tilt = Annotated[float, Field(allow_inf_nan=False, ge=-90.0, le=90.0, strict=True), BeforeValidator(_number)]
+FieldOfView = Annotated[float, Field(allow_inf_nan=False, ge=0.05, le=170.0, strict=True), BeforeValidator(_number)]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class SceneCamera(_Model):
+    """A camera of the scene.
+
+    Attributes:
+        name: Its name, unique in the scene.
+        title: Its name in Blender.
+        position_m: Its position.
+        bearing_deg: The direction of its view, clockwise from above, from the scene's y axis.
+        tilt_deg: The tilt of its view; positive is up.
+        hfov_deg: Its horizontal field of view.
+        viewpoint: For a preset, the name of the camera whose optical centre it shares; None for a camera that is its own viewpoint.
+        saved: Whether it was saved as a preset through SCOPE, and can therefore be replaced and removed.
+    """
+
+    name: Name
+    title: Annotated[str, Field(max_length=200)] = ""
+    position_m: tuple[Number, Number, Number]
+    bearing_deg: Number
+    tilt_deg: Tilt
+    hfov_deg: FieldOfView
+    viewpoint: Name | None = None
+    saved: bool = False
+
+
+class SceneDescription(_Model):
+    """The open scene of a Blender: its cameras, the active one, and the size of a picture in pixels.
+
+    Raises:
+        InputError: The names of the cameras contradict each other. It is no ``ValidationError``, because no JSON schema can state
+            this rule.
+    """
+
+    name: Name
+    title: Annotated[str, Field(max_length=200)]
+    blender_version: Annotated[str, Field(max_length=60)]
+    active: Name
+    cameras: Annotated[tuple[SceneCamera, ...], Field(min_length=1, max_length=MAX_CAMERAS)]
+    width: Annotated[int, Field(ge=16, le=MAX_WIDTH)]
+    height: Annotated[int, Field(ge=16, le=MAX_HEIGHT)]
+
+    @model_validator(mode="after")
+    def _check_names(self) -> Self:
+        names = [camera.name for camera in self.cameras]
+        if len(set(names)) != len(names):
+            raise InputError("Two cameras of the scene have the same name.")
+        viewpoints = {camera.name for camera in self.cameras if camera.viewpoint is None}
+        if self.active not in viewpoints:
+            raise InputError("The active camera must be one of the cameras of the scene, and its own viewpoint.")
+        if any(camera.viewpoint not in viewpoints for camera in self.cameras if camera.viewpoint is not None):
+            raise InputError("The viewpoint of a preset must be a camera of the scene that is its own viewpoint.")
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class WindowPreset:
+    """A preset: a pose at a viewpoint. ``saved`` tells whether it was saved through SCOPE, and can be replaced and removed."""
+
+    info: PresetInfo
+    viewpoint: str
+    pose: Pose
+    saved: bool
+
+
+@dataclass(frozen=True, slots=True)
+class WindowScene:
+    """The cameras of an open scene as one pan-tilt-zoom camera, with the conventions of ``blender:FILE.blend``.
+
+    Attributes:
+        description: The description from which it was created.
+        optics: The optics. Zoom 1 is the widest field of view among the cameras.
+        limits: The limits of motion.
+        presets: The presets by name: the cameras of the scene, and the presets that were saved through SCOPE.
+    """
+
+    description: SceneDescription
+    optics: Optics
+    limits: Limits
+    presets: dict[str, WindowPreset]
+
+    @property
+    def home(self) -> WindowPreset:
+        """The preset of the scene's active camera."""
+        return self.presets[self.description.active]
+
+    def viewpoint(self, name: str) -> SceneCamera:
+        """Return the camera that is a viewpoint."""
+        return next(camera for camera in self.description.cameras if camera.name == name)
+
+
+def window_scene(description: SceneDescription) -> WindowScene:
+    """Return the pan-tilt-zoom camera that a scene defines."""
+    own = [camera for camera in description.cameras if camera.viewpoint is None]
+    combined = _combined(description, own)
+    viewpoints = {camera.name: camera for camera in own}
+    presets = {}
+    for camera in (*own, *(each for each in description.cameras if each.viewpoint is not None)):
+        at = viewpoints[camera.viewpoint or camera.name]
+        pose = Pose(
+            wrap_pan_deg(camera.bearing_deg - at.bearing_deg), camera.tilt_deg, combined.optics.zoom_for_hfov(camera.hfov_deg)
+        )
+        info = PresetInfo(camera.name, camera.title)
+        presets[camera.name] = WindowPreset(info, at.name, pose, camera.saved)
+    return WindowScene(description, combined.optics, combined.limits, presets)
+
+
+def _combined(description: SceneDescription, own: list[SceneCamera]) -> FileCameras:
+    """Return optics and limits by the rules for .blend files. The cameras are numbered, because their names may be free text."""
+    cameras = [{**camera.model_dump(), "name": f"camera-{number}"} for number, camera in enumerate(own)]
+    active = next(number for number, camera in enumerate(own) if camera.name == description.active)
+    return file_cameras(
+        {
+            "name": "window",
+            "title": description.title or "Blender",
+            "blender_version": description.blender_version,
+            "active": f"camera-{active}",
+            "cameras": cameras,
+        }
+    )

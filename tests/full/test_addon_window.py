@@ -1,0 +1,120 @@
+"""The add-on in a real window of the ``blender`` program, on an X server without a screen."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from scope_ptz.blender.addon_zip import write_addon_zip
+from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.rate_limits import RateLimits
+from scope_ptz.serve.site.service import SiteOptions
+from tests.addon.fake_blender import CAMERA
+from tests.full.driven_blender import DrivenBlender, environment, in_window, screen, screenshot
+from tests.serve.serving import Served, serving
+
+pytestmark = pytest.mark.full
+
+PREFERENCES = "bpy.context.preferences.addons['scope_addon'].preferences"
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A home folder in which the zip file is installed, as a user of Blender 3.4 does it."""
+    folder = tmp_path_factory.mktemp("home")
+    write_addon_zip(folder / "scope.zip")
+    code = f"import bpy; bpy.ops.preferences.addon_install(filepath={str(folder / 'scope.zip')!r})"
+    command = ["blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python-expr", code]
+    subprocess.run(command, env=environment(folder), check=True, capture_output=True, timeout=180)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def display() -> Iterator[str]:
+    with screen() as name:
+        yield name
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    options = SiteOptions(tmp_path_factory.mktemp("served"))
+    with serving(options, Access("127.0.0.1", limits=RateLimits(None)), {CAMERA: f"{CAMERA}:"}) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def blender(home: Path, display: str, served: Served) -> Iterator[DrivenBlender]:
+    with in_window(home, display) as driven:
+        driven("[setattr(scene.scope, 'width', 480), setattr(scene.scope, 'height', 270)]")
+        driven(f"[setattr({PREFERENCES}, 'use_own', 'ADDRESS'), setattr({PREFERENCES}, 'address', {served.root!r})]")
+        assert driven("run('connect')") == ["FINISHED"]
+        driven.wait_for("session.state == 'connected'")
+        driven("run('look')")
+        yield driven
+        assert driven.end() == {"cameras": ["Main Gate", "roof"], "active": "Main Gate"}
+
+
+def test_a_question_is_answered_in_the_window(blender: DrivenBlender, display: str, tmp_path: Path) -> None:
+    assert blender("scene.scope.source") == "VIEWPORT"
+    before = tmp_path / "before.png"
+    screenshot(display, before)
+    blender("setattr(bpy.context.window_manager.scope, 'question', 'go to the roof preset, then zoom in 2x')")
+    assert blender("run('ask')") == ["FINISHED"]
+    blender.wait_for("session.asking is None")
+    assert blender("session.problem") == ""
+    assert blender("session.end")[0] == "Answered"
+    assert blender("session.executor.pictures") > 0
+    assert blender("cameras.view_through(scene, scene.camera, '')[3]") == pytest.approx(-30.0, abs=0.01)
+    blender.wait_for("not session.executor.camera.gliding")
+    screenshot(display, tmp_path / "after.png")
+    first, second = (np.asarray(cv2.imread(str(path))).astype(int) for path in (before, tmp_path / "after.png"))
+    assert abs(first - second)[100:800, 100:1000].mean() > 3.0, "the viewport shows that the camera has moved"
+
+
+def test_the_viewports_picture_has_no_overlays(blender: DrivenBlender, served: Served) -> None:
+    with served.client() as client:
+        client.post(f"/cameras/{CAMERA}/home")
+        drawn = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
+        blender("setattr(scene.scope, 'source', 'RENDER')")
+        blender("setattr(scene.render, 'engine', 'BLENDER_WORKBENCH')")
+        rendered = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
+        blender("setattr(scene.scope, 'source', 'VIEWPORT')")
+    ours, theirs = (cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) for data in (drawn, rendered))
+    edges = [cv2.dilate(cv2.Canny(picture, 60, 120), np.ones((5, 5))) > 0 for picture in (ours, theirs)]
+    overlap = (edges[0] & edges[1]).sum() / (edges[0] | edges[1]).sum()
+    assert overlap > 0.6, f"the viewport and the render engine show the same outlines, but only {overlap:.2f} agree"
+
+
+def test_a_preset_is_created_from_the_viewport(blender: DrivenBlender) -> None:
+    region = "next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == 'VIEW_3D').spaces.active.region_3d"
+    blender(f"setattr({region}, 'view_perspective', 'PERSP')")
+    blender("setattr(bpy.context.window_manager.scope, 'preset', 'From above')")
+    assert blender("run('preset_add')") == ["FINISHED"]
+    blender.wait_for("'From above' in session.presets")
+    blender("run('look')")
+    assert blender("run('preset_go', name='From above')") == ["FINISHED"]
+    expected = "(cameras.find_preset(scene, 'From above').matrix_world.translation - scene.camera.matrix_world.translation).length"
+    blender.wait_for(f"{expected} < 0.001")
+    assert blender("run('preset_remove', name='From above')") == ["FINISHED"]
+    blender.wait_for("'From above' not in session.presets")
+
+
+def test_the_picture_opens_in_an_image_editor(blender: DrivenBlender) -> None:
+    assert blender("run('picture')") == ["FINISHED"]
+    shown = "[a.spaces.active.image.name for a in bpy.context.window_manager.windows[0].screen.areas if a.type == 'IMAGE_EDITOR']"
+    assert blender(shown) == ["SCOPE frame"]
+
+
+def test_an_instruction_can_be_cancelled_and_blender_responds_meanwhile(blender: DrivenBlender) -> None:
+    blender(f"session.ask({', then '.join(['pan right 1 degree', 'pan left 1 degree'] * 12)!r}, '')")
+    blender.wait_for("len(session.steps) > 0")
+    assert blender("session.asking is not None"), "Blender answers while the instruction is in progress"
+    assert blender("run('cancel')") == ["FINISHED"]
+    blender.wait_for("session.asking is None")
+    assert blender("session.end")[0] == "Cancelled"
+    assert blender("len(session.steps)") < 24
