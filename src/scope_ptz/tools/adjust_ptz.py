@@ -57,4 +57,4 @@ async def adjust_ptz(context: ToolContext, arguments: AdjustPtz) -> MoveResult:
     return MoveResult(message=f"{verb}; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped)
 
 
-ADJUST_PTZ = Tool("adjust_ptz", AdjustPtz, adjust_ptz, moves=True)
+ADJUST_PTZ = Tool("adjust_ptz", AdjustPtz, adjust_ptz, "Turn and zoom", moves=True)

@@ -56,5 +56,10 @@ async def count_objects(context: ToolContext, arguments: CountObjects) -> CountR
 
 
 COUNT_OBJECTS = Tool(
-    "count_objects", CountObjects, count_objects, perceives=True, only_reads=lambda arguments: arguments.view == "current"
+    "count_objects",
+    CountObjects,
+    count_objects,
+    "Count objects",
+    perceives=True,
+    only_reads=lambda arguments: arguments.view == "current",
 )

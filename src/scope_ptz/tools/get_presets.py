@@ -30,4 +30,4 @@ async def get_presets(context: ToolContext, arguments: GetPresets) -> PresetsRes
     )
 
 
-GET_PRESETS = Tool("get_presets", GetPresets, get_presets)
+GET_PRESETS = Tool("get_presets", GetPresets, get_presets, "List presets", repeatable=True)

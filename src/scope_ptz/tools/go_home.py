@@ -18,4 +18,4 @@ async def go_home(context: ToolContext, arguments: GoHome) -> MoveResult:  # noq
     return MoveResult(message=f"At home; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped)
 
 
-GO_HOME = Tool("go_home", GoHome, go_home, moves=True)
+GO_HOME = Tool("go_home", GoHome, go_home, "Go home", repeatable=True, moves=True)

@@ -27,4 +27,4 @@ async def go_to_preset(context: ToolContext, arguments: GoToPreset) -> MoveResul
     )
 
 
-GO_TO_PRESET = Tool("go_to_preset", GoToPreset, go_to_preset, moves=True)
+GO_TO_PRESET = Tool("go_to_preset", GoToPreset, go_to_preset, "Go to a preset", repeatable=True, moves=True)

@@ -49,5 +49,10 @@ async def query_answer(context: ToolContext, arguments: QueryAnswer) -> AnswerRe
 
 
 QUERY_ANSWER = Tool(
-    "query_answer", QueryAnswer, query_answer, perceives=True, only_reads=lambda arguments: arguments.view == "current"
+    "query_answer",
+    QueryAnswer,
+    query_answer,
+    "Answer a question about the view",
+    perceives=True,
+    only_reads=lambda arguments: arguments.view == "current",
 )

@@ -25,4 +25,4 @@ async def take_image(context: ToolContext, arguments: TakeImage) -> ImageResult:
     return ImageResult(message=f"Saved the picture as {name}.", pose=PoseData.of(frame.pose), file=name)
 
 
-TAKE_IMAGE = Tool("take_image", TakeImage, take_image)
+TAKE_IMAGE = Tool("take_image", TakeImage, take_image, "Save a picture")

@@ -31,6 +31,8 @@ class Tool:
         name: The name in calls.
         arguments: The model that validates a call's arguments. Its docstring is the description that planners receive.
         run: Carries out a call.
+        title: The name for people, such as "Turn and zoom".
+        repeatable: Whether two equal calls, one after the other, have the same effect as one.
         moves: Whether the tool can move the camera.
         perceives: Whether the tool calls perception.
         only_reads: Returns whether a call with the given arguments only reads the current view. Consecutive calls of this kind run
@@ -40,6 +42,8 @@ class Tool:
     name: str
     arguments: type[Arguments]
     run: Callable[[ToolContext, Any], Awaitable[Result]]
+    title: str = ""
+    repeatable: bool = False
     moves: bool = False
     perceives: bool = False
     only_reads: Callable[[Any], bool] = _always_false

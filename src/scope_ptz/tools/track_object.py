@@ -219,4 +219,4 @@ def _held_share(path: list[TrackPoint]) -> float:
     return min(visible_s / span, 1.0) if len(path) > 1 else 1.0
 
 
-TRACK_OBJECT = Tool("track_object", TrackObject, track_object, moves=True, perceives=True)
+TRACK_OBJECT = Tool("track_object", TrackObject, track_object, "Track an object", moves=True, perceives=True)

@@ -199,4 +199,4 @@ async def _report(context: ToolContext, description: str, first: _Detection, tar
     )
 
 
-ZOOM_TO_OBJECT = Tool("zoom_to_object", ZoomToObject, zoom_to_object, moves=True, perceives=True)
+ZOOM_TO_OBJECT = Tool("zoom_to_object", ZoomToObject, zoom_to_object, "Zoom in on an object", moves=True, perceives=True)

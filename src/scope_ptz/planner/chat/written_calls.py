@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from scope_ptz.planner.chat.strict import strict_json
+from scope_ptz.planner.chat.strict import encodable, strict_json
 
 _NAME = re.compile(r"""["']name["']\s*:\s*["'](?P<name>[^"']{1,80})["']""")
 MAX_QUOTED_CHARS = 300  # maximum number of characters of a malformed call that its error message quotes
@@ -68,7 +68,7 @@ def read_arguments(text: str) -> tuple[dict[str, Any], str | None]:
     Returns:
         The arguments and None, or no arguments and the truncated text if it is not a JSON object. An empty text means no arguments.
     """
-    stripped = text.strip()
+    stripped = encodable(text).strip()
     if not stripped or stripped == "null":
         return {}, None
     try:

@@ -36,20 +36,6 @@ from scope_ptz.tools.get_presets import GET_PRESETS
 from scope_ptz.tools.registry import TOOLS, parse_call
 from scope_ptz.tools.tool import Tool
 
-_TITLES = {
-    "adjust_ptz": "Turn and zoom",
-    "go_to_preset": "Go to a preset",
-    "go_home": "Go home",
-    "get_presets": "List presets",
-    "take_image": "Save a picture",
-    "count_objects": "Count objects",
-    "query_answer": "Answer a question about the view",
-    "zoom_to_object": "Zoom in on an object",
-    "track_object": "Track an object",
-}
-_REPEATABLE = ("go_to_preset", "go_home", "get_presets")  # calling these twice has the same effect as calling them once
-
-
 _NO_MODELS = "Listing presets needs none."  # the advice of a perception backend that is never called
 
 
@@ -95,14 +81,14 @@ def _camera_tool(tool: Tool, cameras: Sequence[str], pairs: Pairs) -> McpTool:
 
     return McpTool(
         name=tool.name,
-        title=_TITLES.get(tool.name, tool.name),
+        title=tool.title or tool.name,
         description=_description(tool),
         input_schema=_input_schema(tool, cameras, pairs),
         output_schema=_output_schema(tool),
         annotations=ToolAnnotations(
             read_only_hint=reads,  # every other call takes control and stores a run, even if it does not move the camera
             destructive_hint=False,
-            idempotent_hint=tool.name in _REPEATABLE,
+            idempotent_hint=tool.repeatable,
             open_world_hint=not reads,  # pictures show whatever is in front of the camera
         ),
         operates=not reads,
