@@ -31,13 +31,13 @@ class Observations:
 
     Attributes:
         runs: For each run, the number of tool calls and the outcome that its events reported.
-        stops_s: The times in seconds until ``stop`` requests were answered.
+        stops: Each ``stop`` request: the Unix time at which it was sent, and the seconds until it was answered.
         intruders: For each status code, the number of replies to moves of a client that is not in control.
         problems: Unexpected replies and errors.
     """
 
     runs: dict[str, tuple[int, str]] = field(default_factory=dict)
-    stops_s: list[float] = field(default_factory=list)
+    stops: list[tuple[float, float]] = field(default_factory=list)
     intruders: dict[int, int] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
 
@@ -79,9 +79,9 @@ async def stop_often(seen: Observations, url: str, cameras: tuple[str, ...], end
     """Stop one camera after another, regardless of who controls it."""
     async with httpx2.AsyncClient(base_url=url, headers={"Scope-Client": "stopper"}, trust_env=False, timeout=30) as client:
         for camera in itertools.cycle(cameras):
-            began_s = time.perf_counter()
+            sent_s, began_s = time.time(), time.perf_counter()
             reply = await client.post(f"/cameras/{camera}/stop")
-            seen.stops_s.append(time.perf_counter() - began_s)
+            seen.stops.append((sent_s, time.perf_counter() - began_s))
             if reply.status_code != 204:
                 seen.problems.append(f"stop: {reply.status_code} {reply.text[:200]}")
             if await wait_for_end(ended, STOP_EVERY_S):

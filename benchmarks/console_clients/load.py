@@ -115,7 +115,9 @@ class Load:
         outcomes: dict[str, int] = {}
         with httpx2.Client(base_url=console.url, trust_env=False, timeout=60) as client:
             for run, (calls, outcome) in self._seen.runs.items():
-                stored = client.get(f"/runs/{run}/details").json()
+                while (reply := client.get(f"/runs/{run}/details")).status_code == 429:  # hundreds of runs exceed the rate limit
+                    time.sleep(max(0.5, float(reply.headers.get("Retry-After", 1.0))))
+                stored = reply.raise_for_status().json()
                 if (stored["run"]["outcome"], len(stored["steps"])) != (outcome, calls):
                     self._seen.problems.append(f"{run}: {outcome}, {calls} calls seen; stored: {stored['run']}")
                 outcomes[outcome] = outcomes.get(outcome, 0) + 1
@@ -126,11 +128,13 @@ class Load:
         counted = [(at, figures) for at, figures in self._samples if at >= counted_s] or self._samples[-1:]
         memory = [figures["anonymous_mb"] for _, figures in counted]  # other memory is mapped files, which the kernel can drop
         third = max(1, len(memory) // 3)
+        at_start = [took_s for sent_s, took_s in self._seen.stops if sent_s < counted_s]
         (first_s, first), (last_s, last) = counted[0], counted[-1]
         return {
             "counted_seconds": end_s - counted_s,
             "viewers": {each.name: each.results(counted_s, end_s) for each in viewers},
-            "stop_s": quantiles(self._seen.stops_s),
+            "stop_s": quantiles([took_s for sent_s, took_s in self._seen.stops if sent_s >= counted_s]),
+            "stop_at_start_s": quantiles(at_start) if at_start else None,
             "button": self._clicks.results() if self._with_browser else None,
             "memory_mb": {
                 "start": statistics.median(memory[:third]),

@@ -23,6 +23,8 @@ def report(results: dict[str, Any]) -> None:
             figures.append(f"age {in_ms(age)}")
         print(f"{name}: {'; '.join(figures)} {viewer['failure']}".rstrip())
     print(f"stop, by HTTP: {in_ms(results['stop_s'])}; the target is {1000 * TARGET_STOP_S:.0f} ms")
+    if results["stop_at_start_s"] is not None:
+        print(f"stop, by HTTP, while cameras are opened and clients connect: {in_ms(results['stop_at_start_s'])}")
     if results["button"] is not None:
         report_clicks(results["button"])
     memory, growth, threads = results["memory_mb"], results["memory_growth"], results["threads"]

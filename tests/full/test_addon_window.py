@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,13 +14,17 @@ import pytest
 from scope_ptz.blender.addon_zip import write_addon_zip
 from scope_ptz.serve.security.gate import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
+from scope_ptz.serve.site.marks import ACCENT
+from scope_ptz.serve.site.pairs import DEFAULT_PAIR
 from scope_ptz.serve.site.service import SiteOptions
 from tests.addon.fake_blender import CAMERA
 from tests.full.driven_blender import DrivenBlender, environment, in_window, screen, screenshot
 from tests.serve.serving import Served, serving
+from tests.support.misbehaving import MOONDREAM, Misbehaving
 
 pytestmark = pytest.mark.full
 
+SEEING_PAIR = "grammar+moondream3"
 PREFERENCES = "bpy.context.preferences.addons['scope_addon'].preferences"
 
 
@@ -42,9 +47,13 @@ def display() -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    options = SiteOptions(tmp_path_factory.mktemp("served"))
-    with serving(options, Access("127.0.0.1", limits=RateLimits(None)), {CAMERA: f"{CAMERA}:"}) as server:
-        yield server
+    """A server whose second pair has a deliberate fake of Moondream. It detects one object, always at the same place."""
+    options = SiteOptions(tmp_path_factory.mktemp("served"), pairs=(DEFAULT_PAIR, SEEING_PAIR))
+    access = Access("127.0.0.1", limits=RateLimits(None))
+    with pytest.MonkeyPatch.context() as patch, Misbehaving() as model:
+        patch.setenv("SCOPE_PERCEPTION_URL", model.url)
+        with serving(options, access, {CAMERA: f"{CAMERA}:"}) as server:
+            yield server
 
 
 @pytest.fixture(scope="module")
@@ -108,6 +117,31 @@ def test_the_picture_opens_in_an_image_editor(blender: DrivenBlender) -> None:
     assert blender("run('picture')") == ["FINISHED"]
     shown = "[a.spaces.active.image.name for a in bpy.context.window_manager.windows[0].screen.areas if a.type == 'IMAGE_EDITOR']"
     assert blender(shown) == ["SCOPE frame"]
+
+
+def test_detections_are_marked_in_the_image_editor(blender: DrivenBlender, display: str, tmp_path: Path) -> None:
+    assert blender("run('picture')") == ["FINISHED"]
+    blender("setattr(bpy.context.window_manager.scope, 'question', 'how many cones are there?')")
+    blender(f"setattr(bpy.context.window_manager.scope, 'pair', {SEEING_PAIR!r})")
+    assert blender("run('ask')") == ["FINISHED"]
+    blender.wait_for("session.asking is None")
+    assert blender("session.end")[0] == "Answered", blender("session.end")
+    assert "1" in blender("session.end")[1]
+    # The middle row of the picture, which the left and the right side of the box cross.
+    row = "[round(255 * value) for value in bpy.data.images['SCOPE frame'].pixels[480 * 4 * 135 : 480 * 4 * 136]]"
+    left, right = (round(480 * MOONDREAM["detect"]["objects"][0][side]) for side in ("x_min", "x_max"))
+
+    def marked() -> list[int]:
+        pixels = np.array(blender(row)).reshape(480, 4)[:, :3]
+        return np.flatnonzero(abs(pixels - ACCENT).max(axis=1) < 40).tolist()
+
+    deadline_s = time.monotonic() + 60.0
+    while not (found := marked()):
+        assert time.monotonic() < deadline_s, "the picture has no marks"
+        time.sleep(0.1)
+    screenshot(display, tmp_path / "marked.png")
+    assert {min(abs(column - side) for side in (left, right)) <= 3 for column in found} == {True}
+    assert {abs(column - left) <= 3 for column in found} == {True, False}, "both sides are drawn"
 
 
 def test_an_instruction_can_be_cancelled_and_blender_responds_meanwhile(blender: DrivenBlender) -> None:
