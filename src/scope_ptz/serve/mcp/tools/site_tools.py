@@ -96,7 +96,7 @@ def site_tools(cameras: Sequence[str]) -> list[McpTool]:
         ),
         McpTool(
             "stop_camera", "Stop a camera",
-            "Stop a camera immediately and cancel its run, whoever controls it.",
+            "Stop a camera immediately and cancel its run, even if another client controls it.",
             input_schema(OneCamera, cameras), output_schema(Stopped), _STOPS, operates=True, kind=None, run=_stop,
         ),
     ]  # fmt: skip
