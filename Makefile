@@ -23,13 +23,15 @@ console: $(DEV)
 	@$(BIN)/scope console
 
 # Each worker runs whole files, so that the fixtures of a file are made once. Four workers on two cores, because many tests wait.
+# Tests of browsers, servers and live streams compete for the processor: a test that fails runs up to twice more, and the summary
+# lists it.
+RERUNS := --reruns 2 --reruns-delay 1 -raR
 test: $(DEV)
-	$(BIN)/pytest -q -n 4 --dist loadfile -m "not full" tests
+	$(BIN)/pytest -q -n 4 --dist loadfile $(RERUNS) -m "not full" tests
 
-# In the order of the folders, because by default files of one test come last, and the longest tests are in such files. Tests of
-# browsers and live streams compete for the processor: one that fails runs up to twice more, and the summary lists it.
+# In the order of the folders, because by default files of one test come last, and the longest tests are in such files.
 test-full: test $(FULL)
-	$(BIN)/pytest -q -n 2 --dist loadfile --no-loadscope-reorder --reruns 2 --reruns-delay 1 -raR -m full tests
+	$(BIN)/pytest -q -n 2 --dist loadfile --no-loadscope-reorder $(RERUNS) -m full tests
 
 # Both tiers again with line coverage of everything but the modelling code, which runs inside Blender.
 coverage: $(FULL)

@@ -100,9 +100,9 @@ class LivePicture:
                     async for frame in frames:
                         number += 1
                         self.problem = ""
-                        self._publish(LiveFrame(number, frame, camera.clock.now_s() - frame.time_s))
-                        if not self.watchers:
+                        if not self.watchers:  # and do not keep the frame: the next watcher must not get an old one
                             break
+                        self._publish(LiveFrame(number, frame, camera.clock.now_s() - frame.time_s))
             except Exception as error:  # the live picture must continue after any failure of a driver
                 self.problem = str(error)
                 logger.warning("The live picture of %s failed; retrying: %s", self._name, error)
