@@ -48,7 +48,7 @@ def fill(store: RunStore, count: int, seed: int = 0) -> None:
                 feedback.append(
                     {"run": number, "position": None, "rating": rating, "comment": "", "actor": "anna", "created": start}
                 )
-        with store.database.writing() as connection:
+        with store.database.write_transaction() as connection:
             for table, rows in ((RUNS, runs), (STEPS, steps), (FRAMES, frames), (FEEDBACK, feedback)):
                 connection.execute(insert(table), rows)
 
@@ -121,7 +121,7 @@ def main() -> None:
         with RunStore(root / "many") as store:
             fill(store, options.runs)
             database = store.database
-            with database.reading() as connection:
+            with database.read_transaction() as connection:
                 some = connection.execute(select(RUNS.c.id).limit(1).offset(options.runs // 2)).scalar_one()
             cursor = None
             for _ in range(3):

@@ -20,10 +20,10 @@ from scope_addon.protocol.link import CameraLink, Picture, Reply, Request
 from scope_addon.protocol.view import size_of, view_of
 from scope_ptz.camera.base import Camera
 from scope_ptz.geometry import Perspective
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.server import serve
-from scope_ptz.serve.site.service import Site, SiteOptions
+from scope_ptz.serve.site.site import Site, SiteOptions
 
 CAMERA = "blender-window"
 

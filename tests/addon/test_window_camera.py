@@ -16,10 +16,10 @@ from scope_ptz.camera.conformance import CameraConformance
 from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.geometry import Pose
-from scope_ptz.serve.security.gate import MAX_BODY_BYTES, Access, max_body_bytes
+from scope_ptz.serve.security.access import MAX_BODY_BYTES, Access, max_body_bytes
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.security.tokens import TokenFile
-from scope_ptz.serve.site.service import SiteOptions, site_cameras
+from scope_ptz.serve.site.site import SiteOptions, site_cameras
 from scope_ptz.settings import load_settings
 from tests.addon.fake_blender import CAMERA, FakeBlender, place, window_camera
 from tests.serve.serving import Served, serving

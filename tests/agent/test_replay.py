@@ -58,25 +58,25 @@ def again(trace: Trace, camera: Camera | None = None) -> Replay:
 def test_a_replay_gives_the_same_results(tmp_path: Path, script: tuple[Step, ...]) -> None:
     trace = record(tmp_path, *script, counts=(3, 5))
     found = again(trace)
-    assert found.equal, found
+    assert found.matches, found
     assert len(found.comparisons) == len(trace.calls)
 
 
 def test_perception_failures_are_replayed(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(COUNT), calls(COUNT), answer("x"), counts=(PerceptionError("timeout"), 2))
     assert trace.calls[0].outcome.error == "timeout"
-    assert again(trace).equal
+    assert again(trace).matches
 
 
 def test_a_step_limit_is_replayed(tmp_path: Path) -> None:
-    assert again(record(tmp_path, calls(MOVE), budgets=Budgets(max_steps=2))).equal
+    assert again(record(tmp_path, calls(MOVE), budgets=Budgets(max_steps=2))).matches
 
 
 def test_an_interrupted_run_is_replayed_up_to_its_end(tmp_path: Path) -> None:
     whole = record(tmp_path, calls(MOVE, MOVE), calls(COUNT), answer("x"), counts=(4,))
     cut = replace(whole, calls=whole.calls[:1], ended=None)
     found = again(cut)
-    assert found.equal
+    assert found.matches
     assert len(found.comparisons) == 1
 
 
@@ -90,14 +90,14 @@ def test_a_run_whose_camera_failed_is_replayed_up_to_its_end(tmp_path: Path) -> 
     assert trace.ended is not None
     assert trace.ended.outcome == "camera_error"
     found = again(trace)
-    assert found.equal
+    assert found.matches
     assert len(found.comparisons) == 1
 
 
 def test_a_different_scene_is_detected(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(("go_to_preset", {"name": "gate"})), calls(MOVE), answer("x"))
     found = again(trace, ScriptedCamera(presets=("yard", "gate")))
-    assert not found.equal
+    assert not found.matches
     assert "pose was" in found.comparisons[0].difference
 
 
@@ -105,7 +105,7 @@ def test_a_different_start_pose_is_detected(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(MOVE), answer("x"))
     camera = ScriptedCamera()
     anyio.run(camera.move, Pose(1.0, 0.0, 1.0))
-    assert not again(trace, camera).equal
+    assert not again(trace, camera).matches
 
 
 def test_runs_of_real_cameras_cannot_be_replayed(tmp_path: Path) -> None:

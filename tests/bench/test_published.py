@@ -8,7 +8,7 @@ from collections import Counter
 
 from scope_ptz.bench.tasks.expected import NoneThere
 from scope_ptz.bench.tasks.splits import load_split, published_folder, read_manifest
-from scope_ptz.factory.worlds import scenes_named
+from scope_ptz.factory.worlds import open_scenes
 from scope_ptz.taskgen.authoring.assembly import QUOTAS
 
 FOLDER = published_folder()
@@ -25,7 +25,7 @@ def test_every_file_is_unchanged() -> None:
 
 
 def test_it_was_built_from_the_shipped_scenes() -> None:
-    shipped = scenes_named(None)
+    shipped = open_scenes(None)
     made_of = read_manifest(FOLDER)["scenes"]
     assert made_of.keys() <= shipped.keys()
     assert {name: scene["version"] for name, scene in made_of.items()} == {name: shipped[name].file.version for name in made_of}
@@ -53,7 +53,7 @@ def test_tasks_and_wordings_are_unique() -> None:
 
 
 def test_every_scene_and_viewpoint_is_used() -> None:
-    here = scenes_named(list(read_manifest(FOLDER)["scenes"]))
+    here = open_scenes(list(read_manifest(FOLDER)["scenes"]))
     used = {
         (task.scene, preset.viewpoint) for task in CORE for preset in here[task.scene].file.presets if preset.name == task.preset
     }

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.cli.starting import prepare_help
+from scope_ptz.cli.startup import prepare_help
 from tests.cli.conftest import SCENE, Scope
 from tests.support.programs import started
 

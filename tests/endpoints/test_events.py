@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.endpoint import Endpoint
-from scope_ptz.endpoints.events import Events
+from scope_ptz.endpoints.events import EventParser
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from tests.support.misbehaving import Misbehaving, Say, body, pieces
 
@@ -35,7 +35,7 @@ FORMS = {
 
 
 def read(stream: bytes, cuts: list[int]) -> list[object]:
-    events, found, at = Events(), list[bytes](), 0
+    events, found, at = EventParser(), list[bytes](), 0
     for cut in [*sorted(cuts), len(stream)]:
         found += events.feed(stream[at:cut])
         at = cut
@@ -52,7 +52,7 @@ def test_every_format_split_at_any_byte(form: str, line_end: str, mark: bool, da
 
 @given(st.lists(st.binary(max_size=30)))
 def test_any_bytes_are_parsed_without_an_exception(parts: list[bytes]) -> None:
-    events = Events()
+    events = EventParser()
     for part in parts:
         events.feed(part)
     events.end()

@@ -15,9 +15,9 @@ import pytest
 from scope_ptz.blender.addon_zip import addon_folder, write_addon_zip
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.conformance import CameraConformance
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
-from scope_ptz.serve.site.service import SiteOptions
+from scope_ptz.serve.site.site import SiteOptions
 from tests.addon.fake_blender import CAMERA, window_camera
 from tests.addon.test_protocol import replying
 from tests.full.driven_blender import DrivenBlender, environment, without_window, worker_python

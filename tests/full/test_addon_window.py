@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from scope_ptz.blender.addon_zip import write_addon_zip
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.site.marks import ACCENT
 from scope_ptz.serve.site.pairs import DEFAULT_PAIR
-from scope_ptz.serve.site.service import SiteOptions
+from scope_ptz.serve.site.site import SiteOptions
 from tests.addon.fake_blender import CAMERA
 from tests.full.driven_blender import DrivenBlender, environment, in_window, screen, screenshot
 from tests.serve.serving import Served, serving

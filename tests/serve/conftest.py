@@ -8,10 +8,10 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.security.tokens import TokenFile
-from scope_ptz.serve.site.service import SiteOptions
+from scope_ptz.serve.site.site import SiteOptions
 from tests.serve.serving import CAMERA, OTHER, Served, serving
 
 SPEC = "sim:analytic-yard?width=320&height=180"

@@ -12,9 +12,9 @@ from typing import Any
 import anyio
 import httpx2
 
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.server import serve
-from scope_ptz.serve.site.service import Site, SiteOptions
+from scope_ptz.serve.site.site import Site, SiteOptions
 
 CAMERA = "yard"
 OTHER = "yard-2"

@@ -20,12 +20,12 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task_wording import facts_of
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.site.benchmark.evaluation_folder import EvaluationFolder
 from scope_ptz.serve.site.benchmark.evaluations import EvaluationRequest, Evaluations
 from scope_ptz.serve.site.errors import EvaluationRunningError
-from scope_ptz.serve.site.service import SiteOptions
+from scope_ptz.serve.site.site import SiteOptions
 from tests.serve.conftest import SPEC
 from tests.serve.serving import CAMERA, Served, serving
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
-from scope_ptz.serve.site.service import SiteOptions, site_cameras
+from scope_ptz.serve.site.site import SiteOptions, site_cameras
 from scope_ptz.settings import load_settings
 from tests.serve.conftest import SPEC
 from tests.serve.serving import CAMERA, OTHER, Served, serving

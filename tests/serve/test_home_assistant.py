@@ -17,10 +17,10 @@ import pytest
 import yaml
 from jinja2 import Environment, StrictUndefined
 
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.security.tokens import TokenFile
-from scope_ptz.serve.site.service import SiteOptions
+from scope_ptz.serve.site.site import SiteOptions
 from tests.serve.conftest import SPEC
 from tests.serve.serving import Served, serving
 

@@ -14,11 +14,11 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from scope_ptz.errors import ConfigError
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import NAME_FACTOR, Rate, RateLimits
 from scope_ptz.serve.security.tokens import TokenFile
 from scope_ptz.serve.site.errors import TooManyRequestsError
-from scope_ptz.serve.site.service import SiteOptions, idle_returns
+from scope_ptz.serve.site.site import SiteOptions, idle_returns
 from scope_ptz.serve.site.station import IdleReturn
 from tests.serve.conftest import SPEC
 from tests.serve.serving import CAMERA, OTHER, Served, serving
@@ -29,7 +29,7 @@ LIMIT_S = 30.0  # for busy machines; normally, each operation takes a fraction o
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the time between checks of tokens."""
-    monkeypatch.setattr("scope_ptz.serve.security.gate.CHECK_S", 0.1)
+    monkeypatch.setattr("scope_ptz.serve.security.access.AUTHORISATION_CHECK_INTERVAL_S", 0.1)
 
 
 @pytest.fixture
@@ -190,7 +190,7 @@ def test_every_type_of_request_has_its_limit(scenes: None, tokens: dict[str, str
 def test_a_camera_has_its_own_preset_when_idle(
     scenes: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    options = SiteOptions(tmp_path / "runs", idle=IdleReturn(3600.0), idle_of={CAMERA: IdleReturn(0.5, "gate")})
+    options = SiteOptions(tmp_path / "runs", idle=IdleReturn(3600.0), idle_by_camera={CAMERA: IdleReturn(0.5, "gate")})
     access = Access("127.0.0.1", limits=RateLimits(None))
     with serving(options, access, {CAMERA: SPEC, OTHER: SPEC}) as served, served.client() as client:
         assert client.post(f"/cameras/{CAMERA}/move", json={"pan_deg": 12.0}).status_code == 200

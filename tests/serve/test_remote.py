@@ -185,4 +185,4 @@ class TestRemoteCamera(CameraConformance):
             try:
                 yield camera
             finally:
-                await connection.ask("DELETE", "~/control")
+                await connection.request("DELETE", "~/control")

@@ -16,13 +16,13 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from scope_ptz.errors import ConfigError, UnknownNameError
-from scope_ptz.serve.security.gate import MAX_BODY_BYTES, Access
+from scope_ptz.serve.security.access import MAX_BODY_BYTES, Access
 from scope_ptz.serve.security.origins import Origins
 from scope_ptz.serve.security.rate_limits import Rate, RateLimits
 from scope_ptz.serve.security.sessions import COOKIE, Sessions
 from scope_ptz.serve.security.tokens import Token, TokenFile
 from scope_ptz.serve.site.errors import TooManyRequestsError
-from scope_ptz.serve.site.service import SiteOptions
+from scope_ptz.serve.site.site import SiteOptions
 from tests.serve.conftest import SPEC
 from tests.serve.serving import CAMERA, Served, serving
 

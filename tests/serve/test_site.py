@@ -18,12 +18,12 @@ import pytest
 
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import ConfigError, UnknownNameError
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.site.camera_control import CameraControl
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import NotInControlError
-from scope_ptz.serve.site.service import SiteOptions, site_cameras
+from scope_ptz.serve.site.site import SiteOptions, site_cameras
 from scope_ptz.serve.site.station import IdleReturn
 from scope_ptz.settings import ScopeSettings
 from scope_ptz.simulator.pack import Scene

@@ -36,7 +36,7 @@ def test_migrations_make_the_tables_that_queries_expect(tmp_path: Path) -> None:
 
 def test_the_journal_is_a_write_ahead_log(tmp_path: Path) -> None:
     database = Database(tmp_path / "store.sqlite")
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         assert connection.exec_driver_sql("PRAGMA journal_mode").scalar_one() == "wal"
         assert connection.exec_driver_sql("PRAGMA foreign_keys").scalar_one() == 1
         assert connection.exec_driver_sql("PRAGMA user_version").scalar_one() == len(MIGRATIONS)
@@ -59,7 +59,7 @@ def test_a_failed_migration_changes_nothing(tmp_path: Path, monkeypatch: pytest.
         Database(tmp_path / "store.sqlite")
     monkeypatch.undo()
     database = Database(tmp_path / "store.sqlite")
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         assert connection.exec_driver_sql("SELECT count(*) FROM sqlite_master WHERE name = 'half'").scalar_one() == 0
     database.close()
 
@@ -82,7 +82,7 @@ def test_a_locked_store_gives_a_clear_message_and_loses_no_run(root: Path, copie
 def test_a_full_disk_gives_a_clear_message_and_loses_no_run(root: Path, copies: Callable[[int], list[str]]) -> None:
     with RunStore(root) as store:
         store.index()
-        with store.database.reading() as connection:
+        with store.database.read_transaction() as connection:
             pages = connection.exec_driver_sql("PRAGMA page_count").scalar_one()
         store.close()
         copies(30)
@@ -121,7 +121,7 @@ def test_a_folder_that_cannot_be_created_gives_a_clear_message(tmp_path: Path) -
 
 def test_database_errors_contain_no_values(tmp_path: Path) -> None:
     database = Database(tmp_path / "store.sqlite")
-    with pytest.raises(StoreError) as caught, database.writing():
+    with pytest.raises(StoreError) as caught, database.write_transaction():
         raise OperationalError("INSERT", {"token": "secret"}, sqlite3.OperationalError("no such table: x"))
     assert "secret" not in str(caught.value)
     database.close()

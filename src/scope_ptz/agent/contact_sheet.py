@@ -8,7 +8,8 @@ from PIL import Image
 
 from scope_ptz.agent.drawing import EDGE_COLOUR, PANEL_COLOUR, TEXT_COLOUR, Canvas, printable, shorten
 
-_WIDTH, _MARGIN, _GAP, _CAPTION, _TITLE, _COLUMNS = 1600, 32, 20, 44, 64, 3
+_WIDTH, _MARGIN, _GAP, _CAPTION, _TITLE = 1600, 32, 20, 44, 64  # picture pixels; the last two are heights
+_COLUMNS = 3  # pictures per row
 
 
 def contact_sheet(title: str, pictures: Sequence[tuple[str, Image.Image]]) -> Image.Image:

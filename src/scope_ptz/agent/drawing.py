@@ -23,7 +23,7 @@ AMBER = "#FFC94A"
 RED = "#FF7B6E"
 
 _REPLACEMENTS = str.maketrans({"×": "x", "–": "-", "—": "-", "−": "-", "→": ">", "‑": "-"})
-_BOLD = 0.28  # picture pixels; stroke width that makes the built-in font bold at size 16
+_BOLD = 0.28  # stroke width in picture pixels that makes the built-in font look bold at size 16
 
 
 def printable(text: str) -> str:

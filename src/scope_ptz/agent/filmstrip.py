@@ -26,7 +26,7 @@ from scope_ptz.agent.drawing import (
     wrap,
 )
 from scope_ptz.agent.panels import Panel, panels_of
-from scope_ptz.agent.trace import Trace, picture_of
+from scope_ptz.agent.trace import Trace, picture_path
 from scope_ptz.errors import OutputError, TraceError
 
 # Lengths in picture pixels.
@@ -146,7 +146,7 @@ def open_picture(name: str, folder: Path, files: Mapping[str, bytes] | None = No
     Raises:
         TraceError: The picture is missing or damaged.
     """
-    path = picture_of(folder, name)
+    path = picture_path(folder, name)
     try:
         with Image.open(path if files is None else BytesIO(files.get(name, b""))) as image:
             return image.convert("RGB")

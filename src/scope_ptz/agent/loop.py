@@ -14,7 +14,7 @@ import anyio
 
 from scope_ptz.agent.planner_views import newest_view
 from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
-from scope_ptz.agent.timing import Stopwatch, failed_usage, server_events
+from scope_ptz.agent.timing import Stopwatch, failed_usage, failures_of
 from scope_ptz.agent.tool_calls import CallRunner, RunEnd, RunTool, error_text
 from scope_ptz.camera.base import Camera
 from scope_ptz.endpoints.failures import count_failures
@@ -198,7 +198,7 @@ class _Episode:
             except CameraError as error:
                 return RunEnd("camera_error", str(error))
             except PlannerError as error:
-                self.calls.events.update(server_events(error))
+                self.calls.events.update(failures_of(error))
                 self.usage += failed_usage(error.attempts)
                 return RunEnd("planner_error", str(error), kind=error.kind)
             except Exception as error:  # any failure of a planner is an outcome of the run

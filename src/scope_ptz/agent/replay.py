@@ -1,6 +1,6 @@
 """Replay a run without models: the recorded decisions and perception replies drive a fresh simulated camera.
 
-A replay is equal if every call gives the same result (poses, counts, answers, clamped axes) or the same error.
+A replay matches its recording if every call gives the same result (poses, counts, answers, clamped axes) or the same error.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from scope_ptz.planner.base import CallTools, Decision, Planner, State
 
 _PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Points)
 
-REPEATABLE = ("answered", "clarification", "refused", "step_limit")
+REPRODUCIBLE_OUTCOMES = ("answered", "clarification", "refused", "step_limit")
 """Outcomes that a replay must reach again. Other outcomes, such as an exhausted budget or a failure, have external causes."""
 
 _FILE_NAME_FIELDS = ("frames", "file")  # not compared, because a replay stores no pictures
-_TOLERANCE = 0.011  # numbers are equal if they differ by at most this; results are rounded to hundredths or finer
+_TOLERANCE = 0.011  # largest difference between numbers that are considered equal; results are rounded to hundredths or finer
 
 
 @dataclass(frozen=True, slots=True)
 class CallComparison:
-    """A recorded call and its difference from the repeated one. ``difference`` is empty if they agree."""
+    """A recorded call, and how the replayed one differs from it. ``difference`` is empty if they agree."""
 
     recorded: Called
     difference: str
@@ -44,27 +44,27 @@ class Replay:
     outcome_difference: str
 
     @property
-    def equal(self) -> bool:
+    def matches(self) -> bool:
         """Whether the outcome and all calls agree."""
         return not self.outcome_difference and not any(c.difference for c in self.comparisons)
 
 
 async def replay(trace: Trace, camera: Camera) -> Replay:
-    """Repeat a recorded run.
+    """Replay a recorded run.
 
     Args:
         trace: The recorded run.
         camera: A simulated camera at the recorded start pose and scene time.
 
     Returns:
-        The differences between the recorded and the repeated calls.
+        The differences between the recorded and the replayed calls.
 
     Raises:
-        TraceError: The run used a real camera and cannot be repeated.
+        TraceError: The run used a real camera and cannot be replayed.
     """
     if not trace.started.simulated:
         raise TraceError("This run was made with a real camera, so it cannot be repeated.")
-    # Calls that failed for a reason outside the simulation would not fail again, so they are not repeated.
+    # Calls that failed for a reason outside the simulation would not fail again, so they are left out.
     calls = tuple(call for call in trace.calls if call.fault not in ("camera", "cancelled"))
     script = _Script(replace(trace, calls=calls), camera)
     agent = Agent(
@@ -123,7 +123,7 @@ def _complete_decisions(trace: Trace) -> list[Decision]:
 
 
 class _RecordedPlanner(Planner):
-    """A planner that repeats the recorded decisions."""
+    """A planner that returns the recorded decisions in order."""
 
     name = "recorded"
 
@@ -184,7 +184,7 @@ class _PacedCamera(TimedCamera):
 
 
 def _difference(recorded: Called, repeated_call: Called | None) -> str:
-    """Describe how a call differs from its repetition; empty if they agree."""
+    """Describe how the replayed call differs from the recorded one; empty if they agree."""
     if repeated_call is None:
         return "not reached"
     before, now = recorded.outcome, repeated_call.outcome
@@ -209,7 +209,7 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def _outcome_difference(before: Ended | None, now: Ended) -> str:
-    if before is None or before.outcome not in REPEATABLE:
+    if before is None or before.outcome not in REPRODUCIBLE_OUTCOMES:
         return ""
     if (before.outcome, before.text) == (now.outcome, now.text):
         return ""

@@ -34,8 +34,8 @@ def slug(text: str) -> str:
     return result or "run"
 
 
-class Numbering:
-    """A generator of picture names, numbered in the order in which pictures are stored."""
+class PictureNames:
+    """Generates picture names, numbered in the order in which pictures are stored."""
 
     def __init__(self) -> None:
         self._frames = self._pictures = 0
@@ -55,7 +55,7 @@ class NoImages:
     """An image store that stores nothing, for replays and evaluations. It returns the same names as a run folder."""
 
     def __init__(self) -> None:
-        self._names = Numbering()
+        self._names = PictureNames()
 
     async def save_frame(self, frame: Frame) -> str:
         return self._names.frame(frame)
@@ -68,7 +68,7 @@ class EncodedImages(ABC):
     """An image store that encodes frames as JPEG, and pictures that the user requested as PNG, both in a worker thread."""
 
     def __init__(self) -> None:
-        self._names = Numbering()
+        self._names = PictureNames()
 
     async def save_frame(self, frame: Frame) -> str:
         """Store a frame of the run, such as one that perception receives, and return its name. Raises ``OutputError``."""

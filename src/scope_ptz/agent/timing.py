@@ -52,7 +52,7 @@ class Timings(BaseModel):
 
     @property
     def own_s(self) -> float:
-        """Seconds without camera calls: planner, perception, and the work of the loop and the tools."""
+        """Seconds spent outside camera calls: in the planner, in perception, and in the loop and the tools."""
         return max(self.planner_s + self.perception_s, self.total_s - self.capture_s)
 
     @property
@@ -233,7 +233,7 @@ class TimedPerception(Perception):
             result = observation.model_dump(mode="json")
             events = count_failures(observation.attempts)
         except PerceptionError as failure:
-            error, events = str(failure), server_events(failure)
+            error, events = str(failure), failures_of(failure)
             raise
         finally:
             if result is not None or error is not None:
@@ -260,7 +260,7 @@ def failed_usage(attempts: Iterable[object]) -> Usage:
     )
 
 
-def server_events(error: PerceptionError | PlannerError) -> dict[str, int]:
+def failures_of(error: PerceptionError | PlannerError) -> dict[str, int]:
     """Return the number of failed requests that led to an error, by failure kind. An unusable reply counts as a failure."""
     events = count_failures(a for a in error.attempts if isinstance(a, Attempt))
     return events if error.kind is None or error.kind in events else {**events, str(error.kind): 1}

@@ -61,7 +61,7 @@ class Trace:
     ended: Ended | None
 
 
-def picture_of(folder: Path, name: str) -> Path:
+def picture_path(folder: Path, name: str) -> Path:
     """Return the path of a picture that a trace names.
 
     Raises:

@@ -75,7 +75,7 @@ class CallResult:
 
     @property
     def message(self) -> str:
-        """A sentence about the result: its message, or the error if the call failed."""
+        """A sentence about the outcome: the message of the result, or the error if the call failed."""
         return self.error if self.error is not None else str((self.result or {}).get("message", ""))
 
     def __str__(self) -> str:

@@ -98,7 +98,7 @@ class Scope:
             InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
             PackError: the files of a scene are damaged.
             CameraError: the camera failed before the first step.
-            KeyboardInterrupt: Ctrl-C was pressed. The cancelled run is the last one of ``runs``.
+            KeyboardInterrupt: Ctrl-C was pressed. The cancelled run is the last one in ``runs``.
 
         Example:
             >>> import scope_ptz
@@ -277,7 +277,7 @@ class Scope:
             zoom_limit: "in" for the highest magnification, "out" for the lowest.
 
         Returns:
-            The result: the ``pose`` reached, and in ``clamped`` the axes on which a limit stopped the camera.
+            The result: ``pose`` is the pose reached, and ``clamped`` lists the axes on which a limit stopped the camera.
 
         Raises:
             ToolCallError: the arguments are invalid, for example more than one zoom argument.
@@ -413,7 +413,8 @@ class Scope:
             duration_s: duration in seconds of scene time, at most 600.
 
         Returns:
-            The result: the camera's ``path``, and in ``held_share`` the fraction of the time during which the object was seen.
+            The result: ``path`` is the camera's path, and ``held_share`` is the fraction of the time during which the object was
+            seen.
 
         Raises:
             PerceptionError: perception failed.
@@ -459,8 +460,8 @@ class Scope:
             arguments: the arguments as a dictionary, or as the JSON text that the model sent.
 
         Returns:
-            The outcome: ``text`` for the model, ``ok``, the ``result`` as an object or the ``error``, and in ``pictures`` the
-            picture that ``take_image`` took. A picture has a ``caption`` and a ``data_url``.
+            The outcome: ``text`` for the model, ``ok``, and either the ``result`` as an object or the ``error``. ``pictures``
+            contains the picture that ``take_image`` took, with its ``caption`` and ``data_url``.
 
         Raises:
             InputError: the session is closed or busy, or the picture cannot be written.

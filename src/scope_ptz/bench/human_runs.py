@@ -10,7 +10,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from scope_ptz.agent.timing import Timings
-from scope_ptz.agent.trace import Trace, picture_of, read_trace
+from scope_ptz.agent.trace import Trace, picture_path, read_trace
 from scope_ptz.bench.scoring.episode import PresetViewpoints, episode_of
 from scope_ptz.bench.scoring.error_modes import error_mode
 from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, ModelCard, RunCard, Trial
@@ -81,7 +81,7 @@ class StoredHumanRun:
         Raises:
             TraceError: The name refers to a path outside the folder.
         """
-        path = picture_of(self.trace.folder, name)
+        path = picture_path(self.trace.folder, name)
         try:
             return path.read_bytes()
         except OSError:

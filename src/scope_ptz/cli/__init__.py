@@ -8,15 +8,15 @@ import sys
 
 def main() -> None:
     """Run ``scope``. This is the entry point of the installed program."""
-    from scope_ptz.cli.exit import guarded_streams, readable_arguments
-    from scope_ptz.cli.starting import collector_paused, prepare_help
+    from scope_ptz.cli.exit import decode_arguments, safe_streams
+    from scope_ptz.cli.startup import pause_garbage_collection, prepare_help
 
     # Disable pydantic's plug-ins: the command line uses none, and searching for them reads the metadata of every installed package.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-    with guarded_streams():
-        with collector_paused():
+    with safe_streams():
+        with pause_garbage_collection():
             from scope_ptz.cli.app import app
 
-            sys.argv[1:] = readable_arguments(sys.argv[1:])
+            sys.argv[1:] = decode_arguments(sys.argv[1:])
             prepare_help(sys.argv[1:])
         app(prog_name="scope")

@@ -29,7 +29,7 @@ from scope_ptz.cli.options import (
 from scope_ptz.cli.parameters import LeanGroup
 from scope_ptz.cli.runs import HELP as RUNS_HELP
 from scope_ptz.cli.runs import RunsGroup
-from scope_ptz.cli.starting import collector_paused
+from scope_ptz.cli.startup import pause_garbage_collection
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 
@@ -90,7 +90,7 @@ def ask(
     as_json: JsonOption = False,
 ) -> int:
     """Carry out one instruction and save the run: its trace, frames and a filmstrip."""
-    with collector_paused():
+    with pause_garbage_collection():
         from scope_ptz.cli.ask import ask as run
 
     return run(instruction, session, models.options(), as_json=as_json, next_steps=next_steps)
@@ -116,7 +116,7 @@ def plan(
     as_json: JsonOption = False,
 ) -> int:
     """Show the tool calls that the built-in planner would make, without moving a camera."""
-    with collector_paused():
+    with pause_garbage_collection():
         from scope_ptz.cli.plan import plan as run
 
     return run(instruction, presets, source, as_json=as_json)

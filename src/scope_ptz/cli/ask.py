@@ -19,9 +19,9 @@ from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Listener, R
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
 from scope_ptz.cli.display import LiveView, show_end, show_planned
-from scope_ptz.cli.exit import CANCELLED, exit_code, interrupts_handled_by, put, put_json, run_until_interrupted
+from scope_ptz.cli.exit import CANCELLED, exit_code, handle_interrupts, put, put_json, run_until_interrupted
 from scope_ptz.cli.options import SessionFlags
-from scope_ptz.cli.starting import collector_paused
+from scope_ptz.cli.startup import pause_garbage_collection
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import OpenCamera
 from scope_ptz.factory.models import ModelOptions, dry_run_note, make_perception, make_planner, perception_note, resolve_models
@@ -105,7 +105,7 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
 
     async def work() -> None:
         nonlocal folder, planned
-        with collector_paused():  # opening a session imports the modules of its planner, camera and perception backend
+        with pause_garbage_collection():  # opening a session imports the modules of its planner, camera and perception backend
             session = await Session.open(flags, models, realtime=flags.in_real_time(as_json=as_json))
         try:
             planned = session.planned
@@ -124,7 +124,7 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
             folder.discard_if_not_started()
     if folder is None or not folder.trace.is_file():
         raise KeyboardInterrupt
-    with interrupts_handled_by(signal.SIG_IGN):
+    with handle_interrupts(signal.SIG_IGN):
         code = _report(folder, planned if flags.dry_run else None, as_json=as_json)
     if next_steps and not as_json and code == 0:
         put(_NEXT_STEPS.format(program=_program()))

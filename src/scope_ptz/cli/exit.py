@@ -47,7 +47,7 @@ def put(text: str) -> None:
 
 
 def put_json(content: Any, *, indent: int | None = None) -> None:
-    """Print JSON on stdout. If the encoding of stdout is not Unicode, other characters are escaped as ``\\uXXXX``."""
+    """Print JSON on stdout. If the encoding of stdout is not Unicode, characters outside ASCII are escaped as ``\\uXXXX``."""
     put(json.dumps(content, indent=indent, ensure_ascii=not _is_unicode(sys.stdout)))
 
 
@@ -119,7 +119,7 @@ def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
                 elif presses == _FORCE_EXIT_PRESSES:
                     os._exit(CANCELLED)
 
-            with interrupts_handled_by(interrupt):
+            with handle_interrupts(interrupt):
                 await work()
         return scope.cancelled_caught
 
@@ -137,7 +137,7 @@ def run_async(work: Callable[[], Awaitable[None]]) -> None:
 
 
 @contextmanager
-def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
+def handle_interrupts(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
     """Replace the handlers of Ctrl-C and of the signals TERM and HUP within the block.
 
     A signal that is already ignored, such as HUP under ``nohup``, stays ignored. Outside the main thread, no handler changes.
@@ -155,7 +155,7 @@ def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Ite
 
 
 @contextmanager
-def guarded_streams() -> Iterator[None]:
+def safe_streams() -> Iterator[None]:
     """Make standard streams safe even if they are closed, cannot be written, are broken pipes, or do not use UTF-8.
 
     A closed stream is replaced by the null device. Output to a broken pipe (``scope tools | head``) is dropped silently and does
@@ -256,7 +256,7 @@ def _is_unicode(stream: Any) -> bool:
     return (getattr(stream, "encoding", None) or "utf-8").lower().replace("-", "").startswith("utf")
 
 
-def readable_arguments(arguments: list[str]) -> list[str]:
+def decode_arguments(arguments: list[str]) -> list[str]:
     """Decode the arguments that the locale's encoding could not decode as UTF-8."""
     return [os.fsencode(text).decode("utf-8", "replace") if _has_surrogates(text) else text for text in arguments]
 

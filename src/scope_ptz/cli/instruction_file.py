@@ -31,10 +31,10 @@ def read_instructions(source: Path) -> Iterator[tuple[int, InstructionLine | Inp
     """
     for number, line in enumerate(_lines(source), 1):
         if line.strip():
-            yield number, _parsed(line)
+            yield number, _parse(line)
 
 
-def _parsed(line: str) -> InstructionLine | InputError:
+def _parse(line: str) -> InstructionLine | InputError:
     try:
         return InstructionLine.model_validate_json(line)
     except ValidationError as error:

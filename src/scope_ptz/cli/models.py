@@ -36,7 +36,7 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
         memory_gb: List only models that fit into this many GB. A line below the table names models that fit with smaller weights.
         as_json: Print JSON instead of a table.
     """
-    known_models, requested_role = registry(), _checked_role(role)
+    known_models, requested_role = registry(), _parse_role(role)
     suitable = [m for m in known_models.models.values() if requested_role is None or requested_role in m.roles]
     listed = [m for m in suitable if memory_gb is None or m.memory_for() <= memory_gb]
     if as_json:
@@ -204,7 +204,7 @@ def _console() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=_PIPE)
 
 
-def _checked_role(role: str | None) -> Role | None:
+def _parse_role(role: str | None) -> Role | None:
     match role:
         case None | "planner" | "perception":
             return role

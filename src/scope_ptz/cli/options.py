@@ -365,7 +365,7 @@ def command(function: Callable[..., int | None]) -> Callable[..., None]:
         kind = hints[parameter.name]
         if isinstance(kind, type) and is_dataclass(kind):
             groups[parameter.name] = kind
-            flat += _expanded(kind, None if parameter.default is Parameter.empty else parameter.default)
+            flat += _expand(kind, None if parameter.default is Parameter.empty else parameter.default)
         else:
             flat.append(parameter.replace(annotation=kind, kind=Parameter.KEYWORD_ONLY))
 
@@ -382,7 +382,7 @@ def command(function: Callable[..., int | None]) -> Callable[..., None]:
     return run
 
 
-def _expanded(group: type[Any], defaults: Any) -> list[Parameter]:
+def _expand(group: type[Any], defaults: Any) -> list[Parameter]:
     hints = get_type_hints(group, include_extras=True)
     return [
         Parameter(

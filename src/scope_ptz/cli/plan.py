@@ -28,7 +28,7 @@ def plan(instruction: str | None, presets: str | None, source: Path | None, *, a
             raise InputError("--presets cannot be used with --from. Give the presets of each instruction in the file.")
         return _plan_file(source, as_json=as_json)
     names = [name.strip() for name in (presets or "").split(",") if name.strip()]
-    _show(_planned(instruction or "", names), as_json=as_json)
+    _show(_make_plan(instruction or "", names), as_json=as_json)
     return 0
 
 
@@ -40,14 +40,14 @@ def _plan_file(source: Path, *, as_json: bool) -> int:
         try:
             if isinstance(line, InputError):
                 raise line
-            _show(_planned(line.instruction, line.presets), as_json=as_json)
+            _show(_make_plan(line.instruction, line.presets), as_json=as_json)
         except InputError as error:
             print_error(f"{source}, line {number}: {error}")
             code = BAD_INPUT
     return code
 
 
-def _planned(instruction: str, presets: list[str]) -> Plan:
+def _make_plan(instruction: str, presets: list[str]) -> Plan:
     if not instruction.strip():
         raise InputError("The instruction is empty. Describe what the camera should do.")
     if len(instruction) > MAX_INSTRUCTION_CHARS:

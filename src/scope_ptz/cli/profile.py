@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.base import Frame
 
 REAL_TIME_S = 0.5  # the paper's criterion: a control loop of about 2 Hz, so at most 500 ms per inference
-_EXTRA_PAN_DEG = 7.0  # difference in pan between frames of the same preset, if there are more frames than presets
+_EXTRA_PAN_DEG = 7.0  # difference in pan between two frames of the same preset; used if there are more frames than presets
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.simulator.clock import SceneClock
 
-_LEAD_S = 30.0  # seconds before the run at which the clock starts, to leave time for reaching the first pose
+_LEAD_S = 30.0  # the clock starts this many seconds before the run, which leaves time to reach the first pose
 _NO_CALLS = "the trace contains no calls, so there is nothing to repeat"
 
 
@@ -43,9 +43,9 @@ def replay(run: Path, *, as_json: bool) -> int:
         put_json(_as_json(trace, result, reason))
     else:
         _show(trace, result, reason)
-    if result is None or (result.equal and not trace.calls):
+    if result is None or (result.matches and not trace.calls):
         return BAD_INPUT
-    return 0 if result.equal else FAILED
+    return 0 if result.matches else FAILED
 
 
 async def _repeat(trace: Trace) -> Replay:
@@ -93,7 +93,7 @@ def _show(trace: Trace, result: Replay | None, reason: str) -> None:
     else:
         show_end(console, trace.ended, trace.started.labels.perception_note, trace.folder, None)
     console.print()
-    style = "bold green" if result and result.equal and not reason else "bold yellow"
+    style = "bold green" if result and result.matches and not reason else "bold yellow"
     console.print(Text(_verdict(result, reason), style=style))
 
 
@@ -101,7 +101,7 @@ def _verdict(result: Replay | None, reason: str) -> str:
     if result is None:
         return f"Shown from the trace only, not repeated: {plain(reason)}"
     count = len(result.comparisons)
-    if not result.equal:
+    if not result.matches:
         differing = sum(1 for c in result.comparisons if c.difference)
         tail = f"; {plain(result.outcome_difference)}" if result.outcome_difference else ""
         return f"Repeated without models: {differing} of {count} calls gave different results{tail}."
@@ -115,7 +115,7 @@ def _as_json(trace: Trace, result: Replay | None, reason: str) -> dict[str, obje
     return {
         "recorded": recorded,
         "repeated": result is not None,
-        "equal": result.equal if result else None,
+        "equal": result.matches if result else None,
         "differences": [c.difference for c in result.comparisons] if result else [],
         "outcome_difference": result.outcome_difference if result else "",
         "reason": reason,

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from contextlib import AbstractAsyncContextManager
 
     from scope_ptz.cli.options import ServerFlags
-    from scope_ptz.serve.security.gate import Access
+    from scope_ptz.serve.security.access import Access
     from scope_ptz.serve.security.tokens import TokenFile
-    from scope_ptz.serve.site.service import Site
+    from scope_ptz.serve.site.site import Site
 
 SWITCH_INTERVAL_S = 0.001
 """Seconds for which a thread may run before others get a turn. With the default of 5 ms, rendering would delay a ``stop``."""
@@ -35,8 +35,8 @@ def run_server(flags: ServerFlags, *, kind: Serving = "api", as_json: bool) -> N
     from scope_ptz.settings import load_settings
 
     _prepare_process()
-    with _naming_extra("console" if kind == "page" else "serve"):
-        from scope_ptz.serve.security.gate import Access
+    with _name_missing_extra("console" if kind == "page" else "serve"):
+        from scope_ptz.serve.security.access import Access
         from scope_ptz.serve.security.origins import is_loopback
 
         serving = _serving(kind)
@@ -96,7 +96,7 @@ def run_mcp(flags: ServerFlags, transport: str, role: str, *, as_json: bool) -> 
     from scope_ptz.settings import load_settings
 
     _prepare_process()
-    with _naming_extra("serve"):
+    with _name_missing_extra("serve"):
         from scope_ptz.serve.mcp.stdio import serve_stdio
     if sys.stdin.isatty():
         sys.stderr.write("This command speaks MCP on standard input and output. Configure it in an assistant; see docs/mcp.md.\n")
@@ -113,7 +113,7 @@ def _prepare_process() -> None:
 
 
 @contextmanager
-def _naming_extra(extra: str) -> Iterator[None]:
+def _name_missing_extra(extra: str) -> Iterator[None]:
     """Convert the error about a missing package of the server to a message that names the extra with the package.
 
     Raises:
@@ -137,11 +137,11 @@ def _serving(kind: Serving) -> Callable[[Site, Access, int], AbstractAsyncContex
 
     if kind == "api":
         return lambda site, access, port: serve(site, access, port=port)
-    from scope_ptz.serve.mcp.http import mcp_application, serving_mcp
+    from scope_ptz.serve.mcp.http import mcp_application, serve_mcp
 
     @asynccontextmanager
     async def only_mcp(site: Site, access: Access, port: int) -> AsyncIterator[int]:
-        async with serving_mcp(site, access) as route, serve(site, access, port=port, app=mcp_application(access, route)) as bound:
+        async with serve_mcp(site, access) as route, serve(site, access, port=port, app=mcp_application(access, route)) as bound:
             yield bound
 
     return only_mcp
@@ -154,7 +154,7 @@ def _site(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[[], Site
         flags: The options.
         runs_dir: The default of the runs folder; None for that of the settings.
     """
-    from scope_ptz.serve.site.service import Site, SiteOptions, idle_returns, site_cameras
+    from scope_ptz.serve.site.site import Site, SiteOptions, idle_returns, site_cameras
     from scope_ptz.serve.site.station import IdleReturn
     from scope_ptz.settings import load_settings
 
@@ -162,7 +162,7 @@ def _site(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[[], Site
     chosen = site_cameras(cameras, settings)
     idle = None if flags.idle_after is None else IdleReturn(flags.idle_after, flags.idle_preset)
     folder, pairs = flags.runs_dir or runs_dir or settings.runs_dir, tuple(flags.pair or ())
-    options = SiteOptions(folder, tuple(cameras), pairs, idle=idle, idle_of=idle_returns())
+    options = SiteOptions(folder, tuple(cameras), pairs, idle=idle, idle_by_camera=idle_returns())
     return lambda: Site(chosen, options)
 
 

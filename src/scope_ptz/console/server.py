@@ -15,10 +15,10 @@ from starlette.staticfiles import StaticFiles
 from streamlit import config
 
 from scope_ptz.serve.http.app import API_PREFIX, api_application
-from scope_ptz.serve.security.gate import Access, Gate
+from scope_ptz.serve.security.access import Access, AccessMiddleware
 from scope_ptz.serve.security.sign_in import sign_in_route
 from scope_ptz.serve.server import mcp_route, serve
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 
 FOLDER = Path(__file__).parent
 ASSETS_PREFIX = "/console"  # path of the page's scripts and styles
@@ -69,7 +69,7 @@ async def serve_console(site: Site, access: Access, *, port: int = 8000) -> Asyn
     api = Mount(API_PREFIX, api_application(site, access))
     async with mcp_route(site, access) as mcp:
         page = st.App(FOLDER / "ui.py", routes=[sign_in_route(access), api, mcp, assets])
-        gate = Gate(page, access, page_policy=PAGE_POLICY)
+        gate = AccessMiddleware(page, access, page_policy=PAGE_POLICY)
         async with page.lifespan()(Starlette()), serve(site, access, port=port, app=gate) as bound:
             yield bound
 

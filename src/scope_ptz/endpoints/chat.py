@@ -11,7 +11,7 @@ from pydantic_core import to_json
 from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type
 from scope_ptz.endpoints.chat_replies import ChatReply, RawToolCall, ReplyAssembler
 from scope_ptz.endpoints.endpoint import Endpoint
-from scope_ptz.endpoints.events import DONE, Events
+from scope_ptz.endpoints.events import DONE, EventParser
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, one_line_excerpt
 from scope_ptz.endpoints.retries import Caller
 
@@ -118,7 +118,7 @@ class ChatClient:
 
     async def _read_stream(self, response: Response, began: float) -> ChatReply:
         assembler, first_token_s, is_done = ReplyAssembler(self.endpoint), None, False
-        head, events = b"", Events()
+        head, events = b"", EventParser()
         pieces = chunks(response, self.endpoint)
 
         def add(stream: list[bytes]) -> bool:

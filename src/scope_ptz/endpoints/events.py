@@ -8,7 +8,7 @@ import json
 DONE = b"[DONE]"
 
 
-class Events:
+class EventParser:
     """A parser that extracts the data of events from bytes that arrive in arbitrary pieces.
 
     As the standard requires, lines end with LF, CR or CRLF, comments and other fields are skipped, the data lines of an event are

@@ -41,7 +41,7 @@ PERCEPTION_CALLS_PER_STEP = 8
 MAX_CONSECUTIVE_FAILURES = 12
 """An evaluation stops after this many consecutive runs that failed because of infrastructure."""
 GC_THRESHOLDS = (20_000, 20, 50)
-"""Arguments of ``gc.set_threshold`` during an evaluation."""
+"""Arguments of ``gc.set_threshold`` during an evaluation. They are far above the defaults, so that collections are rare."""
 
 
 class EvaluationSession:

@@ -83,7 +83,7 @@ class ModelResolver:
 
     def _is_plugin_planner(self, name: str) -> bool:
         """Return whether the name is that of a plug-in. Built-in and registered names take precedence."""
-        return name != CHAT and name not in self.registry.named("planner") and find(PLANNERS, name) is not None
+        return name != CHAT and name not in self.registry.model_names("planner") and find(PLANNERS, name) is not None
 
     def _plugin_planner(self, name: str) -> ResolvedPlanner:
         from scope_ptz.planner.spec import PlannerSpec
@@ -194,7 +194,7 @@ class ModelResolver:
             if self.options.planner_url:
                 return None
             plugins = (entry.name for entry in installed(PLANNERS))
-            raise UnknownNameError("planner", name, [GRAMMAR, CHAT, *self.registry.named("planner"), *plugins]) from error
+            raise UnknownNameError("planner", name, [GRAMMAR, CHAT, *self.registry.model_names("planner"), *plugins]) from error
 
     def _registered_perception(self, name: str) -> Model | None:
         """Return the registry's entry, or None for the name of a backend."""
@@ -207,7 +207,7 @@ class ModelResolver:
         except UnknownNameError as error:
             if find(PERCEPTION, name) is not None:
                 return None
-            known = [*BUILT_IN_PERCEPTION, *self.registry.named("perception"), *backend_names()]
+            known = [*BUILT_IN_PERCEPTION, *self.registry.model_names("perception"), *backend_names()]
             raise UnknownNameError("perception", name, known) from error
 
     def _endpoint(self, url: str, key: SecretStr | None, role: str, name: str, model: Model | None) -> Endpoint:
@@ -258,4 +258,4 @@ def _role_name(registry: Registry, name: str, role: Role) -> str:
     except UnknownNameError as error:
         if find(group, name) is not None:
             return name
-        raise UnknownNameError(role, name, [*built_in, *registry.named(role)]) from error
+        raise UnknownNameError(role, name, [*built_in, *registry.model_names(role)]) from error

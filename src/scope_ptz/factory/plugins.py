@@ -82,7 +82,7 @@ def _reserved_names(kind: Kind) -> frozenset[str]:
     from scope_ptz.registry import load_registry
     from scope_ptz.settings import load_settings
 
-    registered = load_registry(load_settings().models_file()).named(kind)
+    registered = load_registry(load_settings().models_file()).model_names(kind)
     if kind == "planner":
         names = {GRAMMAR, CHAT, *registered}
     else:

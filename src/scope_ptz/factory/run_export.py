@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 AnyFormat = Literal["jsonl", "chat", "zip", "drafts"]
 FORMATS: tuple[str, ...] = get_args(AnyFormat)
-"""The formats of ``store.export``, and ``drafts``: a line for each run with good feedback, for ``scope bench drafts``."""
+"""The formats of ``store.export``, and ``drafts``: a line for each run with positive feedback, for ``scope bench drafts``."""
 
 
 def export_runs(store: RunStore, runs: Iterable[str], out: Path, kind: ExportFormat | AnyFormat) -> int:
-    """Write runs to a new file, and return their number.
+    """Write runs to a new file, and return how many were written.
 
     Raises:
         InputError: The format is unknown.
@@ -47,17 +47,17 @@ def export_runs(store: RunStore, runs: Iterable[str], out: Path, kind: ExportFor
 
 
 def run_drafts(store: RunStore, runs: Iterable[str]) -> Iterator[RunDraft]:
-    """Yield the draft of each run with good feedback, or the reason why the run cannot be converted. Other runs are skipped."""
+    """Yield the draft of each run with positive feedback, or the reason why the run cannot be converted. Other runs are skipped."""
     from scope_ptz.taskgen.generating.draft_places import DraftRejectedError
     from scope_ptz.taskgen.generating.run_draft_file import RunDraft
     from scope_ptz.taskgen.generating.run_drafts import run_draft
 
     @cache
     def open_scene(name: str) -> Scene:
-        from scope_ptz.factory.worlds import scenes_named
+        from scope_ptz.factory.worlds import open_scenes
 
         try:
-            return scenes_named([name])[name]
+            return open_scenes([name])[name]
         except InputError as error:
             raise DraftRejectedError(str(error)) from error
 

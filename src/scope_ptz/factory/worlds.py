@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from scope_ptz.simulator.pack import Scene
 
 
-def scenes_named(names: list[str] | None) -> dict[str, Scene]:
+def open_scenes(names: list[str] | None) -> dict[str, Scene]:
     """Return scenes with ground truth by name; all of them if ``names`` is empty or None.
 
     Raises:
@@ -40,6 +40,6 @@ def worlds_of(tasks: Iterable[Task]) -> dict[str, Scene]:
     Variations of a scene share its pictures in memory.
     """
     needed = sorted({(task.scene, task.variation or 0) for task in tasks})
-    scenes = scenes_named(sorted({scene for scene, _ in needed})) if needed else {}
+    scenes = open_scenes(sorted({scene for scene, _ in needed})) if needed else {}
     worlds = (scenes[name].varied(number) if number else scenes[name] for name, number in needed)
     return {world.name: world for world in worlds}

@@ -41,18 +41,18 @@ class Registry:
         key = name.strip().lower()
         model = self.models.get(key) or next((m for m in self.models.values() if key in _names(m)), None)
         if model is None:
-            raise UnknownNameError(role or "model", name, self.named(role))
+            raise UnknownNameError(role or "model", name, self.model_names(role))
         if role is not None and role not in model.roles:
             can = "plan" if role == "planner" else "be used for perception"
-            raise ConfigError(f"{model.name} cannot {can}. Models that can: {', '.join(self.named(role))}.")
+            raise ConfigError(f"{model.name} cannot {can}. Models that can: {', '.join(self.model_names(role))}.")
         return model
 
-    def named(self, role: Role | None = None) -> list[str]:
+    def model_names(self, role: Role | None = None) -> list[str]:
         """Return the names of the models that support a role; all names if ``role`` is None."""
         return [m.name for m in self.models.values() if role is None or role in m.roles]
 
     def pair(self, text: str) -> Pair:
-        """Return a pair by its name, as ``PLANNER+PERCEPTION``, or by the name of a model that supports both roles.
+        """Return the pair that a text names: a registered pair, ``PLANNER+PERCEPTION``, or one model that supports both roles.
 
         Raises:
             UnknownNameError: There is no such model.

@@ -16,8 +16,8 @@ from starlette.types import ASGIApp
 
 from scope_ptz.serve.http.app import application
 from scope_ptz.serve.http.errors import error_reply
-from scope_ptz.serve.security.gate import MCP_PATH, Access
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.security.access import MCP_PATH, Access
+from scope_ptz.serve.site.site import Site
 from scope_ptz.virtual_camera.http.server import listen
 
 SHUTDOWN_S = 5
@@ -34,7 +34,7 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
         site: The cameras, models and runs to serve. This function enters the site's context.
         access: The access rules. The server listens on their host.
         port: The port; 0 for any free one.
-        app: The application, wrapped in a ``Gate``; by default, the API and MCP.
+        app: The application, wrapped in an ``AccessMiddleware``; by default, the API and MCP.
 
     Raises:
         ConfigError: The port is in use or not permitted.
@@ -57,18 +57,18 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
 
 @asynccontextmanager
 async def mcp_route(site: Site, access: Access) -> AsyncIterator[Route]:
-    """Serve MCP while the context is open, and yield its route, which must be mounted behind a ``Gate``.
+    """Serve MCP while the context is open, and yield its route, which must be mounted behind an ``AccessMiddleware``.
 
     If the package ``mcp`` is not installed, the route replies that it is missing.
     """
     try:
-        from scope_ptz.serve.mcp.http import serving_mcp
+        from scope_ptz.serve.mcp.http import serve_mcp
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] not in ("mcp", "mcp_types"):
             raise
         yield Route(MCP_PATH, _without_mcp, methods=["GET", "POST", "DELETE"])
         return
-    async with serving_mcp(site, access) as route:
+    async with serve_mcp(site, access) as route:
         yield route
 
 

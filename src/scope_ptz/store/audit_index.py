@@ -11,7 +11,7 @@ from sqlalchemy import Connection, delete, insert, select, update
 
 from scope_ptz.errors import InputError
 from scope_ptz.store.database import Database
-from scope_ptz.store.queries import moment
+from scope_ptz.store.queries import utc_time
 from scope_ptz.store.rows import AuditRow
 from scope_ptz.store.schema import AUDIT, AUDIT_FILES
 
@@ -34,7 +34,7 @@ def index_audit_log(database: Database, path: Path) -> int:
     """
     path, added = path.resolve(), 0
     while True:
-        with database.writing() as connection:
+        with database.write_transaction() as connection:
             number, offset = _file(connection, path)
             try:
                 if path.stat().st_size < offset:
@@ -58,7 +58,7 @@ def index_audit_log(database: Database, path: Path) -> int:
 def list_audit(
     database: Database, *, camera: str | None = None, since: datetime | None = None, until: datetime | None = None, limit: int = 100
 ) -> list[AuditRow]:
-    """Return entries of audit logs, the newest first."""
+    """Return entries of audit logs, newest first."""
     query = select(AUDIT)
     if camera is not None:
         query = query.where(AUDIT.c.camera == camera)
@@ -66,11 +66,11 @@ def list_audit(
         query = query.where(AUDIT.c.time >= since.timestamp())
     if until is not None:
         query = query.where(AUDIT.c.time < until.timestamp())
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         rows = connection.execute(query.order_by(AUDIT.c.time.desc(), AUDIT.c.number.desc()).limit(limit)).mappings().all()
     return [
         AuditRow(
-            time=moment(row["time"]),
+            time=utc_time(row["time"]),
             camera=row["camera"],
             actor=row["actor"],
             event=row["event"],

@@ -41,7 +41,7 @@ class Database:
             raise OutputError(f"The folder {path.parent} cannot be created: {error.strerror}.") from error
         self._engine = _engine(path, busy_s)
         try:
-            with self.writing() as connection:
+            with self.write_transaction() as connection:
                 migrate(connection)
         except BaseException:
             self.close()
@@ -52,30 +52,30 @@ class Database:
         self._engine.dispose()
 
     @contextmanager
-    def reading(self) -> Iterator[Connection]:
+    def read_transaction(self) -> Iterator[Connection]:
         """Return a connection that sees a snapshot of the database until the block ends.
 
         Raises:
             StoreError: The database is locked or damaged.
         """
-        with self._translating_errors(), self._engine.connect() as connection, connection.begin():
+        with self._translate_errors(), self._engine.connect() as connection, connection.begin():
             yield connection
 
     @contextmanager
-    def writing(self) -> Iterator[Connection]:
+    def write_transaction(self) -> Iterator[Connection]:
         """Return a connection in a transaction that is committed when the block ends without an exception.
 
         Raises:
             StoreError: The database is locked by another program, or damaged.
             OutputError: The disk is full, or the file cannot be written.
         """
-        with self._translating_errors(), self._engine.connect() as connection:
+        with self._translate_errors(), self._engine.connect() as connection:
             connection = connection.execution_options(scope_writes=True)
             with connection.begin():
                 yield connection
 
     @contextmanager
-    def _translating_errors(self) -> Iterator[None]:
+    def _translate_errors(self) -> Iterator[None]:
         try:
             yield
         except DBAPIError as error:

@@ -9,7 +9,7 @@ from sqlalchemy import RowMapping, delete, insert, select
 
 from scope_ptz.errors import InputError, UnknownNameError
 from scope_ptz.store.database import Database
-from scope_ptz.store.queries import moment, run_number
+from scope_ptz.store.queries import run_number, utc_time
 from scope_ptz.store.rows import FeedbackRow
 from scope_ptz.store.schema import FEEDBACK, STEPS
 
@@ -40,7 +40,7 @@ def add_feedback(
     if len(comment) > MAX_COMMENT_CHARS:
         raise InputError(f"A comment must have at most {MAX_COMMENT_CHARS} characters; got {len(comment)}.")
     values: dict[str, Any] = {"rating": rating, "comment": comment.strip(), "actor": actor, "created": time.time()}
-    with database.writing() as connection:
+    with database.write_transaction() as connection:
         number = run_number(connection, run_id)
         if position is not None:
             positions = connection.execute(select(STEPS.c.position).where(STEPS.c.run == number)).scalars().all()
@@ -51,16 +51,16 @@ def add_feedback(
         key = connection.execute(
             insert(FEEDBACK).values(run=number, position=position, **values).returning(FEEDBACK.c.id)
         ).scalar_one()
-    return FeedbackRow(id=key, run=run_id, position=position, **{**values, "created": moment(values["created"])})
+    return FeedbackRow(id=key, run=run_id, position=position, **{**values, "created": utc_time(values["created"])})
 
 
 def feedback_on(database: Database, run_id: str) -> list[FeedbackRow]:
-    """Return all feedback on a run, the oldest first.
+    """Return all feedback on a run, oldest first.
 
     Raises:
         UnknownNameError: There is no such run.
     """
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         number = run_number(connection, run_id)
         rows = connection.execute(select(FEEDBACK).where(FEEDBACK.c.run == number).order_by(FEEDBACK.c.id)).mappings().all()
     return [_feedback(row, run_id) for row in rows]
@@ -72,7 +72,7 @@ def remove_feedback(database: Database, feedback_id: int, *, actor: str | None =
     Args:
         database: The database.
         feedback_id: The id of the entry.
-        actor: Remove the entry only if this person gave it; None removes it whoever gave it.
+        actor: The person who must have given the feedback; None permits any person.
 
     Raises:
         UnknownNameError: There is no such entry, or another person gave it.
@@ -80,11 +80,11 @@ def remove_feedback(database: Database, feedback_id: int, *, actor: str | None =
     conditions = [FEEDBACK.c.id == feedback_id]
     if actor is not None:
         conditions.append(FEEDBACK.c.actor == actor)
-    with database.writing() as connection:
+    with database.write_transaction() as connection:
         if not connection.execute(delete(FEEDBACK).where(*conditions)).rowcount:
             raise UnknownNameError("feedback", str(feedback_id), ())
 
 
 def _feedback(row: RowMapping, run_id: str) -> FeedbackRow:
     fields = {name: row[name] for name in FeedbackRow.model_fields}
-    return FeedbackRow(**{**fields, "run": run_id, "created": moment(row["created"])})
+    return FeedbackRow(**{**fields, "run": run_id, "created": utc_time(row["created"])})

@@ -51,7 +51,7 @@ def index_runs(database: Database, root: Path) -> IndexReport:
         OutputError: The disk is full.
     """
     report = IndexReport()
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         indexed = {row.id: row.trace_bytes for row in connection.execute(select(RUNS.c.id, RUNS.c.trace_bytes))}
     existing: set[str] = set()
     waiting: list[tuple[Path, int]] = []
@@ -78,7 +78,7 @@ def index_run(database: Database, folder: Path) -> None:
     """
     size = (folder / TRACE).stat().st_size if (folder / TRACE).is_file() else 0
     row, steps, frames = _contents(folder, size)
-    with database.writing() as connection:
+    with database.write_transaction() as connection:
         _put(connection, row, steps, frames)
 
 
@@ -110,7 +110,7 @@ def _index_batch(database: Database, waiting: list[tuple[Path, int]], report: In
     if not contents:
         return
     added = updated = 0
-    with database.writing() as connection:
+    with database.write_transaction() as connection:
         for row, steps, frames in contents:
             new = _put(connection, row, steps, frames)
             added, updated = added + new, updated + (not new)
@@ -121,7 +121,7 @@ def _index_batch(database: Database, waiting: list[tuple[Path, int]], report: In
 def _remove_missing(database: Database, gone: list[str], report: IndexReport) -> None:
     for start in range(0, len(gone), BATCH):
         names = gone[start : start + BATCH]
-        with database.writing() as connection:
+        with database.write_transaction() as connection:
             rated = select(FEEDBACK.c.run)
             removed = connection.execute(delete(RUNS).where(RUNS.c.id.in_(names), RUNS.c.number.not_in(rated))).rowcount
         report.removed += removed

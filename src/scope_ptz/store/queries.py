@@ -23,7 +23,8 @@ MAX_COUNT = 500
 """Matching runs are counted only up to this number, because counting many runs exactly is slow."""
 
 _COMMON = 1_000
-"""Words that occur in at least this many runs are matched run by run, from the newest, without the full-text index."""
+"""Words that occur in at least this many runs are matched without the full-text index: testing runs from the newest on soon fills a
+page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +63,7 @@ def list_runs(database: Database, chosen: RunFilter, *, limit: int = 50, after: 
         started, number = _cursor(after)
         query = query.where(or_(RUNS.c.started < started, and_(RUNS.c.started == started, RUNS.c.number < number)))
         query = query.where(RUNS.c.started <= started)  # lets the database start in the middle of its index
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         found = connection.execute(query.where(*_conditions(connection, chosen))).mappings().all()
         ratings = _ratings(connection, [row["number"] for row in found])
     runs = [_run(row, ratings) for row in found[:limit]]
@@ -72,7 +73,7 @@ def list_runs(database: Database, chosen: RunFilter, *, limit: int = 50, after: 
 
 def count_matching(database: Database, chosen: RunFilter, *, limit: int = MAX_COUNT) -> int:
     """Return the number of runs that match a filter, counted up to ``limit``."""
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         matching = select(RUNS.c.number).where(*_conditions(connection, chosen)).limit(limit).subquery()
         return int(connection.execute(select(func.count()).select_from(matching)).scalar_one())
 
@@ -83,7 +84,7 @@ def load_run(database: Database, run_id: str) -> StoredRun:
     Raises:
         UnknownNameError: There is no such run.
     """
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         row = connection.execute(select(*_COLUMNS).where(RUNS.c.id == run_id)).mappings().first()
         if row is None:
             raise UnknownNameError("run", run_id[:120], ())
@@ -109,7 +110,7 @@ def run_number(connection: Connection, run_id: str) -> int:
 def distinct_values(database: Database) -> dict[str, list[str]]:
     """Return the distinct values of the columns ``camera``, ``planner``, ``perception`` and ``outcome``, for menus."""
     values: dict[str, list[str]] = {}
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         for name in ("camera", "planner", "perception", "outcome"):
             # Each step jumps to the next value in the index; DISTINCT would read the whole index.
             jump = text(
@@ -121,7 +122,7 @@ def distinct_values(database: Database) -> dict[str, list[str]]:
     return values
 
 
-def moment(seconds: float) -> datetime:
+def utc_time(seconds: float) -> datetime:
     """Convert a stored time, in seconds since 1970, to a UTC datetime."""
     return datetime.fromtimestamp(seconds, UTC)
 
@@ -179,7 +180,7 @@ def _ratings(connection: Connection, numbers: Sequence[int]) -> dict[int, tuple[
 def _run(row: RowMapping, ratings: dict[int, tuple[int, int]]) -> RunRow:
     up, down = ratings.get(row["number"], (0, 0))
     fields = {name: row[name] for name in RunRow.model_fields if name in row}
-    fields |= {"started": moment(row["started"]), "ended": None if row["ended"] is None else moment(row["ended"])}
+    fields |= {"started": utc_time(row["started"]), "ended": None if row["ended"] is None else utc_time(row["ended"])}
     return RunRow(**fields, thumbs_up=up, thumbs_down=down)
 
 

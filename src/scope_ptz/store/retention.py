@@ -56,7 +56,7 @@ def prune(database: Database, root: Path, retention: Retention, *, dry_run: bool
     """
     now_s = time.time() if now_s is None else now_s
     columns = RUNS.c.number, RUNS.c.id, RUNS.c.started, RUNS.c.ended, RUNS.c.kept, RUNS.c.folder_bytes
-    with database.reading() as connection:
+    with database.read_transaction() as connection:
         rated = set(connection.execute(select(FEEDBACK.c.run)).scalars())
         rows = connection.execute(select(*columns).order_by(RUNS.c.started.desc(), RUNS.c.number.desc())).all()
     candidates, kept_bytes, kept_runs = [], 0, 0
@@ -73,7 +73,7 @@ def prune(database: Database, root: Path, retention: Retention, *, dry_run: bool
     if not dry_run:
         for start in range(0, len(removed), 500):
             numbers = [number for number, _, _ in removed[start : start + 500]]
-            with database.writing() as connection:
+            with database.write_transaction() as connection:
                 connection.execute(delete(RUNS).where(RUNS.c.number.in_(numbers)))
     return Pruned([run_id for _, run_id, _ in removed], sum(size for _, _, size in removed))
 
@@ -84,7 +84,7 @@ def keep(database: Database, run_id: str, *, kept: bool = True) -> None:
     Raises:
         UnknownNameError: There is no such run.
     """
-    with database.writing() as connection:
+    with database.write_transaction() as connection:
         if not connection.execute(update(RUNS).where(RUNS.c.id == run_id).values(kept=int(kept))).rowcount:
             raise UnknownNameError("run", run_id[:120], ())
 

@@ -34,7 +34,8 @@ CUT_OFF_ZOOM_FACTOR = 0.4
 
 SETTLED_OFFSET = 0.012
 SETTLED_FILL = (0.64, 0.86)
-"""A target within this offset from the middle, and with a fill in this range, needs no more moves."""
+"""The camera moves no further if the target's offset from the middle is at most ``SETTLED_OFFSET``, a fraction of the frame, and
+its fill is within ``SETTLED_FILL``."""
 
 
 class ZoomToObject(Arguments):

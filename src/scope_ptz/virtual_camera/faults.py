@@ -41,7 +41,7 @@ class Faults(BaseModel):
     clock_skew_s: float = Field(default=0.0, ge=-1e6, le=1e6)
 
 
-def checked_faults(content: Mapping[str, object]) -> Faults:
+def validate_faults(content: Mapping[str, object]) -> Faults:
     """Return the faults from a mapping of their names to values, after checking both.
 
     Raises:

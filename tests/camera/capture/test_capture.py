@@ -76,7 +76,7 @@ async def test_a_twin_shows_what_the_camera_saw_and_has_its_presets(tmp_path: Pa
     assert (twin.file.limits, captured.unseen_share) == (LIMITS, 0.0)
     assert [(p.name, p.description) for p in twin.file.presets] == [("home", ""), ("gate", ""), ("main-door", "Main Door")]
     assert twin.file.presets[2].pan_deg == pytest.approx(-15.0, abs=0.2)
-    assert found.left_out_presets == ("far away",)
+    assert found.omitted_presets == ("far away",)
     assert twin.viewpoint("camera").check_files() >= 5
     assert "10.0.0.7" not in "".join(path.read_text() for path in (tmp_path / "twin").rglob("*.json"))
     assert not (tmp_path / ".twin.capture").exists()

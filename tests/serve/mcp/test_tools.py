@@ -15,11 +15,11 @@ from mcp import Client, MCPError
 
 from scope_ptz.serve.mcp.pictures import MAX_PICTURE_BYTES, MAX_RESULT_BYTES, fitting_jpeg
 from scope_ptz.serve.mcp.tool import wire_bytes
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import Rate, RateLimits
 from scope_ptz.serve.security.tokens import TokenFile
 from scope_ptz.serve.site.errors import TooManyRequestsError
-from scope_ptz.serve.site.service import SiteOptions
+from scope_ptz.serve.site.site import SiteOptions
 from scope_ptz.tools.registry import TOOLS
 from tests.serve.conftest import SPEC
 from tests.serve.mcp.agents import LONG, OLDER, PRESENT, agent, links_of, pictures_of, read_picture, text_of
@@ -297,7 +297,7 @@ async def test_a_cancelled_call_reports_progress_and_stops_the_camera(free: Serv
 
 @pytest.mark.anyio
 async def test_progress_is_reported_while_a_camera_is_being_opened(free: Served, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scope_ptz.serve.mcp.following.HEARTBEAT_S", 0.05)
+    monkeypatch.setattr("scope_ptz.serve.mcp.run_progress.HEARTBEAT_S", 0.05)
     opening, heard = free.site.station(CAMERA)._opening, list[str]()
     await anyio.to_thread.run_sync(lambda: free.call(opening.acquire))
 
@@ -391,7 +391,7 @@ async def test_conversations_belong_to_a_token(guarded: Served, tokens: dict[str
 async def test_a_removed_token_ends_a_call_and_its_run(
     guarded: Served, tokens: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("scope_ptz.serve.security.gate.CHECK_S", 0.1)
+    monkeypatch.setattr("scope_ptz.serve.security.access.AUTHORISATION_CHECK_INTERVAL_S", 0.1)
     file = TokenFile(Path(tokens["path"]))
     secret, station = file.add("carl", "operator"), guarded.site.station(OTHER)
     await anyio.to_thread.run_sync(lambda: guarded.call(station.control.clear))

@@ -37,7 +37,7 @@ class RemoteCamera(Camera):
             UnknownNameError: The server has no such camera.
             CameraError: The server cannot be reached, or its camera fails.
         """
-        state = await connection.ask("GET", "~")
+        state = await connection.request("GET", "~")
         try:
             info = CameraInfo(
                 name=f"{state['name']} at {connection.server}",
@@ -60,21 +60,21 @@ class RemoteCamera(Camera):
         return self._info
 
     async def pose(self) -> Pose:
-        return _pose(await self._connection.ask("GET", "~/pose"))
+        return _pose(await self._connection.request("GET", "~/pose"))
 
     async def move(self, pose: Pose) -> Arrival:
         body = {"pan_deg": float(pose.pan_deg), "tilt_deg": float(pose.tilt_deg), "zoom": float(pose.zoom)}
-        return _arrival(await self._connection.ask("POST", "~/move", body, no_timeout=True))
+        return _arrival(await self._connection.request("POST", "~/move", body, no_timeout=True))
 
     async def presets(self) -> list[PresetInfo]:
-        presets = await self._connection.ask("GET", "~/presets")
+        presets = await self._connection.request("GET", "~/presets")
         return [PresetInfo(each["name"], each["description"]) for each in presets]
 
     async def go_to_preset(self, name: str) -> Arrival:
-        return _arrival(await self._connection.ask("POST", f"~/presets/{quote(name, safe='')}/go", no_timeout=True))
+        return _arrival(await self._connection.request("POST", f"~/presets/{quote(name, safe='')}/go", no_timeout=True))
 
     async def go_home(self) -> Arrival:
-        return _arrival(await self._connection.ask("POST", "~/home", no_timeout=True))
+        return _arrival(await self._connection.request("POST", "~/home", no_timeout=True))
 
     async def frame(self) -> Frame:
         data, facts = await self._connection.picture("~/frame?format=png")
@@ -87,33 +87,33 @@ class RemoteCamera(Camera):
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=self.clock.now_s(), projection=view)
 
     async def stop(self) -> None:
-        await self._connection.ask("POST", "~/stop")
+        await self._connection.request("POST", "~/stop")
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
         body = {"pan_dps": pan_dps, "tilt_dps": tilt_dps, "zoom_rate": zoom_rate, "timeout_s": timeout_s}
-        await self._connection.ask("POST", "~/drive", body)
+        await self._connection.request("POST", "~/drive", body)
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:
         check_preset_name(name)
-        saved = await self._connection.ask("PUT", f"~/presets/{quote(name, safe='')}", {"description": description})
+        saved = await self._connection.request("PUT", f"~/presets/{quote(name, safe='')}", {"description": description})
         return PresetInfo(saved["name"], saved["description"])
 
     async def remove_preset(self, name: str) -> None:
-        await self._connection.ask("DELETE", f"~/presets/{quote(name, safe='')}")
+        await self._connection.request("DELETE", f"~/presets/{quote(name, safe='')}")
 
     @asynccontextmanager
     async def control(self, holder: str) -> AsyncIterator[None]:
         """Return a context in which this session controls the camera. Only one holder in the session has control at a time."""
-        state = await self._connection.ask("POST", "~/control")
+        state = await self._connection.request("POST", "~/control")
         if not state["mine"]:
-            await self._connection.ask("DELETE", "~/control")
+            await self._connection.request("DELETE", "~/control")
             raise ControlHeldError(self._info.name, Holder(str(state["holder"]), self._connection.server, str(state["since"])))
         async with super().control(holder):
             try:
                 yield
             finally:
-                await self._connection.ask("DELETE", "~/control")
+                await self._connection.request("DELETE", "~/control")
 
 
 def _pose(reply: dict[str, Any]) -> Pose:

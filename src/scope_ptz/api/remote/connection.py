@@ -11,7 +11,7 @@ from urllib.parse import quote, urlsplit
 
 import httpx2
 
-from scope_ptz.endpoints.events import Events
+from scope_ptz.endpoints.events import EventParser
 from scope_ptz.errors import (
     CameraError,
     ConfigError,
@@ -26,7 +26,8 @@ from scope_ptz.settings import load_settings
 
 TIMEOUT = httpx2.Timeout(30.0, connect=10.0)
 NO_TIMEOUT = httpx2.Timeout(None, connect=10.0)
-"""Timeouts of requests that move the camera, start a run or call a tool. The reply may take any length of time."""
+"""Timeouts of requests that move the camera, start a run or call a tool. Only connecting is limited: the reply may take any length
+of time."""
 
 MAX_REPLY_BYTES = 64_000_000  # longer replies are rejected
 
@@ -88,7 +89,7 @@ class Connection:
         """Close the connections."""
         await self._client.aclose()
 
-    async def ask(self, method: str, path: str, body: Mapping[str, Any] | None = None, *, no_timeout: bool = False) -> Any:
+    async def request(self, method: str, path: str, body: Mapping[str, Any] | None = None, *, no_timeout: bool = False) -> Any:
         """Send a request and return its reply, parsed as JSON; None if the reply is empty.
 
         Args:
@@ -110,7 +111,7 @@ class Connection:
             raise self._not_a_scope_server() from None
 
     async def picture(self, path: str) -> tuple[bytes, dict[str, Any]]:
-        """Return an encoded picture and the content of its header ``Scope-Frame``."""
+        """Return an encoded picture, and the parsed content of its ``Scope-Frame`` header."""
         response = await self._send("GET", path, None)
         try:
             facts = json.loads(response.headers.get("scope-frame", "{}"))
@@ -137,7 +138,7 @@ class Connection:
         """
         last, failures = -1, 0
         while True:
-            parser = Events()
+            parser = EventParser()
             try:
                 path = f"/runs/{quote(run)}/events"
                 async with self._client.stream("GET", self._url(path), headers={"Last-Event-ID": str(last)}) as response:

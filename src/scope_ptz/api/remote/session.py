@@ -57,7 +57,7 @@ class RemoteSession(AsyncScope):
         return self
 
     async def _build(self) -> Parts:
-        pairs = await self._connection.ask("GET", "/pairs")
+        pairs = await self._connection.request("GET", "/pairs")
         pair = self._options.served.pair or pairs[0]
         if pair not in pairs:
             raise RemoteNameError(f"{self._connection.server} has no pair '{pair}'. It has: {', '.join(pairs)}.")
@@ -69,7 +69,7 @@ class RemoteSession(AsyncScope):
 
     async def _release(self) -> None:
         try:
-            await self._connection.ask("DELETE", "~/control")
+            await self._connection.request("DELETE", "~/control")
         except ScopeError:
             pass  # the session can be closed even if the server does not answer
         finally:
@@ -94,7 +94,7 @@ class RemoteSession(AsyncScope):
                 except anyio.get_cancelled_exc_class():
                     if run_id:
                         with anyio.CancelScope(shield=True):
-                            await connection.ask("POST", f"/runs/{run_id}/cancel")
+                            await connection.request("POST", f"/runs/{run_id}/cancel")
                             await self._follow(run_id, records, listener)
                     raise
         finally:
@@ -109,10 +109,10 @@ class RemoteSession(AsyncScope):
     async def _start(self, instruction: str) -> str:
         connection, pair = self._connection, self._options.served.pair
         if self._conversation_id is None:
-            started = await connection.ask("POST", "/conversations", {"camera": connection.camera, "pair": pair})
+            started = await connection.request("POST", "/conversations", {"camera": connection.camera, "pair": pair})
             self._conversation_id = started["id"]
         body = {"camera": connection.camera, "instruction": instruction, "conversation": self._conversation_id, "pair": pair}
-        return str((await connection.ask("POST", "/runs", body, no_timeout=True))["id"])
+        return str((await connection.request("POST", "/runs", body, no_timeout=True))["id"])
 
     async def _follow(self, run_id: str, records: list[Any], listener: EventListener) -> None:
         """Append the records of a run to ``records`` until the run ends. Records that the list already contains are skipped."""
@@ -138,10 +138,10 @@ class RemoteSession(AsyncScope):
         TOOLS.parse_call(name, call_arguments)  # raise the same error for wrong arguments as a local session
         with self._working():
             try:
-                reply = await self._connection.ask("POST", f"~/tools/{name}{self._query()}", call_arguments, no_timeout=True)
+                reply = await self._connection.request("POST", f"~/tools/{name}{self._query()}", call_arguments, no_timeout=True)
             except anyio.get_cancelled_exc_class():
                 with anyio.CancelScope(shield=True):
-                    await self._connection.ask("POST", "~/stop")
+                    await self._connection.request("POST", "~/stop")
                 raise
             if reply["error"] is not None:
                 if reply["fault"] == "bad_call" and name == "go_to_preset":

@@ -56,13 +56,13 @@ class WrittenScene:
         folder: The scene's folder.
         file: The content of its ``scene.json``.
         tiles: Number of sharper tiles.
-        left_out_presets: Names of the camera's presets that the scene lacks, because they are outside the captured range.
+        omitted_presets: Names of the camera's presets that the scene lacks, because they are outside the captured range.
     """
 
     folder: Path
     file: SceneFile
     tiles: int
-    left_out_presets: tuple[str, ...]
+    omitted_presets: tuple[str, ...]
 
 
 def write_scene(session: CaptureSession, registration: Registration, folder: Path, steps: Steps) -> WrittenScene:

@@ -43,7 +43,7 @@ def build(
     """Make tasks from the ground truth of scenes. The exit code is 1 if the scenes do not yield enough tasks."""
     from scope_ptz.bench.tasks.files import dump_tasks
     from scope_ptz.factory.validation_perception import is_answerable
-    from scope_ptz.factory.worlds import scenes_named
+    from scope_ptz.factory.worlds import open_scenes
     from scope_ptz.taskgen.authoring.assembly import build as build_tasks
     from scope_ptz.taskgen.dataset.build import missing_tasks_message
     from scope_ptz.taskgen.dataset.unseen import build_unseen
@@ -54,7 +54,7 @@ def build(
         raise InputError("A card describes a whole dataset. Use --card together with --all, or run 'scope bench card'.")
     if whole:
         return _build_all(scene, out, card, seed, numbers or UNSEEN_VARIATIONS, quotas)
-    scenes = list(scenes_named(scene).values())
+    scenes = list(open_scenes(scene).values())
     if numbers:
         built = build_unseen(scenes, numbers, quotas, print_error, is_answerable)
     else:
@@ -73,11 +73,11 @@ def _build_all(
 ) -> int:
     from scope_ptz.factory.task_validation import validate_tasks
     from scope_ptz.factory.validation_perception import is_answerable
-    from scope_ptz.factory.worlds import scenes_named
+    from scope_ptz.factory.worlds import open_scenes
     from scope_ptz.taskgen.dataset.build import build_dataset
 
     is_valid = build_dataset(
-        scenes_named(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
+        open_scenes(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
         report=put, notify=print_error,
     )  # fmt: skip
     if card is not None:

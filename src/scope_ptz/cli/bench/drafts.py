@@ -33,7 +33,7 @@ def drafts(
     from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.errors import InputError
     from scope_ptz.factory.task_validation import task_validator
-    from scope_ptz.factory.worlds import scenes_named
+    from scope_ptz.factory.worlds import open_scenes
     from scope_ptz.taskgen.facts.near_duplicates import KnownTasks
     from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
     from scope_ptz.taskgen.generating.run_draft_file import accept_drafts, read_run_drafts
@@ -44,7 +44,7 @@ def drafts(
 
     def open_scene(name: str) -> Scene | None:
         try:
-            return scenes_named([name])[name]
+            return open_scenes([name])[name]
         except InputError:
             return None
 

@@ -53,13 +53,13 @@ def generate(
     import anyio
 
     from scope_ptz.bench.tasks.splits import load_split
-    from scope_ptz.factory.worlds import scenes_named
+    from scope_ptz.factory.worlds import open_scenes
     from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
     from scope_ptz.taskgen.generating.drafting_loop import GenerationRequest
     from scope_ptz.taskgen.generating.operator_runs import read_runs
 
     request = GenerationRequest(
-        scene=scenes_named([scene])[scene],
+        scene=open_scenes([scene])[scene],
         requested=_requested(want or [], number),
         known=load_split(known) if known else (),
         runs=read_runs(runs, feedback),

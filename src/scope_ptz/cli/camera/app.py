@@ -7,9 +7,9 @@ from collections.abc import Callable
 import typer
 
 from scope_ptz.cli.camera import HELP
-from scope_ptz.cli.camera.by_hand import move, password, presets, snapshot, watch
 from scope_ptz.cli.camera.capture import capture
 from scope_ptz.cli.camera.lens import focus, iris
+from scope_ptz.cli.camera.manual_control import move, password, presets, snapshot, watch
 from scope_ptz.cli.camera.measure import calibrate, discover, probe
 from scope_ptz.cli.camera.serve import serve
 from scope_ptz.cli.options import command

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.camera.by_hand import CameraSpecArgument, DryRunOption
+from scope_ptz.cli.camera.manual_control import CameraSpecArgument, DryRunOption
 from scope_ptz.cli.exit import put, put_json, run_async
 from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import InputError
@@ -130,8 +130,8 @@ def _lines(scene: CapturedScene) -> list[str]:
         lines.append(f"{unplaced} pictures have too little detail to be registered. Their reported poses are used.")
     if scene.refused:
         lines.append(f"{scene.refused} poses were skipped because the rules of the site do not permit them.")
-    if scene.left_out_presets:
-        lines.append(f"Presets outside the captured range were skipped: {', '.join(scene.left_out_presets)}.")
+    if scene.omitted_presets:
+        lines.append(f"Presets outside the captured range were skipped: {', '.join(scene.omitted_presets)}.")
     if scene.unseen_share:
         lines.append(
             f"{scene.unseen_share:.1%} of the directions within the camera's range were not captured. They are grey in the scene."

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from scope_ptz.cli.camera.by_hand import CameraSpecArgument, DryRunOption, opened_camera
+from scope_ptz.cli.camera.manual_control import CameraSpecArgument, DryRunOption, open_for_command
 from scope_ptz.cli.exit import put, put_json, run_async
 from scope_ptz.cli.options import JsonOption
 
@@ -56,7 +56,7 @@ def _run(
     spec: str, adjust: Callable[[Camera], Awaitable[LensState]], what: str, *, dry_run: bool, as_json: bool
 ) -> None:  # fmt: skip
     async def work() -> None:
-        async with opened_camera(spec, dry_run=dry_run) as opened:
+        async with open_for_command(spec, dry_run=dry_run) as opened:
             state = await adjust(opened)
         put_json(asdict(state)) if as_json else put(_text(state, what))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.camera.by_hand import CameraSpecArgument
+from scope_ptz.cli.camera.manual_control import CameraSpecArgument
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json, run_async
 from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import OutputError

@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from scope_ptz.cli.options import JsonOption, OutputFile, command
 from scope_ptz.cli.runs import HELP
 from scope_ptz.cli.runs.audit import runs_audit
-from scope_ptz.cli.runs.common import AuditLogs, RunsDir, index_audit_logs, open_store, parse_time
-from scope_ptz.errors import InputError
+from scope_ptz.cli.runs.common import AuditLogs, FilterFlags, RunsDir, index_audit_logs, open_store
 
 if TYPE_CHECKING:
-    from scope_ptz.store.rows import RunFilter, RunRow, StepRow
+    from scope_ptz.store.rows import RunRow, StepRow
 
 RunId = Annotated[str, typer.Argument(metavar="RUN", help="Name of the run's folder.")]
-Words = Annotated[str, typer.Option("--text", help="Select only runs whose instruction or answer contains these words.")]
-Camera = Annotated[str | None, typer.Option("--camera", help="Select only runs with this camera or scene.")]
-Outcome = Annotated[str | None, typer.Option("--outcome", help="Select only runs with this outcome, for example answered.")]
-Tool = Annotated[str | None, typer.Option("--tool", help="Select only runs that called this tool.")]
-Rating = Annotated[str | None, typer.Option("--rating", help="Select only runs with this rating: good or bad.")]
-Since = Annotated[
-    str | None,
-    typer.Option("--since", metavar="TIME", help="Select only runs that started at this time or later, for example 2026-05-01."),
-]
-Until = Annotated[str | None, typer.Option("--until", metavar="TIME", help="Select only runs that started before this time.")]
-
 runs_app = typer.Typer(help=HELP, no_args_is_help=True)
 
 
@@ -41,23 +29,17 @@ runs_app.command("audit")(command(runs_audit))
 @runs_app.command("list")
 @command
 def runs_list(
+    filters: FilterFlags,
     runs_dir: RunsDir = None,
-    text: Words = "",
-    camera: Camera = None,
-    outcome: Outcome = None,
-    tool: Tool = None,
-    rating: Rating = None,
-    since: Since = None,
-    until: Until = None,
     limit: Annotated[int, typer.Option("--limit", min=1, max=500, help="Number of runs to print.")] = 20,
     as_json: JsonOption = False,
 ) -> None:
-    """List runs, the newest first."""
+    """List runs, newest first."""
     from scope_ptz.cli.exit import put, put_json
 
     with open_store(runs_dir) as store:
         store.index()
-        page = store.runs(_filter(text, camera, outcome, tool, rating, since, until), limit=limit)
+        page = store.runs(filters.run_filter(), limit=limit)
     if as_json:
         put_json({"runs": [run.model_dump(mode="json") for run in page.runs], "more": page.next is not None})
         return
@@ -134,6 +116,7 @@ def runs_index(
 @command
 def runs_export(
     out: OutputFile,
+    filters: FilterFlags,
     runs_dir: RunsDir = None,
     kind: Annotated[
         str,
@@ -142,13 +125,6 @@ def runs_export(
         ),
     ] = "jsonl",
     run: Annotated[list[str] | None, typer.Option("--run", help="Export this run (default: all that match; repeatable).")] = None,
-    text: Words = "",
-    camera: Camera = None,
-    outcome: Outcome = None,
-    tool: Tool = None,
-    rating: Rating = None,
-    since: Since = None,
-    until: Until = None,
     as_json: JsonOption = False,
 ) -> None:
     """Write runs to a file."""
@@ -157,7 +133,7 @@ def runs_export(
 
     with open_store(runs_dir) as store:
         store.index()
-        chosen = run or store.ids(_filter(text, camera, outcome, tool, rating, since, until))
+        chosen = run or store.ids(filters.run_filter())
         count = export_runs(store, chosen, out, kind)  # type: ignore[arg-type] # export_runs checks the format
     if as_json:
         put_json({"runs": count, "file": str(out)})
@@ -194,22 +170,3 @@ def runs_prune(
         put(name)
     verb = "Removed" if yes else "Would remove"
     put(f"{verb} {len(pruned.runs)} runs, {pruned.freed_bytes / 1e6:.1f} MB.{'' if yes else ' Repeat with --yes to remove them.'}")
-
-
-def _filter(
-    text: str, camera: str | None, outcome: str | None, tool: str | None, rating: str | None, since: str | None, until: str | None
-) -> RunFilter:
-    from scope_ptz.store.rows import RunFilter
-
-    ratings: dict[str, Literal[-1, 1]] = {"good": 1, "bad": -1}
-    if rating is not None and rating not in ratings:
-        raise InputError(f"--rating must be good or bad; got '{rating[:40]}'.")
-    return RunFilter(
-        text=text[:200],
-        camera=camera,
-        outcome=outcome,
-        tool=tool,
-        rating=None if rating is None else ratings[rating],
-        since=parse_time("--since", since),
-        until=parse_time("--until", until),
-    )

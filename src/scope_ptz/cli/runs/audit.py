@@ -19,7 +19,7 @@ def runs_audit(
     limit: Annotated[int, typer.Option("--limit", min=1, max=10_000, help="Number of entries to print.")] = 50,
     as_json: JsonOption = False,
 ) -> None:
-    """Index the audit logs of cameras and list their entries, the newest first."""
+    """Index the audit logs of cameras and list their entries, newest first."""
     from scope_ptz.cli.exit import put, put_json
     from scope_ptz.store.audit_index import list_audit
 

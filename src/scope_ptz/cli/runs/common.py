@@ -1,16 +1,18 @@
-"""Code that the commands of ``scope runs`` share: opening the store, and parsing times given as options."""
+"""Options and functions that the commands of ``scope runs`` share."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
+    from scope_ptz.store.rows import RunFilter
     from scope_ptz.store.run_store import RunStore
 
 RunsDir = Annotated[Path | None, typer.Option("--runs-dir", help="Folder with the runs (default: SCOPE_RUNS_DIR, else runs).")]
@@ -18,6 +20,49 @@ AuditLogs = Annotated[
     list[Path] | None,
     typer.Option("--audit", help="Audit log of a camera to index (default: those in scope.yaml; repeatable)."),
 ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilterFlags:
+    """Options that select runs."""
+
+    text: Annotated[str, typer.Option("--text", help="Select only runs whose instruction or answer contains these words.")] = ""
+    camera: Annotated[str | None, typer.Option("--camera", help="Select only runs with this camera or scene.")] = None
+    outcome: Annotated[str | None, typer.Option("--outcome", help="Select only runs with this outcome, for example answered.")] = (
+        None
+    )
+    tool: Annotated[str | None, typer.Option("--tool", help="Select only runs that called this tool.")] = None
+    rating: Annotated[str | None, typer.Option("--rating", help="Select only runs with this rating: good or bad.")] = None
+    since: Annotated[
+        str | None,
+        typer.Option(
+            "--since", metavar="TIME", help="Select only runs that started at this time or later, for example 2026-05-01."
+        ),
+    ] = None
+    until: Annotated[
+        str | None, typer.Option("--until", metavar="TIME", help="Select only runs that started before this time.")
+    ] = None
+
+    def run_filter(self) -> RunFilter:
+        """Return these flags as a filter of the store.
+
+        Raises:
+            InputError: The rating or a time is invalid.
+        """
+        from scope_ptz.store.rows import RunFilter
+
+        ratings: dict[str, Literal[-1, 1]] = {"good": 1, "bad": -1}
+        if self.rating is not None and self.rating not in ratings:
+            raise InputError(f"--rating must be good or bad; got '{self.rating[:40]}'.")
+        return RunFilter(
+            text=self.text[:200],
+            camera=self.camera,
+            outcome=self.outcome,
+            tool=self.tool,
+            rating=None if self.rating is None else ratings[self.rating],
+            since=parse_time("--since", self.since),
+            until=parse_time("--until", self.until),
+        )
 
 
 def open_store(runs_dir: Path | None) -> RunStore:

@@ -56,7 +56,8 @@ export async function command(camera, path, body, method = "POST") {
   }
 }
 
-// Follow a run from its first record. `on` maps record names to handlers; `on.lost(state)` is called if the run was interrupted.
+// Follow a run from its first record. `on` maps record names to handlers. `on.lost(state)` is called if the run was interrupted;
+// `state` is null if the server does not know the run.
 export function follow(run, on) {
   const source = new EventSource(`${ROOT}/runs/${part(run)}/events`);
   for (const name of ["start", "decision", "call", "end"]) {

@@ -40,7 +40,7 @@ class CapturedScene:
         tiles: Number of tiles, which are sharper than the panorama.
         unseen_share: Fraction of the directions within the camera's range that no frame shows.
         presets: The presets of the scene.
-        left_out_presets: Presets of the camera that the scene lacks, because they are outside the captured range.
+        omitted_presets: Presets of the camera that the scene lacks, because they are outside the captured range.
         refused: Number of poses that the rules of the site did not permit.
     """
 
@@ -55,7 +55,7 @@ class CapturedScene:
     tiles: int
     unseen_share: float
     presets: tuple[str, ...]
-    left_out_presets: tuple[str, ...]
+    omitted_presets: tuple[str, ...]
     refused: int
 
 
@@ -134,7 +134,7 @@ async def capture_scene(camera: str, folder: Path, options: CaptureOptions, prog
         folder.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder.parent} cannot be written: {error.strerror or error}.") from error
-    lock = _locked(folder)
+    lock = _acquire_lock(folder)
     try:
         session = await _take(camera, work, options, progress)
         return await to_thread.run_sync(build_scene, session, folder, progress)
@@ -181,7 +181,7 @@ async def _take(camera: str, work: Path, options: CaptureOptions, progress: Prog
     return session
 
 
-def _locked(folder: Path) -> ControlLock:
+def _acquire_lock(folder: Path) -> ControlLock:
     """Acquire and return a lock that keeps other programs from capturing into the same folder."""
     lock = ControlLock(f"The capture of {folder}", f"capture {folder.resolve()}", load_settings().cache_dir / "control")
     lock.acquire(_actor())
@@ -233,6 +233,6 @@ def build_scene(session: CaptureSession, folder: Path, progress: Progress) -> Ca
         tiles=written.tiles,
         unseen_share=captured.unseen_share if captured else 0.0,
         presets=tuple(preset.name for preset in written.file.presets),
-        left_out_presets=written.left_out_presets,
+        omitted_presets=written.omitted_presets,
         refused=session.refused,
     )

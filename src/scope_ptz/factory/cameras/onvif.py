@@ -30,7 +30,7 @@ def check_angles(spec: CameraSpec) -> None:
         InputError: An angle is missing or invalid.
     """
     for axis in ("pan", "tilt"):
-        _ends(spec, axis)
+        _end_angles_deg(spec, axis)
 
 
 def mapping_of(
@@ -40,13 +40,15 @@ def mapping_of(
 
     Args:
         spec: The camera.
-        fields_deg: Horizontal fields of view at the widest and the closest zoom from the options.
+        fields_deg: Horizontal fields of view at the widest and the closest zoom, as set by options; None if they are not set.
         calibration: The stored measurements; None if there are none.
     """
     from scope_ptz.camera.onvif.mapping import OnvifMapping
 
     configured = OnvifMapping(
-        _ends(spec, "pan"), _ends(spec, "tilt"), None if fields_deg is None else ((0.0, fields_deg[0]), (1.0, fields_deg[1]))
+        _end_angles_deg(spec, "pan"),
+        _end_angles_deg(spec, "tilt"),
+        None if fields_deg is None else ((0.0, fields_deg[0]), (1.0, fields_deg[1])),
     )
     if calibration is None:
         return configured
@@ -71,7 +73,7 @@ async def open_onvif(
         address: The camera's address.
         credentials: The account.
         verify: The TLS verification of its certificate.
-        fields_deg: Horizontal fields of view from the options.
+        fields_deg: Horizontal fields of view at the widest and the closest zoom, as set by options; None if they are not set.
         measuring: Whether to assume values that are not measured yet, and to ignore stored measurements.
 
     Raises:
@@ -98,7 +100,7 @@ async def open_onvif(
     )
 
 
-def _ends(spec: CameraSpec, axis: str) -> tuple[float, float] | None:
+def _end_angles_deg(spec: CameraSpec, axis: str) -> tuple[float, float] | None:
     names = (f"{axis}_min", f"{axis}_max")
     given = [name for name in names if name in spec.options]
     if not given:

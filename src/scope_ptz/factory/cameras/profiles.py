@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.measuring.profile import CalibrationRecord, CameraProfile, ProbeRecord
     from scope_ptz.camera.spec import CameraSpec
 
-_TIMED_PICTURES = 5
+_TIMED_PICTURES = 5  # number of pictures that a probe times; the median is stored
 
 
 async def probe_camera(text: str) -> tuple[ProbeRecord, Path]:

@@ -100,7 +100,7 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
     """
     from scope_ptz.simulator.clock import SceneClock
     from scope_ptz.virtual_camera.device import VirtualDevice
-    from scope_ptz.virtual_camera.faults import checked_faults
+    from scope_ptz.virtual_camera.faults import validate_faults
 
     if not options.scenes:
         raise InputError("Name at least one scene, for example --scene highway-works; `scope scene list` lists them.")
@@ -110,7 +110,7 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
         )
     if not 0 < options.time_scale <= MAX_TIME_SCALE:
         raise InputError(f"The time scale must be above 0 and at most {MAX_TIME_SCALE:g}; got {options.time_scale}.")
-    faults = checked_faults(options.faults or {})
+    faults = validate_faults(options.faults or {})
     devices = []
     for scene_name, viewpoint in zip(options.scenes, options.viewpoints or (None,) * len(options.scenes), strict=True):
         scene = open_scene(scene_name)

@@ -21,16 +21,16 @@ from scope_ptz.serve.http import (
     conversation_routes,
     library_routes,
     live_routes,
-    moving_routes,
+    move_routes,
     run_routes,
     session_routes,
     simulation_routes,
     tool_routes,
 )
 from scope_ptz.serve.http.errors import add_error_handlers, http_error
-from scope_ptz.serve.security.gate import Access, Gate
+from scope_ptz.serve.security.access import Access, AccessMiddleware
 from scope_ptz.serve.security.sign_in import sign_in_route
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 from scope_ptz.version import __version__
 
 API_PREFIX = "/api"
@@ -41,7 +41,7 @@ _MODULES = (
     camera_routes,
     card_routes,
     simulation_routes,
-    moving_routes,
+    move_routes,
     tool_routes,
     live_routes,
     library_routes,
@@ -53,7 +53,7 @@ _MODULES = (
 
 
 def api_application(site: Site, access: Access) -> FastAPI:
-    """Return the API, to be mounted at ``/api`` behind a ``Gate``.
+    """Return the API, to be mounted at ``/api`` behind an ``AccessMiddleware``.
 
     The caller must enter the context of ``site``; the application has no ASGI lifespan of its own. Its schema is at
     ``/api/v1/openapi.json``. The documentation pages of FastAPI are disabled, because they load scripts from other hosts.
@@ -80,13 +80,14 @@ def api_application(site: Site, access: Access) -> FastAPI:
 
 
 def application(site: Site, access: Access, *routes: BaseRoute) -> ASGIApp:
-    """Return the API behind its gate, for a server without the console. ``routes`` are further routes, such as that of MCP."""
+    """Return the API behind its access checks, for a server without the console. ``routes`` are further routes, such as that of
+    MCP."""
 
     async def root(_: Request) -> Response:
         return PlainTextResponse(f"SCOPE {__version__}. The API is at {API_PREFIX}{VERSION_PREFIX}.\n")
 
     api = Mount(API_PREFIX, api_application(site, access))
-    return Gate(
+    return AccessMiddleware(
         Starlette(routes=[Route("/", root), sign_in_route(access), api, *routes], exception_handlers={HTTPException: http_error}),
         access,
     )

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Path, Query, Response
 from fastapi.responses import FileResponse
 
+from scope_ptz.agent.trace import picture_names
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import ConfigError, InputError, TraceError, UnknownNameError
 from scope_ptz.serve.http.benchmark_models import (
@@ -24,10 +25,10 @@ from scope_ptz.serve.http.benchmark_models import (
 )
 from scope_ptz.serve.http.dependencies import Operator, RunOperator, SiteDep, StoppingOperator, Viewer
 from scope_ptz.serve.http.errors import responses
-from scope_ptz.serve.site.benchmark.choices import missing_packages, split_choices
 from scope_ptz.serve.site.benchmark.evaluations import EvaluationRequest
-from scope_ptz.serve.site.benchmark.trajectories import picture_names_of, steps_of
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.benchmark.splits import installed_splits, missing_packages
+from scope_ptz.serve.site.benchmark.trajectories import steps_of
+from scope_ptz.serve.site.site import Site
 
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
@@ -45,7 +46,7 @@ _ERRORS = responses(404, 409)
 @router.get("", responses=responses())
 async def benchmark(site: SiteDep, client: Viewer) -> BenchmarkModel:  # noqa: ARG001 - checks the token
     """Return the pairs and splits that can be evaluated, and the id of the evaluation in progress."""
-    splits = await site.journal.in_thread(split_choices)
+    splits = await site.journal.in_thread(installed_splits)
     return BenchmarkModel(
         pairs=list(site.pairs.names),
         splits=[SplitModel(name=each.name, tasks=each.tasks, by_category=each.by_category) for each in splits],
@@ -65,7 +66,7 @@ async def start_evaluation(site: SiteDep, client: RunOperator, body: EvaluationS
     """Start an evaluation and reply immediately. It runs in a separate process. Only one evaluation runs at a time."""
     if missing := missing_packages():
         raise ConfigError(missing)
-    chosen = next((each for each in await site.journal.in_thread(split_choices) if each.name == body.split), None)
+    chosen = next((each for each in await site.journal.in_thread(installed_splits) if each.name == body.split), None)
     if chosen is None:
         raise InputError(f"The split '{body.split}' is not installed. `GET /benchmark` lists the installed splits.")
     categories = tuple(dict.fromkeys(body.categories))
@@ -139,7 +140,7 @@ async def trial_details(site: SiteDep, client: Viewer, evaluation: EvaluationId,
         folder = site.evaluations.folder(evaluation)
         trace = await site.journal.in_thread(partial(site.trajectories.trace, folder, trial))
         steps = [TrialStep.model_validate(each) for each in steps_of(trace)]
-        start = next((name for name, position in picture_names_of(trace).items() if position is None), None)
+        start = next((name for name, position in picture_names(trace).items() if position is None), None)
     except TraceError as error:
         missing = str(error)
     return TrialDetails(

@@ -63,7 +63,7 @@ async def camera_state(site: SiteDep, station: StationDep, client: Viewer) -> Ca
         top_speed=SpeedModel(**asdict(info.capabilities.top_speed)),
         edits_presets=info.capabilities.edits_presets,
         fields_of_view=list(info.optics.table),
-        presets=[PresetModel.of(each) for each in await presets_of(site, station).known()],
+        presets=[PresetModel.of(each) for each in await presets_of(site, station).all()],
         keep_out=_keep_out(camera),
         run=station.running.id if station.running else None,
         can_undo=station.can_undo,

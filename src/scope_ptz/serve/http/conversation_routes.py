@@ -27,7 +27,7 @@ ConversationId = Annotated[str, Path(min_length=1, max_length=60)]
 async def conversations(
     site: SiteDep, client: Viewer, camera: Annotated[str | None, Query(max_length=120)] = None
 ) -> list[ConversationRow]:
-    """List the client's conversations, the most recently used first."""
+    """List the client's conversations, most recently used first."""
     return await site.journal.in_thread(partial(list_conversations, site.journal.store.database, owner=client.name, camera=camera))
 
 
@@ -62,7 +62,7 @@ async def change_conversation(
 
 @router.delete("/{conversation}", status_code=204, responses=responses(404, 503))
 async def end_conversation(site: SiteDep, client: Operator, conversation: ConversationId) -> Response:
-    """Remove a conversation. Its runs stay."""
+    """Remove a conversation. Its runs are kept."""
     await site.journal.in_thread(partial(remove_conversation, site.journal.store.database, conversation, owner=client.name))
     site.journal.forget(conversation)
     return Response(status_code=204)

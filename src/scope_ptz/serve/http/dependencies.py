@@ -9,11 +9,11 @@ from fastapi import Depends, Path, Request, WebSocket
 from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
 
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import Kind
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.presets import Presets
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.station import Station
 
 
@@ -38,10 +38,10 @@ def _access(request: Request) -> Access:
 
 
 def client_of(connection: HTTPConnection) -> Client:
-    """Return the client that sends a request, as stored by the ``Gate`` middleware.
+    """Return the client that sends a request, as stored by the ``AccessMiddleware`` middleware.
 
     Raises:
-        HTTPException: The request did not pass the gate.
+        HTTPException: The request did not pass the middleware.
     """
     client = getattr(connection.state, "client", None)
     if not isinstance(client, Client):
@@ -49,9 +49,9 @@ def client_of(connection: HTTPConnection) -> Client:
     return client
 
 
-def _counted(kind: Kind, *, operates: bool) -> Callable[[Request], Client]:
+def _client_dependency(kind: Kind, *, needs_operator: bool) -> Callable[[Request], Client]:
     def dependency(request: Request) -> Client:
-        client = _operator(request) if operates else client_of(request)
+        client = _operator(request) if needs_operator else client_of(request)
         access_of(request).limits.count(client.key, kind, client.name)
         return client
 
@@ -60,7 +60,7 @@ def _counted(kind: Kind, *, operates: bool) -> Callable[[Request], Client]:
 
 def _operator(request: Request) -> Client:
     client = client_of(request)
-    if not client.operates:
+    if not client.is_operator:
         raise HTTPException(403, "This request needs the operator role, but your token has the viewer role.")
     return client
 
@@ -86,11 +86,11 @@ def presets_of(site: Site, station: Station) -> Presets:
 SiteDep = Annotated[Site, Depends(_site)]
 AccessDep = Annotated[Access, Depends(_access)]
 StationDep = Annotated[Station, Depends(_station)]
-Viewer = Annotated[Client, Depends(_counted("read", operates=False))]
+Viewer = Annotated[Client, Depends(_client_dependency("read", needs_operator=False))]
 """A client of any role, for requests that only read."""
-Operator = Annotated[Client, Depends(_counted("command", operates=True))]
+Operator = Annotated[Client, Depends(_client_dependency("command", needs_operator=True))]
 """A client with the operator role, for requests that are commands."""
-RunOperator = Annotated[Client, Depends(_counted("run", operates=True))]
+RunOperator = Annotated[Client, Depends(_client_dependency("run", needs_operator=True))]
 """A client with the operator role, for requests that start a run. Their rate limit is lower."""
 StoppingOperator = Annotated[Client, Depends(_operator)]
 """A client with the operator role, for requests that stop a camera, a run or an evaluation. They have no rate limit."""

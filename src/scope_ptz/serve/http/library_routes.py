@@ -19,9 +19,9 @@ from scope_ptz.factory.run_export import AnyFormat, run_drafts
 from scope_ptz.factory.run_export import export_runs as write_export
 from scope_ptz.serve.http.dependencies import Operator, SiteDep, Viewer
 from scope_ptz.serve.http.errors import responses
-from scope_ptz.serve.http.models import FeedbackBody, Kept, Mark, Moment, PictureModel, RunDetails, RunList
-from scope_ptz.serve.http.run_reading import run_filter
-from scope_ptz.serve.site.marks import call_of, marks_of
+from scope_ptz.serve.http.models import FeedbackBody, KeepRequest, Mark, PictureModel, QueryTime, RunDetails, RunList
+from scope_ptz.serve.http.run_state import run_filter
+from scope_ptz.serve.site.marks import call_for_picture, marks_of
 from scope_ptz.serve.site.stored_runs import stored_picture, trace_of_run
 from scope_ptz.store.conversations import load_conversation
 from scope_ptz.store.feedback import add_feedback, feedback_on, remove_feedback
@@ -54,12 +54,12 @@ async def list_runs(
     tool: Annotated[str | None, Query(max_length=60)] = None,
     conversation: Annotated[str | None, Query(max_length=60)] = None,
     rating: Annotated[Literal["good", "bad"] | None, Query()] = None,
-    since: Moment | None = None,
-    until: Moment | None = None,
+    since: QueryTime | None = None,
+    until: QueryTime | None = None,
     limit: Annotated[int, Query(ge=1, le=500)] = 50,
     after: Annotated[str | None, Query(max_length=60, description="The value of `next` in the previous page")] = None,
 ) -> RunList:
-    """List runs, the newest first. Only the owner of a conversation can ask for its runs."""
+    """List runs, newest first. Only the owner of a conversation can list its runs."""
     if conversation is not None:
         await site.journal.in_thread(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
     chosen = run_filter(
@@ -104,8 +104,8 @@ async def export_runs(
     camera: Annotated[str | None, Query(max_length=120)] = None,
     outcome: Annotated[str | None, Query(max_length=40)] = None,
     rating: Annotated[Literal["good", "bad"] | None, Query()] = None,
-    since: Moment | None = None,
-    until: Moment | None = None,
+    since: QueryTime | None = None,
+    until: QueryTime | None = None,
 ) -> FileResponse:
     """Download runs: as data, as chat messages for fine-tuning, as drafts of tasks, or as folders with all pictures."""
     chosen = run_filter(
@@ -142,10 +142,10 @@ async def list_run_drafts(
     text: Annotated[str, Query(max_length=200)] = "",
     camera: Annotated[str | None, Query(max_length=120)] = None,
     outcome: Annotated[str | None, Query(max_length=40)] = None,
-    since: Moment | None = None,
-    until: Moment | None = None,
+    since: QueryTime | None = None,
+    until: QueryTime | None = None,
 ) -> list[RunDraft]:
-    """Convert the newest runs with good feedback to drafts of benchmark tasks.
+    """Convert the newest runs with positive feedback to drafts of benchmark tasks.
 
     A run that cannot become a draft is listed with the reason.
     """
@@ -173,7 +173,7 @@ async def list_pictures(site: SiteDep, client: Viewer, run: RunId) -> list[Pictu
     pictures = []
     for name, position in picture_names(trace).items():
         call = trace.calls[position] if position is not None else None
-        marks = [Mark(**mark) for mark in marks_of(call_of(trace, name), name)]
+        marks = [Mark(**mark) for mark in marks_of(call_for_picture(trace, name), name)]
         message = str((call.outcome.result or {}).get("message", "")) if call is not None else ""
         tool = call.outcome.call.name if call is not None else None
         pictures.append(PictureModel(name=name, position=position, tool=tool, message=message, marks=marks))
@@ -221,7 +221,7 @@ async def filmstrip(site: SiteDep, client: Viewer, run: RunId) -> Response:  # n
 
 
 @router.put("/runs/{run}/kept", status_code=204, responses=_ERRORS)
-async def keep_run(site: SiteDep, client: Operator, run: RunId, body: Kept) -> Response:  # noqa: ARG001 - checks the token
+async def keep_run(site: SiteDep, client: Operator, run: RunId, body: KeepRequest) -> Response:  # noqa: ARG001 - checks the token
     """Set whether to keep a run when old runs are removed."""
     await site.journal.in_thread(partial(keep, site.journal.store.database, run, kept=body.kept))
     return Response(status_code=204)

@@ -154,7 +154,7 @@ class _Watcher:
             "presets": station.preset_changes,
             "can_undo": station.can_undo,
             "problem": station.live.problem,
-            "scene_time": _passing(station),
+            "scene_time": _scene_time_state(station),
         }
         if state != self._sent_state:
             self._sent_state = state
@@ -179,7 +179,7 @@ def frame_facts(taken: Frame) -> dict[str, Any]:
     }
 
 
-def _passing(station: Station) -> dict[str, Any] | None:
+def _scene_time_state(station: Station) -> dict[str, Any] | None:
     """Return whether scene time is playing, and its speed; None for a camera that shows the real world.
 
     The time itself is part of each frame.

@@ -25,7 +25,7 @@ Instruction = Annotated[str, Field(min_length=1, max_length=MAX_INSTRUCTION_CHAR
 Identifier = Annotated[str, Field(min_length=1, max_length=120)]
 
 
-def _check_moment(value: object) -> object:
+def _check_query_time(value: object) -> object:
     """Reject strings that are not a date and a time. Pydantic would parse a plain number as seconds since 1970."""
     if isinstance(value, str) and not re.match(r"\d{4}-\d\d-\d\d[Tt ]\d\d:\d\d", value):
         raise ValueError("expected a date and a time, such as 2026-05-01T14:30:00Z")
@@ -37,7 +37,7 @@ def whole_number(value: object) -> object:
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
-Moment = Annotated[datetime, BeforeValidator(_check_moment)]
+QueryTime = Annotated[datetime, BeforeValidator(_check_query_time)]
 """A date and time in the query of a request."""
 
 
@@ -80,9 +80,8 @@ class PoseModel(BaseModel):
 
 
 class ArrivalModel(BaseModel):
-    """The result of a move.
-
-    ``pose`` is the pose at which the camera arrived. ``clamped`` names the axes that were stopped by a limit of the device.
+    """The result of a move. ``pose`` is the pose at which the camera arrived. ``clamped`` names the axes that were stopped by a
+    limit of the device.
     ``limited_by`` describes any other limit that stopped the camera; it is empty if there was none.
     """
 
@@ -115,7 +114,7 @@ class Centre(Body):
     pose: PoseModel | None = None
 
 
-class FrameBox(Body):
+class ZoomToBox(Body):
     """The box in a picture that should fill the view, as fractions of the picture's width and height from the top left.
 
     ``pose`` is the pose of the picture; by default, the current pose.
@@ -383,7 +382,7 @@ class FeedbackBody(Body):
     position: Annotated[int, Field(ge=0, le=100_000), BeforeValidator(whole_number)] | None = None
 
 
-class Kept(Body):
+class KeepRequest(Body):
     """Whether to keep a run when old runs are removed."""
 
     kept: bool
@@ -410,10 +409,9 @@ class SignIn(Body):
     token: Annotated[str, Field(min_length=1, max_length=200)]
 
 
-class Me(BaseModel):
-    """The client that sent the request.
-
-    ``client`` is its key, as in ``ControlRequestModel``. ``signs_in`` is true if the server requires a token to sign in.
+class ClientInfo(BaseModel):
+    """The client that sent the request. ``client`` is its key, as in ``ControlRequestModel``. ``signs_in`` is true if the server
+    requires clients to sign in with a token.
     """
 
     name: str

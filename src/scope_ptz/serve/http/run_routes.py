@@ -10,8 +10,8 @@ from fastapi.responses import StreamingResponse
 from scope_ptz.serve.http.dependencies import RunOperator, SiteDep, StoppingOperator, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import RunStart, RunState
-from scope_ptz.serve.http.run_reading import live_events, state_of, stored_events, stored_state
-from scope_ptz.serve.site.starting import start_instruction
+from scope_ptz.serve.http.run_state import live_events, state_of, stored_events, stored_state
+from scope_ptz.serve.site.start_runs import start_instruction
 from scope_ptz.serve.site.stored_runs import trace_of_run
 
 router = APIRouter(tags=["runs"])

@@ -7,8 +7,8 @@ from starlette.exceptions import HTTPException
 
 from scope_ptz.serve.http.dependencies import AccessDep, SiteDep, Viewer
 from scope_ptz.serve.http.errors import responses
-from scope_ptz.serve.http.models import Me, ModelHealth, PairHealth, ServerInfo, SignIn
-from scope_ptz.serve.security.gate import cookie_of
+from scope_ptz.serve.http.models import ClientInfo, ModelHealth, PairHealth, ServerInfo, SignIn
+from scope_ptz.serve.security.access import cookie_of
 from scope_ptz.serve.security.sessions import COOKIE
 from scope_ptz.serve.security.sign_in import is_secure, set_cookie
 from scope_ptz.version import __version__
@@ -29,9 +29,9 @@ async def server(site: SiteDep, client: Viewer) -> ServerInfo:  # noqa: ARG001 -
 
 
 @router.get("/me", responses=responses())
-async def me(client: Viewer, access: AccessDep) -> Me:
+async def me(client: Viewer, access: AccessDep) -> ClientInfo:
     """Return the name, role and key of the client."""
-    return Me(name=client.name, role=client.role, client=client.key, signs_in=access.needs_token)
+    return ClientInfo(name=client.name, role=client.role, client=client.key, signs_in=access.needs_token)
 
 
 @router.post("/session", status_code=204, responses=responses(409))

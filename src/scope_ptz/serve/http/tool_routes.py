@@ -11,7 +11,7 @@ from pydantic import Field, ValidationError
 from scope_ptz.serve.http.dependencies import Operator, SiteDep, StationDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import PoseModel, ToolReply
-from scope_ptz.serve.site.starting import finished_call, start_tool_call
+from scope_ptz.serve.site.start_runs import finished_call, start_tool_call
 from scope_ptz.tools.registry import TOOLS, schemas
 from scope_ptz.tools.tool import Tool
 

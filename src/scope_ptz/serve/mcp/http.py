@@ -1,4 +1,4 @@
-"""MCP over streamable HTTP, behind the same gate as the HTTP API."""
+"""MCP over streamable HTTP, with the same access checks as the HTTP API."""
 
 from __future__ import annotations
 
@@ -19,20 +19,19 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from scope_ptz.serve.http.errors import http_error
 from scope_ptz.serve.mcp.server import Context, mcp_server
-from scope_ptz.serve.security.gate import MAX_BODY_BYTES, MCP_PATH, Access, Gate
+from scope_ptz.serve.security.access import MAX_BODY_BYTES, MCP_PATH, Access, AccessMiddleware
 from scope_ptz.serve.site.clients import Client
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 from scope_ptz.version import __version__
 
 MAX_SESSIONS = 200
-"""Maximum number of sessions of clients that speak the older protocol. The present one has no sessions."""
+"""Maximum number of sessions of clients that speak the older version of the protocol. The current version has no sessions."""
 
 
 @asynccontextmanager
-async def serving_mcp(site: Site, access: Access) -> AsyncIterator[Route]:
-    """Serve MCP while the context is open, and yield the route, which must be mounted behind a ``Gate``.
-
-    The gate checks ``Host``, ``Origin`` and the token of each request, so the transport's own checks are not used.
+async def serve_mcp(site: Site, access: Access) -> AsyncIterator[Route]:
+    """Serve MCP while the context is open, and yield the route, which must be mounted behind an ``AccessMiddleware``. The
+    middleware checks ``Host``, ``Origin`` and the token of each request, so the transport's own checks are not used.
 
     Args:
         site: The site, whose context the caller must enter.
@@ -50,14 +49,14 @@ def mcp_application(access: Access, mcp: Route) -> ASGIApp:
     async def root(_: Request) -> Response:
         return PlainTextResponse(f"SCOPE {__version__}. MCP is at {MCP_PATH}.\n")
 
-    return Gate(Starlette(routes=[Route("/", root), mcp], exception_handlers={HTTPException: http_error}), access)
+    return AccessMiddleware(Starlette(routes=[Route("/", root), mcp], exception_handlers={HTTPException: http_error}), access)
 
 
 def mcp_client(client: Client) -> Client:
-    """Return a client as MCP sees it.
+    """Return a client with a key of its own for MCP.
 
-    Its key differs from that of other programs with the same token, so that only one of them controls a camera. A client that
-    distinguishes itself by the header ``Scope-Client`` keeps its key.
+    The key differs from that of other programs with the same token, so that only one of them controls a camera. A client that
+    identifies itself with the header ``Scope-Client`` keeps its key.
     """
     return replace(client, key=f"{client.key}:mcp") if client.key == client.name else client
 

@@ -47,7 +47,7 @@ def fitting_jpeg(image: NDArray[Any], max_bytes: int, width: int) -> bytes:
         width = max(16, int(width * _SHRINK))
 
 
-def decoded(data: bytes) -> NDArray[Any]:
+def decode_picture(data: bytes) -> NDArray[Any]:
     """Decode a stored picture to RGB, of shape ``(H, W, 3)``.
 
     Raises:
@@ -67,7 +67,7 @@ async def stored_jpeg(data: bytes, max_bytes: int, width: int = 100_000) -> byte
     """
 
     def convert() -> bytes:
-        image = decoded(data)
+        image = decode_picture(data)
         if data.startswith(b"\xff\xd8") and len(data) <= max_bytes and image.shape[1] <= width:
             return data
         return fitting_jpeg(image, max_bytes, width)

@@ -10,11 +10,11 @@ from pydantic import BaseModel, Field
 
 from scope_ptz.agent.records import Called
 from scope_ptz.serve.http.models import RunState
-from scope_ptz.serve.http.run_reading import state_of, stored_state
+from scope_ptz.serve.http.run_state import state_of, stored_state
 from scope_ptz.serve.mcp.addresses import picture_uri
-from scope_ptz.serve.mcp.untrusted import MAX_ITEMS, PictureText, marked
+from scope_ptz.serve.mcp.untrusted import MAX_ITEMS, PictureText, mark_texts
 from scope_ptz.serve.site.run_handle import Record
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.stored_runs import records_of, trace_of_run
 from scope_ptz.tools.registry import TOOLS
 
@@ -70,7 +70,7 @@ def _report(state: RunState, records: Sequence[Record]) -> RunReport:
     last = calls[-1] if calls else None
     result = None
     if state.kind == "tool" and last is not None and last.outcome.result is not None:
-        result = marked(last.outcome.result, perceived=perceives(last.outcome.call.name))
+        result = mark_texts(last.outcome.result, perceived=perceives(last.outcome.call.name))
     return RunReport(
         run=state.id,
         camera=state.camera,

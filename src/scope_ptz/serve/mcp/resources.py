@@ -25,12 +25,12 @@ from scope_ptz.serve.mcp.reports import run_report
 from scope_ptz.serve.mcp.untrusted import PictureText
 from scope_ptz.serve.site.camera_kinds import scene_of
 from scope_ptz.serve.site.clients import Client
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.stored_runs import stored_picture
 from scope_ptz.store.rows import RunFilter
 
 LISTED_RUNS = 20
-"""Number of runs, the newest first, that the list of resources contains."""
+"""Number of runs in the list of resources. It contains the newest ones."""
 
 MAX_PICTURE_WIDTH = 8192  # in pixels, for panoramas
 
@@ -46,7 +46,8 @@ class ScenePresetModel(BaseModel):
 
 
 class SceneModel(BaseModel):
-    """A scene that a simulated camera shows. What there is to see is not part of it: the agent has to look."""
+    """A scene that a simulated camera shows. It does not list the objects in the scene, because the agent must find them with the
+    camera."""
 
     name: str
     title: str
@@ -124,7 +125,7 @@ async def read_resource(site: Site, client: Client, uri: str) -> ReadResourceRes
         case ["cameras", name]:
             return _text(uri, await camera_state(site, site.station(name), client))
         case ["cameras", name, "presets"]:
-            known = await presets_of(site, site.station(name)).known()
+            known = await presets_of(site, site.station(name)).all()
             return _text(uri, [PresetModel.of(each).model_dump(mode="json") for each in known])
         case ["cameras", name, "picture"]:
             frame = await (await site.station(name).camera()).frame()

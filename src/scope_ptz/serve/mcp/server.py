@@ -36,7 +36,7 @@ from scope_ptz.serve.mcp.tools.site_tools import site_tools
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.error_codes import status_of
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 from scope_ptz.version import __version__
 
 Context = ServerRequestContext[Any, Any]
@@ -88,7 +88,9 @@ class _Handlers:
     async def list_tools(self, context: Context, _: PaginatedRequestParams | None) -> ListToolsResult:
         """List the tools that the client may call."""
         client = self._reader(context)
-        return ListToolsResult(tools=[tool.listed() for tool in self._tools.values() if client.operates or not tool.operates])
+        return ListToolsResult(
+            tools=[tool.listing() for tool in self._tools.values() if client.is_operator or not tool.needs_operator]
+        )
 
     async def call_tool(self, context: Context, params: CallToolRequestParams) -> CallToolResult:
         """Call a tool. An error of the call is a result, so that the agent can read it and correct the call."""
@@ -97,7 +99,7 @@ class _Handlers:
             name, known = _encodable(params.name[:60]), ", ".join(self._tools)
             raise MCPError(code=INVALID_PARAMS, message=f"There is no tool '{name}'. The tools are {known}.")
         client = self._client_of(context)
-        if tool.operates and not client.operates:
+        if tool.needs_operator and not client.is_operator:
             return failure(f"{tool.name} needs the operator role, but your token has the viewer role.", "not_allowed")
 
         async def progress(number: float, message: str) -> None:

@@ -14,7 +14,7 @@ from mcp.server.stdio import stdio_server
 from scope_ptz.serve.mcp.server import Context, mcp_server
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.site.clients import LOCAL, Client, Role
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 
 _CHUNK_BYTES = 64 * 1024
 MAX_LINE_BYTES = 10 * 1024 * 1024  # longer messages end the connection

@@ -15,7 +15,7 @@ from scope_ptz.errors import ToolCallError
 from scope_ptz.serve.mcp.pictures import MAX_RESULT_BYTES
 from scope_ptz.serve.security.rate_limits import Kind
 from scope_ptz.serve.site.clients import Client
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 
 MAX_LISTED = 50
 """Maximum number of names that a schema enumerates. With more, an unknown name is answered with a list."""
@@ -55,7 +55,7 @@ class McpTool:
         input_schema: The JSON schema of the arguments.
         output_schema: The JSON schema of the structured result.
         annotations: Hints about effects.
-        operates: Whether the tool needs the operator role.
+        needs_operator: Whether the tool needs the operator role.
         kind: The rate limit that applies; None for no limit, so that stopping is always possible.
         run: Carries out a call with the given arguments.
     """
@@ -66,11 +66,11 @@ class McpTool:
     input_schema: dict[str, Any]
     output_schema: dict[str, Any]
     annotations: ToolAnnotations
-    operates: bool
+    needs_operator: bool
     kind: Kind | None
     run: Callable[[Call, dict[str, Any]], Awaitable[CallToolResult]]
 
-    def listed(self) -> ListedTool:
+    def listing(self) -> ListedTool:
         """Return the tool as ``tools/list`` describes it."""
         return ListedTool(
             name=self.name,
@@ -85,7 +85,7 @@ class McpTool:
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
-def parsed(model: type[_Model], tool: str, arguments: dict[str, Any]) -> _Model:
+def parse_arguments(model: type[_Model], tool: str, arguments: dict[str, Any]) -> _Model:
     """Validate the arguments of a call.
 
     Raises:

@@ -31,10 +31,10 @@ class PictureText(BaseModel):
     @classmethod
     def of(cls, text: str) -> PictureText:
         """Mark a text, truncated to ``MAX_TEXT_CHARS``."""
-        return cls(untrusted_picture_text=shortened(text))
+        return cls(untrusted_picture_text=truncate(text))
 
 
-def shortened(text: str) -> str:
+def truncate(text: str) -> str:
     """Return a text with at most ``MAX_TEXT_CHARS`` characters, all of which can be encoded."""
     text = text.encode("utf-8", "replace").decode()
     return text if len(text) <= MAX_TEXT_CHARS else f"{text[:MAX_TEXT_CHARS]} ..."
@@ -43,10 +43,10 @@ def shortened(text: str) -> str:
 def between_markers(text: str) -> str:
     """Return a text between markers that the text itself cannot contain, with a notice."""
     name = f"picture-text-{secrets.token_hex(8)}"
-    return f"{NOTICE}\n<{name}>\n{shortened(text)}\n</{name}>"
+    return f"{NOTICE}\n<{name}>\n{truncate(text)}\n</{name}>"
 
 
-def marked(result: Any, *, perceived: bool) -> Any:
+def mark_texts(result: Any, *, perceived: bool) -> Any:
     """Return the data of a tool result in which texts from pictures are marked, and long lists are truncated.
 
     Args:
@@ -55,18 +55,18 @@ def marked(result: Any, *, perceived: bool) -> Any:
     """
     if isinstance(result, dict):
         return {
-            key: {"untrusted_picture_text": shortened(value)}
+            key: {"untrusted_picture_text": truncate(value)}
             if perceived and key in PICTURE_TEXT_FIELDS and isinstance(value, str)
-            else marked(value, perceived=perceived)
+            else mark_texts(value, perceived=perceived)
             for key, value in result.items()
         }
     if isinstance(result, list | tuple):
-        return [marked(each, perceived=perceived) for each in result[:MAX_ITEMS]]
-    return shortened(result) if isinstance(result, str) else result
+        return [mark_texts(each, perceived=perceived) for each in result[:MAX_ITEMS]]
+    return truncate(result) if isinstance(result, str) else result
 
 
-def marked_schema(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the JSON schema of ``marked`` results of a perception tool, given that of the unmarked results."""
+def mark_schema(schema: dict[str, Any]) -> dict[str, Any]:
+    """Return the JSON schema of a perception tool's results after ``mark_texts``, given the schema before it."""
     definitions = schema.setdefault("$defs", {})
     for definition in [schema, *definitions.values()]:
         for name, prop in definition.get("properties", {}).items():

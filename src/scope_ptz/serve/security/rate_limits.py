@@ -16,7 +16,7 @@ MAX_CLIENTS = 10_000
 """Maximum number of counters. The counter of the least recently active client is dropped first."""
 
 NAME_FACTOR = 10
-"""The joint limit of all clients with the same name, as a multiple of the limit of one client."""
+"""The shared limit of all clients with the same name, as a multiple of the limit of one client."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class RateLimits:
     """Limits the requests of each client, separately for each kind of request.
 
     Requests to stop a camera or a run are never counted. All clients with the same name, such as the browser tabs of a user, also
-    have a joint limit. Otherwise, a program could avoid the limit by acting as many clients.
+    have a shared limit. Otherwise, a program could evade the limit by posing as many clients.
 
     Args:
         rates: The limit of each kind; None for no limits.
@@ -50,12 +50,12 @@ class RateLimits:
         self._left: OrderedDict[tuple[str, Kind], tuple[float, float]] = OrderedDict()
 
     def count(self, client: str, kind: Kind, name: str | None = None) -> None:
-        """Count a request of a client, and refuse it if the client exceeds a limit.
+        """Count a request from a client, and refuse it if the client exceeds a limit.
 
         Args:
             client: The key of the client, or its address if it has not signed in.
             kind: The kind of the request.
-            name: The name that the client may share with others; None for no joint limit.
+            name: The name that the client may share with others; None for no shared limit.
 
         Raises:
             TooManyRequestsError: The client sent too many requests. The error contains the seconds until the client may retry.

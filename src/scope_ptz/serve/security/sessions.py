@@ -32,7 +32,7 @@ class Session:
 
 
 class Sessions:
-    """The sessions of one server. They are in memory only, so a restart signs all browsers out."""
+    """The sessions of one server. They are kept only in memory, so a restart signs all browsers out."""
 
     def __init__(self, *, lifetime_s: float = LIFETIME_S) -> None:
         self._lifetime_s = lifetime_s

@@ -9,7 +9,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
-from scope_ptz.serve.security.gate import SIGN_IN_PATH, Access
+from scope_ptz.serve.security.access import SIGN_IN_PATH, Access
 from scope_ptz.serve.security.sessions import COOKIE, LIFETIME_S
 from scope_ptz.serve.site.errors import TooManyRequestsError
 
@@ -39,7 +39,7 @@ p {{ margin: 0 0 1rem; color: var(--bad); }}
 
 
 def sign_in_route(access: Access) -> Route:
-    """Return the route of the sign-in page. ``Gate`` admits requests to this route without a token."""
+    """Return the route of the sign-in page. ``AccessMiddleware`` admits requests to this route without a token."""
 
     async def sign_in(request: Request) -> Response:
         if request.method != "POST":

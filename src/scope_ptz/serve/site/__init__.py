@@ -1,1 +1,2 @@
-"""What a server offers, without HTTP: cameras and who controls them, pairs of models, runs, conversations and evaluations."""
+"""The services of a server, independent of HTTP: cameras and control of them, pairs of models, runs, conversations and
+evaluations."""

@@ -22,10 +22,10 @@ from scope_ptz.simulator.models import SceneFile
 Ability = Literal["move", "drive", "presets", "focus", "iris", "scene_time", "ground_truth", "virtual_camera"]
 HealthState = Literal["connected", "ready", "failed"]
 
-CHECK_S = 20.0
+CHECK_TIMEOUT_S = 20.0
 """Seconds without an answer after which a check counts a camera as failed."""
 
-FRESH_S = 2.0
+CHECK_REUSE_S = 2.0
 """Seconds for which the result of a check is reused, so that several pages can share one check."""
 
 
@@ -96,13 +96,15 @@ class CameraCards:
             return replace(card, health="failed", problem=error)
         if scene is not None:
             ruled = has_rules(station.spec)
-            card = replace(card, title=scene.title, scene=scene, abilities=_of_scene(scene, ruled=ruled), has_picture=not ruled)
+            card = replace(
+                card, title=scene.title, scene=scene, abilities=_scene_abilities(scene, ruled=ruled), has_picture=not ruled
+            )
         if not station.is_open and kind in ("simulated", "blender"):
             return card if station.problem is None else replace(card, health="failed", problem=station.problem)
         problem = await self._check(station)
         opened = station.open_camera
         if opened is not None and scene is None:
-            card = replace(card, title=opened.camera.info.name, abilities=_of_device(opened.camera))
+            card = replace(card, title=opened.camera.info.name, abilities=_device_abilities(opened.camera))
         works = problem is None
         return replace(card, health="connected" if works else "failed", problem=problem, has_picture=works)
 
@@ -114,7 +116,7 @@ class CameraCards:
     async def _check(self, station: Station) -> ScopeError | None:
         """Return the error of a camera; None if the camera works. Concurrent requests share one check."""
         task, since_s = self._checks.get(station.name, (None, 0.0))
-        if task is None or (task.done() and monotonic() - since_s > FRESH_S):
+        if task is None or (task.done() and monotonic() - since_s > CHECK_REUSE_S):
             task = asyncio.create_task(_problem(station))
             self._checks[station.name] = task, monotonic()
         return await asyncio.shield(task)
@@ -122,10 +124,10 @@ class CameraCards:
 
 async def _problem(station: Station) -> ScopeError | None:
     try:
-        with anyio.fail_after(CHECK_S):
+        with anyio.fail_after(CHECK_TIMEOUT_S):
             await (await station.camera()).pose()
     except TimeoutError:
-        return CameraError(f"{station.name} did not answer within {CHECK_S:g} s.")
+        return CameraError(f"{station.name} did not answer within {CHECK_TIMEOUT_S:g} s.")
     except ScopeError as error:
         return error
     return CameraError(station.live.problem) if station.live.problem else None
@@ -137,7 +139,7 @@ def _scene_facts(name: str) -> SceneFacts:
     return SceneFacts(name, file.title, viewpoints, len(file.presets), len(file.actors), file.captured is None)
 
 
-def _of_scene(scene: SceneFacts, *, ruled: bool) -> tuple[Ability, ...]:
+def _scene_abilities(scene: SceneFacts, *, ruled: bool) -> tuple[Ability, ...]:
     known: list[tuple[Ability, bool]] = [
         ("move", True), ("drive", True), ("presets", True), ("scene_time", True),
         ("ground_truth", scene.has_truth), ("virtual_camera", not ruled),
@@ -145,7 +147,7 @@ def _of_scene(scene: SceneFacts, *, ruled: bool) -> tuple[Ability, ...]:
     return tuple(name for name, has in known if has)
 
 
-def _of_device(camera: Camera) -> tuple[Ability, ...]:
+def _device_abilities(camera: Camera) -> tuple[Ability, ...]:
     can = camera.info.capabilities
     known: list[tuple[Ability, bool]] = [
         ("move", True), ("drive", can.drives), ("presets", can.edits_presets), ("focus", bool(can.focus)),

@@ -1,4 +1,4 @@
-"""Control of a camera: one client at a time has it, until it is handed over or expires."""
+"""Control of a camera. One client at a time has control, until it hands control over or control expires."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class CameraControl:
 
     @property
     def requests(self) -> tuple[Request, ...]:
-        """The requests for control, the oldest first."""
+        """The requests for control, oldest first."""
         return tuple(self._requests.values())
 
     @contextmanager

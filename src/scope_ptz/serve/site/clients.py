@@ -11,8 +11,8 @@ LOCAL = "local"
 """The name of every client of a server that needs no tokens."""
 
 
-def shown_name(name: str) -> str:
-    """Return a client's name in the form used in messages."""
+def display_name(name: str) -> str:
+    """Return a client's name as messages show it."""
     return "another window or program on this computer" if name == LOCAL else name
 
 
@@ -22,7 +22,7 @@ class Client:
 
     Attributes:
         name: The name of its token; ``LOCAL`` if the server needs none. Conversations are shared by all clients with the same name.
-        key: A key that distinguishes clients with the same name. Control of a camera is given to the client with one key.
+        key: Distinguishes clients with the same name. Control of a camera belongs to one key.
         role: The role, which determines what the client may do.
     """
 
@@ -31,6 +31,6 @@ class Client:
     role: Role
 
     @property
-    def operates(self) -> bool:
+    def is_operator(self) -> bool:
         """Whether the client may send commands."""
         return self.role == "operator"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from scope_ptz.errors import ScopeError
-from scope_ptz.serve.site.clients import shown_name
+from scope_ptz.serve.site.clients import display_name
 
 
 class NotInControlError(ScopeError):
@@ -15,7 +15,7 @@ class NotInControlError(ScopeError):
 
     def __init__(self, camera: str, holder: str) -> None:
         self.holder = holder
-        name = shown_name(holder)
+        name = display_name(holder)
         super().__init__(f"{camera} is controlled by {name}. Ask for control, and wait until it is handed over.")
 
 

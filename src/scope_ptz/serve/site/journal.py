@@ -23,7 +23,7 @@ MAX_TURNS = 20
 """Maximum number of conversation turns that the planner receives."""
 
 SETTLE_S = 2.0
-"""Maximum time in seconds that a request for a list of runs waits for the indexing of runs that have just ended."""
+"""Maximum time in seconds for which a request for a list of runs waits until runs that have just ended are indexed."""
 
 _T = TypeVar("_T")
 

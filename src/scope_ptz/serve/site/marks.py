@@ -16,11 +16,11 @@ from scope_ptz.perception.base import Box
 ACCENT = (76, 195, 247)
 INK = (14, 19, 26)
 MAX_NUMBERS = 40
-"""Maximum number of marks with drawn numbers. With more marks, all numbers are omitted, because they would cover the picture."""
+"""Maximum number of marks that are numbered. With more marks, none is numbered, because the numbers would cover the picture."""
 
 
-def call_of(trace: Trace, name: str) -> Called | None:
-    """Return the first call of a run whose result refers to a picture, by the picture's name; None if there is none."""
+def call_for_picture(trace: Trace, name: str) -> Called | None:
+    """Return the first call of a run whose result refers to the picture ``name``; None if there is none."""
     for call in trace.calls:
         result = call.outcome.result or {}
         if name in (result.get("frames") or ()):

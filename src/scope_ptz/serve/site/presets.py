@@ -1,4 +1,4 @@
-"""The presets of a camera, with thumbnails and renaming, neither of which cameras offer themselves."""
+"""The presets of a camera. Thumbnails and renaming are added here, because cameras support neither."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ class Presets:
     def __init__(self, station: Station, folder: Path) -> None:
         self._station, self._folder = station, folder / station.name
 
-    async def known(self) -> list[KnownPreset]:
-        """Return the presets in the camera's order, with what is known about each."""
+    async def all(self) -> list[KnownPreset]:
+        """Return the presets in the camera's order, with their places and whether they have thumbnails."""
         camera = await self._station.camera()
         scene = (await self._station.opened()).scene
         rendered = set() if scene is None or has_rules(self._station.spec) else {preset.name for preset in scene.file.presets}
@@ -71,7 +71,7 @@ class Presets:
         Raises:
             UnknownNameError: There is no such preset.
         """
-        async with self._station.commanding(client) as camera:
+        async with self._station.command(client) as camera:
             await self._check(camera, name)
             arrival = await camera.go_to_preset(name)
             await self._visit(name)
@@ -85,7 +85,7 @@ class Presets:
             RefusedByCameraError: The camera cannot save this preset.
         """
         camera = await self._station.require_control(client)
-        with _detecting_refusals():
+        with _translate_refusals():
             saved = await camera.save_preset(name, description)
         await self._visit(name)
         await self._store(name, await camera.frame())
@@ -100,7 +100,7 @@ class Presets:
             InputError: The new name is in use or not permitted.
             RefusedByCameraError: The camera cannot save or remove this preset.
         """
-        async with self._station.commanding(client) as camera:
+        async with self._station.command(client) as camera:
             presets = {each.name: each for each in await camera.presets()}
             if name not in presets:
                 raise UnknownNameError("preset", name[:60], presets)
@@ -111,7 +111,7 @@ class Presets:
             frame = await camera.frame()
             await self._visit(new_name)
             try:
-                with _detecting_refusals():
+                with _translate_refusals():
                     saved = await camera.save_preset(new_name, presets[name].description)
                     try:
                         await camera.remove_preset(name)
@@ -134,7 +134,7 @@ class Presets:
         """
         camera = await self._station.require_control(client)
         await self._check(camera, name)
-        with _detecting_refusals():
+        with _translate_refusals():
             await camera.remove_preset(name)
         self._forget(name)
         self._station.preset_changes += 1
@@ -218,7 +218,7 @@ def _place_in_scene(camera: Camera, name: str) -> Place | None:
 
 
 @contextmanager
-def _detecting_refusals() -> Iterator[None]:
+def _translate_refusals() -> Iterator[None]:
     """Raise ``RefusedByCameraError`` if the camera refuses to edit a preset, such as its home position.
 
     A refusal is a plain ``CameraError``; camera failures raise subclasses, which propagate unchanged.

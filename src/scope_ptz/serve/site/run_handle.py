@@ -15,7 +15,7 @@ Record = Started | Decided | Called | Ended
 
 @dataclass(frozen=True, slots=True)
 class RunEvent:
-    """A record of a run with its number, counted from 0. The stored run numbers its records in the same way."""
+    """A record of a run with its number, counted from 0. The records of a stored run have the same numbers."""
 
     number: int
     record: Record
@@ -31,7 +31,7 @@ class RunHandle:
         preview: The commands that a dry run would send, one sentence each.
         records: The records so far.
         scope: The cancel scope in which the run is executed.
-        failure: The error because of which the run could not start or finish; None if there is none.
+        failure: The error that kept the run from starting or finishing; None if there is none.
         done: Set when the run has ended and no more records will come.
     """
 

@@ -31,11 +31,11 @@ from scope_ptz.simulator.prefetch import Prefetch
 MAX_UNDO = 50
 """Maximum number of earlier positions to which ``undo`` can return, one after the other."""
 
-PREFETCH_END_S = 20.0
-"""Maximum time in seconds that ``close`` waits for a picture that is still being read in the background."""
+PREFETCH_TIMEOUT_S = 20.0
+"""Maximum time in seconds for which ``close`` waits for a picture that is still being read in the background."""
 
 DRIVE_GROUP_S = 2.0
-"""Drive commands that follow each other within this many seconds count as one for ``undo``."""
+"""``undo`` treats drive commands that follow each other within this many seconds as one."""
 
 logger = logging.getLogger(__name__)
 
@@ -146,7 +146,7 @@ class Station:
         return camera
 
     @asynccontextmanager
-    async def commanding(self, client: Client) -> AsyncIterator[Camera]:
+    async def command(self, client: Client) -> AsyncIterator[Camera]:
         """Return a context in which a client moves the camera. A later ``undo`` returns to the position before it.
 
         Raises:
@@ -253,7 +253,7 @@ class Station:
             # A thread that is still running when the interpreter exits would crash the program.
             self.cancel_prefetch()
             with suppress(PackError, OSError):
-                await to_thread.run_sync(self._prefetch.wait, PREFETCH_END_S)
+                await to_thread.run_sync(self._prefetch.wait, PREFETCH_TIMEOUT_S)
 
     async def viewpoint(self) -> str | None:
         """Return the viewpoint of a simulated camera; None for others."""

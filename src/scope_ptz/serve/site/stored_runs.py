@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
-from scope_ptz.agent.trace import Trace, picture_names, picture_of, read_trace
+from scope_ptz.agent.trace import Trace, picture_names, picture_path, read_trace
 from scope_ptz.errors import TraceError, UnknownNameError
-from scope_ptz.serve.site.marks import call_of, draw_marks, marks_of
+from scope_ptz.serve.site.marks import call_for_picture, draw_marks, marks_of
 from scope_ptz.serve.site.run_handle import Record
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 
 
 async def trace_of_run(site: Site, run_id: str) -> Trace:
@@ -52,9 +52,9 @@ async def stored_picture(site: Site, run_id: str, name: str, *, marks: bool = Fa
 
     def read() -> bytes:
         try:
-            data = picture_of(trace.folder, name).read_bytes()
+            data = picture_path(trace.folder, name).read_bytes()
         except OSError as error:
             raise TraceError(f"The file of the picture {name} of this run is missing.") from error
-        return draw_marks(data, marks_of(call_of(trace, name), name)) if marks else data
+        return draw_marks(data, marks_of(call_for_picture(trace, name), name)) if marks else data
 
     return await site.journal.in_thread(read)

@@ -27,7 +27,7 @@ ACCOUNT = "root"
 MAX_ON = 4
 """Maximum number of virtual cameras that are on at a time. Each one keeps the pictures of a scene in memory."""
 
-START_S = 60.0
+START_TIMEOUT_S = 60.0
 """Maximum time in seconds that a virtual camera may take to start."""
 
 logger = logging.getLogger(__name__)
@@ -110,13 +110,15 @@ class VirtualCameras:
             running = self._running[station.name] = _Running(device)
             running.task = asyncio.create_task(self._serve(station.name, running, options))
             try:
-                with anyio.fail_after(START_S):
+                with anyio.fail_after(START_TIMEOUT_S):
                     return await asyncio.shield(running.started), password
             except BaseException as error:
                 running.task.cancel()
                 await asyncio.gather(running.task, return_exceptions=True)
                 if isinstance(error, TimeoutError):
-                    raise CameraError(f"The virtual camera of {station.name} did not start within {START_S:g} s.") from error
+                    raise CameraError(
+                        f"The virtual camera of {station.name} did not start within {START_TIMEOUT_S:g} s."
+                    ) from error
                 raise
 
     async def turn_off(self, name: str) -> None:

@@ -13,7 +13,7 @@ from starlette.routing import Route
 from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import VirtualDevice
-from scope_ptz.virtual_camera.faults import Faults, checked_faults
+from scope_ptz.virtual_camera.faults import Faults, validate_faults
 from scope_ptz.virtual_camera.http.access import Gate, Handler, is_foreign_page, is_local
 from scope_ptz.virtual_camera.http.vapix_routes import read_arguments, read_body
 from scope_ptz.virtual_camera.truth import TOLERANCE_S, TruthLog, origin_fields
@@ -119,4 +119,4 @@ def changed_faults(faults: Faults, body: bytes) -> Faults:
         changes = None
     if not isinstance(changes, dict):
         raise InputError('Expected a JSON object of faults, such as {"stall_s": 2}.')
-    return checked_faults({**faults.model_dump(), **changes})
+    return validate_faults({**faults.model_dump(), **changes})

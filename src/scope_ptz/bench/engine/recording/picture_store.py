@@ -9,7 +9,7 @@ import cv2
 from anyio import to_thread
 
 from scope_ptz.agent.planner_views import MAX_SIDE_PX, picture
-from scope_ptz.agent.store import Numbering
+from scope_ptz.agent.store import PictureNames
 from scope_ptz.camera.base import Frame
 
 MAX_PANORAMA_SIDE_PX = 2560
@@ -48,7 +48,7 @@ class PictureStore:
     """
 
     def __init__(self) -> None:
-        self._names, self._pending = Numbering(), dict[str, Frame]()
+        self._names, self._pending = PictureNames(), dict[str, Frame]()
         self._lock = anyio.Lock()
         self.urls: dict[str, str] = {}
 

@@ -15,7 +15,6 @@ from scope_ptz.camera.base import Arrival
 from scope_ptz.perception.no_perception import NoPerception
 from scope_ptz.serve.http.models import PoseModel
 from scope_ptz.serve.mcp.addresses import picture_uri, run_uri
-from scope_ptz.serve.mcp.following import follow
 from scope_ptz.serve.mcp.pictures import (
     MAX_PICTURE_BYTES,
     PICTURE_WIDTH,
@@ -24,11 +23,21 @@ from scope_ptz.serve.mcp.pictures import (
     image_content,
     stored_jpeg,
 )
-from scope_ptz.serve.mcp.tool import Call, McpTool, ToolArguments, camera_property, output_schema, parsed, reply, without_titles
-from scope_ptz.serve.mcp.untrusted import PictureText, between_markers, marked, marked_schema, shortened
+from scope_ptz.serve.mcp.run_progress import follow
+from scope_ptz.serve.mcp.tool import (
+    Call,
+    McpTool,
+    ToolArguments,
+    camera_property,
+    output_schema,
+    parse_arguments,
+    reply,
+    without_titles,
+)
+from scope_ptz.serve.mcp.untrusted import PictureText, between_markers, mark_schema, mark_texts, truncate
 from scope_ptz.serve.site.pairs import Pairs
 from scope_ptz.serve.site.run_handle import RunHandle
-from scope_ptz.serve.site.starting import finished_call, start_tool_call
+from scope_ptz.serve.site.start_runs import finished_call, start_tool_call
 from scope_ptz.serve.site.station import Station
 from scope_ptz.serve.site.stored_runs import stored_picture
 from scope_ptz.tools.context import ToolContext, pose_text
@@ -36,11 +45,11 @@ from scope_ptz.tools.get_presets import GET_PRESETS
 from scope_ptz.tools.registry import TOOLS, parse_call
 from scope_ptz.tools.tool import Tool
 
-_NO_MODELS = "Listing presets needs none."  # the advice of a perception backend that is never called
+_NO_PERCEPTION = "Listing presets needs no perception."  # the error text of a perception backend that is never called
 
 
-class _Handles(ToolArguments):
-    """The arguments that every camera tool has in addition to its own."""
+class _CommonArguments(ToolArguments):
+    """The arguments that MCP adds to those of every camera tool."""
 
     camera: str = Field(max_length=120)
     pair: str | None = Field(None, max_length=120)
@@ -91,7 +100,7 @@ def _camera_tool(tool: Tool, cameras: Sequence[str], pairs: Pairs) -> McpTool:
             idempotent_hint=tool.repeatable,
             open_world_hint=not reads,  # pictures show whatever is in front of the camera
         ),
-        operates=not reads,
+        needs_operator=not reads,
         kind="read" if reads else "command",
         run=run,
     )
@@ -104,14 +113,14 @@ def _description(tool: Tool) -> str:
 
 def _input_schema(tool: Tool, cameras: Sequence[str], pairs: Pairs) -> dict[str, Any]:
     schema = tool.schema()["function"]["parameters"]
-    handles: dict[str, Any] = {"camera": camera_property(cameras)}
+    common: dict[str, Any] = {"camera": camera_property(cameras)}
     extra: dict[str, Any] = {}
     if tool.perceives and len(pairs.names) > 1:
         extra["pair"] = {"type": "string", "enum": list(pairs.names), "description": "Models to use; by default the first."}
     if tool is not GET_PRESETS:
         extra["picture"] = {"type": "boolean", "default": True, "description": "Whether the result contains a picture."}
     required = ["camera", *schema.get("required", ())]
-    return {**schema, "properties": {**handles, **schema["properties"], **extra}, "required": required}
+    return {**schema, "properties": {**common, **schema["properties"], **extra}, "required": required}
 
 
 def _output_schema(tool: Tool) -> dict[str, Any]:
@@ -119,25 +128,27 @@ def _output_schema(tool: Tool) -> dict[str, Any]:
     field: Any = (result | None, ...)
     model = create_model(f"{result.__name__}Report", __base__=ToolReport, result=field)
     schema = output_schema(model)
-    return without_titles(marked_schema(schema)) if tool.perceives else schema
+    return without_titles(mark_schema(schema)) if tool.perceives else schema
 
 
 async def _run(tool: Tool, call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    handles = parsed(_Handles, tool.name, {name: arguments[name] for name in _Handles.model_fields if name in arguments})
-    own = {name: value for name, value in arguments.items() if name not in _Handles.model_fields}
-    station = call.site.station(handles.camera)
+    common = parse_arguments(
+        _CommonArguments, tool.name, {name: arguments[name] for name in _CommonArguments.model_fields if name in arguments}
+    )
+    own = {name: value for name, value in arguments.items() if name not in _CommonArguments.model_fields}
+    station = call.site.station(common.camera)
     parse_call(tool.name, own)
-    handle = await follow(call, station, start_tool_call(call.site, call.client, station, tool.name, own, handles.pair))
+    handle = await follow(call, station, start_tool_call(call.site, call.client, station, tool.name, own, common.pair))
     called = finished_call(handle)
-    more = await _pictures(call, station, handle, called, inline=handles.picture)
+    more = await _pictures(call, station, handle, called, inline=common.picture)
     return reply(_text(tool, station, handle, called), _data(tool, station, handle, called), *more, failed=_failed(called))
 
 
 async def _read_presets(call: Call, arguments: dict[str, Any]) -> CallToolResult:
     """List the presets. Like ``GET /cameras/{camera}/presets``, this needs no control, and viewers may do it."""
-    given = parsed(OneCamera, GET_PRESETS.name, arguments)
+    given = parse_arguments(OneCamera, GET_PRESETS.name, arguments)
     station = call.site.station(given.camera)
-    context = ToolContext(await station.camera(), NoPerception(_NO_MODELS), NoImages())
+    context = ToolContext(await station.camera(), NoPerception(_NO_PERCEPTION), NoImages())
     result = await GET_PRESETS.run(context, GET_PRESETS.arguments())
     data = {
         "camera": station.name,
@@ -158,12 +169,12 @@ def _data(tool: Tool, station: Station, handle: RunHandle, called: Called) -> di
     outcome = called.outcome
     error: Any = None
     if outcome.error is not None:
-        error = PictureText.of(outcome.error).model_dump() if tool.perceives else shortened(outcome.error)
+        error = PictureText.of(outcome.error).model_dump() if tool.perceives else truncate(outcome.error)
     return {
         "camera": station.name,
         "run": handle.id,
         "pose": PoseModel.of(called.pose.pose()).model_dump(),
-        "result": None if outcome.result is None else marked(outcome.result, perceived=tool.perceives),
+        "result": None if outcome.result is None else mark_texts(outcome.result, perceived=tool.perceives),
         "error": error,
         "fault": called.fault,
     }
@@ -174,7 +185,7 @@ def _text(tool: Tool, station: Station, handle: RunHandle, called: Called) -> st
     report = outcome.error if outcome.error is not None else str((outcome.result or {}).get("message", ""))
     head = f"{tool.name} on {station.name} {'failed' if _failed(called) else 'is done'} (run {handle.id})."
     if not tool.perceives:
-        return f"{head}\n{shortened(report)}"
+        return f"{head}\n{truncate(report)}"
     return f"{head} After the call, {pose_text(Arrival(called.pose.pose()))}.\n{between_markers(report)}"
 
 

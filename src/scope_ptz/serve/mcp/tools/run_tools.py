@@ -1,4 +1,4 @@
-"""Tools for instructions and for long work: ask and wait, or start, look at the state, and cancel."""
+"""Tools for instructions and long-running work: run an instruction and wait, or start it, query its state, and cancel it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from pydantic import BaseModel, Field
 
 from scope_ptz.errors import ToolCallError
 from scope_ptz.serve.http.models import Identifier, Instruction
-from scope_ptz.serve.mcp.following import follow
 from scope_ptz.serve.mcp.pictures import MAX_PICTURE_BYTES, PICTURE_WIDTH, image_content, stored_jpeg
 from scope_ptz.serve.mcp.reports import SUCCESSES, RunReport, run_report
-from scope_ptz.serve.mcp.tool import Call, McpTool, ToolArguments, input_schema, output_schema, parsed, reply
+from scope_ptz.serve.mcp.run_progress import follow
+from scope_ptz.serve.mcp.tool import Call, McpTool, ToolArguments, input_schema, output_schema, parse_arguments, reply
 from scope_ptz.serve.mcp.tools.camera_tools import is_panorama, picture_link, run_link
 from scope_ptz.serve.mcp.untrusted import between_markers
-from scope_ptz.serve.site.starting import start_instruction, start_tool_call
+from scope_ptz.serve.site.start_runs import start_instruction, start_tool_call
 from scope_ptz.serve.site.stored_runs import stored_picture
 from scope_ptz.store.conversations import add_conversation
 from scope_ptz.store.rows import UNFINISHED
@@ -95,30 +95,30 @@ def run_tools(cameras: Sequence[str]) -> list[McpTool]:
             "ask", "Give an instruction",
             "Run an instruction in plain language, such as 'sweep the scene and count all cars', and return when it has ended. "
             "The camera's own planner decides on the steps. For work that may take longer than a minute, use start_run.",
-            input_schema(Ask, cameras), report, _EFFECTS, operates=True, kind="run", run=_ask,
+            input_schema(Ask, cameras), report, _EFFECTS, needs_operator=True, kind="run", run=_ask,
         ),
         McpTool(
             "start_run", "Start long work",
             "Start an instruction, or a call of one camera tool such as track_object or a count with view='full', and return "
             "immediately. Follow it with run_status, and end it with cancel_run.",
-            _start_schema(cameras), report, _EFFECTS, operates=True, kind="run", run=_start,
+            _start_schema(cameras), report, _EFFECTS, needs_operator=True, kind="run", run=_start,
         ),
         McpTool(
             "run_status", "State of a run",
             "Return the state of a run: its steps so far and, when it has ended, its outcome, answer or result, and pictures.",
-            input_schema(RunStatus, cameras), report, _READS, operates=False, kind="read", run=_status,
+            input_schema(RunStatus, cameras), report, _READS, needs_operator=False, kind="read", run=_status,
         ),
         McpTool(
             "cancel_run", "Cancel a run",
             "Cancel a run and stop its camera. A run that has ended does not change.",
             input_schema(CancelRun, cameras), report,
-            _EFFECTS.model_copy(update={"idempotent_hint": True}), operates=True, kind=None, run=_cancel,
+            _EFFECTS.model_copy(update={"idempotent_hint": True}), needs_operator=True, kind=None, run=_cancel,
         ),
         McpTool(
             "start_conversation", "Start a conversation",
             "Start a conversation about a camera. Instructions with its handle can refer to earlier ones ('and the other one?').",
             input_schema(StartConversation, cameras), output_schema(Conversation),
-            _EFFECTS.model_copy(update={"open_world_hint": False}), operates=True, kind="command", run=_start_conversation,
+            _EFFECTS.model_copy(update={"open_world_hint": False}), needs_operator=True, kind="command", run=_start_conversation,
         ),
     ]  # fmt: skip
 
@@ -131,50 +131,50 @@ def _start_schema(cameras: Sequence[str]) -> dict[str, Any]:
 
 
 async def _ask(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parsed(Ask, "ask", arguments)
+    given = parse_arguments(Ask, "ask", arguments)
     station, fields = call.site.station(given.camera), given.model_dump(exclude={"picture"})
     handle = await follow(call, station, start_instruction(call.site, call.client, **fields))
     if handle.failure is not None:
         raise handle.failure
-    return await _reported(call, handle.id, picture=given.picture)
+    return await _run_result(call, handle.id, picture=given.picture)
 
 
 async def _start(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parsed(StartRun, "start_run", arguments)
+    given = parse_arguments(StartRun, "start_run", arguments)
     if (given.instruction is None) == (given.tool is None):
         raise ToolCallError("Wrong arguments for start_run: give either instruction or tool.")
     if given.instruction is not None:
         fields = given.model_dump(include={"camera", "conversation", "pair", "dry_run"})
         handle = await start_instruction(call.site, call.client, instruction=given.instruction, **fields)
-        return await _reported(call, handle.id, picture=False)
+        return await _run_result(call, handle.id, picture=False)
     if given.conversation is not None or given.dry_run:
         raise ToolCallError("Wrong arguments for start_run: conversation and dry_run apply to instructions, not to tools.")
     station, tool = call.site.station(given.camera), str(given.tool)
     parse_call(tool, given.arguments)
     handle = await start_tool_call(call.site, call.client, station, tool, given.arguments, given.pair)
-    return await _reported(call, handle.id, picture=False)
+    return await _run_result(call, handle.id, picture=False)
 
 
 async def _status(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parsed(RunStatus, "run_status", arguments)
+    given = parse_arguments(RunStatus, "run_status", arguments)
     handle = call.site.runner.find(given.run)
     if handle is not None and given.wait_s > 0:
         with anyio.move_on_after(given.wait_s):
             await handle.done.wait()
-    return await _reported(call, given.run, picture=handle is None or handle.done.is_set())
+    return await _run_result(call, given.run, picture=handle is None or handle.done.is_set())
 
 
 async def _cancel(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parsed(CancelRun, "cancel_run", arguments)
+    given = parse_arguments(CancelRun, "cancel_run", arguments)
     if (handle := call.site.runner.find(given.run)) is not None:
         handle.cancel()
         with anyio.move_on_after(MAX_WAIT_S):
             await handle.done.wait()
-    return await _reported(call, given.run, picture=False)
+    return await _run_result(call, given.run, picture=False)
 
 
 async def _start_conversation(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parsed(StartConversation, "start_conversation", arguments)
+    given = parse_arguments(StartConversation, "start_conversation", arguments)
     site = call.site
     camera, pair = site.station(given.camera).name, site.pairs.check(given.pair)
     title = given.title.encode("utf-8", "replace").decode()
@@ -184,7 +184,7 @@ async def _start_conversation(call: Call, arguments: dict[str, Any]) -> CallTool
     return reply(text, Conversation(conversation=row.id, camera=row.camera, pair=row.pair, title=row.title))
 
 
-async def _reported(call: Call, run: str, *, picture: bool) -> CallToolResult:
+async def _run_result(call: Call, run: str, *, picture: bool) -> CallToolResult:
     """Return the state of a run, with links, and with its last picture if requested."""
     report = await run_report(call.site, run)
     content: list[ContentBlock] = [run_link(run)]

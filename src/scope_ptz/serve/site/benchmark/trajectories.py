@@ -9,20 +9,21 @@ from typing import TYPE_CHECKING, Any
 from scope_ptz.agent.trace import picture_names
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import TraceError, UnknownNameError
-from scope_ptz.serve.site.benchmark.choices import missing_packages
 from scope_ptz.serve.site.benchmark.evaluation_folder import EvaluationFolder, modified
-from scope_ptz.serve.site.marks import call_of, draw_marks, marks_of
+from scope_ptz.serve.site.benchmark.splits import missing_packages
+from scope_ptz.serve.site.marks import call_for_picture, draw_marks, marks_of
 
 if TYPE_CHECKING:
     from scope_ptz.agent.trace import Trace
     from scope_ptz.bench.engine.sample_files import SampleFiles
 
-MAX_OPEN = 4
+MAX_CACHED_RUNS = 4
 """Maximum number of runs that are cached in memory, with their pictures."""
 
 
 class Trajectories:
-    """Reads runs of evaluations. The runs read last are cached, because clients request each picture of a run separately."""
+    """Reads runs of evaluations. The most recently read runs are cached, because clients request each picture of a run
+    separately."""
 
     def __init__(self) -> None:
         self._open: OrderedDict[tuple[str, str, float], SampleFiles] = OrderedDict()
@@ -44,12 +45,12 @@ class Trajectories:
             TraceError: The log does not contain the picture, or a package is missing.
         """
         sample = self._sample(folder, trial)
-        if name not in picture_names_of(sample.trace):
+        if name not in picture_names(sample.trace):
             raise UnknownNameError("picture", name[:80], ())
         data = sample.picture(name)
         if data is None:
             raise TraceError("The log does not contain this picture.")
-        return draw_marks(data, marks_of(call_of(sample.trace, name), name)) if marks else data
+        return draw_marks(data, marks_of(call_for_picture(sample.trace, name), name)) if marks else data
 
     def _sample(self, folder: EvaluationFolder, trial: Trial) -> SampleFiles:
         if missing := missing_packages():
@@ -72,25 +73,22 @@ class Trajectories:
                     "evaluation was interrupted, resume it to add them."
                 ) from error
             self._open[key] = sample
-            while len(self._open) > MAX_OPEN:
+            while len(self._open) > MAX_CACHED_RUNS:
                 self._open.popitem(last=False)
             return sample
 
 
-def picture_names_of(trace: Trace) -> dict[str, int | None]:
-    """Return the names of a run's pictures, in order, each with the index of its tool call, or None for the start picture."""
-    return picture_names(trace)
-
-
 def steps_of(trace: Trace) -> list[dict[str, Any]]:
     """Return the tool calls of a run as JSON data: tool, arguments, message, error flag, duration, and pictures."""
-    names = picture_names_of(trace)
+    names = picture_names(trace)
     steps = []
     for position, call in enumerate(trace.calls):
         outcome = call.outcome
         result = outcome.result or {}
         pictures = [
-            {"name": name, "marks": len(marks_of(call_of(trace, name), name))} for name, at in names.items() if at == position
+            {"name": name, "marks": len(marks_of(call_for_picture(trace, name), name))}
+            for name, at in names.items()
+            if at == position
         ]
         steps.append(
             {

@@ -6,8 +6,8 @@ from typing import Any
 
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall
 
-BY_HAND = "by-hand"
-"""The planner name in the traces of runs with one direct tool call."""
+DIRECT_CALL_PLANNER = "by-hand"
+"""The name of ``SingleCallPlanner`` in traces. Stored traces contain it, so it must not change."""
 
 
 class SingleCallPlanner(Planner):
@@ -18,7 +18,7 @@ class SingleCallPlanner(Planner):
         arguments: The arguments of the tool.
     """
 
-    name = BY_HAND
+    name = DIRECT_CALL_PLANNER
 
     def __init__(self, name: str, arguments: dict[str, Any]) -> None:
         self._call = ToolCall(id="call1", name=name, arguments=arguments)

@@ -23,7 +23,7 @@ from scope_ptz.serve.site.camera_cards import CameraCards
 from scope_ptz.serve.site.camera_control import LEASE_S
 from scope_ptz.serve.site.journal import Journal
 from scope_ptz.serve.site.pairs import Pairs
-from scope_ptz.serve.site.running import Runner
+from scope_ptz.serve.site.runner import Runner
 from scope_ptz.serve.site.station import IdleReturn, Station
 from scope_ptz.serve.site.virtual_cameras import VirtualCameras
 from scope_ptz.settings import ScopeSettings
@@ -40,7 +40,7 @@ class SiteOptions:
         pairs: The names of the pairs to offer, the default first; empty for the built-in pair.
         budgets: The limits of a run.
         idle: Where cameras return to when nobody uses them; None to leave them where they are.
-        idle_of: What replaces ``idle`` for individual cameras, by name.
+        idle_by_camera: Replacements of ``idle`` for individual cameras, by name.
         lease_s: Seconds without a command after which control of a camera expires.
     """
 
@@ -49,7 +49,7 @@ class SiteOptions:
     pairs: tuple[str, ...] = ()
     budgets: Budgets = field(default_factory=Budgets)
     idle: IdleReturn | None = None
-    idle_of: Mapping[str, IdleReturn] = field(default_factory=dict)
+    idle_by_camera: Mapping[str, IdleReturn] = field(default_factory=dict)
     lease_s: float = LEASE_S
 
 
@@ -73,7 +73,7 @@ class Site:
         actor = f"scope serve: {user_name()}"
         self.stations = {
             name: Station(
-                name, spec, self.pairs, actor=actor, idle=options.idle_of.get(name, options.idle), lease_s=options.lease_s
+                name, spec, self.pairs, actor=actor, idle=options.idle_by_camera.get(name, options.idle), lease_s=options.lease_s
             )
             for name, spec in cameras.items()
         }

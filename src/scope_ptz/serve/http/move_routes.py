@@ -18,14 +18,14 @@ from scope_ptz.serve.http.models import (
     ControlAnswer,
     ControlModel,
     Drive,
-    FrameBox,
     Move,
     PoseModel,
     PresetModel,
     PresetName,
     PresetText,
+    ZoomToBox,
 )
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.station import Station
 from scope_ptz.tools.aiming import aim, aim_at_zoom, outline_in, view
 
@@ -40,7 +40,7 @@ _ERRORS = responses(404, 409, 503)
 @router.post("/move", responses=_ERRORS)
 async def move(station: StationDep, client: Operator, body: Move) -> ArrivalModel:
     """Go to an absolute pose. The server replies when the camera has arrived."""
-    async with station.commanding(client) as camera:
+    async with station.command(client) as camera:
         now = await camera.pose()
         target = Pose(
             now.pan_deg if body.pan_deg is None else body.pan_deg,
@@ -53,7 +53,7 @@ async def move(station: StationDep, client: Operator, body: Move) -> ArrivalMode
 @router.post("/centre", responses=_ERRORS)
 async def centre(station: StationDep, client: Operator, body: Centre) -> ArrivalModel:
     """Turn the camera so that a point of a picture is in the centre, at the same magnification."""
-    async with station.commanding(client) as camera:
+    async with station.command(client) as camera:
         if body.pose is None:
             return ArrivalModel.of(await camera.centre_on(body.x, body.y))
         pose = body.pose.pose()
@@ -63,11 +63,11 @@ async def centre(station: StationDep, client: Operator, body: Centre) -> Arrival
 
 
 @router.post("/frame-box", responses=_ERRORS)
-async def frame_box(station: StationDep, client: Operator, body: FrameBox) -> ArrivalModel:
+async def frame_box(station: StationDep, client: Operator, body: ZoomToBox) -> ArrivalModel:
     """Turn and zoom the camera so that a box of a picture fills the view."""
     if body.x_max - body.x_min < MIN_BOX or body.y_max - body.y_min < MIN_BOX:
         raise InputError(f"Each side of the box must be at least {MIN_BOX} of the frame, and its minima must be below its maxima.")
-    async with station.commanding(client) as camera:
+    async with station.command(client) as camera:
         pose = body.pose.pose() if body.pose is not None else await camera.pose()
         box = Box(x_min=body.x_min, y_min=body.y_min, x_max=body.x_max, y_max=body.y_max)
         target = outline_in(view(camera.info, pose), box)
@@ -91,7 +91,7 @@ async def stop(station: StationDep, client: StoppingOperator) -> Response:  # no
 @router.post("/home", responses=_ERRORS)
 async def home(station: StationDep, client: Operator) -> ArrivalModel:
     """Go to the home view."""
-    async with station.commanding(client) as camera:
+    async with station.command(client) as camera:
         return ArrivalModel.of(await camera.go_home())
 
 
@@ -104,7 +104,7 @@ async def undo(station: StationDep, client: Operator) -> ArrivalModel:
 @router.get("/presets", responses=_ERRORS)
 async def list_presets(site: SiteDep, station: StationDep, client: Viewer) -> list[PresetModel]:  # noqa: ARG001 - checks the token
     """List the presets, with their poses if these are known."""
-    return [PresetModel.of(each) for each in await presets_of(site, station).known()]
+    return [PresetModel.of(each) for each in await presets_of(site, station).all()]
 
 
 @router.put("/presets/{name}", responses=_ERRORS)
@@ -147,7 +147,7 @@ async def preset_thumbnail(site: SiteDep, station: StationDep, client: Viewer, n
 
 
 async def _known(site: Site, station: Station, name: str) -> PresetModel:
-    return PresetModel.of(next(each for each in await presets_of(site, station).known() if each.preset.name == name))
+    return PresetModel.of(next(each for each in await presets_of(site, station).all() if each.preset.name == name))
 
 
 @router.get("/control", responses=_ERRORS)

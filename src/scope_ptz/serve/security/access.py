@@ -31,7 +31,7 @@ MAX_PICTURE_BYTES = 32 * 1024 * 1024
 _PICTURE_PATH = re.compile(r"/api/v1/cameras/[^/]+/add-on/[^/]+/pictures/[0-9]+")
 
 OPEN_PATHS = frozenset({"/api/v1/session", "/api/v1/health", "/sign-in"})
-"""Paths that need no token: those for signing in, and the health check."""
+"""Paths that need no token: those of sign-in and the health check."""
 
 MCP_PATH = "/mcp"
 """The path of the MCP server."""
@@ -41,8 +41,8 @@ PROGRAM_PATHS = ("/api", MCP_PATH)
 
 SIGN_IN_PATH = "/sign-in"  # where browsers without a session are redirected
 
-CHECK_S = 2.0
-"""Seconds between checks that the client of a request in progress is still authorised."""
+AUTHORISATION_CHECK_INTERVAL_S = 2.0
+"""Seconds between two checks that the client of a request in progress is still authorised."""
 
 API_POLICY = "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
 """The content security policy of the API. It allows nothing, because replies of the API are not pages."""
@@ -111,7 +111,7 @@ class Access:
         return Client(session.token.name, f"{session.token.name}:{session.key}{tab}", session.token.role)
 
 
-class Gate:
+class AccessMiddleware:
     """ASGI middleware that admits only authorised clients and sets the security headers of replies.
 
     It stores the client in ``scope["state"]["client"]``; None for the paths that need no token.
@@ -166,7 +166,7 @@ class Gate:
         """
         work = asyncio.ensure_future(self._app(scope, receive, reply.send))
         try:
-            while not (await asyncio.wait({work}, timeout=CHECK_S))[0]:
+            while not (await asyncio.wait({work}, timeout=AUTHORISATION_CHECK_INTERVAL_S))[0]:
                 if self._access.client(headers) != client:
                     work.cancel()
                     await asyncio.gather(work, return_exceptions=True)

@@ -15,7 +15,7 @@ from scope_ptz.agent.trace import Trace
 from scope_ptz.errors import InputError
 from scope_ptz.serve.http.models import RunState
 from scope_ptz.serve.site.run_handle import RunHandle
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.stored_runs import records_of, trace_of_run
 from scope_ptz.store.request_file import read_request
 from scope_ptz.store.rows import UNFINISHED, RunFilter

@@ -38,7 +38,7 @@ def snapshot(
     from scope_ptz.tools.sweep import sweep
 
     async def work() -> None:
-        async with opened_camera(camera) as opened:
+        async with open_for_command(camera) as opened:
             frame = await (sweep(opened) if full else opened.frame())
         _write_picture(frame, out)
         facts = {"file": str(out), "width": frame.width, "height": frame.height, **frame.pose.as_dict()}
@@ -100,7 +100,7 @@ def move(
         return None
 
     async def work() -> None:
-        async with opened_camera(camera, dry_run=dry_run) as opened:
+        async with open_for_command(camera, dry_run=dry_run) as opened:
             arrival = await carry_out(opened)
             pose = (await opened.pose() if arrival is None else arrival.pose).as_dict()
         clamped = () if arrival is None else arrival.clamped
@@ -126,7 +126,7 @@ def presets(
         raise InputError("Give --save or --remove, not both.")
 
     async def work() -> None:
-        async with opened_camera(camera, dry_run=dry_run) as opened:
+        async with open_for_command(camera, dry_run=dry_run) as opened:
             if save is not None:
                 await opened.save_preset(save)
             if remove is not None:
@@ -155,7 +155,7 @@ def watch(
         raise InputError(f"--rate must be above 0 and at most 60 pictures per second; got {rate:g}.")
 
     async def work() -> None:
-        async with opened_camera(camera, realtime=True) as opened, aclosing(opened.frames(rate_hz=rate)) as stream:
+        async with open_for_command(camera, realtime=True) as opened, aclosing(opened.frames(rate_hz=rate)) as stream:
             number = 0
             async for frame in stream:
                 number += 1
@@ -184,7 +184,7 @@ def password(camera: CameraSpecArgument) -> None:
 
 
 @asynccontextmanager
-async def opened_camera(spec: str, *, dry_run: bool = False, realtime: bool = False) -> AsyncIterator[Camera]:
+async def open_for_command(spec: str, *, dry_run: bool = False, realtime: bool = False) -> AsyncIterator[Camera]:
     """Open a camera for one command, and close it afterwards."""
     from scope_ptz.camera.control import user_name
     from scope_ptz.camera.guard.dry_run import DryRunCamera

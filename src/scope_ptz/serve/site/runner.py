@@ -17,12 +17,12 @@ from scope_ptz.errors import ScopeError
 from scope_ptz.factory.models import dry_run_note
 from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
-from scope_ptz.serve.site.by_hand import SingleCallPlanner, call_text
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import StoppedError
 from scope_ptz.serve.site.journal import Journal
 from scope_ptz.serve.site.run_handle import Record, RunHandle
 from scope_ptz.serve.site.station import Station
+from scope_ptz.serve.site.tool_call_planner import SingleCallPlanner, call_text
 from scope_ptz.store.request_file import RunRequest
 from scope_ptz.store.rows import RunKind
 

@@ -9,8 +9,8 @@ from scope_ptz.agent.records import Called
 from scope_ptz.errors import InputError, ScopeError
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.run_handle import RunHandle
-from scope_ptz.serve.site.running import Task
-from scope_ptz.serve.site.service import Site
+from scope_ptz.serve.site.runner import Task
+from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.station import Station
 from scope_ptz.store.conversations import load_conversation
 

@@ -16,7 +16,7 @@ PACKAGES = ("inspect_ai", "jinja2", "matplotlib", "scipy")
 
 
 @dataclass(frozen=True, slots=True)
-class SplitChoice:
+class InstalledSplit:
     """An installed split, with its total number of tasks and the number in each category."""
 
     name: str
@@ -25,7 +25,7 @@ class SplitChoice:
 
 
 @cache
-def split_choices() -> tuple[SplitChoice, ...]:
+def installed_splits() -> tuple[InstalledSplit, ...]:
     """Return the installed splits."""
     choices = []
     for name in SPLITS:
@@ -34,7 +34,7 @@ def split_choices() -> tuple[SplitChoice, ...]:
         except InputError:
             continue
         counts = Counter(task.category for task in tasks)
-        choices.append(SplitChoice(name, len(tasks), {each: counts[each] for each in CATEGORIES if counts[each]}))  # type: ignore[index]
+        choices.append(InstalledSplit(name, len(tasks), {each: counts[each] for each in CATEGORIES if counts[each]}))  # type: ignore[index]
     return tuple(choices)
 
 

@@ -15,11 +15,11 @@ _DEFERRED = {"rich.markdown": "Markdown", "rich.traceback": "Traceback"}
 
 
 @contextmanager
-def collector_paused() -> Iterator[None]:
+def pause_garbage_collection() -> Iterator[None]:
     """Pause the garbage collector while modules are imported.
 
-    Imports create many objects and hardly any garbage. Otherwise, garbage collection during imports would account for
-    a tenth of the run time of ``scope ask``.
+    Imports create many objects and hardly any garbage, so collections are wasted there: they would take a tenth of the run time of
+    ``scope ask``.
     """
     if not gc.isenabled():
         yield
