@@ -31,11 +31,11 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.parity import ssim
 from scope_ptz.camera.base import Camera, Frame
+from scope_ptz.camera.capture.frame_taking import CaptureOptions, settings_of, take_frames
 from scope_ptz.camera.capture.plan import Ranges
 from scope_ptz.camera.capture.session import CaptureSession
-from scope_ptz.camera.capture.taking import CaptureOptions, settings_of, take_frames
 from scope_ptz.camera.guard.wrapper import CameraWrapper
-from scope_ptz.camera.measuring.registration import RegistrationError, focal_px, match, rotation
+from scope_ptz.camera.measurement.registration import RegistrationError, focal_px, match, rotation
 from scope_ptz.errors import CameraError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.cameras.captures import build_scene

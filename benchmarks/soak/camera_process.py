@@ -24,8 +24,8 @@ def run_camera(scene: str) -> int:
     before = counts()
     asyncio.run(serve_camera(scene))
     # Worker threads are stopped with the event loop, but may take a moment to end.
-    ends_s = time.monotonic() + END_S
-    while (after := counts())["threads"] > before["threads"] and time.monotonic() < ends_s:
+    end_time_s = time.monotonic() + END_S
+    while (after := counts())["threads"] > before["threads"] and time.monotonic() < end_time_s:
         time.sleep(0.05)
     left = {name: after[name] - before[name] for name in ("threads", "sockets")}
     names = sorted(thread.name for thread in threading.enumerate())

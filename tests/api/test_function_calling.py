@@ -20,7 +20,7 @@ from pydantic import TypeAdapter
 
 import scope_ptz
 from scope_ptz.api.function_calling import SchemaForm, output_of_call, schemas_in_form
-from scope_ptz.camera.guard.guarded import KeepOutError
+from scope_ptz.camera.guard.guarded_camera import KeepOutError
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import CameraError, InputError, PerceptionError, ScopeError
 from scope_ptz.simulator.pack import Scene

@@ -7,8 +7,8 @@ import pytest
 
 from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.keyframes import MAX_SIDE_PX, keyframes
-from scope_ptz.blender.panorama import joined, smoothed
-from scope_ptz.blender.tiles import Cell, Target, busiest, cover, covers, in_rows, most_useful, targets
+from scope_ptz.blender.panorama import join_strips, smooth_rows
+from scope_ptz.blender.tiles import Cell, Target, busiest, cover, covers, join_in_rows, most_useful, targets
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction, pan_tilt_deg
 from scope_ptz.simulator.models import Band, SceneActor, SceneFile, ScenePreset, SceneText, SceneViewpoint
 
@@ -51,7 +51,7 @@ def test_strips_join_to_the_complete_image() -> None:
     for strip in strips:
         columns = ((np.arange(strip.width) + 0.5) * 720 / strip.width).astype(int)
         pictures.append(whole[strip.first_row : strip.last_row, columns])
-    error = joined(panorama, strips, pictures).astype(int) - whole
+    error = join_strips(panorama, strips, pictures).astype(int) - whole
     assert np.abs(error).mean() < 1.0
 
 
@@ -59,7 +59,7 @@ def test_rows_near_the_pole_are_reduced_to_the_visible_resolution() -> None:
     panorama = Panorama.of(360, BAND)
     stripes = np.zeros((panorama.height, 360, 3), dtype=np.uint8)
     stripes[:, ::2] = 200
-    result = smoothed(stripes, panorama)
+    result = smooth_rows(stripes, panorama)
     equator = round(panorama.height * 59 / 149)
     assert np.array_equal(result[equator], stripes[equator])
     assert np.ptp(result[-2].astype(int)) < 30
@@ -93,7 +93,7 @@ def test_cells_cover_all_targets_with_few_tiles() -> None:
 
 def test_neighbours_in_a_row_are_rendered_as_one() -> None:
     row = [Cell(6.0 * k, -4.0, 6.0, 4.0) for k in (0, 1, 2, 3, 6)]
-    found = in_rows([*row, Cell(0.0, 4.0, 6.0, 4.0), Cell(0.0, -60.0, 12.0, 4.0), Cell(12.0, -60.0, 12.0, 4.0)])
+    found = join_in_rows([*row, Cell(0.0, 4.0, 6.0, 4.0), Cell(0.0, -60.0, 12.0, 4.0), Cell(12.0, -60.0, 12.0, 4.0)])
     assert [(c.pan_deg, c.tilt_deg, c.span_pan_deg) for c in found] == [
         (0.0, -60.0, 12.0), (12.0, -60.0, 12.0), (6.0, -4.0, 18.0), (18.0, -4.0, 6.0), (36.0, -4.0, 6.0), (0.0, 4.0, 6.0)
     ]  # fmt: skip

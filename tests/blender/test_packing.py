@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scope_ptz.blender import sources
 from scope_ptz.blender.band import Panorama
 from scope_ptz.blender.keyframes import Keyframe
-from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
+from scope_ptz.blender.pack_writer import RenderedActor, RenderedTile, RenderedViewpoint, weight_bytes, write_pack
 from scope_ptz.blender.part_cache import PartCache
 from scope_ptz.blender.quality import FAR_M, NEAR_M, QUALITIES
 from scope_ptz.blender.sheets import make_sheet
@@ -186,11 +186,11 @@ def test_a_sprite_sheet_has_bodies_and_shadows_side_by_side(tmp_path: Path) -> N
         assert codes[32, 25] == 0
 
 
-def rendered(tmp_path: Path, tiles: int) -> Rendered:
+def rendered(tmp_path: Path, tiles: int) -> RenderedViewpoint:
     panorama = Panorama.of(360, Band(top_tilt_deg=59, bottom_tilt_deg=-90))
     ids = np.zeros((panorama.height, 360), dtype=np.uint16)
     view = Perspective(10, -5, 8, 300, 200)
-    return Rendered(
+    return RenderedViewpoint(
         panorama=panorama,
         base=smooth_noise(panorama.height, 360),
         ids=ids,

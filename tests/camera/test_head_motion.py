@@ -45,12 +45,12 @@ def test_a_driven_head_never_jumps_and_never_leaves_its_limits(
 def test_a_driven_head_stands_still_after_its_timeout(pose: Pose, velocity: Velocity, timeout_s: float, later_s: float) -> None:
     motion = _motion(pose)
     motion.drive(velocity, 5.0, timeout_s)
-    ends_s = motion.ends_s()
-    assert 5.0 + timeout_s <= ends_s <= 5.0 + timeout_s + 0.25 + SLACK
-    end = motion.pose(ends_s)
-    later = motion.pose(ends_s + later_s)
+    end_time_s = motion.end_time_s()
+    assert 5.0 + timeout_s <= end_time_s <= 5.0 + timeout_s + 0.25 + SLACK
+    end = motion.pose(end_time_s)
+    later = motion.pose(end_time_s + later_s)
     assert (later.pan_deg, later.tilt_deg, later.zoom) == pytest.approx((end.pan_deg, end.tilt_deg, end.zoom))
-    assert not motion.moving(ends_s)
+    assert not motion.moving(end_time_s)
 
 
 def test_a_constant_velocity_covers_its_distance_after_the_ramp() -> None:
@@ -98,8 +98,8 @@ def test_a_reduced_speed_takes_longer() -> None:
     quick, slow = _motion(Pose()), _motion(Pose())
     quick.move(Pose(90, 0, 1), 0.0)
     slow.move(Pose(90, 0, 1), 0.0, speed_fraction=0.1)
-    assert slow.ends_s() == pytest.approx(Head.at_speed(AXIS_M5075_G_HEAD, 0.1).duration_s(Pose(), Pose(90, 0, 1)))
-    assert slow.ends_s() > 7 * quick.ends_s()
+    assert slow.end_time_s() == pytest.approx(Head.at_speed(AXIS_M5075_G_HEAD, 0.1).duration_s(Pose(), Pose(90, 0, 1)))
+    assert slow.end_time_s() > 7 * quick.end_time_s()
 
 
 @pytest.mark.parametrize("zoom_rate", [-1.5, 1.5])
@@ -113,9 +113,9 @@ def test_the_end_of_a_move_and_the_commanded_velocity() -> None:
     motion = _motion(Pose())
     assert motion.end == Pose()
     motion.move(Pose(30.0, -10.0, 2.0), 0.0)
-    assert (motion.end, motion.driven_at(0.1)) == (Pose(30.0, -10.0, 2.0), Velocity())
+    assert (motion.end, motion.commanded_velocity(0.1)) == (Pose(30.0, -10.0, 2.0), Velocity())
     motion.drive(Velocity(10.0), 0.2, 1.0)
-    assert (motion.driven_at(0.3), motion.driven_at(2.0)) == (Velocity(10.0), Velocity())
+    assert (motion.commanded_velocity(0.3), motion.commanded_velocity(2.0)) == (Velocity(10.0), Velocity())
     assert motion.end is None
 
 

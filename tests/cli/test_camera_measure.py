@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.camera.measuring import calibration
-from scope_ptz.camera.measuring.calibration import AxisResponse, Calibration, FieldOfView
-from scope_ptz.camera.measuring.profile import ProbeRecord
-from scope_ptz.camera.measuring.report import report_name, report_text
+from scope_ptz.camera.measurement import calibration
+from scope_ptz.camera.measurement.calibration import AxisResponse, Calibration, FieldOfView
+from scope_ptz.camera.measurement.profile import ProbeRecord
+from scope_ptz.camera.measurement.report import report_name, report_text
 from scope_ptz.virtual_camera.identity import FIRMWARE
 from tests.cli.conftest import SCENE, Scope
 from tests.cli.served_camera import ServedCamera

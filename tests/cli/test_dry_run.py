@@ -9,7 +9,7 @@ import pytest
 
 import scope_ptz
 from scope_ptz.camera.guard.dry_run import DryRunCamera
-from scope_ptz.camera.guard.guarded import GuardedCamera
+from scope_ptz.camera.guard.guarded_camera import GuardedCamera
 from scope_ptz.camera.guard.rules import CameraRules, Region
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.geometry import Pose

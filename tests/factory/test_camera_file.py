@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.camera.guard.guarded import GuardedCamera
+from scope_ptz.camera.guard.guarded_camera import GuardedCamera
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.cameras import camera_names, open_camera, parse_camera
 from scope_ptz.factory.cameras.site_file import CameraFile, load_camera_file, schema

@@ -21,7 +21,7 @@ from scope_ptz.api.options import SessionOptions
 from scope_ptz.api.pictures import ToolCallImages
 from scope_ptz.api.run import Event, Run, event_of
 from scope_ptz.camera.base import Camera, Frame
-from scope_ptz.camera.guard.guarded import GuardedCamera
+from scope_ptz.camera.guard.guarded_camera import GuardedCamera
 from scope_ptz.errors import InputError, ScopeError
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception

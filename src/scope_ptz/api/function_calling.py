@@ -11,7 +11,7 @@ import numpy as np
 from anyio import to_thread
 
 from scope_ptz.agent.planner_views import fitting_size
-from scope_ptz.camera.guard.guarded import KeepOutError
+from scope_ptz.camera.guard.guarded_camera import KeepOutError
 from scope_ptz.errors import InputError, PerceptionError, ScopeError, ToolCallError, UnknownNameError
 from scope_ptz.perception.models.encoding import encode
 from scope_ptz.planner.base import Picture, ToolCall, ToolOutcome

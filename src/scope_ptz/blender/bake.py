@@ -16,14 +16,14 @@ from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.extents import extents
 from scope_ptz.blender.keyframes import Keyframe, keyframes
-from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
+from scope_ptz.blender.pack_writer import RenderedActor, RenderedTile, RenderedViewpoint, weight_bytes, write_pack
 from scope_ptz.blender.panorama import render_base
 from scope_ptz.blender.part_cache import PartCache, Progress
 from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, WIDER_DENSITY_PX_PER_DEG, Quality
 from scope_ptz.blender.requests import panorama_request, perspective_request
 from scope_ptz.blender.sheets import make_sheet
 from scope_ptz.blender.sources import scene_key
-from scope_ptz.blender.tiles import busiest, cover, covers, in_rows, most_useful, targets
+from scope_ptz.blender.tiles import busiest, cover, covers, join_in_rows, most_useful, targets
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
 from scope_ptz.errors import BlenderError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective
@@ -157,14 +157,16 @@ class _Baker:
         tile_targets = targets(self._scene, viewpoint, ids, wide.projection)
         views = [
             cell.view(quality.tile_density_px_per_deg)
-            for cell in in_rows(most_useful(cover(tile_targets), tile_targets, quality.max_cells))
+            for cell in join_in_rows(most_useful(cover(tile_targets), tile_targets, quality.max_cells))
         ]
         tiles = self._tiles(name, "tiles", views)
         if quality.wider_tiles:
             busiest_cells = busiest(ids, wide.projection, quality.wider_tiles)
             tiles += self._tiles(name, "wider tiles", [cell.view(WIDER_DENSITY_PX_PER_DEG) for cell in busiest_cells])
         actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
-        rendered = Rendered(panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes)
+        rendered = RenderedViewpoint(
+            panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes
+        )
         manifest = write_pack(folder, self._scene, viewpoint, rendered, quality, PACK_BYTES, self._cache.steps(f"{name}/pack", 3))
         uncovered = tuple(t.name for t in tile_targets if not covers(views, t))
         return BakedViewpoint(folder, weight_bytes(folder), len(manifest.tiles), uncovered)

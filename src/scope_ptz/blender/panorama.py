@@ -46,7 +46,7 @@ def render_base(worker: BlenderWorker, cache: PartCache, viewpoint: str, panoram
         parameters = {"projection": projection, "samples": count}
         pictures.append(read_colour(cache.part(f"{viewpoint}/base-{strip.first_row:04d}", ".png", parameters, produce)))
         step()
-    return smoothed(joined(panorama, strips, pictures), panorama)
+    return smooth_rows(join_strips(panorama, strips, pictures), panorama)
 
 
 def _is_plain(strip: Strip) -> bool:
@@ -54,7 +54,7 @@ def _is_plain(strip: Strip) -> bool:
     return strip.bottom_tilt_deg > SKY_TILT_DEG or strip.top_tilt_deg < NADIR_TILT_DEG
 
 
-def joined(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> Picture:
+def join_strips(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> Picture:
     """Return the strips at full width, cross-faded where they overlap."""
     total = np.zeros((panorama.height, panorama.width, 3), dtype=np.float32)
     weights = np.zeros((panorama.height, 1, 1), dtype=np.float32)
@@ -65,12 +65,12 @@ def joined(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> 
             rows >= strip.last_row - STRIP_ROWS // 2
         )
         weight = np.where(reaches_edge, 1e3, np.minimum(inside, 2 * OVERLAP_ROWS)).astype(np.float32)[:, None, None]
-        total[strip.first_row : strip.last_row] += _widened(picture, panorama.width).astype(np.float32) * weight
+        total[strip.first_row : strip.last_row] += _widen(picture, panorama.width).astype(np.float32) * weight
         weights[strip.first_row : strip.last_row] += weight
     return np.asarray(np.rint(total / weights), dtype=np.uint8)
 
 
-def _widened(picture: Picture, width: int) -> Picture:
+def _widen(picture: Picture, width: int) -> Picture:
     """Stretch a strip horizontally. It wraps around, so its left edge continues its right edge."""
     if picture.shape[1] == width:
         return picture
@@ -83,7 +83,7 @@ def _widened(picture: Picture, width: int) -> Picture:
     return np.asarray(cv2.remap(wrapped, columns, np.ascontiguousarray(rows), cv2.INTER_CUBIC), dtype=np.uint8)
 
 
-def smoothed(picture: Picture, panorama: Panorama) -> Picture:
+def smooth_rows(picture: Picture, panorama: Panorama) -> Picture:
     """Blur each row horizontally to the level of detail at the equator, which is the highest that a view can show."""
     result = picture.copy()
     for row in range(panorama.height):

@@ -25,7 +25,7 @@ class Quality:
 
     ``wider_tiles`` is the number of tiles that cover the busiest areas at about a third of the density of the sharp tiles, so that
     the surroundings of a sharp tile are not as soft as the panorama. ``check_samples`` and ``check_width`` are for the live renders
-    with which a finished pack is compared. ``judged`` states whether the pack must meet the tolerances.
+    with which a finished pack is compared. ``must_meet_tolerances`` is False for drafts, whose differences are only reported.
     """
 
     name: str
@@ -38,12 +38,12 @@ class Quality:
     max_cells: int
     sprite_samples: int
     max_sprites: int
-    base_coding: int
-    tile_coding: int
+    base_encoding_quality: int
+    tile_encoding_quality: int
     wider_tiles: int = 0
     check_samples: int = 16
     check_width: int = 1280
-    judged: bool = True
+    must_meet_tolerances: bool = True
 
 
 def named_quality(name: str) -> Quality:
@@ -60,7 +60,7 @@ def named_quality(name: str) -> Quality:
 QUALITIES = {
     q.name: q
     for q in (
-        Quality("draft", 2048, 4, 4096, 2048, 4, 48.0, 8, 4, 12, 75, 70, 0, 4, 480, judged=False),
+        Quality("draft", 2048, 4, 4096, 2048, 4, 48.0, 8, 4, 12, 75, 70, 0, 4, 480, must_meet_tolerances=False),
         Quality("standard", 6144, 8, 8192, 4096, 8, 96.0, 208, 10, 32, 82, 68, 14),
         Quality("high", 6144, 32, 8192, 4096, 24, 96.0, 208, 32, 56, 82, 68, 14),
     )

@@ -17,8 +17,8 @@ MAX_SHEET_WIDTH = 4096
 SHADOW_GAMMA = 0.5
 """Gamma applied to shadows, because they are rendered in linear light but drawn over display values."""
 
-FAINT = 0.04
-"""Opacity below which shadows are removed.
+MIN_SHADOW_OPACITY = 0.04
+"""Minimum opacity of a shadow. Fainter shadows are removed.
 
 Without this limit, the faint shade around a body would extend to the border of its picture.
 """
@@ -74,7 +74,7 @@ def _display_shadow(picture: NDArray[np.uint8], body: NDArray[np.bool_]) -> NDAr
     alpha = picture[..., 3].astype(np.float32) / 255
     light = 1 - picture[..., :3].max(axis=2).astype(np.float32) / 255
     shadow = np.where(body, 0.0, light)
-    drawn = np.maximum(1 - (1 - alpha) ** SHADOW_GAMMA - FAINT, 0) / (1 - FAINT) * _feather(body.shape)
+    drawn = np.maximum(1 - (1 - alpha) ** SHADOW_GAMMA - MIN_SHADOW_OPACITY, 0) / (1 - MIN_SHADOW_OPACITY) * _feather(body.shape)
     result = picture.copy()
     result[..., 3] = np.rint(255 * (shadow * drawn + (1 - shadow) * alpha)).astype(np.uint8)
     result[result[..., 3] < 3] = 0

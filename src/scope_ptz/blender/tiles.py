@@ -40,13 +40,12 @@ A smaller one could not be counted even there.
 """
 
 SMALL_CAPS_PX = 20.0
-"""A text is a target only if its capitals are lower than this many pixels at the widest zoom."""
+"""A text is a target only if its capitals are less than this many pixels high at the widest zoom."""
 
 MIN_TELE_CAPS_PX = 12.0
 MAX_READING_ANGLE_DEG = 58.0
-"""A text is a target only if its capitals reach this height in pixels at the closest zoom.
-
-In addition, the angle between its normal and the line of sight must be at most this many degrees.
+"""A text is a target only if its capitals are at least ``MIN_TELE_CAPS_PX`` high at the closest zoom. In addition, the angle
+between its normal and the line of sight must be at most ``MAX_READING_ANGLE_DEG``.
 """
 
 Mask = NDArray[np.bool_]
@@ -62,7 +61,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A part of the sphere between two pans and two tilts."""
+    """A part of the sphere between two pan angles and two tilt angles."""
 
     pan_deg: float
     tilt_deg: float
@@ -86,8 +85,7 @@ def targets(scene: SceneFile, viewpoint: SceneViewpoint, ids: NDArray[np.uint16]
 
     Args:
         scene: The scene.
-        viewpoint: The position of the camera.
-        ids: Instance numbers of the panorama.
+                viewpoint: The position of the camera.
         projection: The panorama's projection.
     """
     found = []
@@ -150,12 +148,11 @@ def cover(targets: Sequence[Target]) -> list[Cell]:
 
 
 def busiest(ids: NDArray[np.uint16], projection: Equirectangular, limit: int) -> list[Cell]:
-    """Return the wide grid cells that contain the longest outlines of instances, at most ``limit``.
+    """Return at most ``limit`` of the wide grid cells: those with the greatest total length of instance outlines.
 
     Args:
-        ids: Instance numbers of the panorama.
-        projection: The panorama's projection.
-        limit: Maximum number of cells.
+    projection: The panorama's projection.
+    limit: Maximum number of cells.
     """
     outlines = _outlines(ids, projection)
     everywhere = np.ones_like(outlines, dtype=bool)
@@ -188,7 +185,7 @@ def most_useful(cells: Sequence[Cell], targets: Sequence[Target], limit: int) ->
     return [cells[k] for k in selected]
 
 
-def in_rows(cells: Sequence[Cell]) -> list[Cell]:
+def join_in_rows(cells: Sequence[Cell]) -> list[Cell]:
     """Join neighbouring cells of a row to reduce the number of renders.
 
     Rows far from the horizon are not joined, because a long cell there would fill little of its picture.
@@ -220,7 +217,8 @@ def _needed(targets: Sequence[Target]) -> Mask:
 
 
 def _outlines(ids: NDArray[np.uint16], projection: Equirectangular) -> NDArray[np.float64]:
-    """Return the length of the instances' outlines in each square of the grid of ``_needed``. The panorama spans 360 degrees."""
+    """Return the length of the instance outlines in each grid square, on the grid of ``_needed``. The panorama must span 360
+    degrees."""
     edge = np.zeros(ids.shape, dtype=bool)
     edge[:, 1:] = ids[:, 1:] != ids[:, :-1]
     edge[1:] |= ids[1:] != ids[:-1]

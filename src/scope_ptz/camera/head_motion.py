@@ -21,7 +21,7 @@ class _Move:
 
 
 @dataclass(frozen=True, slots=True)
-class _Driving:
+class _Drive:
     """A drive that starts at a pose and a speed, accelerates to a target speed, and begins to brake after ``hold_s`` seconds."""
 
     start: Pose
@@ -44,7 +44,7 @@ class HeadMotion:
     def __init__(self, head: Head, limits: Limits, pose: Pose) -> None:
         self._head, self._limits = head, limits
         # A single attribute, so that another thread that reads a pose never sees half a command.
-        self._current: tuple[_Move | _Driving, float] = _Move(head, pose, pose), 0.0
+        self._current: tuple[_Move | _Drive, float] = _Move(head, pose, pose), 0.0
         self.commands = 0
         """Number of commands so far. A change means that another command has replaced an earlier one."""
 
@@ -64,7 +64,7 @@ class HeadMotion:
 
     def drive(self, velocity: Velocity, now_s: float, timeout_s: float) -> None:
         """Accelerate to a velocity, and brake after the timeout."""
-        self._replace(_Driving(self.pose(now_s), self.velocity(now_s), velocity, timeout_s), now_s)
+        self._replace(_Drive(self.pose(now_s), self.velocity(now_s), velocity, timeout_s), now_s)
 
     def brake(self, now_s: float) -> None:
         """Decelerate to a standstill."""
@@ -76,7 +76,7 @@ class HeadMotion:
         The other axes keep their velocity and timeout, or their destination.
         """
         command, since_s = self._current
-        if isinstance(command, _Driving):
+        if isinstance(command, _Drive):
             target, left_s = command.target, since_s + command.hold_s - now_s
             if left_s > 0:
                 pan_dps, tilt_dps = (0.0, 0.0) if pan_tilt else (target.pan_dps, target.tilt_dps)
@@ -121,12 +121,12 @@ class HeadMotion:
         command, _ = self._current
         return command.end if isinstance(command, _Move) else None
 
-    def driven_at(self, now_s: float) -> Velocity:
+    def commanded_velocity(self, now_s: float) -> Velocity:
         """Return the commanded velocity of a driven head; zero after its timeout, and during a move to a pose."""
         command, since_s = self._current
-        return command.target if isinstance(command, _Driving) and now_s - since_s < command.hold_s else Velocity()
+        return command.target if isinstance(command, _Drive) and now_s - since_s < command.hold_s else Velocity()
 
-    def ends_s(self) -> float:
+    def end_time_s(self) -> float:
         """Return the time at which the current command ends. For a move to a pose, this includes the settling time."""
         command, since_s = self._current
         if isinstance(command, _Move):
@@ -138,9 +138,9 @@ class HeadMotion:
 
     def moving(self, now_s: float) -> bool:
         """Return whether a command is still being carried out."""
-        return now_s < self.ends_s()
+        return now_s < self.end_time_s()
 
-    def _driven(self, command: _Driving, time_s: float) -> tuple[tuple[float, float], ...]:
+    def _driven(self, command: _Drive, time_s: float) -> tuple[tuple[float, float], ...]:
         """Return the distance and speed of pan, tilt and zoom (in octaves) since a command began."""
         head, speed, target = self._head, command.speed, command.target
         return (
@@ -149,7 +149,7 @@ class HeadMotion:
             head.zoom.driven(speed.zoom_rate, target.zoom_rate, command.hold_s, time_s),
         )
 
-    def _replace(self, command: _Move | _Driving, now_s: float) -> None:
+    def _replace(self, command: _Move | _Drive, now_s: float) -> None:
         self._current = command, now_s
         self.commands += 1
 

@@ -171,7 +171,7 @@ class SimulatedCamera(Camera):
         motion.move(end, self.clock.elapsed_s())
         command = motion.commands
         try:
-            while motion.commands == command and (left_s := motion.ends_s() - self.clock.elapsed_s()) > 1e-9:
+            while motion.commands == command and (left_s := motion.end_time_s() - self.clock.elapsed_s()) > 1e-9:
                 await self.clock.sleep(min(left_s, TICK_S))
         except BaseException:
             if motion.commands == command:

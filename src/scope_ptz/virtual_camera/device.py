@@ -182,7 +182,7 @@ class VirtualDevice:
     @property
     def commanded_velocity(self) -> Velocity:
         """The velocity that the last ``drive`` command requested; zero after its timeout, and during a move to a pose."""
-        return self._motion.driven_at(self.now_s())
+        return self._motion.commanded_velocity(self.now_s())
 
     def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
         """Stop pan and tilt, the zoom, or both. The other axes keep moving.

@@ -51,7 +51,7 @@ class FakeVapix:
     redirect: str = ""
     basic_only: bool = False
     other_has_control: bool = False
-    queueing: bool = False
+    control_queue_on: bool = False
     cloak: frozenset[str] = frozenset()  # queries that the device does not know
     clamp_pan: float | None = None  # a limit that appears later
     locked: bool = False
@@ -182,7 +182,7 @@ class FakeVapix:
                 "AutoIris",
             )
             lines = [f"root.PTZ.Support.S1.{name}=true" for name in (*supported, *self.more_support)]
-            various = {"CtlQueueing": self.queueing, "Locked": self.locked}
+            various = {"CtlQueueing": self.control_queue_on, "Locked": self.locked}
             return "\r\n".join([*lines, *(f"root.PTZ.Various.V1.{name}={str(on).lower()}" for name, on in various.items())])
         if group == "root.Properties.Image":
             return "root.Properties.Image.Resolution=640x360,320x180,160x120"
@@ -213,7 +213,7 @@ class FakeVapix:
 
     def _command(self, query: dict[str, str]) -> str | None:
         self.moves.append((monotonic(), "&".join(f"{name}={value}" for name, value in query.items())))
-        if self.queueing and self.other_has_control:
+        if self.control_queue_on and self.other_has_control:
             return "Error: no PTZ control"
         self.on_move(self)
         if "pan" in query:

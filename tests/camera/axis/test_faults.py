@@ -225,7 +225,7 @@ async def test_locked_position(fake: FakeVapix) -> None:
 
 
 async def test_control_queue_is_respected(fake: FakeVapix) -> None:
-    fake.queueing = fake.other_has_control = True
+    fake.control_queue_on = fake.other_has_control = True
     async with opened(fake.loopback.port) as camera:
         with pytest.raises(ControlHeldError, match=r"control queue.*number 2.*410 s"):
             await camera.move(THERE)

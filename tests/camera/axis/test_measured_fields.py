@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.camera.measuring.profile import CalibrationRecord, CameraProfile, MeasuredField, save_profile
+from scope_ptz.camera.measurement.profile import CalibrationRecord, CameraProfile, MeasuredField, save_profile
 from scope_ptz.errors import CameraError
 from scope_ptz.factory.cameras import open_camera
-from scope_ptz.factory.cameras.measured import measured_settling
+from scope_ptz.factory.cameras.calibrations import measured_settling
 from scope_ptz.geometry import Pose
 from tests.camera.axis.fake_vapix import PASSWORD, USER, FakeVapix
 
@@ -33,9 +33,9 @@ def _settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SCOPE_CAMERA_PROFILES_DIR", str(tmp_path / "profiles"))
 
 
-async def _optics(fake: FakeVapix, options: str = "", *, measuring: bool = False) -> tuple[float, float, float]:
+async def _optics(fake: FakeVapix, options: str = "", *, for_measurement: bool = False) -> tuple[float, float, float]:
     spec = f"axis://{USER}@127.0.0.1:{fake.loopback.port}?width=640&height=360&latency_ms=1{options}"
-    async with await open_camera(spec, measuring=measuring) as opened:
+    async with await open_camera(spec, for_measurement=for_measurement) as opened:
         info = opened.camera.info
         low, high = info.limits.min_zoom, info.limits.max_zoom
         frame = await opened.camera.frame()
@@ -54,7 +54,7 @@ async def test_measured_fields_replace_those_of_the_device(fake: FakeVapix, tmp_
     _store(fake, tmp_path)
     assert await _optics(fake) == pytest.approx((66.0, 20.0, 12.5))
     assert (await _optics(fake, "&hfov_wide=70&hfov_tele=13"))[::2] == pytest.approx((70.0, 13.0))
-    assert await _optics(fake, measuring=True) == stated, "an earlier measurement may not bias the next one"
+    assert await _optics(fake, for_measurement=True) == stated, "an earlier measurement may not bias the next one"
 
 
 async def test_a_device_without_field_angles_is_used_once_it_is_measured(fake: FakeVapix, tmp_path: Path) -> None:

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.parity import ssim
 from scope_ptz.camera.base import Camera, Frame
-from scope_ptz.camera.capture import taking
-from scope_ptz.camera.capture.composing import UNSEEN
+from scope_ptz.camera.capture import frame_taking
+from scope_ptz.camera.capture.composition import UNSEEN
+from scope_ptz.camera.capture.frame_taking import CaptureOptions, settings_of, take_frames
 from scope_ptz.camera.capture.plan import Ranges
 from scope_ptz.camera.capture.session import CaptureSession
-from scope_ptz.camera.capture.taking import CaptureOptions, settings_of, take_frames
-from scope_ptz.camera.guard.guarded import GuardedCamera
+from scope_ptz.camera.guard.guarded_camera import GuardedCamera
 from scope_ptz.camera.guard.rules import CameraRules, PixelMask, Region
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import CameraError, InputError, OutputError, PerceptionError
@@ -168,7 +168,7 @@ def spot_of(pan: float, tilt: float, view: Perspective | None, top: float, botto
 
 
 async def test_a_failed_capture_resumes_and_puts_the_camera_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(taking, "RETRY_S", 0.0)
+    monkeypatch.setattr(frame_taking, "RETRY_S", 0.0)
     camera = BlobCamera()
     camera.fails_after = 7
     with pytest.raises(CameraError, match="lost its power"):
@@ -189,7 +189,7 @@ async def test_a_failed_capture_resumes_and_puts_the_camera_back(tmp_path: Path,
 
 
 async def test_a_picture_that_fails_once_is_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(taking, "RETRY_S", 0.0)
+    monkeypatch.setattr(frame_taking, "RETRY_S", 0.0)
 
     class Shaky(BlobCamera):
         attempts = 0

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from scope_ptz.camera.capture.adjustment import adjust, rotation_matrix, turn_deg
 from scope_ptz.camera.capture.matching import PairMatches, find_features, match_frames, overlapping_pairs
-from scope_ptz.camera.capture.placing import PlacedFrame
-from scope_ptz.camera.capture.registering import measured_optics
+from scope_ptz.camera.capture.placed_frames import PlacedFrame
+from scope_ptz.camera.capture.registration import measured_optics
 from scope_ptz.camera.capture.tone import cells_of, gains
 from scope_ptz.geometry import AXIS_M5075_G, Perspective, angle_between_deg, direction
 from scope_ptz.geometry.sphere import camera_axes

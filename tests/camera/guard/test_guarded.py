@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.conformance import CameraConformance
 from scope_ptz.camera.guard.audit import AuditLog
-from scope_ptz.camera.guard.guarded import GuardedCamera, KeepOutError
-from scope_ptz.camera.guard.masking import masked
+from scope_ptz.camera.guard.guarded_camera import GuardedCamera, KeepOutError
+from scope_ptz.camera.guard.masking import mask_frame
 from scope_ptz.camera.guard.rules import CameraRules, PixelMask, Region, SoftLimits, nearest_outside
 from scope_ptz.errors import ConfigError, OutputError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, direction, pan_tilt_deg
@@ -72,7 +72,7 @@ def test_no_frame_shows_a_pixel_of_a_hidden_region(region: Region, pan_deg: floa
     view = Perspective(pan_deg, tilt_deg, hfov_deg, WIDTH, HEIGHT)
     directions = view.directions(pixel_points())
     frame = Frame(np.full((HEIGHT, WIDTH, 3), 200, np.uint8), Pose(pan_deg, tilt_deg, zoom), hfov_deg, 0.0, view)
-    shown = masked(frame, (region,), ()).image[..., 0] > 0
+    shown = mask_frame(frame, (region,), ()).image[..., 0] > 0
     pan, tilt = pan_tilt_deg(directions)
     inside = np.array([region.contains(p, t) for p, t in zip(pan.ravel(), tilt.ravel(), strict=True)]).reshape(pan.shape)
     assert not (shown & inside).any()

@@ -10,7 +10,7 @@ import pytest
 
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.conformance import CameraConformance
-from scope_ptz.camera.guard.mounted import MountedCamera
+from scope_ptz.camera.guard.mounted_camera import MountedCamera
 from scope_ptz.camera.guard.rules import Mounting
 from scope_ptz.geometry import Pose
 from tests.camera.guard.worlds import HEIGHT, WIDTH, SphereCamera, pixel_points

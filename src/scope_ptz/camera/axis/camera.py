@@ -90,7 +90,7 @@ class AxisCamera(NetworkCamera):
         client = VapixClient(http, channel)
         try:
             device = await read_device(client, fields_deg=fields_deg, measured=measured_fields)
-            client.queueing = device.queueing
+            client.control_queue_on = device.control_queue_on
             if rtsp_port is None:
                 rtsp_port = await read_rtsp_port(client) if stream == "rtsp" else RTSP_PORT
             pictures = AxisPictures(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.address import DeviceAddress
     from scope_ptz.camera.network.http import DeviceHttp, DeviceReply
 
-NOT_HERE = (404, 405, 501)
+NOT_IMPLEMENTED_STATUSES = (404, 405, 501)
 """HTTP status codes that mean that the device lacks the requested interface."""
 
 
@@ -45,7 +45,7 @@ class VapixClient:
 
     def __init__(self, http: DeviceHttp, channel: int = 1) -> None:
         self.http, self.channel = http, channel
-        self.queueing = False
+        self.control_queue_on = False
         """Whether the device's control queue is on, so that commands require control."""
         self._control_until_s = 0.0
 
@@ -59,8 +59,8 @@ class VapixClient:
         Raises:
             CameraError: The device cannot be reached, or lacks the interface.
         """
-        reply = await self.http.get(request.path, request.query, repeat=request.repeat, accept=NOT_HERE)
-        if reply.status in NOT_HERE:
+        reply = await self.http.get(request.path, request.query, repeat=request.repeat, accept=NOT_IMPLEMENTED_STATUSES)
+        if reply.status in NOT_IMPLEMENTED_STATUSES:
             raise CameraReplyError(f"The camera at {self.address} has no {request.path}. Check its model and firmware.")
         return reply
 
@@ -88,7 +88,7 @@ class VapixClient:
         Raises:
             ControlHeldError: Another client has control. This client leaves the queue.
         """
-        if not self.queueing or monotonic() < self._control_until_s:
+        if not self.control_queue_on or monotonic() < self._control_until_s:
             return
         try:
             place = parse_queue((await self.send(requests.control_queue(self.channel, "request"))).body)
@@ -102,7 +102,7 @@ class VapixClient:
 
     async def drop_control(self) -> None:
         """Release control, or leave the queue."""
-        if not self.queueing:
+        if not self.control_queue_on:
             return
         self._control_until_s = 0.0
         try:

@@ -39,7 +39,7 @@ class AxisDevice:
         speeds: The relation between the device's speeds and degrees per second.
         capabilities: Its capabilities beyond moving to a pose.
         supported: Names of the functions whose ``PTZ.Support`` parameter is true, such as ``AutoFocus``.
-        queueing: Whether its control queue is on.
+        control_queue_on: Whether commands require control, which its control queue grants.
         locked: Whether its position is locked, so that it cannot be moved.
         sizes: Picture sizes that it reports, as (width, height); empty if it reports none.
         firmware: Version of its firmware; empty if it reports none.
@@ -52,7 +52,7 @@ class AxisDevice:
     speeds: SpeedScale
     capabilities: Capabilities
     supported: frozenset[str]
-    queueing: bool
+    control_queue_on: bool
     locked: bool
     sizes: tuple[tuple[int, int], ...]
     firmware: str = ""
@@ -102,7 +102,7 @@ async def read_device(
         speeds=speeds,
         capabilities=_capabilities(supported, speeds),
         supported=supported,
-        queueing=ptz.get(f"{various}CtlQueueing") == "true",
+        control_queue_on=ptz.get(f"{various}CtlQueueing") == "true",
         locked=ptz.get(f"{various}Locked") == "true",
         sizes=_sizes(image.get("Properties.Image.Resolution", "")),
         firmware="".join(c for c in firmware if c.isprintable())[:40],

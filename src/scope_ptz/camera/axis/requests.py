@@ -20,7 +20,7 @@ SNAPSHOT_PATH = "/axis-cgi/jpg/image.cgi"
 MJPEG_PATH = "/axis-cgi/mjpg/video.cgi"
 RTSP_PATH = "/axis-media/media.amp"
 
-_REFUSED_IN_PRESET_NAMES = '"<>~:'
+_INVALID_PRESET_CHARS = '"<>~:'
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ def save_preset(channel: int, name: str) -> VapixRequest:
         InputError: AXIS cameras do not allow the name.
     """
     check_preset_name(name)
-    if found := sorted(set(name) & set(_REFUSED_IN_PRESET_NAMES)):
+    if found := sorted(set(name) & set(_INVALID_PRESET_CHARS)):
         raise InputError(f"A preset name of an AXIS camera may not contain {' '.join(found)}. Choose another name.")
     return VapixRequest(CONFIGURATION_PATH, {"camera": _channel(channel), "setserverpresetname": name})
 

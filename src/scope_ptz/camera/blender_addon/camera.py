@@ -38,7 +38,7 @@ class BlenderWindowCamera(Camera):
     are stored in the scene. If Blender disconnects, all methods raise ``CameraError`` until a Blender connects again.
 
     Args:
-        slot: The place of the connection. A Blender must be connected.
+        slot: Holds the connection. A Blender must be connected.
 
     Raises:
         CameraError: No Blender is connected.
@@ -49,7 +49,7 @@ class BlenderWindowCamera(Camera):
     def __init__(self, slot: AddOnSlot) -> None:
         self.clock = WallClock()
         self._slot = slot
-        self._taking = anyio.Lock()
+        self._frame_lock = anyio.Lock()
         self._last: tuple[tuple[str, str, Perspective, SceneDescription], str, NDArray[np.uint8]] | None = None
         self._scene = window_scene(slot.connection.description)
         self._info = _info(self._scene)
@@ -59,7 +59,7 @@ class BlenderWindowCamera(Camera):
     @property
     def info(self) -> CameraInfo:
         if self._slot.current is not None:
-            self._connected()  # another file may have been opened
+            self._current_connection()  # another file may have been opened
         return self._info
 
     @property
@@ -68,25 +68,25 @@ class BlenderWindowCamera(Camera):
         return self._viewpoint
 
     async def pose(self) -> Pose:
-        self._connected()
+        self._current_connection()
         return self._motion.pose(self.clock.now_s())
 
     async def move(self, pose: Pose) -> Arrival:
-        connection = self._connected()
+        connection = self._current_connection()
         return await self._go(connection, self._viewpoint, pose)
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
-        self._connected()
+        self._current_connection()
         self._motion.drive(Velocity(pan_dps, tilt_dps, zoom_rate), self.clock.now_s(), timeout_s)
 
     async def presets(self) -> list[PresetInfo]:
-        self._connected()
+        self._current_connection()
         return [preset.info for preset in self._scene.presets.values()]
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:
         check_preset_name(name)
-        connection = self._connected()
+        connection = self._current_connection()
         existing = self._scene.presets.get(name)
         if existing is not None and not existing.saved:
             raise CameraError(f"The preset '{name}' is a camera of the scene and cannot be replaced. Choose another name.")
@@ -95,23 +95,23 @@ class BlenderWindowCamera(Camera):
         return self._preset(name).info
 
     async def remove_preset(self, name: str) -> None:
-        connection = self._connected()
+        connection = self._current_connection()
         if not self._preset(name).saved:
             raise CameraError(f"The preset '{name}' is a camera of the scene. Remove the camera in Blender instead.")
         await self._edit(connection, "remove_preset", {"name": name})
 
     async def go_to_preset(self, name: str) -> Arrival:
-        connection = self._connected()
+        connection = self._current_connection()
         preset = self._preset(name)
         return await self._go(connection, preset.viewpoint, preset.pose)
 
     async def go_home(self) -> Arrival:
-        connection = self._connected()
+        connection = self._current_connection()
         return await self._go(connection, self._scene.home.viewpoint, self._scene.home.pose)
 
     async def frame(self) -> Frame:
-        async with self._taking:
-            connection = self._connected()
+        async with self._frame_lock:
+            connection = self._current_connection()
             pose, time_s, info = await self.pose(), self.clock.now_s(), self._info
             hfov_deg = info.optics.hfov_deg(pose.zoom)
             view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, info.frame_width, info.frame_height)
@@ -119,13 +119,13 @@ class BlenderWindowCamera(Camera):
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view)
 
     async def stop(self) -> None:
-        connection = self._connected()
+        connection = self._current_connection()
         await self._go(connection, self._viewpoint, await self.pose())
 
     async def close(self) -> None:
         self._slot.end()
 
-    def _connected(self) -> AddOnConnection:
+    def _current_connection(self) -> AddOnConnection:
         """Return the connection. If its scene has changed, adopt the new one; the pose is kept if the viewpoint still exists."""
         connection = self._slot.connection
         if connection.description is not self._scene.description:
@@ -169,10 +169,10 @@ class BlenderWindowCamera(Camera):
         except (ValidationError, InputError) as error:
             raise CameraError("Blender's description of the scene is invalid. Update the add-on.") from error
         self._slot.update(connection, description)
-        self._connected()
+        self._current_connection()
 
     async def _image(self, connection: AddOnConnection, view: Perspective, place: dict[str, Any]) -> NDArray[np.uint8]:
-        """Let Blender take a picture, unless neither the view nor the scene has changed since the last one."""
+        """Have Blender take a picture, or return the last one if neither the view nor the scene has changed since."""
         key = (connection.id, self._viewpoint, view, self._scene.description)
         version = self._last[1] if self._last is not None and self._last[0] == key else ""
         arguments = {**place, "width": view.width, "height": view.height, "version": version}

@@ -20,7 +20,7 @@ from scope_ptz.errors import CameraError
 HEARTBEAT_S = 5.0
 """Seconds without a request after which the stream of requests contains a heartbeat, so that both ends notice a lost connection."""
 
-MAX_WAITING = 100
+MAX_PENDING = 100
 """Maximum number of requests that Blender has not answered."""
 
 NOT_CONNECTED = "Blender is not connected. In Blender, open the SCOPE tab of the 3D viewport's sidebar and press Connect."
@@ -39,7 +39,7 @@ Reply = dict[str, Any] | Picture | CameraError
 
 
 @dataclass(slots=True)
-class _Waiting:
+class _PendingRequest:
     """A request whose reply has not arrived."""
 
     arrived: anyio.Event = field(default_factory=anyio.Event)
@@ -59,12 +59,12 @@ class AddOnConnection:
         self.description, self.owner = description, owner
         self.lost = False
         self._numbers = itertools.count(1)
-        self._waiting: dict[int, _Waiting] = {}
+        self._waiting: dict[int, _PendingRequest] = {}
         self._unsent: deque[dict[str, Any]] = deque()
         self._changed = anyio.Event()
 
     async def request(self, operation: str, arguments: dict[str, Any], *, timeout_s: float) -> dict[str, Any] | Picture:
-        """Let the add-on carry out an operation, and return its result.
+        """Have the add-on carry out an operation, and return its result.
 
         Args:
             operation: The name of the operation.
@@ -76,9 +76,9 @@ class AddOnConnection:
         """
         if self.lost:
             raise CameraError(NOT_CONNECTED)
-        if len(self._waiting) >= MAX_WAITING:
+        if len(self._waiting) >= MAX_PENDING:
             raise CameraError("Blender has too many unanswered requests. Wait until it responds again.")
-        number, waiting = next(self._numbers), _Waiting()
+        number, waiting = next(self._numbers), _PendingRequest()
         self._waiting[number] = waiting
         self._unsent.append({"number": number, "operation": operation, "arguments": arguments})
         self._wake()
@@ -134,10 +134,10 @@ class AddOnConnection:
 
 
 class AddOnSlot:
-    """The place of a camera's current connection. One Blender at a time can be connected.
+    """Holds the current connection between a camera and the add-on in a Blender. One Blender at a time can be connected.
 
     Attributes:
-        changes: Number of changes of the connection or of its scene so far.
+        changes: Number of times that the connection or its scene has changed so far.
     """
 
     def __init__(self) -> None:

@@ -59,8 +59,8 @@ class SceneDescription(_Model):
     """The open scene of a Blender: its cameras, the active one, and the size of a picture in pixels.
 
     Raises:
-        InputError: The names of the cameras contradict each other. It is no ``ValidationError``, because no JSON schema can state
-            this rule.
+        InputError: The names of the cameras contradict each other. The error is not a ``ValidationError``, because a JSON schema
+            cannot express this rule.
     """
 
     name: Name
@@ -86,7 +86,8 @@ class SceneDescription(_Model):
 
 @dataclass(frozen=True, slots=True)
 class WindowPreset:
-    """A preset: a pose at a viewpoint. ``saved`` tells whether it was saved through SCOPE, and can be replaced and removed."""
+    """A preset: a pose at a viewpoint. ``saved`` is True if it was saved through SCOPE, and can therefore be replaced and
+    removed."""
 
     info: PresetInfo
     viewpoint: str
@@ -123,7 +124,7 @@ class WindowScene:
 def window_scene(description: SceneDescription) -> WindowScene:
     """Return the pan-tilt-zoom camera that a scene defines."""
     own = [camera for camera in description.cameras if camera.viewpoint is None]
-    combined = _combined(description, own)
+    combined = _combine(description, own)
     viewpoints = {camera.name: camera for camera in own}
     presets = {}
     for camera in (*own, *(each for each in description.cameras if each.viewpoint is not None)):
@@ -136,7 +137,7 @@ def window_scene(description: SceneDescription) -> WindowScene:
     return WindowScene(description, combined.optics, combined.limits, presets)
 
 
-def _combined(description: SceneDescription, own: list[SceneCamera]) -> FileCameras:
+def _combine(description: SceneDescription, own: list[SceneCamera]) -> FileCameras:
     """Return optics and limits by the rules for .blend files. The cameras are numbered, because their names may be free text."""
     cameras = [{**camera.model_dump(), "name": f"camera-{number}"} for number, camera in enumerate(own)]
     active = next(number for number, camera in enumerate(own) if camera.name == description.active)

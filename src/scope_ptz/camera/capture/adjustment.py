@@ -26,7 +26,7 @@ POSE_SIGMA_DEG = 0.5
 DRIFT_SIGMA_DEG = 3.0
 """Assumed standard deviation of the drift of pan or tilt over the whole capture, in degrees."""
 
-SIGNIFICANT = 3.0
+SIGNIFICANCE_FACTOR = 3.0
 """A drift is accepted if it exceeds this multiple of its standard error."""
 
 FOCAL_SIGMA = 0.05
@@ -41,7 +41,7 @@ REJECT_PX = 2.5
 MAX_PAUSE_S = 60.0
 """Maximum seconds between two frames that count towards the drift. A longer gap, such as an interruption, counts as this many."""
 
-SAME_FIELD = 0.004
+SAME_FOCAL_TOLERANCE = 0.004
 """Frames whose focal lengths differ by less than this fraction share one correction."""
 
 STEPS = 6
@@ -187,7 +187,7 @@ class _Problem:
         parts = np.array([basis.T @ turn for basis, turn in zip(self._whole_bases, self.turns, strict=True)]).reshape(count, 2)
         noise = np.std(parts - self._progress[:, None] * self.drift, axis=0)
         standard_error = noise * math.sqrt(12 / max(count, 1))
-        self.drift_sigma[np.abs(self.drift) < SIGNIFICANT * standard_error] = math.radians(1e-4)
+        self.drift_sigma[np.abs(self.drift) < SIGNIFICANCE_FACTOR * standard_error] = math.radians(1e-4)
 
     def _distances_px(self, pair: PairMatches, focals: Floats) -> Floats:
         one, _ = _rays(pair.first_px, float(focals[pair.first]), self.axes[pair.first])
@@ -257,7 +257,7 @@ def _focal_groups(focals: Sequence[float]) -> tuple[NDArray[np.int64], int]:
     """Return the focal-length group of each frame, and the number of groups."""
     groups, firsts = np.zeros(len(focals), np.int64), list[float]()
     for k in np.argsort(focals, kind="stable"):
-        if not firsts or focals[k] > firsts[-1] * (1 + SAME_FIELD):
+        if not firsts or focals[k] > firsts[-1] * (1 + SAME_FOCAL_TOLERANCE):
             firsts.append(focals[k])
         groups[k] = len(firsts) - 1
     return groups, len(firsts)

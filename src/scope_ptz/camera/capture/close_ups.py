@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.camera.base import CameraInfo
-from scope_ptz.camera.capture.hidden import hidden_in
+from scope_ptz.camera.capture.hidden_parts import hidden_mask
 from scope_ptz.camera.capture.session import CaptureSession
 from scope_ptz.geometry import Perspective, Pose
 
@@ -18,9 +18,9 @@ CELL_DEG = 1.0
 """Size of the cells in which detail is counted, in degrees."""
 
 STRONG_EDGE = 24.0
-"""Minimum local contrast of an edge that counts, on a scale of 0 to 255. Noise and fine texture stay below it."""
+"""Minimum local contrast of an edge that is counted as detail, on a scale of 0 to 255. Noise and fine texture have less."""
 
-HORIZON_DEG, FALL_DEG = -4.0, 22.0
+HORIZON_DEG, FALLOFF_DEG = -4.0, 22.0
 """Centre and width, in degrees of tilt, of the bell curve that weights detail.
 
 It favours directions near the horizon, where distant objects are, which look small.
@@ -61,7 +61,7 @@ def _detail_map(session: CaptureSession) -> NDArray[np.float32]:
         grey = cv2.cvtColor(session.image(shot), cv2.COLOR_RGB2GRAY).astype(np.float32)
         fine = np.abs(grey - cv2.GaussianBlur(grey, (0, 0), 2.0))
         height, width = grey.shape
-        hidden = hidden_in(session.settings, shot, session.image(shot))
+        hidden = hidden_mask(session.settings, shot, session.image(shot))
         if hidden is not None:
             fine[hidden] = 0.0
         cells = max(8, round(width / shot.hfov_deg / CELL_DEG))
@@ -75,7 +75,7 @@ def _detail_map(session: CaptureSession) -> NDArray[np.float32]:
         np.add.at(sums, (rows, columns), small)
         np.add.at(counts, (rows, columns), 1.0)
     tilts = 89.5 - np.arange(180)
-    near = np.exp(-(((tilts - HORIZON_DEG) / FALL_DEG) ** 2))
+    near = np.exp(-(((tilts - HORIZON_DEG) / FALLOFF_DEG) ** 2))
     return np.asarray(sums / np.maximum(counts, 1.0) * near[:, None], np.float32)
 
 

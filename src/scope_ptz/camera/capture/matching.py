@@ -19,12 +19,12 @@ If the reported poses of two frames are off by more, their features are not matc
 """
 
 MAX_FEATURES = 1000  # per frame
-RATIO = 0.85  # Lowe's ratio test, among the features within the gate
+RATIO = 0.85  # maximum ratio of the best to the second-best distance (Lowe's ratio test), among the features within the gate
 MIN_INLIERS = 12
 """Minimum number of matches between two frames. Fewer may agree by chance."""
 
 AGREEMENT_PX = 4.0
-"""Maximum distance in pixels at which a match agrees with a rotation. It allows for errors of the field of view."""
+"""Maximum distance in pixels at which a match agrees with a rotation. It is large enough for errors of the field of view."""
 
 MAX_MATCHES = 80  # per pair; more matches do not improve the precision
 MIN_OVERLAP = 0.15  # minimum overlap of a pair, as a fraction of the smaller frame
@@ -124,7 +124,7 @@ def _match(views: Sequence[Perspective], features: Callable[[int], Features], i:
         return None
     first, second = here[matched[:, 0]], there[matched[:, 1]]
     tolerance = AGREEMENT_PX / min(views[i].focal_px, views[j].focal_px)
-    agreed = _agreeing(rays_1[first], rays_2[second], tolerance, seed=i * 100_003 + j)
+    agreed = _consensus(rays_1[first], rays_2[second], tolerance, seed=i * 100_003 + j)
     if len(agreed) < MIN_INLIERS:
         return None
     agreed = agreed[np.linspace(0, len(agreed) - 1, min(len(agreed), MAX_MATCHES)).astype(int)]
@@ -153,7 +153,7 @@ def _mutual_best(likeness: NDArray[np.float32]) -> NDArray[np.int64]:
     return np.stack([passing, best[passing]], axis=-1)
 
 
-def _agreeing(one: Floats, two: Floats, tolerance_rad: float, seed: int) -> NDArray[np.int64]:
+def _consensus(one: Floats, two: Floats, tolerance_rad: float, seed: int) -> NDArray[np.int64]:
     """Return the indices of the matches that agree with the most common rotation (RANSAC with two matches per hypothesis)."""
     rng = np.random.default_rng(seed)
     chosen = rng.integers(0, len(one), (_HYPOTHESES, 2))

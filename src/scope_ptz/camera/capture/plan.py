@@ -20,7 +20,8 @@ WHOLE_CIRCLE_DEG = 340.0
 """Minimum pan range, in degrees, that is swept as a full circle, because the frames at its two ends overlap."""
 
 EXTREME_REACH = 0.7
-"""How far out frames of the highest and lowest rows overlap as planned, from 0 (their centre) to 1 (their outer edge)."""
+"""Frames of the highest and lowest rows overlap as planned only up to this fraction of the way from their centre to their outer
+edge, because further out a row would need many more frames."""
 
 MAX_FRAMES = 5000
 

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.camera.capture.placing import PlacedFrame
+from scope_ptz.camera.capture.placed_frames import PlacedFrame
 
 CELL_PX = 24
 """Size in pixels of the cells whose means are compared. Small pose errors hardly change the means."""

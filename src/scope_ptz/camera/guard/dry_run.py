@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, PresetInfo
 from scope_ptz.camera.capabilities import check_drive, check_preset_name
-from scope_ptz.camera.guard.guarded import GuardedCamera
+from scope_ptz.camera.guard.guarded_camera import GuardedCamera
 from scope_ptz.camera.guard.wrapper import CameraWrapper
 from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
 from scope_ptz.errors import UnknownNameError
@@ -45,7 +45,7 @@ class DryRunCamera(CameraWrapper):
         target, clamped = self.info.limits.clamp(pose)
         limited_by = ""
         if isinstance(self.inner, GuardedCamera):
-            target, clamped, limited_by = self.inner.permitted(pose)
+            target, clamped, limited_by = self.inner.nearest_permitted(pose)
         where, self._pose = target.as_dict(), target
         held = limited_by or f"the {' and '.join(clamped)} limit" if clamped else limited_by
         note = f", held back by {held}" if held else ""

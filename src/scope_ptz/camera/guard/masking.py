@@ -17,7 +17,7 @@ _GRID = 4
 """Regions are drawn on a grid of every fourth pixel and enlarged by one cell, so that no pixel of a region stays visible."""
 
 
-def masked(frame: Frame, regions: tuple[Region, ...], masks: tuple[PixelMask, ...]) -> Frame:
+def mask_frame(frame: Frame, regions: tuple[Region, ...], masks: tuple[PixelMask, ...]) -> Frame:
     """Return a frame in which the regions and masks are black. A frame that shows none of them is returned unchanged."""
     hidden = hidden_pixels(frame.projection, regions, masks)
     if hidden is None:

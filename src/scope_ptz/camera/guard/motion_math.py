@@ -14,7 +14,7 @@ def velocity_fields(velocity: Velocity) -> dict[str, float]:
     return {"pan_dps": velocity.pan_dps, "tilt_dps": velocity.tilt_dps, "zoom_rate": velocity.zoom_rate}
 
 
-def capped(velocity: Velocity, top: Velocity) -> Velocity:
+def cap_velocity(velocity: Velocity, top: Velocity) -> Velocity:
     """Return a velocity, capped at the top speed on each axis."""
 
     def cap(speed: float, limit: float) -> float:
@@ -25,12 +25,12 @@ def capped(velocity: Velocity, top: Velocity) -> Velocity:
     )
 
 
-def scaled(velocity: Velocity, factor: float) -> Velocity:
+def scale_velocity(velocity: Velocity, factor: float) -> Velocity:
     """Return a velocity scaled by a factor."""
     return Velocity(velocity.pan_dps * factor, velocity.tilt_dps * factor, velocity.zoom_rate * factor)
 
 
-def advanced(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
+def pose_after(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
     """Return the pose of a camera after some time at a velocity."""
     zoom = pose.zoom * 2.0 ** max(-10.0, min(10.0, velocity.zoom_rate * seconds))
     return Pose(pose.pan_deg + velocity.pan_dps * seconds, pose.tilt_deg + velocity.tilt_dps * seconds, zoom)
@@ -41,7 +41,7 @@ def changes(start: Pose, end: Pose) -> tuple[tuple[Axis, bool], ...]:
     return ("pan", start.pan_deg != end.pan_deg), ("tilt", start.tilt_deg != end.tilt_deg)
 
 
-def merged_axes(*axes: Any) -> tuple[Axis, ...]:
+def merge_axes(*axes: Any) -> tuple[Axis, ...]:
     """Return the union of several groups of axes, in the order pan, tilt, zoom."""
     found = {axis for group in axes for axis in group}
     order: tuple[Axis, ...] = ("pan", "tilt", "zoom")

@@ -1,4 +1,4 @@
-"""A camera that delegates every call to another one; guards override the methods that they change."""
+"""A camera that delegates every call to another one. Subclasses override the methods that they change."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.geometry import Pose
 class CameraWrapper(Camera):
     """A camera that behaves like the wrapped one.
 
-    ``centre_on`` is not delegated. It uses ``pose`` and ``move``, so that guards that override these also affect it.
+    ``centre_on`` is not delegated. It uses ``pose`` and ``move``, so subclasses that override these also affect ``centre_on``.
 
     Args:
         camera: The wrapped camera. It is closed with the wrapper.

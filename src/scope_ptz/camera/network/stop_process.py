@@ -123,12 +123,12 @@ def carry_out(order: Mapping[str, Any], *, give_up_s: float = GIVE_UP_S) -> bool
     module, name = order["function"]
     stop: StopFunction = getattr(importlib.import_module(module), name)
     http = DeviceHttp.from_description(order["device"])
-    ends_s, pause_s = time.monotonic() + give_up_s, 0.25
+    end_time_s, pause_s = time.monotonic() + give_up_s, 0.25
     while True:
         try:
             stop(http, order["details"])
         except CameraError:
-            if time.monotonic() + pause_s > ends_s:
+            if time.monotonic() + pause_s > end_time_s:
                 return False
             time.sleep(pause_s)
             pause_s = min(2 * pause_s, _LONGEST_PAUSE_S)

@@ -17,7 +17,7 @@ from scope_ptz.errors import InputError
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from scope_ptz.camera.capture.taking import CaptureOptions
+    from scope_ptz.camera.capture.frame_taking import CaptureOptions
     from scope_ptz.factory.cameras.captures import CapturedScene, CapturePlan
 
 
@@ -50,8 +50,8 @@ def capture(
     The camera moves for a few minutes and then returns to its original pose. Running the same command again resumes an interrupted
     capture.
     """
+    from scope_ptz.camera.capture.frame_taking import CaptureOptions
     from scope_ptz.camera.capture.plan import Ranges
-    from scope_ptz.camera.capture.taking import CaptureOptions
     from scope_ptz.factory.cameras.captures import capture_scene, scene_folder
     from scope_ptz.settings import load_settings
 

@@ -14,7 +14,7 @@ from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import OutputError
 
 if TYPE_CHECKING:
-    from scope_ptz.camera.measuring.profile import CalibrationRecord, ProbeRecord
+    from scope_ptz.camera.measurement.profile import CalibrationRecord, ProbeRecord
 
 
 def discover(
@@ -112,7 +112,7 @@ def _write_report(record: ProbeRecord, camera: str, out: Path | None) -> Path:
     Raises:
         OutputError: The file cannot be written.
     """
-    from scope_ptz.camera.measuring.report import report_name, report_text
+    from scope_ptz.camera.measurement.report import report_name, report_text
     from scope_ptz.factory.cameras.profiles import stored_calibration
 
     path = out or Path(report_name(record))

@@ -106,7 +106,7 @@ def index_audit_logs(store: RunStore, paths: list[Path] | None) -> int:
     Raises:
         InputError: A file cannot be read.
     """
-    from scope_ptz.factory.cameras.named import audit_logs
+    from scope_ptz.factory.cameras.named_cameras import audit_logs
     from scope_ptz.store.audit_index import index_audit_log
 
     logs = paths if paths is not None else [path for path in audit_logs() if path.is_file()]

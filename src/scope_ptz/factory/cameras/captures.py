@@ -18,8 +18,8 @@ from scope_ptz.factory.cameras.opening import OpenCamera, open_camera, parse_cam
 from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:
+    from scope_ptz.camera.capture.frame_taking import CaptureOptions, PlannedSweep, Progress
     from scope_ptz.camera.capture.session import CaptureSession
-    from scope_ptz.camera.capture.taking import CaptureOptions, PlannedSweep, Progress
 
 _KEBAB = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
@@ -149,7 +149,7 @@ async def plan_capture(camera: str, options: CaptureOptions) -> CapturePlan:
         InputError: The spec or an option is invalid, or the camera's field of view is unknown.
         CameraError: The camera fails.
     """
-    from scope_ptz.camera.capture.taking import close_up_zoom, planned_sweeps, settings_of
+    from scope_ptz.camera.capture.frame_taking import close_up_zoom, planned_sweeps, settings_of
 
     async with await open_camera(camera, actor=_actor()) as opened:
         settings = settings_of(opened.camera, options)
@@ -169,8 +169,8 @@ async def plan_capture(camera: str, options: CaptureOptions) -> CapturePlan:
 
 
 async def _take(camera: str, work: Path, options: CaptureOptions, progress: Progress) -> CaptureSession:
+    from scope_ptz.camera.capture.frame_taking import settings_of, take_frames
     from scope_ptz.camera.capture.session import CaptureSession
-    from scope_ptz.camera.capture.taking import settings_of, take_frames
 
     actor = _actor()
     async with await open_camera(camera, actor=actor) as opened:
@@ -212,8 +212,8 @@ def build_scene(session: CaptureSession, folder: Path, progress: Progress) -> Ca
     Raises:
         OutputError: The folder cannot be written, or a stored frame is damaged.
     """
-    from scope_ptz.camera.capture.packing import write_scene
-    from scope_ptz.camera.capture.registering import register
+    from scope_ptz.camera.capture.registration import register
+    from scope_ptz.camera.capture.scene_writer import write_scene
 
     found = register(session, progress)
     written = write_scene(session, found, folder, progress)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.errors import InputError, UnknownNameError
-from scope_ptz.factory.cameras.measured import load_calibration, measured_fields, measured_settling
+from scope_ptz.factory.cameras.calibrations import load_calibration, measured_fields, measured_settling
 from scope_ptz.factory.cameras.onvif import ANGLES, check_angles, open_onvif
 from scope_ptz.settings import load_settings
 
@@ -79,14 +79,14 @@ def check_network_spec(spec: CameraSpec) -> None:
         raise InputError("Give both hfov_wide and hfov_tele in degrees. The wide angle must be larger.")
 
 
-async def open_network_camera(spec: CameraSpec, *, actor: str = "scope", measuring: bool = False) -> OpenNetworkCamera:
+async def open_network_camera(spec: CameraSpec, *, actor: str = "scope", for_measurement: bool = False) -> OpenNetworkCamera:
     """Connect to a network camera and hold its control lock, so that only one program at a time can move it.
 
     Args:
         spec: The camera.
         actor: Who controls the camera, as shown to other programs that request control.
-        measuring: Whether the camera is opened to be probed or calibrated. Stored measurements are then ignored, and the driver may
-            assume values that are not known yet.
+        for_measurement: Whether the camera is opened to be probed or calibrated. Stored measurements are then ignored, and the
+            driver may assume values that are not known yet.
 
     Raises:
         InputError: The spec or an option is invalid, or there is no password for the account.
@@ -110,9 +110,9 @@ async def open_network_camera(spec: CameraSpec, *, actor: str = "scope", measuri
     try:
         verify = await _tls_verification(spec, address)
         if spec.scheme == "onvif":
-            camera = await open_onvif(spec, address, credentials, verify, _fields(spec), measuring=measuring)
+            camera = await open_onvif(spec, address, credentials, verify, _fields(spec), for_measurement=for_measurement)
         else:
-            camera = await _open_axis(spec, address, credentials, verify, measuring=measuring)
+            camera = await _open_axis(spec, address, credentials, verify, for_measurement=for_measurement)
         return OpenNetworkCamera(camera, release, lambda: _served_truth(camera, address, credentials, verify))
     except BaseException:
         lock.release()
@@ -135,7 +135,7 @@ async def _tls_verification(spec: CameraSpec, address: DeviceAddress) -> SSLCont
     from anyio import to_thread
 
     from scope_ptz.camera.network.trust import trust_fingerprint
-    from scope_ptz.factory.cameras.named import named_cameras
+    from scope_ptz.factory.cameras.named_cameras import named_cameras
 
     named = named_cameras().get(spec.name)
     if named is None or named.fingerprint is None:
@@ -144,13 +144,13 @@ async def _tls_verification(spec: CameraSpec, address: DeviceAddress) -> SSLCont
 
 
 async def _open_axis(
-    spec: CameraSpec, address: DeviceAddress, credentials: Credentials, verify: SSLContext | bool, *, measuring: bool
+    spec: CameraSpec, address: DeviceAddress, credentials: Credentials, verify: SSLContext | bool, *, for_measurement: bool
 ) -> Camera:
     from scope_ptz.camera.axis.camera import AxisCamera
     from scope_ptz.camera.network.http import DeviceHttp
 
     options = spec.options
-    calibration = None if measuring else load_calibration(spec, address)
+    calibration = None if for_measurement else load_calibration(spec, address)
     return await AxisCamera.open(
         DeviceHttp(address, credentials, verify=verify),
         credentials,

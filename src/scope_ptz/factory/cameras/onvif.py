@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from scope_ptz.errors import InputError
-from scope_ptz.factory.cameras.measured import load_calibration, measured_fields, measured_settling
+from scope_ptz.factory.cameras.calibrations import load_calibration, measured_fields, measured_settling
 
 if TYPE_CHECKING:
     from ssl import SSLContext
 
     from scope_ptz.camera.base import Camera
-    from scope_ptz.camera.measuring.profile import CalibrationRecord
+    from scope_ptz.camera.measurement.profile import CalibrationRecord
     from scope_ptz.camera.network.address import DeviceAddress
     from scope_ptz.camera.network.credentials import Credentials
     from scope_ptz.camera.onvif.mapping import OnvifMapping
@@ -64,7 +64,7 @@ async def open_onvif(
     verify: SSLContext | bool,
     fields_deg: tuple[float, float] | None,
     *,
-    measuring: bool,
+    for_measurement: bool,
 ) -> Camera:
     """Connect to an ONVIF camera.
 
@@ -74,7 +74,7 @@ async def open_onvif(
         credentials: The account.
         verify: The TLS verification of its certificate.
         fields_deg: Horizontal fields of view at the widest and the closest zoom, as set by options; None if they are not set.
-        measuring: Whether to assume values that are not measured yet, and to ignore stored measurements.
+        for_measurement: Whether to assume values that are not measured yet, and to ignore stored measurements.
 
     Raises:
         CameraError: The camera cannot be reached, rejects the account, or must be measured first.
@@ -83,13 +83,13 @@ async def open_onvif(
     from scope_ptz.camera.onvif.camera import OnvifCamera
 
     options = spec.options
-    calibration = None if measuring else load_calibration(spec, address)
+    calibration = None if for_measurement else load_calibration(spec, address)
     mapping = mapping_of(spec, fields_deg, calibration)
     return await OnvifCamera.open(
         DeviceHttp(address, credentials, verify=verify),
         credentials,
         mapping=mapping,
-        assume=measuring,
+        assume=for_measurement,
         profile=options.get("profile", ""),
         width=int(options["width"]) if "width" in options else None,
         height=int(options["height"]) if "height" in options else None,

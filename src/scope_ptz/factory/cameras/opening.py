@@ -74,7 +74,7 @@ def _named(text: str) -> CameraSpec | None:
     """Return the spec of a camera in ``scope.yaml``; None if that file has no camera of this name."""
     if find_camera_file(load_settings()) is None:
         return None
-    from scope_ptz.factory.cameras.named import named_cameras
+    from scope_ptz.factory.cameras.named_cameras import named_cameras
 
     named = named_cameras().get(text)
     if named is None:
@@ -98,7 +98,7 @@ def camera_names() -> tuple[str, ...]:
     network = [f"{scheme}://USER@HOST" for scheme in NETWORK_SCHEMES]
     named: tuple[str, ...] = ()
     if find_camera_file(load_settings()) is not None:
-        from scope_ptz.factory.cameras.named import named_cameras
+        from scope_ptz.factory.cameras.named_cameras import named_cameras
 
         named = tuple(named_cameras())
     return (*named, *scenes, *live, "blender:FILE.blend", *network, *plugins)
@@ -143,7 +143,7 @@ class OpenCamera:
 
     def record_instruction(self, instruction: str) -> None:
         """Record an instruction in the camera's audit log, if it has one."""
-        from scope_ptz.camera.guard.guarded import GuardedCamera
+        from scope_ptz.camera.guard.guarded_camera import GuardedCamera
 
         if isinstance(self.camera, GuardedCamera):
             self.camera.record_instruction(instruction)
@@ -172,7 +172,7 @@ async def open_camera(
     time_s: float | None = None,
     realtime: bool = False,
     actor: str | None = None,
-    measuring: bool = False,
+    for_measurement: bool = False,
     dry_run: Callable[[str], None] | None = None,
     add_on: AddOnSlot | None = None,
 ) -> OpenCamera:
@@ -186,8 +186,8 @@ async def open_camera(
         realtime: Whether scene time follows the wall clock, so that a person can watch. Otherwise, moves take no wall-clock time.
         actor: Who controls the camera, as recorded in the audit log and shown to other programs that request control; the default
             is the user of the operating system.
-        measuring: Whether the camera is opened to be probed or calibrated. Stored measurements are then ignored, and the driver may
-            assume values that are not known yet.
+        for_measurement: Whether the camera is opened to be probed or calibrated. Stored measurements are then ignored, and the
+            driver may assume values that are not known yet.
         dry_run: If given, commands are not executed. Instead, this function is called with a sentence about each. A simulated
             camera still starts at its preset.
         add_on: The connection of the add-on in a Blender, for ``blender-window``; None outside a server.
@@ -219,12 +219,12 @@ async def open_camera(
         _reject_scene_options(spec, viewpoint, time_s, "the scene that is open in Blender")
         opened = _open_blender_window(spec, add_on)
     elif spec.scheme in NETWORK_SCHEMES:
-        opened = await _open_network(spec, viewpoint, time_s, actor, measuring=measuring)
+        opened = await _open_network(spec, viewpoint, time_s, actor, for_measurement=for_measurement)
     else:
         opened = await _open_plugin(spec, viewpoint, time_s)
     try:
         if spec.name:
-            from scope_ptz.factory.cameras.named import apply_rules
+            from scope_ptz.factory.cameras.named_cameras import apply_rules
 
             guarded = apply_rules(opened.camera, spec.name, actor=actor or f"scope: {user_name()}")
             if guarded is not opened.camera:
@@ -267,12 +267,12 @@ def _open_blender_window(spec: CameraSpec, add_on: AddOnSlot | None) -> OpenCame
 
 
 async def _open_network(
-    spec: CameraSpec, viewpoint: str | None, time_s: float | None, actor: str | None, *, measuring: bool
+    spec: CameraSpec, viewpoint: str | None, time_s: float | None, actor: str | None, *, for_measurement: bool
 ) -> OpenCamera:
     from scope_ptz.factory.cameras.network import open_network_camera
 
     _reject_scene_options(spec, viewpoint, time_s, "a camera on the network")
-    connected = await open_network_camera(spec, actor=actor or f"scope: {user_name()}", measuring=measuring)
+    connected = await open_network_camera(spec, actor=actor or f"scope: {user_name()}", for_measurement=for_measurement)
     return OpenCamera(spec, connected.camera, None, connected.release, connected.served_truth)
 
 

@@ -72,7 +72,7 @@ def store_password(spec: CameraSpec, password: str) -> None:
 def _password_source(spec: CameraSpec) -> str | None:
     if not spec.name:
         return None
-    from scope_ptz.factory.cameras.named import named_cameras
+    from scope_ptz.factory.cameras.named_cameras import named_cameras
 
     named = named_cameras().get(spec.name)
     return None if named is None else named.password

@@ -12,7 +12,7 @@ from scope_ptz.factory.cameras.opening import OpenCamera, open_camera, parse_cam
 from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:
-    from scope_ptz.camera.measuring.profile import CalibrationRecord, CameraProfile, ProbeRecord
+    from scope_ptz.camera.measurement.profile import CalibrationRecord, CameraProfile, ProbeRecord
     from scope_ptz.camera.spec import CameraSpec
 
 _TIMED_PICTURES = 5  # number of pictures that a probe times; the median is stored
@@ -28,7 +28,7 @@ async def probe_camera(text: str) -> tuple[ProbeRecord, Path]:
         ScopeError: The camera cannot be opened or fails, or the profile cannot be written.
     """
     spec = parse_camera(text)
-    async with await open_camera(spec, measuring=True) as opened:
+    async with await open_camera(spec, for_measurement=True) as opened:
         record = await _probe(opened)
     return record, _store(spec, probe=record)
 
@@ -44,11 +44,11 @@ async def calibrate_camera(
     Raises:
         ScopeError: The camera cannot be opened or fails, no place has enough detail, or the profile cannot be written.
     """
-    from scope_ptz.camera.measuring.calibration import calibrate
-    from scope_ptz.camera.measuring.profile import record_of
+    from scope_ptz.camera.measurement.calibration import calibrate
+    from scope_ptz.camera.measurement.profile import record_of
 
     spec = parse_camera(text)
-    async with await open_camera(spec, measuring=True) as opened:
+    async with await open_camera(spec, for_measurement=True) as opened:
         info = opened.camera.info
         calibration = await calibrate(opened.camera, zooms=zooms, assumed=info.assumed, progress=progress)
         limits = info.limits
@@ -64,14 +64,14 @@ def stored_calibration(text: str) -> CalibrationRecord | None:
     Raises:
         ScopeError: The spec is wrong, or the profile is damaged.
     """
-    from scope_ptz.camera.measuring.profile import load_profile
+    from scope_ptz.camera.measurement.profile import load_profile
 
     profile = load_profile(load_settings().camera_profiles_dir, _profile_name(parse_camera(text)))
     return None if profile is None else profile.calibration
 
 
 async def _probe(opened: OpenCamera) -> ProbeRecord:
-    from scope_ptz.camera.measuring.profile import ProbeRecord, now
+    from scope_ptz.camera.measurement.profile import ProbeRecord, now
 
     camera, info = opened.camera, opened.camera.info
     limits, capabilities = info.limits, info.capabilities
@@ -105,7 +105,7 @@ async def _probe(opened: OpenCamera) -> ProbeRecord:
 
 
 def _store(spec: CameraSpec, **records: object) -> Path:
-    from scope_ptz.camera.measuring.profile import CameraProfile, load_profile, save_profile
+    from scope_ptz.camera.measurement.profile import CameraProfile, load_profile, save_profile
     from scope_ptz.errors import PackError
 
     folder, name = load_settings().camera_profiles_dir, _profile_name(spec)
@@ -119,7 +119,7 @@ def _store(spec: CameraSpec, **records: object) -> Path:
 
 def _profile_name(spec: CameraSpec) -> str:
     from scope_ptz.camera.network.address import parse_address
-    from scope_ptz.factory.cameras.measured import profile_name
+    from scope_ptz.factory.cameras.calibrations import profile_name
     from scope_ptz.factory.cameras.network import NETWORK_SCHEMES
 
     if spec.scheme not in NETWORK_SCHEMES:

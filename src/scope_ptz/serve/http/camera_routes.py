@@ -7,7 +7,7 @@ from dataclasses import asdict
 from fastapi import APIRouter
 
 from scope_ptz.camera.base import Camera
-from scope_ptz.camera.guard.guarded import GuardedCamera
+from scope_ptz.camera.guard.guarded_camera import GuardedCamera
 from scope_ptz.camera.guard.wrapper import layers
 from scope_ptz.serve.http.dependencies import SiteDep, StationDep, Viewer, presets_of
 from scope_ptz.serve.http.errors import responses

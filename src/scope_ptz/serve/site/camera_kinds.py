@@ -7,7 +7,7 @@ from typing import Literal, get_args
 from scope_ptz.builtin_names import BLENDER_WINDOW
 from scope_ptz.camera.guard.rules import CameraRules, Mounting
 from scope_ptz.factory.cameras import parse_camera
-from scope_ptz.factory.cameras.named import named_cameras
+from scope_ptz.factory.cameras.named_cameras import named_cameras
 
 CameraKind = Literal["simulated", "blender", "axis", "onvif", "plug_in"]
 

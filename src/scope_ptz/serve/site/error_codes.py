@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from scope_ptz.camera.control import ControlHeldError
-from scope_ptz.camera.guard.guarded import KeepOutError
+from scope_ptz.camera.guard.guarded_camera import KeepOutError
 from scope_ptz.errors import (
     CameraError,
     InputError,

@@ -12,7 +12,7 @@ from pathlib import Path
 from anyio import to_thread
 
 from scope_ptz.camera.base import Arrival, Camera, Frame, PresetInfo
-from scope_ptz.camera.guard.mounted import MountedCamera
+from scope_ptz.camera.guard.mounted_camera import MountedCamera
 from scope_ptz.camera.guard.wrapper import innermost, layers
 from scope_ptz.camera.scene_presets import preset_pose
 from scope_ptz.camera.simulated import SimulatedCamera

@@ -15,7 +15,7 @@ from scope_ptz.agent.records import Budgets
 from scope_ptz.builtin_names import BLENDER_WINDOW
 from scope_ptz.camera.control import user_name
 from scope_ptz.errors import ConfigError, UnknownNameError
-from scope_ptz.factory.cameras.named import named_cameras
+from scope_ptz.factory.cameras.named_cameras import named_cameras
 from scope_ptz.factory.scenes import scene_search
 from scope_ptz.serve.site.benchmark.evaluations import Evaluations
 from scope_ptz.serve.site.benchmark.trajectories import Trajectories

@@ -14,13 +14,13 @@ from scope_ptz.geometry import Perspective, Projection
 MARGIN_DEG = 0.3
 """Margin in degrees by which keep-out regions are enlarged in the pack, because reported poses are not exact."""
 
-GROWN_PX = 5
+DILATION_PX = 5
 """Margin in pixels by which hidden parts of frames are enlarged, so that their blurred borders are not used."""
 
 Mask = NDArray[np.bool_]
 
 
-def hidden_in(settings: CaptureSettings, shot: Shot, image: NDArray[np.uint8]) -> Mask | None:
+def hidden_mask(settings: CaptureSettings, shot: Shot, image: NDArray[np.uint8]) -> Mask | None:
     """Return the mask (H, W) of the hidden pixels of a frame; None if no pixel is hidden."""
     view = Perspective(shot.pan_deg, shot.tilt_deg, shot.hfov_deg, settings.frame_width, settings.frame_height)
     hidden = hidden_pixels(view, settings.keep_out, settings.masks)
@@ -29,16 +29,16 @@ def hidden_in(settings: CaptureSettings, shot: Shot, image: NDArray[np.uint8]) -
         hidden = corners if hidden is None else hidden | corners
     if hidden is None or not hidden.any():
         return None
-    size = 2 * GROWN_PX + 1
+    size = 2 * DILATION_PX + 1
     return np.asarray(cv2.dilate(hidden.astype(np.uint8), np.ones((size, size), np.uint8)) > 0)
 
 
-def kept_out(settings: CaptureSettings, projection: Projection) -> Mask | None:
+def keep_out_mask(settings: CaptureSettings, projection: Projection) -> Mask | None:
     """Return the mask (H, W) of the pixels of a pack's picture that are in or near a keep-out region; None if none are."""
-    return hidden_pixels(projection, tuple(_enlarged(region) for region in settings.keep_out))
+    return hidden_pixels(projection, tuple(_enlarge(region) for region in settings.keep_out))
 
 
-def _enlarged(region: Region) -> Region:
+def _enlarge(region: Region) -> Region:
     """Return a region that is larger by ``MARGIN_DEG`` on every side."""
     (left, right), (bottom, top) = region.pan_deg, region.tilt_deg
     if region.width_deg < 360.0 - 2 * MARGIN_DEG:

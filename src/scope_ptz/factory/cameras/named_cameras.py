@@ -42,8 +42,8 @@ def apply_rules(camera: Camera, name: str, *, actor: str) -> Camera:
         OutputError: The audit log cannot be written.
     """
     from scope_ptz.camera.guard.audit import AuditLog
-    from scope_ptz.camera.guard.guarded import GuardedCamera
-    from scope_ptz.camera.guard.mounted import MountedCamera
+    from scope_ptz.camera.guard.guarded_camera import GuardedCamera
+    from scope_ptz.camera.guard.mounted_camera import MountedCamera
     from scope_ptz.camera.guard.rules import CameraRules, Mounting
 
     file, folder = _read_camera_file()

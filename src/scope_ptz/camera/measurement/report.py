@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from scope_ptz.camera.measuring.profile import CalibrationRecord, ProbeRecord
+    from scope_ptz.camera.measurement.profile import CalibrationRecord, ProbeRecord
 
 _IDENTIFIERS = re.compile(
     r"(?:\d{1,3}\.){3}\d{1,3}(?::\d+)?"  # IPv4 addresses

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from scope_ptz.errors import OutputError, PackError
 
 if TYPE_CHECKING:
-    from scope_ptz.camera.measuring.calibration import Calibration
+    from scope_ptz.camera.measurement.calibration import Calibration
 
 VERSION = 1
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.camera.capture.adjustment import Adjustment, adjust, turn_deg
-from scope_ptz.camera.capture.hidden import hidden_in
+from scope_ptz.camera.capture.hidden_parts import hidden_mask
 from scope_ptz.camera.capture.matching import Features, find_features, match_frames, overlapping_pairs
-from scope_ptz.camera.capture.placing import PlacedFrame
+from scope_ptz.camera.capture.placed_frames import PlacedFrame
 from scope_ptz.camera.capture.session import CaptureSession, Shot
 from scope_ptz.camera.capture.tone import cells_of, gains
 from scope_ptz.geometry import Optics, Perspective
@@ -70,7 +70,7 @@ def register(session: CaptureSession, steps: Steps) -> Registration:
     cells = []
     for number, shot in enumerate(shots):
         image = session.image(shot)
-        hidden = hidden_in(settings, shot, image)
+        hidden = hidden_mask(settings, shot, image)
         features.append(find_features(image, hidden))
         cells.append(cells_of(image, hidden))
         steps("Features", number + 1, len(shots))

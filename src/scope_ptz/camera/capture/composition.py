@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.camera.capture.placing import PlacedFrame
+from scope_ptz.camera.capture.placed_frames import PlacedFrame
 from scope_ptz.geometry import Equirectangular, Perspective, angle_between_deg
 from scope_ptz.simulator.mapping.grid import Grid
 
@@ -26,17 +26,17 @@ UNSEEN = (64, 64, 64)
 BLOCK = (192, 384)
 """Rows and columns of the blocks in which a picture is composed."""
 
-MARGIN_PX = 24  # margin around a block, so that neighbouring blocks detect the same moving objects
+MARGIN_PX = 24  # width of the margin around a block; it makes neighbouring blocks detect the same moving objects
 LOW_SCALE = 8  # the low band has one value per 8 x 8 pixels of a frame
 WEIGHT_SCALE = 4  # weights have one value per 4 x 4 pixels of a frame
 COARSE_PX = 4  # weights and low bands are evaluated at every fourth pixel of a block
-NEGLIGIBLE = 2e-3  # a frame whose weight is below this in a whole block adds no detail to it
-MOVED = 14.0
+NEGLIGIBLE_WEIGHT = 2e-3  # a frame whose weight is below this in a whole block adds no detail to it
+MOTION_DIFFERENCE = 14.0
 """Difference from the median after smoothing, on a scale of 0 to 255, above which a frame shows a moving object."""
 
-MIXED_CELLS, MIXED_MOVED = 2.5, 20.0
-"""Values for comparing frames with different zooms, which never look exactly the same: the smoothing, in cells of ``LOW_SCALE``
-pixels of the coarsest frame, and the difference that is used instead of ``MOVED``."""
+MIXED_ZOOM_CELLS, MIXED_ZOOM_DIFFERENCE = 2.5, 20.0
+"""Values for comparing frames with different zooms, which never look exactly the same. The first is the smoothing, in cells of
+``LOW_SCALE`` pixels of the coarsest frame. The second is used instead of ``MOTION_DIFFERENCE``."""
 
 SHARP_POWER, SOFT_POWER = 12, 2
 """Exponents of the weight, which decreases from the centre of a frame to its edge: for fine detail, and for large structures."""
@@ -150,7 +150,7 @@ class Composer:
         layers = [layer for k in self._near(rays, chosen) if (layer := self._layer(k, grid, rays)) is not None]
         if not layers:
             return
-        image, found = _blended(layers, projection.pixels_per_radian)
+        image, found = _blend(layers, projection.pixels_per_radian)
         top, left = rows.start - whole[0].start, columns.start - whole[1].start
         inner = slice(top, top + rows.stop - rows.start), slice(left, left + columns.stop - columns.start)
         part, shown = image[inner], found[inner]
@@ -212,7 +212,7 @@ class _Layer:
     focal_px: float
 
 
-def _blended(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
+def _blend(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
     """Blend the layers of a block. Return the picture (H, W, 3) and the mask (H, W) of the pixels that any layer shows.
 
     Args:
@@ -233,16 +233,16 @@ def _blended(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
     for layer, weight in zip(layers, mixed, strict=True):
         low += weight[..., None] * layer.low
     height, width = layers[0].inside.shape
-    picture = _enlarged(low, height, width)
+    picture = _enlarge(low, height, width)
     total, shown = np.zeros((height, width), np.float32), np.zeros((height, width), bool)
     details = np.zeros_like(picture)
     for layer, weight in zip(layers, peaked, strict=True):
-        shown |= layer.inside & (_enlarged(layer.weight, height, width) > 0)
-        if weight.max() < NEGLIGIBLE:
+        shown |= layer.inside & (_enlarge(layer.weight, height, width) > 0)
+        if weight.max() < NEGLIGIBLE_WEIGHT:
             continue
-        amount = _enlarged(weight, height, width) * layer.inside
+        amount = _enlarge(weight, height, width) * layer.inside
         full = cv2.remap(layer.image, layer.spots, None, cv2.INTER_LANCZOS4, borderMode=cv2.BORDER_REPLICATE)
-        details += amount[..., None] * (full - _enlarged(layer.low, height, width))
+        details += amount[..., None] * (full - _enlarge(layer.low, height, width))
         total += amount
     picture += details / np.maximum(total, 1e-6)[..., None]
     return np.clip(np.rint(picture), 0, 255).astype(np.uint8), shown
@@ -272,8 +272,8 @@ def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floa
         return [np.ones(shape, np.float32)], np.zeros(shape, np.float32)
     coarsest = min(layer.focal_px for layer in layers)
     mixed = max(layer.focal_px for layer in layers) > coarsest / MIN_FINE_DENSITY
-    cells, limit = (MIXED_CELLS, MIXED_MOVED) if mixed else (1.0, MOVED)
-    greys = np.stack([_smoothed(layer.low @ GREY, layer.focal_px, coarsest, density, cells) for layer in layers])
+    cells, limit = (MIXED_ZOOM_CELLS, MIXED_ZOOM_DIFFERENCE) if mixed else (1.0, MOTION_DIFFERENCE)
+    greys = np.stack([_smooth(layer.low @ GREY, layer.focal_px, coarsest, density, cells) for layer in layers])
     absent = np.stack([layer.weight <= 0.02 for layer in layers])
     greys = np.where(absent, np.nan, greys)
     order = np.sort(greys, axis=0)  # NaN comes last
@@ -281,7 +281,7 @@ def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floa
     take = np.clip(count - 1, 0, None)
     middle = (_at(order, take // 2) + _at(order, (take + 1) // 2)) / 2
     away = np.nan_to_num(np.abs(greys - middle))
-    moved = np.stack([_grown(each, limit) for each in np.where(count >= 3, away, 0)])
+    moved = np.stack([_grow(each, limit) for each in np.where(count >= 3, away, 0)])
     trust = [1 - (1 - 1e-3) * _spread(each) for each in moved]
     trusted = np.where(moved, np.nan, greys)
     order = np.sort(trusted, axis=0)
@@ -290,7 +290,7 @@ def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floa
     return trust, _spread(spread > limit)
 
 
-def _smoothed(grey: Floats, focal_px: float, coarsest_px: float, density: float, cells: float) -> Floats:
+def _smooth(grey: Floats, focal_px: float, coarsest_px: float, density: float, cells: float) -> Floats:
     """Smooth a brightness to ``cells`` cells of the coarsest frame, so that a difference in sharpness is not taken for motion."""
     target, current = (LOW_SCALE * density / focal / COARSE_PX for focal in (coarsest_px, focal_px))
     sigma = math.sqrt(max(0.0, (cells * target) ** 2 - current**2))
@@ -301,7 +301,7 @@ def _at(stack: Floats, index: NDArray[np.int64]) -> Floats:
     return np.asarray(np.take_along_axis(stack, index[None], axis=0)[0])
 
 
-def _grown(away: Floats, limit: float) -> Mask:
+def _grow(away: Floats, limit: float) -> Mask:
     """Return the mask of the connected areas whose differences all exceed a third of a limit and somewhere exceed the limit."""
     _, labels = cv2.connectedComponents((away > limit / 3).astype(np.uint8))
     above = np.unique(labels[away > limit])
@@ -326,7 +326,7 @@ def _every(length: int) -> NDArray[np.int64]:
     return np.minimum(np.arange(-(-length // COARSE_PX)) * COARSE_PX + COARSE_PX // 2, length - 1)
 
 
-def _enlarged(coarse: Floats, height: int, width: int) -> Floats:
+def _enlarge(coarse: Floats, height: int, width: int) -> Floats:
     """Interpolate values on the coarse grid to every pixel of a block."""
     size = coarse.shape[1] * COARSE_PX, coarse.shape[0] * COARSE_PX
     return np.asarray(cv2.resize(coarse, size, interpolation=cv2.INTER_LINEAR)[:height, :width])

@@ -14,8 +14,8 @@ from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo
 from scope_ptz.camera.capabilities import Velocity, check_drive
 from scope_ptz.camera.clocks import elapsed_s
 from scope_ptz.camera.guard.audit import AuditLog
-from scope_ptz.camera.guard.masking import masked
-from scope_ptz.camera.guard.motion_math import advanced, capped, changes, merged_axes, scaled, velocity_fields
+from scope_ptz.camera.guard.masking import mask_frame
+from scope_ptz.camera.guard.motion_math import cap_velocity, changes, merge_axes, pose_after, scale_velocity, velocity_fields
 from scope_ptz.camera.guard.rules import CameraRules, nearest_outside
 from scope_ptz.camera.guard.wrapper import CameraWrapper
 from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
@@ -32,7 +32,7 @@ _SPEED_FACTORS = (1.0, 0.5, 0.25, 0.1, 0.04)
 
 
 class KeepOutError(CameraError):
-    """A command would aim the camera at a keep-out region, and no permitted pose is near."""
+    """A command would aim the camera at a keep-out region, and there is no permitted pose next to the region."""
 
 
 class GuardedCamera(CameraWrapper):
@@ -53,7 +53,7 @@ class GuardedCamera(CameraWrapper):
         super().__init__(camera)
         self._rules, self._audit = rules, audit
         self._last_move_s = -math.inf
-        self._limits = self._narrowed(camera.info.limits)
+        self._limits = self._narrow(camera.info.limits)
 
     @property
     def info(self) -> CameraInfo:
@@ -69,33 +69,33 @@ class GuardedCamera(CameraWrapper):
         self._record("instruction", text=instruction)
 
     async def move(self, pose: Pose) -> Arrival:
-        target, clamped, limited_by = self.permitted(pose)
+        target, clamped, limited_by = self.nearest_permitted(pose)
         here = await self.inner.pose()
         if self._within_dead_zone(here, target):
             self._record("skipped", target=target, reason="dead zone")
             return Arrival(here, clamped, limited_by or f"the dead zone of {self._rules.dead_zone_deg:g} degrees")
         await self._wait_for_turn()
         self._record("move", target=target, requested=pose)
-        arrival = await self._carried_out(self.inner.move(target))
-        return Arrival(arrival.pose, merged_axes(clamped, arrival.clamped), limited_by or arrival.limited_by)
+        arrival = await self._carry_out(self.inner.move(target))
+        return Arrival(arrival.pose, merge_axes(clamped, arrival.clamped), limited_by or arrival.limited_by)
 
     async def go_to_preset(self, name: str) -> Arrival:
         await self._wait_for_turn()
         self._record("preset", name=name)
-        return await self._corrected(await self._carried_out(self.inner.go_to_preset(name)))
+        return await self._correct(await self._carry_out(self.inner.go_to_preset(name)))
 
     async def go_home(self) -> Arrival:
         await self._wait_for_turn()
         self._record("home")
-        return await self._corrected(await self._carried_out(self.inner.go_home()))
+        return await self._correct(await self._carry_out(self.inner.go_home()))
 
     async def frame(self) -> Frame:
-        return await self._masked(await self.inner.frame())
+        return await self._mask(await self.inner.frame())
 
     async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
         async with aclosing(self.inner.frames(rate_hz=rate_hz)) as stream:
             async for frame in stream:
-                yield await self._masked(frame)
+                yield await self._mask(frame)
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         """Move at constant velocities for as long as the rules permit, at most ``timeout_s``.
@@ -108,9 +108,9 @@ class GuardedCamera(CameraWrapper):
         """
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
         here = await self.inner.pose()
-        requested = capped(Velocity(pan_dps, tilt_dps, zoom_rate), self.inner.info.capabilities.top_speed)
+        requested = cap_velocity(Velocity(pan_dps, tilt_dps, zoom_rate), self.inner.info.capabilities.top_speed)
         for factor in _SPEED_FACTORS:
-            velocity = self._free_axes(here, scaled(requested, factor))
+            velocity = self._free_axes(here, scale_velocity(requested, factor))
             free_s = self._free_time_s(here, velocity, timeout_s)
             if velocity != Velocity() and free_s > 0.0:
                 self._record("drive", velocity=velocity, timeout_s=round(free_s, 3))
@@ -118,29 +118,29 @@ class GuardedCamera(CameraWrapper):
                 return
         self._record("drive", velocity=Velocity(), timeout_s=0.0)
         await self.inner.stop()
-        if region := self._rules.region_at(advanced(here, scaled(requested, _SPEED_FACTORS[-1]), STOPPING_S + _STEP_S)):
+        if region := self._rules.region_at(pose_after(here, scale_velocity(requested, _SPEED_FACTORS[-1]), STOPPING_S + _STEP_S)):
             raise KeepOutError(f"The camera cannot be driven into the keep-out region '{region.name}'. It has stopped.")
 
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
         """Centre a point of the picture. The device's own command is used if the rules permit the resulting pose."""
         here = await self.inner.pose()
         target = self.info.towards(here, x, y, zoom_factor)
-        permitted, clamped, _ = self.permitted(target)
+        permitted, clamped, _ = self.nearest_permitted(target)
         if clamped or self._within_dead_zone(here, permitted):
             return await self.move(target)
         await self._wait_for_turn()
         self._record("centre", x=x, y=y, zoom_factor=zoom_factor, target=target)
-        return await self._corrected(await self._carried_out(self.inner.centre_on(x, y, zoom_factor=zoom_factor)))
+        return await self._correct(await self._carry_out(self.inner.centre_on(x, y, zoom_factor=zoom_factor)))
 
     async def set_focus(self, action: FocusAction, *, step: float = DEFAULT_STEP) -> LensState:
         check_focus(self.info.name, action, self.info.capabilities.focus, step)
         self._record("focus", action=action, step=step)
-        return await self._adjusted(self.inner.set_focus(action, step=step))
+        return await self._carry_out_on_lens(self.inner.set_focus(action, step=step))
 
     async def set_iris(self, action: IrisAction, *, step: float = DEFAULT_STEP) -> LensState:
         check_iris(self.info.name, action, self.info.capabilities.iris, step)
         self._record("iris", action=action, step=step)
-        return await self._adjusted(self.inner.set_iris(action, step=step))
+        return await self._carry_out_on_lens(self.inner.set_iris(action, step=step))
 
     async def stop(self) -> None:
         self._record("stop")
@@ -162,13 +162,13 @@ class GuardedCamera(CameraWrapper):
             if self._audit is not None:
                 self._audit.close()
 
-    def _narrowed(self, device: Limits) -> Limits:
+    def _narrow(self, device: Limits) -> Limits:
         try:
             return self._rules.soft_limits.within(device)
         except ValueError as error:
             raise ConfigError(f"The rules of {self.inner.info.name} cannot be kept: {error}.") from error
 
-    def permitted(self, pose: Pose) -> tuple[Pose, tuple[Axis, ...], str]:
+    def nearest_permitted(self, pose: Pose) -> tuple[Pose, tuple[Axis, ...], str]:
         """Return the nearest permitted pose, the clamped axes, and the keep-out region that limited the move, in words (or empty).
 
         Raises:
@@ -182,17 +182,17 @@ class GuardedCamera(CameraWrapper):
         if outside is None:
             raise KeepOutError(f"The pose {target} aims at the keep-out region '{region.name}'. Choose another direction.")
         axes: list[Axis] = [axis for axis, moved in changes(target, outside) if moved]
-        return outside, merged_axes(clamped, axes), f"the keep-out region '{region.name}'"
+        return outside, merge_axes(clamped, axes), f"the keep-out region '{region.name}'"
 
-    async def _corrected(self, arrival: Arrival) -> Arrival:
+    async def _correct(self, arrival: Arrival) -> Arrival:
         """Move to the nearest permitted pose if the rules forbid the pose that a device's own command reached."""
-        target, clamped, limited_by = self.permitted(arrival.pose)
+        target, clamped, limited_by = self.nearest_permitted(arrival.pose)
         if not clamped:
             return arrival
-        moved = await self._carried_out(self.inner.move(target))
-        return Arrival(moved.pose, merged_axes(arrival.clamped, clamped), limited_by)
+        moved = await self._carry_out(self.inner.move(target))
+        return Arrival(moved.pose, merge_axes(arrival.clamped, clamped), limited_by)
 
-    async def _carried_out(self, command: Any) -> Arrival:
+    async def _carry_out(self, command: Any) -> Arrival:
         """Await a move and record how it ended."""
         try:
             arrival: Arrival = await command
@@ -204,7 +204,7 @@ class GuardedCamera(CameraWrapper):
         self._record("arrived", pose=arrival.pose, clamped=arrival.clamped)
         return arrival
 
-    async def _adjusted(self, command: Awaitable[LensState]) -> LensState:
+    async def _carry_out_on_lens(self, command: Awaitable[LensState]) -> LensState:
         """Await a lens command and record how it ended."""
         try:
             state = await command
@@ -226,7 +226,7 @@ class GuardedCamera(CameraWrapper):
 
     def _free_axes(self, here: Pose, velocity: Velocity) -> Velocity:
         """Return a velocity in which every axis that would pass a soft limit before it could stop is zero."""
-        stopped = self._beyond(advanced(here, velocity, STOPPING_S + _STEP_S))
+        stopped = self._beyond(pose_after(here, velocity, STOPPING_S + _STEP_S))
         return Velocity(
             0.0 if "pan" in stopped else velocity.pan_dps,
             0.0 if "tilt" in stopped else velocity.tilt_dps,
@@ -243,17 +243,17 @@ class GuardedCamera(CameraWrapper):
             return timeout_s
         time_s = 0.0
         while time_s < timeout_s:
-            ahead = advanced(here, velocity, time_s + STOPPING_S + _STEP_S)
+            ahead = pose_after(here, velocity, time_s + STOPPING_S + _STEP_S)
             if self._rules.region_at(ahead) or self._beyond(ahead):
                 return time_s
             time_s += _STEP_S
         return timeout_s
 
-    async def _masked(self, frame: Frame) -> Frame:
+    async def _mask(self, frame: Frame) -> Frame:
         rules = self._rules
         if not rules.keep_out and not rules.masks:
             return frame
-        return await to_thread.run_sync(masked, frame, rules.keep_out, rules.masks)
+        return await to_thread.run_sync(mask_frame, frame, rules.keep_out, rules.masks)
 
     def _record(self, event: str, **fields: Any) -> None:
         if self._audit is not None:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from anyio import to_thread
 
-from scope_ptz.camera.measuring import registration as r
-from scope_ptz.camera.measuring.registration import Matches, RegistrationError
+from scope_ptz.camera.measurement import registration as r
+from scope_ptz.camera.measurement.registration import Matches, RegistrationError
 from scope_ptz.camera.network.settling import moving_fraction
 from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Pose, wrap_pan_deg

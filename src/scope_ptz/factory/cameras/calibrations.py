@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:
-    from scope_ptz.camera.measuring.profile import CalibrationRecord
+    from scope_ptz.camera.measurement.profile import CalibrationRecord
     from scope_ptz.camera.network.address import DeviceAddress
     from scope_ptz.camera.network.settling import Settling
     from scope_ptz.camera.spec import CameraSpec
@@ -32,7 +32,7 @@ def load_calibration(spec: CameraSpec, address: DeviceAddress) -> CalibrationRec
     Raises:
         PackError: The camera's profile is damaged.
     """
-    from scope_ptz.camera.measuring.profile import load_profile
+    from scope_ptz.camera.measurement.profile import load_profile
 
     profile = load_profile(load_settings().camera_profiles_dir, profile_name(spec, address))
     found = None if profile is None else profile.calibration

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.camera.measuring.profile import (
+from scope_ptz.camera.measurement.profile import (
     CalibrationRecord,
     CameraProfile,
     MeasuredField,

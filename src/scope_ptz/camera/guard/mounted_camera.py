@@ -103,10 +103,10 @@ class MountedCamera(CameraWrapper):
         right, level_up, _ = camera_axes(pose.pan_deg, pose.tilt_deg)
         roll_deg = math.degrees(math.atan2(float(up @ right), float(up @ level_up)))
         view = Perspective(pose.pan_deg, pose.tilt_deg, frame.hfov_deg, frame.width, frame.height)
-        return replace(frame, image=_rolled(frame.image, roll_deg), pose=pose, projection=view, origin=None)
+        return replace(frame, image=_rotate(frame.image, roll_deg), pose=pose, projection=view, origin=None)
 
 
-def _rolled(image: NDArray[np.uint8], roll_deg: float) -> NDArray[np.uint8]:
+def _rotate(image: NDArray[np.uint8], roll_deg: float) -> NDArray[np.uint8]:
     """Rotate a picture clockwise about its centre. Corners without content become black."""
     if abs(roll_deg) < _LEVEL_DEG:
         return image

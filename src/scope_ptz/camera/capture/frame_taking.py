@@ -15,8 +15,8 @@ from scope_ptz.camera.capture.close_ups import choose_close_ups
 from scope_ptz.camera.capture.plan import OVERLAP, Ranges, plan_poses, without_repeats
 from scope_ptz.camera.capture.session import CaptureSession, CaptureSettings
 from scope_ptz.camera.control import ControlHeldError
-from scope_ptz.camera.guard.guarded import GuardedCamera, KeepOutError
-from scope_ptz.camera.guard.mounted import MountedCamera
+from scope_ptz.camera.guard.guarded_camera import GuardedCamera, KeepOutError
+from scope_ptz.camera.guard.mounted_camera import MountedCamera
 from scope_ptz.camera.guard.rules import CameraRules
 from scope_ptz.camera.guard.wrapper import layers
 from scope_ptz.errors import CameraError, InputError, UnknownNameError
@@ -29,7 +29,7 @@ CLOSE_UPS = 40
 """Default maximum number of close-ups."""
 
 RETURN_S = 30.0
-"""Seconds within which a failed or cancelled capture must return the camera to its original pose."""
+"""Seconds allowed for returning the camera to its original pose after a failed or cancelled capture."""
 
 ATTEMPTS, RETRY_S = 3, 2.0
 """Maximum number of attempts to take a picture when the camera fails, and seconds between attempts."""
@@ -151,7 +151,7 @@ async def take_frames(
         CameraError: The camera fails. Frames that were already taken remain stored.
         OutputError: A frame cannot be stored.
     """
-    async with camera.control(holder), _returning(camera):
+    async with camera.control(holder), _return_afterwards(camera):
         taker = _Taker(camera, session, progress)
         await taker.presets([preset.name for preset in await camera.presets()] if presets is None else presets)
         limits = limits_of(session.settings)
@@ -222,7 +222,7 @@ class _Taker:
 
 
 @asynccontextmanager
-async def _returning(camera: Camera) -> AsyncIterator[None]:
+async def _return_afterwards(camera: Camera) -> AsyncIterator[None]:
     """Return a context that moves the camera back to its original pose at the end. After an error, it stops the camera first."""
     start = await camera.pose()
     try:

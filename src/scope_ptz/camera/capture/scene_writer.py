@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.blender.band import Panorama, reachable_band
-from scope_ptz.blender.packing import layer_of
-from scope_ptz.camera.capture.composing import UNSEEN, Composer, FramePicture, View, frame_picture
-from scope_ptz.camera.capture.hidden import hidden_in, kept_out
-from scope_ptz.camera.capture.registering import Registration, measured_optics
+from scope_ptz.blender.pack_writer import layer_of
+from scope_ptz.camera.capture.composition import UNSEEN, Composer, FramePicture, View, frame_picture
+from scope_ptz.camera.capture.hidden_parts import hidden_mask, keep_out_mask
+from scope_ptz.camera.capture.registration import Registration, measured_optics
 from scope_ptz.camera.capture.session import CaptureSession, CaptureSettings
 from scope_ptz.errors import OutputError
 from scope_ptz.geometry import Limits, Optics, Perspective, Pose, direction, wrap_pan_deg
@@ -142,7 +142,7 @@ class _Painter:
         soft = cv2.GaussianBlur(picture, (0, 0), SHARPENING_SIGMA_PX)
         cv2.addWeighted(picture, 1 + sharpening, soft, -sharpening, 0, dst=picture)
         picture[~seen] = UNSEEN
-        hidden = kept_out(self._session.settings, view)
+        hidden = keep_out_mask(self._session.settings, view)
         if hidden is not None:
             picture[hidden] = UNSEEN
             seen[hidden] = False
@@ -159,7 +159,7 @@ class _Painter:
     def _read(self, index: int) -> FramePicture:
         shot = self._registration.shots[index]
         image = self._session.image(shot)
-        return frame_picture(image, hidden_in(self._session.settings, shot, image), self._registration.gains[index])
+        return frame_picture(image, hidden_mask(self._session.settings, shot, image), self._registration.gains[index])
 
 
 def _tiles(

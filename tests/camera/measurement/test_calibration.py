@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from scope_ptz.camera.base import Arrival, CameraInfo
-from scope_ptz.camera.measuring.calibration import calibrate
+from scope_ptz.camera.measurement.calibration import calibrate
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.geometry import Optics, Pose

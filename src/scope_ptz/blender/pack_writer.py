@@ -24,13 +24,12 @@ COLOUR = ".avif"
 """File format of pictures. AVIF is a quarter smaller than WebP at the same structural similarity."""
 
 NUMBERS = ".webp"  # file format of instance numbers and depth, lossless
-SPRITE_CODING = 62
-MAX_BASE_CODING = 94
-MIN_BASE_CODING, MIN_TILE_CODING = 74, 48
-CODING_STEP = 4
-"""Encoder qualities: of sprites, the highest of the base panorama, and the lowest of the base panorama and of tiles.
-
-The qualities of the base panorama and of tiles are reduced in steps of ``CODING_STEP`` until the pack meets its size limit.
+SPRITE_ENCODING_QUALITY = 62
+MAX_BASE_ENCODING_QUALITY = 94
+MIN_BASE_ENCODING_QUALITY, MIN_TILE_ENCODING_QUALITY = 74, 48
+ENCODING_QUALITY_STEP = 4
+"""Encoder qualities of sprites, of the base panorama (highest and lowest), and of tiles (lowest). The qualities of the base
+panorama and of tiles are reduced in steps of ``ENCODING_QUALITY_STEP`` until the pack meets its size limit.
 """
 
 MANIFEST_BYTES = 400_000  # bytes reserved for the manifest
@@ -55,7 +54,7 @@ class RenderedActor:
 
 
 @dataclass(frozen=True, slots=True)
-class Rendered:
+class RenderedViewpoint:
     """All layers of a viewpoint before encoding."""
 
     panorama: Panorama
@@ -71,7 +70,7 @@ def write_pack(
     folder: Path,
     scene: SceneFile,
     viewpoint: SceneViewpoint,
-    rendered: Rendered,
+    rendered: RenderedViewpoint,
     quality: Quality,
     limit_bytes: int,
     step: Callable[[], None],
@@ -129,7 +128,9 @@ def weight_bytes(folder: Path) -> int:
     return sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
 
 
-def _colour_within_limit(folder: Path, rendered: Rendered, quality: Quality, limit_bytes: int) -> tuple[Layer, list[Layer]]:
+def _colour_within_limit(
+    folder: Path, rendered: RenderedViewpoint, quality: Quality, limit_bytes: int
+) -> tuple[Layer, list[Layer]]:
     """Encode the base panorama and the tiles at the best quality that fits into ``limit_bytes``.
 
     Spare space is used for the base. If there is too little space, the quality of the tiles is reduced first.
@@ -137,7 +138,7 @@ def _colour_within_limit(folder: Path, rendered: Rendered, quality: Quality, lim
     space = limit_bytes - weight_bytes(folder)
     encoded = (-1, -1)
     layers: list[Layer] = []
-    for codings in _codings(quality):
+    for codings in _encoding_qualities(quality):
         if codings[0] != encoded[0]:
             layers[:1] = [_colour(folder, f"base{COLOUR}", rendered.base, codings[0])]
         if codings[1] != encoded[1]:
@@ -148,14 +149,14 @@ def _colour_within_limit(folder: Path, rendered: Rendered, quality: Quality, lim
     return layers[0], layers[1:]
 
 
-def _codings(quality: Quality) -> Iterator[tuple[int, int]]:
+def _encoding_qualities(quality: Quality) -> Iterator[tuple[int, int]]:
     """Yield the encoder qualities of base and tiles, best first."""
-    for base in range(MAX_BASE_CODING, quality.base_coding, -CODING_STEP):
-        yield base, quality.tile_coding
-    for tile in range(quality.tile_coding, MIN_TILE_CODING, -CODING_STEP):
-        yield quality.base_coding, tile
-    for base in range(quality.base_coding, MIN_BASE_CODING - 1, -CODING_STEP):
-        yield base, MIN_TILE_CODING
+    for base in range(MAX_BASE_ENCODING_QUALITY, quality.base_encoding_quality, -ENCODING_QUALITY_STEP):
+        yield base, quality.tile_encoding_quality
+    for tile in range(quality.tile_encoding_quality, MIN_TILE_ENCODING_QUALITY, -ENCODING_QUALITY_STEP):
+        yield quality.base_encoding_quality, tile
+    for base in range(quality.base_encoding_quality, MIN_BASE_ENCODING_QUALITY - 1, -ENCODING_QUALITY_STEP):
+        yield base, MIN_TILE_ENCODING_QUALITY
 
 
 def _tiles(folder: Path, tiles: list[RenderedTile], coding: int) -> list[Layer]:
@@ -165,7 +166,7 @@ def _tiles(folder: Path, tiles: list[RenderedTile], coding: int) -> list[Layer]:
 
 
 def _actor(folder: Path, actor: RenderedActor) -> ActorSheet:
-    colour = _colour(folder, f"actors/{actor.number}{COLOUR}", actor.sheet.colour, SPRITE_CODING)
+    colour = _colour(folder, f"actors/{actor.number}{COLOUR}", actor.sheet.colour, SPRITE_ENCODING_QUALITY)
     depth = _numbers(folder, f"actors/{actor.number}-depth{NUMBERS}", actor.sheet.depth)
     return ActorSheet(number=actor.number, colour=colour, depth=depth, sprites=actor.sheet.sprites, stride_m=actor.stride_m)
 
