@@ -65,7 +65,7 @@ def test_a_constant_velocity_covers_its_distance_after_the_ramp() -> None:
 
 def test_the_distance_is_the_integral_of_the_speed() -> None:
     motor = Motor(100.0, 400.0)
-    steps = [motor.driven(-70.0, 90.0, 0.6, k / 10_000) for k in range(12_000)]
+    steps = [motor.after_command(-70.0, 90.0, 0.6, k / 10_000) for k in range(12_000)]
     summed = sum((a + b) / 2 / 10_000 for (_, a), (_, b) in pairwise(steps))
     assert steps[-1][0] == pytest.approx(summed, abs=1e-3)
     assert steps[-1][1] == 0.0

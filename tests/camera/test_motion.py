@@ -17,11 +17,11 @@ poses = st.builds(Pose, st.floats(-179, 179), st.floats(-60, 30), st.floats(1, 5
 def test_a_motor_moves_monotonically_from_rest_to_rest(motor: Motor, distance: float, a: float, b: float) -> None:
     total = motor.duration_s(distance)
     early, late = sorted((a * total, b * total))
-    gone = abs(motor.travelled(distance, late)) - abs(motor.travelled(distance, early))
+    gone = abs(motor.distance_after(distance, late)) - abs(motor.distance_after(distance, early))
     assert -1e-9 <= gone <= motor.speed * (late - early) + 1e-6
-    assert motor.travelled(distance, 0.0) == pytest.approx(0.0)
-    assert motor.travelled(distance, total) == distance
-    assert abs(motor.travelled(distance, total / 2)) == pytest.approx(abs(distance) / 2, abs=1e-6)
+    assert motor.distance_after(distance, 0.0) == pytest.approx(0.0)
+    assert motor.distance_after(distance, total) == distance
+    assert abs(motor.distance_after(distance, total / 2)) == pytest.approx(abs(distance) / 2, abs=1e-6)
 
 
 @given(st.floats(1, 300))

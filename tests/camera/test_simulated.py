@@ -11,7 +11,7 @@ import pytest
 
 from scope_ptz.camera.base import Arrival, Camera, Frame
 from scope_ptz.camera.conformance import CameraConformance
-from scope_ptz.camera.simulated import CUT_S, SimulatedCamera
+from scope_ptz.camera.simulated import VIEWPOINT_SWITCH_S, SimulatedCamera
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.clock import SceneClock
@@ -72,7 +72,7 @@ async def test_presets_can_change_the_viewpoint_and_home_restores_it(analytic_sc
     there = await camera.frame()
     assert there.origin is not None
     assert there.origin.viewpoint == "roof"
-    assert camera.clock.now_s() == pytest.approx(CUT_S)
+    assert camera.clock.now_s() == pytest.approx(VIEWPOINT_SWITCH_S)
     await camera.go_home()
     assert camera.viewpoint == "mast"
     with camera.hold_time():

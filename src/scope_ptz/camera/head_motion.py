@@ -110,9 +110,11 @@ class HeadMotion:
         pan, tilt, zoom = (speed for _, speed in self._driven(command, now_s - since_s))
         limits = self._limits
         return Velocity(
-            0.0 if not limits.pan_endless and _pushes(pan, pose.pan_deg, limits.min_pan_deg, limits.max_pan_deg) else pan,
-            0.0 if _pushes(tilt, pose.tilt_deg, limits.min_tilt_deg, limits.max_tilt_deg) else tilt,
-            0.0 if _pushes(zoom, pose.zoom, limits.min_zoom, limits.max_zoom) else zoom,
+            0.0
+            if not limits.pan_endless and _pushes_against_limit(pan, pose.pan_deg, limits.min_pan_deg, limits.max_pan_deg)
+            else pan,
+            0.0 if _pushes_against_limit(tilt, pose.tilt_deg, limits.min_tilt_deg, limits.max_tilt_deg) else tilt,
+            0.0 if _pushes_against_limit(zoom, pose.zoom, limits.min_zoom, limits.max_zoom) else zoom,
         )
 
     @property
@@ -144,9 +146,9 @@ class HeadMotion:
         """Return the distance and speed of pan, tilt and zoom (in octaves) since a command began."""
         head, speed, target = self._head, command.speed, command.target
         return (
-            head.pan.driven(speed.pan_dps, target.pan_dps, command.hold_s, time_s),
-            head.tilt.driven(speed.tilt_dps, target.tilt_dps, command.hold_s, time_s),
-            head.zoom.driven(speed.zoom_rate, target.zoom_rate, command.hold_s, time_s),
+            head.pan.after_command(speed.pan_dps, target.pan_dps, command.hold_s, time_s),
+            head.tilt.after_command(speed.tilt_dps, target.tilt_dps, command.hold_s, time_s),
+            head.zoom.after_command(speed.zoom_rate, target.zoom_rate, command.hold_s, time_s),
         )
 
     def _replace(self, command: _Move | _Drive, now_s: float) -> None:
@@ -154,6 +156,6 @@ class HeadMotion:
         self.commands += 1
 
 
-def _pushes(speed: float, value: float, low: float, high: float) -> bool:
+def _pushes_against_limit(speed: float, value: float, low: float, high: float) -> bool:
     """Return whether a motor pushes against a limit."""
     return (speed > 0 and value >= high) or (speed < 0 and value <= low)

@@ -26,7 +26,7 @@ class Motor:
             return 2 * math.sqrt(d / self.acceleration)
         return d / self.speed + self.speed / self.acceleration
 
-    def travelled(self, distance: float, time_s: float) -> float:
+    def distance_after(self, distance: float, time_s: float) -> float:
         """Return how much of ``distance`` is covered after ``time_s``, with the same sign."""
         d, total = abs(distance), self.duration_s(distance)
         t = min(max(time_s, 0.0), total)
@@ -41,7 +41,7 @@ class Motor:
             gone = self.acceleration * ramp**2 / 2 + self.speed * (t - ramp)
         return math.copysign(gone, distance)
 
-    def driven(self, speed: float, target_speed: float, hold_s: float, time_s: float) -> tuple[float, float]:
+    def after_command(self, speed: float, target_speed: float, hold_s: float, time_s: float) -> tuple[float, float]:
         """Return the distance and the speed ``time_s`` after a velocity command.
 
         Args:
@@ -99,9 +99,9 @@ class Head:
         if time_s >= self.duration_s(start, end) - self.settle_s:
             return end
         return Pose(
-            start.pan_deg + self.pan.travelled(pan, time_s),
-            start.tilt_deg + self.tilt.travelled(tilt, time_s),
-            start.zoom * 2 ** self.zoom.travelled(octaves, time_s),
+            start.pan_deg + self.pan.distance_after(pan, time_s),
+            start.tilt_deg + self.tilt.distance_after(tilt, time_s),
+            start.zoom * 2 ** self.zoom.distance_after(octaves, time_s),
         )
 
 

@@ -14,7 +14,7 @@ def preset_pose(preset: ScenePreset) -> Pose:
     return Pose(preset.pan_deg, preset.tilt_deg, preset.zoom)
 
 
-def starting_preset(scene: SceneFile, viewpoint: str | None = None) -> ScenePreset:
+def camera_home_preset(scene: SceneFile, viewpoint: str | None = None) -> ScenePreset:
     """Return the preset that is a camera's home.
 
     Args:
@@ -50,7 +50,7 @@ class ScenePresets:
     """
 
     def __init__(self, scene: SceneFile, viewpoint: str | None = None) -> None:
-        self.home = starting_preset(scene, viewpoint)
+        self.home = camera_home_preset(scene, viewpoint)
         self._presets = {preset.name: preset for preset in scene.presets}
 
     def infos(self) -> list[PresetInfo]:

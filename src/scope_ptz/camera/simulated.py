@@ -21,18 +21,18 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.simulator.views import RENDERING_VERSION, picture
 
-TICK_S = 0.05
+COMMAND_POLL_S = 0.05
 """Interval, in seconds, at which a moving camera checks for a new command."""
 
-CUT_S = 0.5
+VIEWPOINT_SWITCH_S = 0.5
 """Time, in seconds, to switch to another viewpoint, like switching between two cameras of an installation."""
 
 
 _RENDERING: RunVar[CapacityLimiter] = RunVar("scope_ptz_rendering")
 
 
-def _rendering() -> CapacityLimiter:
-    """Return the limit on concurrent rendering. Without a limit, many simultaneous requests would all be late."""
+def _render_limiter() -> CapacityLimiter:
+    """Return the limiter of concurrent rendering. Without it, many simultaneous requests would all be late."""
     try:
         return _RENDERING.get()
     except LookupError:
@@ -134,7 +134,7 @@ class SimulatedCamera(Camera):
         pose, time_s, viewpoint = self._pose_now(), self.clock.now_s(), self._viewpoint
         hfov_deg = self._info.optics.hfov_deg(pose.zoom)
         view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, self._info.frame_width, self._info.frame_height)
-        image = await to_thread.run_sync(picture, self._scene, viewpoint, view, time_s, limiter=_rendering())
+        image = await to_thread.run_sync(picture, self._scene, viewpoint, view, time_s, limiter=_render_limiter())
         origin = FrameOrigin(self._scene.name, viewpoint, pose, time_s)
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
@@ -156,7 +156,7 @@ class SimulatedCamera(Camera):
         end, clamped = self._info.limits.clamp(preset_pose(preset))
         self._viewpoint = preset.viewpoint
         self._motion.jump_to(end, self.clock.elapsed_s())
-        await self.clock.sleep(CUT_S)
+        await self.clock.sleep(VIEWPOINT_SWITCH_S)
         return Arrival(end, clamped)
 
     async def _run(self, end: Pose) -> None:
@@ -172,7 +172,7 @@ class SimulatedCamera(Camera):
         command = motion.commands
         try:
             while motion.commands == command and (left_s := motion.end_time_s() - self.clock.elapsed_s()) > 1e-9:
-                await self.clock.sleep(min(left_s, TICK_S))
+                await self.clock.sleep(min(left_s, COMMAND_POLL_S))
         except BaseException:
             if motion.commands == command:
                 await self.stop()

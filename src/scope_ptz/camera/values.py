@@ -131,7 +131,8 @@ class Arrival:
     Attributes:
         pose: The pose reached.
         clamped: The axes that a limit stopped.
-        limited_by: Why the camera stopped early, as a noun phrase, if the reason was not a limit of the device; otherwise empty.
+        limited_by: What else stopped the camera early, as a noun phrase such as "the keep-out region 'window'"; empty if nothing
+            did.
     """
 
     pose: Pose

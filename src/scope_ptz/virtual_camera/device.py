@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scope_ptz.camera.capabilities import Velocity, check_preset_name
 from scope_ptz.camera.head_motion import HeadMotion
 from scope_ptz.camera.motion import AXIS_M5075_G_HEAD, Head
-from scope_ptz.camera.scene_presets import preset_pose, starting_preset
+from scope_ptz.camera.scene_presets import camera_home_preset, preset_pose
 from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.geometry import Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
@@ -90,7 +90,7 @@ class VirtualDevice:
         height: int = 720,
         time_scale: float = 1.0,
     ) -> None:
-        start = starting_preset(scene.file, viewpoint)
+        start = camera_home_preset(scene.file, viewpoint)
         self.scene, self.viewpoint = scene, start.viewpoint
         self.name = name or f"{scene.name} {start.viewpoint}"
         self.accounts = Accounts(accounts)
@@ -103,7 +103,7 @@ class VirtualDevice:
         self._motion = HeadMotion(head, self.limits, self.home)
         self._started_s = monotonic()
         self.lens = VirtualLens(self.now_s)
-        self._stopped_by_s = -np.inf
+        self._last_stop_sent_s = -np.inf
         self._faults, self._faults_since_s = Faults(), 0.0
         self._frozen: Exposure | None = None
         self.observers: list[Callable[[Exposure], None]] = []
@@ -162,7 +162,7 @@ class VirtualDevice:
         Returns:
             Whether the command is carried out.
         """
-        if sent_s is not None and sent_s < self._stopped_by_s:
+        if sent_s is not None and sent_s < self._last_stop_sent_s:
             return False
         stuck = self._faults.stuck
         free = Velocity(
@@ -193,7 +193,7 @@ class VirtualDevice:
             sent_s: The time at which the client sent the command, in Unix seconds, if known.
         """
         if sent_s is not None:
-            self._stopped_by_s = max(self._stopped_by_s, sent_s)
+            self._last_stop_sent_s = max(self._last_stop_sent_s, sent_s)
         now_s = self.now_s()
         if not (pan_tilt and zoom):
             self._motion.stop_axes(now_s, pan_tilt=pan_tilt, zoom=zoom)
@@ -210,7 +210,7 @@ class VirtualDevice:
         """
         self._motion.jump_to(self.home, self.now_s())
         self.lens = VirtualLens(self.now_s)
-        self._stopped_by_s = -np.inf
+        self._last_stop_sent_s = -np.inf
 
     def presets(self) -> list[DevicePreset]:
         """Return the presets in the order of their numbers."""

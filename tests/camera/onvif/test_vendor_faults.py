@@ -214,7 +214,7 @@ async def test_space_without_extent_is_left_out(device: VirtualDevice) -> None:
         return reply.replace(b"179.0<", b"0.0<").replace(b"-0.0<", b"0.0<") if name == "GetConfigurationOptions" else reply
 
     async with driver(device, Vendor(change=change), mapping=MEASURED) as camera:
-        assert list(camera.device.reports_in) == [camera.device.moves_in.uri, ""]
+        assert list(camera.device.report_spaces) == [camera.device.move_space.uri, ""]
         await camera.move(THERE)
         assert device.pose().pan_deg == pytest.approx(40.0, abs=0.05)
 

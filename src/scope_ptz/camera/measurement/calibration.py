@@ -34,8 +34,8 @@ TILT_ZERO_TOLERANCE_DEG = 3.0
 PAN_OFFSETS_DEG = (0.0, 60.0, -60.0, 120.0)
 """Pan offsets from the start pose, tried in order until one shows enough detail."""
 
-_SMALL, _LARGE = 0.12, 0.35  # turns as fractions of the field of view: a small one for the sign, a large one for the focal length
-_SHOTS, _RUNS = 5, 3  # numbers of snapshots and of moves that are timed
+_SMALL_TURN, _LARGE_TURN = 0.12, 0.35  # fractions of the field of view; a small turn shows the sign, a large one the focal length
+_TIMED_PICTURES, _TIMED_MOVES = 5, 3  # numbers of pictures and moves that are timed
 
 Progress = Callable[[str], None]
 
@@ -161,19 +161,22 @@ class _Response:
 
 
 async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response:
-    """Measure how pan and tilt respond at the widest zoom. The focal length is measured from the pictures alone."""
+    """Measure, at the widest zoom, how far the view turns for each reported degree. The focal length comes from the pictures
+    alone."""
     stated = camera.info.optics.hfov_deg(base.zoom)
     centre, here = await _move_and_take(camera, base)
     focal = r.focal_px(stated, centre.shape[1])
     rough = []
-    for pan_deg, tilt_deg in ((_SMALL * stated, 0.0), (0.0, _vertical(camera, base, _SMALL * stated / 2))):
-        pair, turned = await _turned(camera, base, centre, here, pan_deg, tilt_deg)
+    for pan_deg, tilt_deg in ((_SMALL_TURN * stated, 0.0), (0.0, _vertical(camera, base, _SMALL_TURN * stated / 2))):
+        pair, turned = await _turn_and_match(camera, base, centre, here, pan_deg, tilt_deg)
         found = r.rotation(pair, focal)
         rough.append(found.angle_deg / (abs(turned) or 1.0))
     # The second turns are chosen so that the pictures overlap well however far the camera really turns per commanded degree.
-    pan_deg = min(_LARGE * stated / max(rough[0], 0.05), 3 * _LARGE * stated)
-    tilt_deg = _vertical(camera, base, min(_LARGE * stated * 0.5 / max(rough[1], 0.05), 60.0))
-    pairs = [await _turned(camera, base, centre, here, *turn) for turn in ((pan_deg, 0.0), (-pan_deg, 0.0), (0.0, tilt_deg))]
+    pan_deg = min(_LARGE_TURN * stated / max(rough[0], 0.05), 3 * _LARGE_TURN * stated)
+    tilt_deg = _vertical(camera, base, min(_LARGE_TURN * stated * 0.5 / max(rough[1], 0.05), 60.0))
+    pairs = [
+        await _turn_and_match(camera, base, centre, here, *turn) for turn in ((pan_deg, 0.0), (-pan_deg, 0.0), (0.0, tilt_deg))
+    ]
     focal = await to_thread.run_sync(r.focal_from, [pair for pair, _ in pairs])
     right, left, up = (r.rotation(pair, focal) for pair, _ in pairs)
     pan = statistics.mean(math.copysign(each.angle_deg, each.right_deg) / pairs[k][1] for k, each in enumerate((right, left)))
@@ -203,7 +206,7 @@ async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, p
         for fraction in (0.25, 0.06):  # the second, smaller turn is for a zoom table that is far off
             try:
                 centre, here = await _move_and_take(camera, at)
-                pair, turned = await _turned(camera, at, centre, here, fraction * expected / abs(response.pan), 0.0)
+                pair, turned = await _turn_and_match(camera, at, centre, here, fraction * expected / abs(response.pan), 0.0)
                 focal = r.focal_for_angle(pair, turned * response.pan)
                 break
             except RegistrationError:
@@ -218,7 +221,7 @@ async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, p
 
 async def _snapshot_s(camera: Camera) -> float:
     times = []
-    for _ in range(_SHOTS):
+    for _ in range(_TIMED_PICTURES):
         started_s = monotonic()
         await camera.frame()
         times.append(monotonic() - started_s)
@@ -228,7 +231,7 @@ async def _snapshot_s(camera: Camera) -> float:
 async def _settling(camera: Camera, base: Pose) -> tuple[float, float]:
     """Return the median seconds that a move takes, and the median seconds from its reported arrival until the picture settles."""
     moves, settlings = [], []
-    for run in range(_RUNS):
+    for run in range(_TIMED_MOVES):
         started_s = camera.clock.now_s()
         await camera.move(Pose(base.pan_deg + (20.0 if run % 2 == 0 else 0.0), base.tilt_deg, base.zoom))
         arrived_s = camera.clock.now_s()
@@ -250,7 +253,7 @@ async def _move_and_take(camera: Camera, pose: Pose) -> tuple[NDArray[np.uint8],
     return (await camera.frame()).image, arrival.pose
 
 
-async def _turned(
+async def _turn_and_match(
     camera: Camera, base: Pose, centre: NDArray[np.uint8], here: Pose, pan_deg: float, tilt_deg: float
 ) -> tuple[Matches, float]:
     """Turn from a base pose along one axis. Return the matches with the base's picture, and the reported turn in degrees."""

@@ -55,12 +55,14 @@ class CalibrationRecord(_Record):
     @property
     def pan_deg(self) -> tuple[float, float] | None:
         """Actual pan in degrees at the ends of the assumed range; None if the range was not assumed."""
-        return None if "pan range" not in self.replaces else _scaled(self.pan_range_deg, self.pan_scale, 0.0)
+        return None if "pan range" not in self.replaces else _to_degrees(self.pan_range_deg, self.pan_scale, 0.0)
 
     @property
     def tilt_deg(self) -> tuple[float, float] | None:
         """Actual tilt in degrees at the ends of the assumed range; None if the range was not assumed."""
-        return None if "tilt range" not in self.replaces else _scaled(self.tilt_range_deg, self.tilt_scale, self.tilt_offset_deg)
+        return (
+            None if "tilt range" not in self.replaces else _to_degrees(self.tilt_range_deg, self.tilt_scale, self.tilt_offset_deg)
+        )
 
 
 class ProbeRecord(_Record):
@@ -174,5 +176,5 @@ def save_profile(folder: Path, profile: CameraProfile) -> Path:
     return path
 
 
-def _scaled(ends: tuple[float, float], scale: float, offset: float) -> tuple[float, float]:
+def _to_degrees(ends: tuple[float, float], scale: float, offset: float) -> tuple[float, float]:
     return scale * ends[0] + offset, scale * ends[1] + offset

@@ -59,7 +59,7 @@ class OnvifClient:
         for adjust_time in (True, False):
             camera = self._make_camera(adjust_time)
             try:
-                await _repeated(partial(self._read_addresses, camera))
+                await _retry(partial(self._read_addresses, camera))
             except BaseException as error:
                 with anyio.CancelScope(shield=True):
                     await _close(camera)
@@ -86,8 +86,8 @@ class OnvifClient:
         Raises:
             CameraError: One of the errors of ``camera.network.errors`` or ``camera.onvif.faults``.
         """
-        once = partial(self._signed_in_call, service, operation, arguments)
-        return await (once() if operation in NOT_RETRIED else _repeated(once))
+        once = partial(self._authenticated_call, service, operation, arguments)
+        return await (once() if operation in NOT_RETRIED else _retry(once))
 
     async def prepare_stop(self, profile: str) -> None:
         """Prepare the connection for ``stop_blocking``."""
@@ -117,7 +117,7 @@ class OnvifClient:
         with soap_errors(self.address, "GetServices"):
             await camera.update_xaddrs()
 
-    async def _signed_in_call(self, service: str, operation: str, arguments: dict[str, Any]) -> Any:
+    async def _authenticated_call(self, service: str, operation: str, arguments: dict[str, Any]) -> Any:
         try:
             reply = await self._call(service, operation, arguments)
         except CameraSignInError:
@@ -164,8 +164,8 @@ class OnvifClient:
             await _close(camera)
 
 
-async def _repeated(call: Callable[[], Awaitable[Any]]) -> Any:
-    """Call a function, and retry it after a lost connection. Each call sends a new message with a new login."""
+async def _retry(call: Callable[[], Awaitable[Any]]) -> Any:
+    """Call a function, and retry it after a lost connection. Each call sends a new message with a new authentication header."""
     for pause_s in BACKOFF_S:
         try:
             return await call()

@@ -18,7 +18,7 @@ from scope_ptz.camera.onvif.mapping import (
     known_mapping,
     zoom_rows,
 )
-from scope_ptz.camera.onvif.spaces import Ends, LinearScale, PanTiltSpace, StatedSpace, ZoomSpace
+from scope_ptz.camera.onvif.spaces import Ends, LinearScale, PanTiltSpace, ReportedSpace, ZoomSpace
 from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Limits
 
@@ -41,8 +41,8 @@ class OnvifDevice:
         picture_profile: Token of the profile whose pictures are taken.
         width: Width of the stream in pixels.
         height: Height of the stream in pixels.
-        moves_in: The coordinate space of absolute moves.
-        reports_in: The spaces in which it may report positions, by URI; the key "" is for positions that name no space.
+        move_space: The coordinate space of absolute moves.
+        report_spaces: The spaces in which it may report positions, by URI; the key "" is for positions that name no space.
         zoom: The space of zoom positions.
         velocity: The generic velocity space of pan and tilt; None if they cannot be driven.
         zoom_velocity: The generic velocity space of the zoom; None if it cannot be driven.
@@ -62,13 +62,13 @@ class OnvifDevice:
     picture_profile: str
     width: int
     height: int
-    moves_in: PanTiltSpace
-    reports_in: dict[str, PanTiltSpace]
+    move_space: PanTiltSpace
+    report_spaces: dict[str, PanTiltSpace]
     zoom: ZoomSpace
-    velocity: StatedSpace | None
-    zoom_velocity: StatedSpace | None
-    fov_translation: StatedSpace | None
-    zoom_translation: StatedSpace | None
+    velocity: ReportedSpace | None
+    zoom_velocity: ReportedSpace | None
+    fov_translation: ReportedSpace | None
+    zoom_translation: ReportedSpace | None
     video_source: str
     timeout_s: Ends
     limits: Limits
@@ -100,16 +100,16 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
     configuration = ptz.PTZConfiguration
     offered, timeout = await _options(client, configuration)
     assumed: list[str] = []
-    stated = {space.uri: space for space in spaces.stated_spaces(offered.AbsolutePanTiltPositionSpace) if space.y is not None}
-    reports_in = _position_spaces(stated, mapping, assumed)
-    if not reports_in:
+    stated = {space.uri: space for space in spaces.reported_spaces(offered.AbsolutePanTiltPositionSpace) if space.y is not None}
+    report_spaces = _position_spaces(stated, mapping, assumed)
+    if not report_spaces:
         raise CameraReplyError(
             f"The camera at {client.address} reports no space of absolute positions, so SCOPE cannot move it to a pose."
         )
-    moves_in = reports_in.get(spaces.DEGREES) or next(iter(reports_in.values()))
-    zoom = _zoom_space(spaces.stated_spaces(offered.AbsoluteZoomPositionSpace), mapping, assumed)
-    velocity = _first(spaces.stated_spaces(offered.ContinuousPanTiltVelocitySpace), spaces.VELOCITY)
-    zoom_velocity = _first(spaces.stated_spaces(offered.ContinuousZoomVelocitySpace), spaces.ZOOM_VELOCITY)
+    move_space = report_spaces.get(spaces.DEGREES) or next(iter(report_spaces.values()))
+    zoom = _zoom_space(spaces.reported_spaces(offered.AbsoluteZoomPositionSpace), mapping, assumed)
+    velocity = _first(spaces.reported_spaces(offered.ContinuousPanTiltVelocitySpace), spaces.VELOCITY)
+    zoom_velocity = _first(spaces.reported_spaces(offered.ContinuousZoomVelocitySpace), spaces.ZOOM_VELOCITY)
     top = mapping.top_speed or ASSUMED_SPEED
     resolution = picture.VideoEncoderConfiguration.Resolution
     return OnvifDevice(
@@ -120,16 +120,16 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
         str(picture.token),
         int(resolution.Width),
         int(resolution.Height),
-        moves_in,
-        {**reports_in, "": reports_in.get(_default_space(configuration)) or next(iter(reports_in.values()))},
+        move_space,
+        {**report_spaces, "": report_spaces.get(_default_space(configuration)) or next(iter(report_spaces.values()))},
         zoom,
         velocity,
         zoom_velocity,
-        _first(spaces.stated_spaces(offered.RelativePanTiltTranslationSpace), spaces.TRANSLATION_FOV),
-        _first(spaces.stated_spaces(offered.RelativeZoomTranslationSpace), spaces.ZOOM_TRANSLATION),
+        _first(spaces.reported_spaces(offered.RelativePanTiltTranslationSpace), spaces.TRANSLATION_FOV),
+        _first(spaces.reported_spaces(offered.RelativeZoomTranslationSpace), spaces.ZOOM_TRANSLATION),
         _source(picture),
         timeout,
-        _limits(moves_in, zoom, configuration, reports_in),
+        _limits(move_space, zoom, configuration, report_spaces),
         Capabilities(
             Velocity(
                 top.pan_dps if velocity else 0.0,
@@ -145,7 +145,8 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
 def choose_profiles(profiles: Any, where: str, width: int, requested: str = "") -> tuple[Any, Any]:
     """Return the profile through which to move the camera, and the one from which to take pictures.
 
-    Only profiles with a PTZ configuration can move the camera, and on some devices only the sub stream has one. Pictures come from
+    Only profiles with a PTZ configuration can move the camera, and on some devices only the profile of the substream has one.
+    Pictures come from
     the smallest profile of the same video source that is wide enough.
 
     Raises:
@@ -190,7 +191,7 @@ async def _options(client: OnvifClient, configuration: Any) -> tuple[Any, Ends]:
     return node.SupportedPTZSpaces, (0.1, 60.0)
 
 
-def _position_spaces(stated: dict[str, StatedSpace], mapping: OnvifMapping, assumed: list[str]) -> dict[str, PanTiltSpace]:
+def _position_spaces(stated: dict[str, ReportedSpace], mapping: OnvifMapping, assumed: list[str]) -> dict[str, PanTiltSpace]:
     """Return the position spaces with their scales to degrees."""
     found: dict[str, PanTiltSpace] = {}
     degrees = stated.get(spaces.DEGREES)
@@ -211,7 +212,7 @@ def _position_spaces(stated: dict[str, StatedSpace], mapping: OnvifMapping, assu
     return found
 
 
-def _zoom_space(stated: tuple[StatedSpace, ...], mapping: OnvifMapping, assumed: list[str]) -> ZoomSpace:
+def _zoom_space(stated: tuple[ReportedSpace, ...], mapping: OnvifMapping, assumed: list[str]) -> ZoomSpace:
     space = _first(stated, spaces.ZOOM_GENERIC)
     if mapping.fields is None:
         assumed.append("field of view")
@@ -223,12 +224,12 @@ def _zoom_space(stated: tuple[StatedSpace, ...], mapping: OnvifMapping, assumed:
     return ZoomSpace(space.uri, rows)
 
 
-def _limits(moves_in: PanTiltSpace, zoom: ZoomSpace, configuration: Any, known: dict[str, PanTiltSpace]) -> Limits:
+def _limits(move_space: PanTiltSpace, zoom: ZoomSpace, configuration: Any, known: dict[str, PanTiltSpace]) -> Limits:
     """Return the limits of the position space, narrowed to those of the configuration."""
-    pan, tilt = sorted(moves_in.pan.values), sorted(moves_in.tilt.values)
+    pan, tilt = sorted(move_space.pan.values), sorted(move_space.tilt.values)
     endless = pan[1] - pan[0] >= ENDLESS_DEG
     narrowed = getattr(configuration, "PanTiltLimits", None)
-    for space in spaces.stated_spaces([narrowed.Range] if narrowed is not None and narrowed.Range is not None else ()):
+    for space in spaces.reported_spaces([narrowed.Range] if narrowed is not None and narrowed.Range is not None else ()):
         scale = known.get(space.uri)
         if scale is None or space.y is None:
             continue
@@ -244,7 +245,7 @@ def _default_space(configuration: Any) -> str:
     return str(getattr(configuration, "DefaultAbsolutePantTiltPositionSpace", None) or spaces.GENERIC)
 
 
-def _first(stated: tuple[StatedSpace, ...], uri: str) -> StatedSpace | None:
+def _first(stated: tuple[ReportedSpace, ...], uri: str) -> ReportedSpace | None:
     return next((space for space in stated if space.uri == uri), None)
 
 

@@ -51,7 +51,7 @@ def soap_errors(address: DeviceAddress, operation: str) -> Iterator[None]:
     except CameraError:
         raise
     except Fault as fault:
-        failure: CameraError = _of_fault(address, operation, fault)
+        failure: CameraError = _error_from_fault(address, operation, fault)
     except ONVIFError as error:
         text = _plain(error.reason)
         failure = CameraReplyError(f"The camera at {address} cannot be used for {operation}: {text}. Check that ONVIF is enabled.")
@@ -65,7 +65,7 @@ def soap_errors(address: DeviceAddress, operation: str) -> Iterator[None]:
     raise failure from None
 
 
-def _of_fault(address: DeviceAddress, operation: str, fault: Any) -> CameraError:
+def _error_from_fault(address: DeviceAddress, operation: str, fault: Any) -> CameraError:
     codes = _codes(fault)
     reason = _plain(fault.message or "no reason given")
     if any(code in _SIGN_IN for code in codes):

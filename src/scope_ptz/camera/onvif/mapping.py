@@ -17,7 +17,7 @@ ASSUMED_FIELDS_DEG = (60.0, 6.0)  # at the widest and the closest zoom, also use
 ASSUMED_SPEED = Velocity(60.0, 60.0, 0.5)
 """Top speeds that are assumed for a device without measured ones.
 
-If they are wrong, continuous moves are slower or faster than requested. Stops do not depend on them.
+If they are wrong, continuous moves are slower or faster than requested. Stopping does not depend on them.
 """
 
 
@@ -72,10 +72,10 @@ def zoom_rows(fields: tuple[tuple[float, float], ...], zoom_max: float | None) -
     )
 
 
-def _of_optics(optics: Optics) -> OnvifMapping:
+def _mapping_of_optics(optics: Optics) -> OnvifMapping:
     low, high = optics.min_zoom, optics.max_zoom
     fields = tuple(((zoom - low) / (high - low), hfov_deg) for zoom, hfov_deg in optics.table)
     return OnvifMapping(fields=fields, zoom_max=high, top_speed=top_speed(AXIS_M5075_G_HEAD))
 
 
-_KNOWN = {"M5075-G": _of_optics(AXIS_M5075_G)}
+_KNOWN = {"M5075-G": _mapping_of_optics(AXIS_M5075_G)}

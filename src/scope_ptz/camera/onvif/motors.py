@@ -14,11 +14,11 @@ from scope_ptz.geometry import Pose, wrap_pan_deg
 if TYPE_CHECKING:
     from scope_ptz.camera.onvif.client import OnvifClient
     from scope_ptz.camera.onvif.device import OnvifDevice
-    from scope_ptz.camera.onvif.spaces import Ends, StatedSpace
+    from scope_ptz.camera.onvif.spaces import Ends, ReportedSpace
 
 
 class OnvifMotors:
-    """The motors of one profile.
+    """PTZ control through one media profile.
 
     Args:
         client: The connection.
@@ -43,7 +43,7 @@ class OnvifMotors:
                 f"The camera at {self._client.address} does not report its position, so SCOPE cannot check moves. "
                 "Newer firmware may help."
             )
-        space = self._device.reports_in.get(str(pan_tilt.space or "")) or self._device.reports_in[""]
+        space = self._device.report_spaces.get(str(pan_tilt.space or "")) or self._device.report_spaces[""]
         pan_deg, tilt_deg = space.pan.to_value(float(pan_tilt.x)), space.tilt.to_value(float(pan_tilt.y))
         zoom = getattr(position, "Zoom", None)
         units = self._device.zoom.rows[0][0] if zoom is None or zoom.x is None else float(zoom.x)
@@ -55,7 +55,7 @@ class OnvifMotors:
 
     async def move(self, pose: Pose) -> None:
         """Start moving to a pose, which must be within the limits."""
-        space, zoom = self._device.moves_in, self._device.zoom
+        space, zoom = self._device.move_space, self._device.zoom
         position: dict[str, Any] = {
             "PanTilt": {"x": space.pan.to_units(pose.pan_deg), "y": space.tilt.to_units(pose.tilt_deg), "space": space.uri}
         }
@@ -64,7 +64,7 @@ class OnvifMotors:
         await self._client.call("ptz", "AbsoluteMove", ProfileToken=self._device.ptz_profile, Position=position)
 
     def centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Callable[[], Awaitable[None]] | None:
-        """Return the command that centres a point of the picture by a relative move expressed as fractions of the field of view.
+        """Return the command that centres a point of the picture with a relative move, given in fractions of the field of view.
 
         Args:
             here: The current pose.
@@ -78,7 +78,7 @@ class OnvifMotors:
         device, space = self._device, self._device.fov_translation
         if space is None or space.y is None:
             return None
-        turn = {"x": _at(x, space.x), "y": _at(1.0 - y, space.y), "space": space.uri}
+        turn = {"x": _value_at(x, space.x), "y": _value_at(1.0 - y, space.y), "space": space.uri}
         translation: dict[str, Any] = {"PanTilt": turn}
         if not math.isclose(here.zoom, target.zoom, rel_tol=1e-6):
             if device.zoom_translation is None:
@@ -97,8 +97,8 @@ class OnvifMotors:
         if self._device.velocity is not None:
             space = self._device.velocity
             velocity["PanTilt"] = {
-                "x": _speed(pan_dps, top.pan_dps, space, self._device.moves_in.pan.values),
-                "y": _speed(tilt_dps, top.tilt_dps, space, self._device.moves_in.tilt.values, axis="y"),
+                "x": _speed(pan_dps, top.pan_dps, space, self._device.move_space.pan.values),
+                "y": _speed(tilt_dps, top.tilt_dps, space, self._device.move_space.tilt.values, axis="y"),
                 "space": space.uri,
             }
         if top.zoom_rate and self._device.zoom_velocity is not None:
@@ -127,13 +127,13 @@ class OnvifMotors:
         await self._client.call("ptz", "GotoHomePosition", ProfileToken=self._device.ptz_profile)
 
 
-def _at(fraction: float, ends: Ends) -> float:
-    """Return the number at a fraction of a range."""
+def _value_at(fraction: float, ends: Ends) -> float:
+    """Return the value that lies a fraction of the way along a range."""
     return ends[0] + fraction * (ends[1] - ends[0])
 
 
 def _speed(
-    value: float, top: float, space: StatedSpace, counts: tuple[float, float] = (0.0, 1.0), *, axis: str = "x"
+    value: float, top: float, space: ReportedSpace, counts: tuple[float, float] = (0.0, 1.0), *, axis: str = "x"
 ) -> float:  # fmt: skip
     """Return a velocity in a generic space, whose ends are the top speeds.
 

@@ -25,7 +25,7 @@ Ends = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class StatedSpace:
+class ReportedSpace:
     """A space as the device reports it. A one-dimensional space has no ``y``."""
 
     uri: str
@@ -99,20 +99,20 @@ class ZoomSpace:
 
     def to_zoom(self, units: float) -> float:
         """Convert device units to a magnification."""
-        return _interpolated(units, [row[0] for row in self.rows], [row[1] for row in self.rows])
+        return _interpolate(units, [row[0] for row in self.rows], [row[1] for row in self.rows])
 
     def to_units(self, zoom: float) -> float:
         """Convert a magnification to device units."""
-        return _interpolated(zoom, [row[1] for row in self.rows], [row[0] for row in self.rows])
+        return _interpolate(zoom, [row[1] for row in self.rows], [row[0] for row in self.rows])
 
 
-def stated_spaces(described: Any) -> tuple[StatedSpace, ...]:
+def reported_spaces(described: Any) -> tuple[ReportedSpace, ...]:
     """Return the usable spaces from a list in a reply. Spaces with empty ranges, which some devices report, are omitted."""
     found = []
     for each in described or ():
         x, y = ends_of(each.XRange), ends_of(getattr(each, "YRange", None))
         if each.URI and x is not None and (getattr(each, "YRange", None) is None or y is not None):
-            found.append(StatedSpace(str(each.URI), x, y))
+            found.append(ReportedSpace(str(each.URI), x, y))
     return tuple(found)
 
 
@@ -124,7 +124,7 @@ def ends_of(described: Any) -> Ends | None:
     return (low, high) if math.isfinite(low) and math.isfinite(high) and low < high else None
 
 
-def _interpolated(value: float, xs: list[float], ys: list[float]) -> float:
+def _interpolate(value: float, xs: list[float], ys: list[float]) -> float:
     import numpy as np
 
     return float(np.interp(value, xs, ys))

@@ -44,7 +44,7 @@ class PinnedTransport:
         self._http = http
 
     async def post_xml(self, address: str, envelope: Any, headers: Mapping[str, str]) -> SoapReply:
-        """Send a message once and return the reply. Its login is valid only once, so a retry needs a new message.
+        """Send a message once and return the reply. Its authentication header is valid only once, so a retry needs a new message.
 
         Raises:
             CameraError: One of the errors of ``camera.network.errors``.
