@@ -36,7 +36,7 @@ def main() -> int:
     parser.add_argument("--rtsp", action="store_true", help="stream H.264 over RTSP")
     arguments = parser.parse_args()
     drivers = [arguments.driver] if arguments.driver else ["axis", "onvif"]
-    ended_well = True
+    passed = True
     with TemporaryDirectory() as folder:
         os.environ |= {"SCOPE_CAMERA_PASSWORD": PASSWORD, "SCOPE_VIRTUAL_CAMERA_PASSWORD": PASSWORD, "SCOPE_CACHE_DIR": folder}
         command = [sys.executable, "-m", "scope_ptz.cli", "camera", "serve", "--scene", arguments.scene, "--port", "0"]
@@ -48,10 +48,10 @@ def main() -> int:
                 for driver in drivers:
                     stream = {"axis": "mjpeg", "onvif": "snapshot"}[driver] if not arguments.rtsp else "rtsp"
                     spec = f"{driver}://guard@{address['url'].partition('://')[2]}?stream={stream}"
-                    ended_well &= anyio.run(reconnect, spec, arguments.times)
+                    passed &= anyio.run(reconnect, spec, arguments.times)
             finally:
                 camera.terminate()
-    return 0 if ended_well else 1
+    return 0 if passed else 1
 
 
 async def reconnect(spec: str, times: int) -> bool:
@@ -61,11 +61,11 @@ async def reconnect(spec: str, times: int) -> bool:
     samples: list[dict[str, float]] = []
     for k in range(warm + times):
         if k >= warm and (k - warm) % max(1, times // 10) == 0:
-            samples.append(held())
-            print(f"{k - warm:5}  {text(samples[-1])}", flush=True)
+            samples.append(resource_usage())
+            print(f"{k - warm:5}  {format_usage(samples[-1])}", flush=True)
         await once(spec)
-    samples.append(held())
-    print(f"{times:5}  {text(samples[-1])}")
+    samples.append(resource_usage())
+    print(f"{times:5}  {format_usage(samples[-1])}")
     first, last = samples[0], samples[-1]
     cpu_ms = 1000 * (last["cpu_s"] - first["cpu_s"]) / times
     growth = last["memory_mb"] / samples[len(samples) // 2]["memory_mb"]
@@ -83,8 +83,8 @@ async def once(spec: str) -> None:
             await anext(stream)
 
 
-def held() -> dict[str, float]:
-    """Return the resources that this process holds."""
+def resource_usage() -> dict[str, float]:
+    """Return the resources that this process uses."""
     gc.collect()
     time.sleep(0.2)  # time for threads and processes to end
     used = resource.getrusage(resource.RUSAGE_SELF)
@@ -99,7 +99,7 @@ def held() -> dict[str, float]:
     }
 
 
-def text(figures: dict[str, Any]) -> str:
+def format_usage(figures: dict[str, Any]) -> str:
     return (
         f"{figures['memory_mb']:6.1f} MB  {figures['threads']:2} threads  {figures['files']:3} files and sockets  "
         f"{figures['processes']} processes"

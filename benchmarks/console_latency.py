@@ -26,7 +26,7 @@ import httpx2
 
 from console_clients.console_process import Console
 from console_clients.conversations import INSTRUCTIONS
-from console_clients.figures import Pauses, in_ms, quantiles
+from console_clients.figures import WakeUpDelays, in_ms, quantiles
 from console_clients.page import Clicks, chromium, open_page, read_page
 from console_clients.report import report_clicks
 from console_clients.viewers import Viewer
@@ -45,7 +45,7 @@ def main() -> int:
     parser.add_argument("--scene", default="highway-works", help="scene to show (default: highway-works)")
     parser.add_argument("--json", type=Path, help="also write the results to this file")
     options = parser.parse_args()
-    pauses = Pauses()
+    delays = WakeUpDelays()
     with tempfile.TemporaryDirectory() as folder:
         console = Console((options.scene,), Path(folder) / "runs")
         try:
@@ -63,7 +63,7 @@ def main() -> int:
         finally:
             console.end()
     results["stop"] = stops
-    results["machine"] = {"lateness_s": quantiles(pauses.end()), "load": [round(each, 1) for each in os.getloadavg()]}
+    results["machine"] = {"lateness_s": quantiles(delays.end()), "load": [round(each, 1) for each in os.getloadavg()]}
     if options.json is not None:
         options.json.write_text(json.dumps(results, indent=1))
     for name in ("idle", "while the agent works"):

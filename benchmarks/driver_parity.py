@@ -57,13 +57,13 @@ from scope_ptz.virtual_camera.http.server import ServedCamera, serve
 from scope_ptz.virtual_camera.onvif.app import OnvifApp
 
 IN_PROCESS, DRIVERS = "in process", ("axis", "onvif")
-TOLERANCE_DEG, ZOOM_SHARE = 0.3, 0.02
+TOLERANCE_DEG, ZOOM_TOLERANCE = 0.3, 0.02
 """Tolerances for the difference between the final pose with a driver and the one in process."""
 
 ARGUMENT_TOLERANCE = 0.01
 """Tolerance for numbers in the arguments of calls. The planner calculates some of them from the reported pose."""
 
-FAST = 50.0
+DEFAULT_TIME_SCALE = 50.0
 TRUE_SPEED_TASKS = 10
 STAGES = {"planner": "planner_s", "perception": "perception_s", "camera": "camera_s", "rendering": "render_s", "total": "total_s"}
 OPERATOR = Credentials("parity", "parity-on-loopback")
@@ -75,13 +75,15 @@ def main() -> int:
     parser.add_argument("--tasks", type=int, help="number of tasks (default: 120, or 10 with --true-speed)")
     parser.add_argument("--split", choices=SPLITS, default="core", help="tasks of 'unseen' are in scene variations (default: core)")
     parser.add_argument("--task", action="append", default=[], metavar="ID", help="run only this task; repeatable")
-    parser.add_argument("--time-scale", type=float, default=FAST, help="speed of the motors (default: %(default)g times real)")
+    parser.add_argument(
+        "--time-scale", type=float, default=DEFAULT_TIME_SCALE, help="speed of the motors (default: %(default)g times real)"
+    )
     parser.add_argument("--true-speed", action="store_true", help="run motors at real speed, and print the latency by stage")
     parser.add_argument("--json", type=Path, help="also write the results to this file")
     arguments = parser.parse_args()
     everything = load_split(arguments.split)
-    local = one_viewpoint(everything)
-    usable = asyncio.run(that_use_the_camera(local))
+    local = tasks_in_one_viewpoint(everything)
+    usable = asyncio.run(tasks_with_calls(local))
     count = arguments.tasks or (TRUE_SPEED_TASKS if arguments.true_speed else 120)
     tasks = [task for task in usable if task.id in arguments.task] if arguments.task else stratified_sample(usable, count, SEED)
     if not tasks:
@@ -101,9 +103,9 @@ def main() -> int:
 
 
 # Tasks ----------------------------------------------------------------------------------------------------------------------
-def one_viewpoint(tasks: Iterable[Task]) -> list[Task]:
+def tasks_in_one_viewpoint(tasks: Iterable[Task]) -> list[Task]:
     """Return the tasks that stay at one viewpoint. A physical camera cannot go to another one."""
-    scenes, kept = Library(), list[Task]()
+    scenes, selected = Library(), list[Task]()
     for task in tasks:
         file = scenes(task.world).file
         viewpoint_of = {preset.name: preset.viewpoint for preset in file.presets}
@@ -112,11 +114,11 @@ def one_viewpoint(tasks: Iterable[Task]) -> list[Task]:
         if any(call.tool == "go_home" for call in task.reference):
             visited.add(viewpoint_of[file.home_preset])
         if visited <= {start}:
-            kept.append(task)
-    return kept
+            selected.append(task)
+    return selected
 
 
-async def that_use_the_camera(tasks: Sequence[Task]) -> list[Task]:
+async def tasks_with_calls(tasks: Sequence[Task]) -> list[Task]:
     """Return the tasks in which the planner makes a call. The other tasks do not involve a driver."""
     scenes = Library()
 
@@ -133,7 +135,7 @@ async def that_use_the_camera(tasks: Sequence[Task]) -> list[Task]:
 # Runs -----------------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class PathRun:
-    """A task on one path. ``answer`` is the reply without the note on its source."""
+    """The result of a task on one path. ``answer`` is the reply without the note on its source."""
 
     calls: list[tuple[str, dict[str, Any]]]
     outcome: str
@@ -144,8 +146,8 @@ class PathRun:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """A task on all paths."""
+class TaskRuns:
+    """The results of a task on all paths."""
 
     task: str
     runs: dict[str, PathRun] = field(default_factory=dict)
@@ -165,8 +167,8 @@ class Measured:
 
 
 async def measure(
-    tasks: Iterable[Task], *, time_scale: float = FAST, progress: Callable[[str], None] = lambda _: None
-) -> list[Measured]:
+    tasks: Iterable[Task], *, time_scale: float = DEFAULT_TIME_SCALE, progress: Callable[[str], None] = lambda _: None
+) -> list[TaskRuns]:
     """Run tasks on all paths.
 
     Args:
@@ -175,7 +177,7 @@ async def measure(
         progress: Receives a line of text after each task.
     """
     scenes = Library()
-    measured: list[Measured] = []
+    measured: list[TaskRuns] = []
 
     def place(task: Task) -> tuple[str, str]:
         presets = scenes(task.world).file.presets
@@ -186,9 +188,9 @@ async def measure(
             scenes(world), viewpoint=viewpoint, accounts=[Account(OPERATOR.user, OPERATOR.password, Role.OPERATOR)],
             time_scale=time_scale,
         )  # fmt: skip
-        async with drivers(device, scenes, settling_of(time_scale)) as paths:
+        async with drivers(device, scenes, make_settling(time_scale)) as paths:
             for task in group:
-                measured.append(Measured(task.id))
+                measured.append(TaskRuns(task.id))
                 if time_scale == 1.0:  # reads the files of the task's views, so that no path spends time on it
                     await _in_process(scenes, viewpoint, task, real=False)
                 measured[-1].runs[IN_PROCESS] = await _in_process(scenes, viewpoint, task, real=time_scale == 1.0)
@@ -224,7 +226,7 @@ async def drivers(
         yield paths
 
 
-def settling_of(time_scale: float) -> Settling:
+def make_settling(time_scale: float) -> Settling:
     """Return the settling parameters of the drivers for motors that are faster than real ones."""
     if time_scale == 1.0:
         return Settling()
@@ -236,7 +238,7 @@ def settling_of(time_scale: float) -> Settling:
     )
 
 
-class StillScene(SceneClock):
+class FrozenSceneClock(SceneClock):
     """A clock whose scene time stands still while the motors run in real time."""
 
     def __init__(self, time_s: float) -> None:
@@ -247,7 +249,7 @@ class StillScene(SceneClock):
         return self._time_s
 
 
-class OneViewpoint(SimulatedCamera):
+class SingleViewpointCamera(SimulatedCamera):
     """A simulated camera that lists the presets of one viewpoint without descriptions, as a device does."""
 
     async def presets(self) -> list[PresetInfo]:
@@ -256,8 +258,8 @@ class OneViewpoint(SimulatedCamera):
 
 
 async def _in_process(scenes: Callable[[str], Scene], viewpoint: str, task: Task, *, real: bool) -> PathRun:
-    clock = StillScene(task.time_s) if real else SceneClock(task.time_s)
-    camera = OneViewpoint(scenes(task.world), viewpoint=viewpoint, clock=clock)
+    clock = FrozenSceneClock(task.time_s) if real else SceneClock(task.time_s)
+    camera = SingleViewpointCamera(scenes(task.world), viewpoint=viewpoint, clock=clock)
     with nullcontext() if real else clock.hold():
         await camera.go_to_preset(task.preset)
         return await _run(camera, GroundTruthPerception(scenes), task)
@@ -274,7 +276,7 @@ async def _run(camera: Camera, perception: Perception, task: Task) -> PathRun:
 
 
 def _http(served: ServedCamera) -> DeviceHttp:
-    # On a busy machine a reply may take longer than a person would wait.
+    # The default time-out is too short for a busy machine.
     return DeviceHttp(DeviceAddress(served.host, served.port), OPERATOR, timeouts=DeviceTimeouts(reply_s=60.0))
 
 
@@ -302,7 +304,7 @@ def same_pose(own: Pose, other: Pose) -> bool:
     return (
         abs(wrap_pan_deg(own.pan_deg - other.pan_deg)) <= TOLERANCE_DEG
         and abs(own.tilt_deg - other.tilt_deg) <= TOLERANCE_DEG
-        and abs(other.zoom / own.zoom - 1) <= ZOOM_SHARE
+        and abs(other.zoom / own.zoom - 1) <= ZOOM_TOLERANCE
     )
 
 
@@ -318,7 +320,7 @@ def _text(pose: Pose) -> str:
 
 
 # Report ---------------------------------------------------------------------------------------------------------------------
-def report(measured: Sequence[Measured]) -> list[str]:
+def report(measured: Sequence[TaskRuns]) -> list[str]:
     """Return the lines of the report."""
     total = len(measured)
     lines = ["| path | same calls | same answer | same final pose | all three |", "|---|---|---|---|---|"]
@@ -333,11 +335,11 @@ def report(measured: Sequence[Measured]) -> list[str]:
         pan = max(abs(wrap_pan_deg(a.pan_deg - b.pan_deg)) for a, b in pairs)
         tilt, zoom = max(abs(a.tilt_deg - b.tilt_deg) for a, b in pairs), max(abs(b.zoom / a.zoom - 1) for a, b in pairs)
         lines.append(f"| {path} | {pan:.4f} | {tilt:.4f} | {100 * zoom:.3f} |")
-    named = [f"- {each.task}, {path}, {kind}: {text}" for each in measured for path, kind, text in each.deviations()]
-    return [*lines, "", *(["Deviations:", *named] if named else ["No deviations."])]
+    deviations = [f"- {each.task}, {path}, {kind}: {text}" for each in measured for path, kind, text in each.deviations()]
+    return [*lines, "", *(["Deviations:", *deviations] if deviations else ["No deviations."])]
 
 
-def latency_table(measured: Sequence[Measured]) -> list[str]:
+def latency_table(measured: Sequence[TaskRuns]) -> list[str]:
     """Return a table of seconds by stage: medians over tasks, and median differences from the run of the same task in process."""
     lines = ["", "Seconds per task by stage, median (difference to in process in the same task, median)", ""]
     lines += [f"| path | {' | '.join(STAGES)} |", "|---|" + "---|" * len(STAGES)]

@@ -137,7 +137,7 @@ def _vector_row(mode: str, rounds: int) -> str:
         "scope_ptz.gym:scope_ptz/Search-v0", num_envs=VECTOR_SIZE, vectorization_mode=mode, scene=SCENE, max_looks=UNLIMITED,
         frame_size=size, vector_kwargs={"context": "spawn"} if mode == "async" else {},
     )  # fmt: skip
-    kept = shared_scene(SCENE)  # in this process, whose re-projections are measured
+    scene = shared_scene(SCENE)  # keeps the scene open in this process, where re-projections are measured
     for _ in range(2):
         steps_s, bare_s = list[float](), list[float]()
         rng = np.random.default_rng(1)
@@ -149,7 +149,7 @@ def _vector_row(mode: str, rounds: int) -> str:
             steps_s.append((time.perf_counter() - start_s) / VECTOR_SIZE)
             bare_s.append(_reprojection_s(infos["viewpoint"][0], observations["pose"][0], size))
     envs.close()
-    del kept
+    del scene
     return _table_row(f"Search, {VECTOR_SIZE} environments, {mode}", size, steps_s, bare_s)
 
 

@@ -89,7 +89,7 @@ class InaccurateCamera(CameraWrapper):
         return replace(frame, pose=pose, projection=replace(frame.projection, pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg))
 
 
-async def captured(arguments: argparse.Namespace, scenes: Path, progress: Any) -> tuple[dict[str, Any], Floats, VirtualDevice]:
+async def capture_twin(arguments: argparse.Namespace, scenes: Path, progress: Any) -> tuple[dict[str, Any], Floats, VirtualDevice]:
     """Serve a camera, capture it, and return the measurements of the capture."""
     options = VirtualCameraOptions(
         scenes=(arguments.scene,), time_scale=arguments.time_scale, freeze_time=not arguments.alive, discovery=False,
@@ -133,7 +133,7 @@ def common_turn(own: Floats, true: Floats) -> Floats:
     return np.asarray(u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt)
 
 
-def compared(arguments: argparse.Namespace, device: VirtualDevice, turn: Floats, twin: Scene) -> dict[str, Any]:
+def compare_views(arguments: argparse.Namespace, device: VirtualDevice, turn: Floats, twin: Scene) -> dict[str, Any]:
     """Return the similarity between views of the twin and of the camera's pack, and the angle between them.
 
     The similarity is computed at the same pose, and again after removing the common rotation of the whole twin, which cannot be
@@ -205,8 +205,8 @@ def main() -> int:
             if done == total and not arguments.json:
                 print(f"  {part}: {total}", file=sys.stderr, flush=True)
 
-        results, turn, device = asyncio.run(captured(arguments, scenes, progress))
-        results |= compared(arguments, device, turn, Scene(scenes / "twin"))
+        results, turn, device = asyncio.run(capture_twin(arguments, scenes, progress))
+        results |= compare_views(arguments, device, turn, Scene(scenes / "twin"))
     print(json.dumps(results) if arguments.json else "\n".join(f"{name}: {value}" for name, value in results.items()))
     error_deg = max(results["adjusted_error_deg"]["mean"], results["views_turned_deg"]["mean"])
     return int(results["ssim_without_common_turn"]["1x"]["mean"] < MIN_SSIM or error_deg >= MAX_POSE_ERROR_DEG)

@@ -26,7 +26,7 @@ import av
 import httpx2
 
 from soak.camera_process import END_S, RATE_HZ, Camera, run_camera
-from soak.load import disconnect_repeatedly, move_all_the_time
+from soak.load import disconnect_repeatedly, move_continually
 from soak.streams import Stream, read_mjpeg, read_rtsp
 
 SAMPLE_S = 2.0
@@ -58,10 +58,10 @@ def soak(scene: str, duration_s: float) -> dict[str, Any]:
         (streams[1], lambda: read_rtsp(streams[1], camera.rtsp_url, "tcp", ended)),
         (streams[2], lambda: read_rtsp(streams[2], camera.rtsp_url, "udp", ended)),
         (streams[3], lambda: read_mjpeg(streams[3], camera.url, ended)),
-        (None, lambda: move_all_the_time(camera.url, ended, rounds)),
+        (None, lambda: move_continually(camera.url, ended, rounds)),
         (None, lambda: disconnect_repeatedly(camera, ended)),
     ]
-    threads = [threading.Thread(target=guarded, args=each) for each in work]
+    threads = [threading.Thread(target=run_client, args=each) for each in work]
     for thread in threads:
         thread.start()
     start_s = time.monotonic()
@@ -107,7 +107,7 @@ def soak(scene: str, duration_s: float) -> dict[str, Any]:
     }
 
 
-def guarded(stream: Stream | None, work: Callable[[], None]) -> None:
+def run_client(stream: Stream | None, work: Callable[[], None]) -> None:
     """Run a client, and record the error if it fails."""
     try:
         work()

@@ -19,7 +19,7 @@ INSTRUCTIONS = (
 MAX_STEPS = 20
 
 
-def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *, sees: bool = True) -> str:
+def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *, accepts_images: bool = True) -> str:
     messages = [{"role": "system", "content": INSTRUCTIONS}, {"role": "user", "content": instruction}]
     for _ in range(MAX_STEPS):
         reply = client.chat.completions.create(model=model, messages=messages, tools=scope.tool_schemas("chat"))
@@ -33,7 +33,7 @@ def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *,
             print(f"  {call.function.name} {call.function.arguments} -> {output.text}")
             messages.append({"role": "tool", "tool_call_id": call.id, "content": output.text})
             pictures += output.pictures
-        for picture in pictures if sees else ():  # the API accepts images only in messages of the user
+        for picture in pictures if accepts_images else ():  # the API accepts images only in messages of the user
             image = {"type": "image_url", "image_url": {"url": picture.data_url}}
             messages.append({"role": "user", "content": [{"type": "text", "text": picture.caption}, image]})
     return f"The model gave no answer within {MAX_STEPS} steps."
@@ -50,7 +50,7 @@ def main() -> None:
 
     key = os.environ.get("OPENAI_API_KEY", "none")  # local servers need no key
     with OpenAI(base_url=options.url, api_key=key) as client, scope_ptz.open(options.camera) as scope:
-        print(ask(client, options.model, scope, options.instruction, sees=not options.text_only))
+        print(ask(client, options.model, scope, options.instruction, accepts_images=not options.text_only))
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ INSTRUCTIONS = (
 MAX_STEPS = 20
 
 
-def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *, sees: bool = True) -> str:
+def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *, accepts_images: bool = True) -> str:
     items = [{"role": "user", "content": instruction}]
     for _ in range(MAX_STEPS):
         response = client.responses.create(
@@ -33,7 +33,7 @@ def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *,
             output = scope.dispatch(call.name, call.arguments)
             print(f"  {call.name} {call.arguments} -> {output.text}")
             content = output.text
-            if sees and output.pictures:
+            if accepts_images and output.pictures:
                 images = [{"type": "input_image", "image_url": p.data_url, "detail": "auto"} for p in output.pictures]
                 content = [{"type": "input_text", "text": output.text}, *images]
             items.append({"type": "function_call_output", "call_id": call.call_id, "output": content})
@@ -51,7 +51,7 @@ def main() -> None:
 
     key = os.environ.get("OPENAI_API_KEY", "none")  # local servers need no key
     with OpenAI(base_url=options.url, api_key=key) as client, scope_ptz.open(options.camera) as scope:
-        print(ask(client, options.model, scope, options.instruction, sees=not options.text_only))
+        print(ask(client, options.model, scope, options.instruction, accepts_images=not options.text_only))
 
 
 if __name__ == "__main__":

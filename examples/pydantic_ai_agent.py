@@ -24,18 +24,18 @@ INSTRUCTIONS = (
 )
 
 
-async def call(scope: scope_ptz.AsyncScope, sees: bool, name: str, /, **arguments: Any) -> ToolReturn:
+async def call(scope: scope_ptz.AsyncScope, accepts_images: bool, name: str, /, **arguments: Any) -> ToolReturn:
     output = await scope.dispatch(name, arguments)
     print(f"  {name} {arguments} -> {output.text}")
     content = [part for p in output.pictures for part in (p.caption, BinaryContent.from_data_uri(p.data_url))]
-    return ToolReturn(output.text, content=content if sees else None)
+    return ToolReturn(output.text, content=content if accepts_images else None)
 
 
-def camera_tools(scope: scope_ptz.AsyncScope, *, sees: bool = True) -> list[Tool]:
+def camera_tools(scope: scope_ptz.AsyncScope, *, accepts_images: bool = True) -> list[Tool]:
     tools = []
     for schema in scope.tool_schemas("chat"):
         name, description, parameters = (schema["function"][key] for key in ("name", "description", "parameters"))
-        tools.append(Tool.from_schema(partial(call, scope, sees, name), name, description, parameters))
+        tools.append(Tool.from_schema(partial(call, scope, accepts_images, name), name, description, parameters))
     return tools
 
 
@@ -52,7 +52,7 @@ async def main() -> None:
     model = OpenAIChatModel(options.model, provider=OpenAIProvider(base_url=options.url, api_key=key))
     async with (
         scope_ptz.open_async(options.camera) as scope,
-        Agent(model, instructions=INSTRUCTIONS, tools=camera_tools(scope, sees=not options.text_only)) as agent,
+        Agent(model, instructions=INSTRUCTIONS, tools=camera_tools(scope, accepts_images=not options.text_only)) as agent,
     ):
         print((await agent.run(options.instruction)).output)
 

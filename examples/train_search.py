@@ -2,8 +2,8 @@
 
     python examples/train_search.py --minutes 10
 
-The policy turns what perception reports into a move with eight numbers. At the start it does not know which way to turn towards a
-thing, where to look next, or when to submit. It needs no deep learning library: pip install "scope-ptz[gym]"
+The policy computes each move from the detections with eight weights. Before training, it does not know in which direction to turn,
+where to look next, or when to submit. It needs no deep learning library: pip install "scope-ptz[gym]"
 """
 
 import argparse
@@ -20,7 +20,8 @@ HELD_OUT_SEED = 1_000_000  # searches of the evaluation, which training never se
 
 
 class Policy:
-    """Eight numbers. It remembers one thing: its direction of turn, which a stop of the head reverses."""
+    """A policy with eight weights. Its only memory is the direction in which it turns, which it reverses at the end of the pan
+    range."""
 
     def __init__(self, weights):
         self.weights, self.direction, self.last_pan = weights, 1.0, None
@@ -40,10 +41,9 @@ class Policy:
 
 
 def search(env, weights, seed):
-    """Run one search. Return its outcome and how good it was.
+    """Run one search. Return its outcome and its fitness.
 
-    A success is rare at first, so a search that ends with the target in view is better than one that does not, and the more so the
-    nearer the target is to the centre.
+    Successes are rare at first, so a search that ends with the target in view also gets a reward, which is greater near the centre.
     """
     policy, ended = Policy(weights), False
     observation, info = env.reset(seed=seed)

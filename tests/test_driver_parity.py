@@ -75,10 +75,10 @@ async def test_a_wrong_field_of_view_in_a_driver_is_a_deviation(parity: ModuleTy
 
 @pytest.mark.anyio
 async def test_hundreds_of_core_tasks_stay_in_one_viewpoint_and_most_use_the_camera(parity: ModuleType) -> None:
-    local = parity.one_viewpoint(load_split("core"))
+    local = parity.tasks_in_one_viewpoint(load_split("core"))
     assert len(local) > 300
     some = local[::12]
-    used = await parity.that_use_the_camera(some)
+    used = await parity.tasks_with_calls(some)
     assert len(some) / 2 < len(used) < len(some)
 
 
@@ -101,7 +101,7 @@ async def test_hundreds_of_core_tasks_stay_in_one_viewpoint_and_most_use_the_cam
 )  # fmt: skip
 def test_every_deviation_is_named(parity: ModuleType, change: dict[str, Any], kinds: list[str]) -> None:
     own = parity.PathRun([("adjust_ptz", {"pan_deg": 10.0})], "answered", "Four.", Pose(10, -5, 2), Timings(), "ground-truth")
-    measured = parity.Measured("task", {"in process": own, "axis": own, "onvif": replace(own, **change)})
+    measured = parity.TaskRuns("task", {"in process": own, "axis": own, "onvif": replace(own, **change)})
     found = measured.deviations()
     assert [(path, kind) for path, kind, _ in found] == [("onvif", kind) for kind in kinds]
     lines = "\n".join(parity.report([measured]))

@@ -8,13 +8,13 @@ import threading
 import time
 
 
-class Pauses:
+class WakeUpDelays:
     """Measures how late a sleeping thread wakes up. Long delays mean that the machine is busy."""
 
     STEP_S = 0.02  # duration of each sleep
 
     def __init__(self) -> None:
-        self.late_s: list[float] = []
+        self.delays_s: list[float] = []
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
@@ -23,13 +23,13 @@ class Pauses:
         while not self._ended.is_set():
             before_s = time.monotonic()
             time.sleep(self.STEP_S)
-            self.late_s.append(time.monotonic() - before_s - self.STEP_S)
+            self.delays_s.append(time.monotonic() - before_s - self.STEP_S)
 
     def end(self) -> list[float]:
         """Stop the thread and return its wake-up delays in seconds."""
         self._ended.set()
         self._thread.join()
-        return self.late_s
+        return self.delays_s
 
 
 def quantiles(values: list[float]) -> dict[str, float]:

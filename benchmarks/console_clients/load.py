@@ -15,7 +15,7 @@ from websockets.exceptions import ConnectionClosed
 
 from console_clients.console_process import Console
 from console_clients.conversations import Observations, converse, intrude, stop_often
-from console_clients.figures import Pauses, quantiles
+from console_clients.figures import WakeUpDelays, quantiles
 from console_clients.page import Clicks, chromium, open_page
 from console_clients.viewers import Viewer, watch_mjpeg, watch_socket
 
@@ -53,16 +53,16 @@ class Load:
         """Run the clients for a number of seconds and return the results."""
         console = Console(self._cameras, self._folder / "runs")
         try:
-            before, pauses, start_s = console.sample(), Pauses(), time.time()
+            before, delays, start_s = console.sample(), WakeUpDelays(), time.time()
             self._run_clients(console, start_s + seconds)
-            end_s, late_s = time.time(), pauses.end()
+            end_s, delays_s = time.time(), delays.end()
             left_over = {"sockets": leaked_sockets(console, before["sockets"])}
             stored = self._stored(console)
         finally:
             code = console.end()
         counted_s = start_s + min(START_S, seconds / 3)
         figures = self._figures(counted_s, end_s)
-        return {**figures, "pauses_s": quantiles(late_s), "exit_code": code, **stored, "left_over": left_over}
+        return {**figures, "pauses_s": quantiles(delays_s), "exit_code": code, **stored, "left_over": left_over}
 
     def _run_clients(self, console: Console, end_s: float) -> None:
         loop, ended = asyncio.new_event_loop(), asyncio.Event()
@@ -86,12 +86,12 @@ class Load:
         work += [stop_often(seen, url, cameras, ended), intrude(seen, url, cameras, ended)]
         for viewer, (kind, number) in zip(self._viewers, VIEWERS, strict=True):
             watch = watch_socket if kind == "socket" else watch_mjpeg
-            work.append(self._watched(viewer, watch(viewer, f"{url}/cameras/{cameras[number]}", ended)))
+            work.append(self._run_viewer(viewer, watch(viewer, f"{url}/cameras/{cameras[number]}", ended)))
         for failure in await asyncio.gather(*work, return_exceptions=True):
             if isinstance(failure, BaseException):
                 seen.problems.append(f"{type(failure).__name__}: {failure}")
 
-    async def _watched(self, viewer: Viewer, work: Any) -> None:
+    async def _run_viewer(self, viewer: Viewer, work: Any) -> None:
         try:
             await work
         except (OSError, httpx2.HTTPError, ConnectionClosed, TimeoutError) as error:

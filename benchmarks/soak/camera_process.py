@@ -10,7 +10,7 @@ import threading
 import time
 from typing import Any
 
-from soak.usage import Pauses, counts
+from soak.usage import WakeUpDelays, counts
 
 RATE_HZ = 25.0
 END_S = 10.0  # maximum time to close connections of disconnected clients and end threads, on a busy machine
@@ -42,7 +42,7 @@ async def serve_camera(scene: str) -> None:
 
     devices = make_devices(VirtualCameraOptions(scenes=(scene,)), [])
     reading = devices[0].prefetch()
-    machine, loop = Pauses(), Pauses()
+    machine, loop = WakeUpDelays(), WakeUpDelays()
     threading.Thread(target=machine.watch, name="pauses", daemon=True).start()
     background = [asyncio.create_task(work) for work in (loop.watch_loop(), release_memory_regularly())]
     async with serve(devices, truth=True, rate_hz=RATE_HZ) as (camera,):

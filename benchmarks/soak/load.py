@@ -13,12 +13,12 @@ import httpx2
 
 from soak.camera_process import Camera
 
-VANISH_EVERY_S = 0.5
+DISCONNECT_EVERY_S = 0.5
 POSES = [(pan, tilt, zoom) for zoom in (1, 3500, 9999) for pan, tilt in ((0, 0), (90, -20), (179, 5), (-90, -10))]
 """Poses that the camera cycles through: pan and tilt in degrees, and zoom in the camera's units."""
 
 
-def move_all_the_time(url: str, ended: threading.Event, rounds: list[float]) -> None:
+def move_continually(url: str, ended: threading.Event, rounds: list[float]) -> None:
     """Cycle through the poses with absolute and continuous moves. Append the time of each complete cycle to ``rounds``."""
     with httpx2.Client(base_url=url, trust_env=False, timeout=30) as session:
         while True:
@@ -35,13 +35,13 @@ def disconnect_repeatedly(camera: Camera, ended: threading.Event) -> None:
     for disconnect in itertools.cycle([disconnect_tcp, disconnect_udp, disconnect_mjpeg, disconnect_silently]):
         with suppress(OSError):
             disconnect(camera, ended)
-        if ended.wait(VANISH_EVERY_S):
+        if ended.wait(DISCONNECT_EVERY_S):
             return
 
 
 def disconnect_tcp(camera: Camera, ended: threading.Event) -> None:
     """Play a stream over TCP, stop reading, and reset the connection."""
-    with connected(camera.rtsp_url) as connection:
+    with open_connection(camera.rtsp_url) as connection:
         play(connection, camera.rtsp_url, "RTP/AVP/TCP;unicast;interleaved=0-1")
         connection.recv(10_000)
         ended.wait(0.3)  # without reading
@@ -49,7 +49,7 @@ def disconnect_tcp(camera: Camera, ended: threading.Event) -> None:
 
 def disconnect_udp(camera: Camera, _: threading.Event) -> None:
     """Play a stream over UDP and disappear after the first packet."""
-    with connected(camera.rtsp_url) as connection, socket.socket(type=socket.SOCK_DGRAM) as rtp:
+    with open_connection(camera.rtsp_url) as connection, socket.socket(type=socket.SOCK_DGRAM) as rtp:
         rtp.bind(("127.0.0.1", 0))
         rtp.settimeout(5)
         port = rtp.getsockname()[1]
@@ -59,7 +59,7 @@ def disconnect_udp(camera: Camera, _: threading.Event) -> None:
 
 def disconnect_mjpeg(camera: Camera, ended: threading.Event) -> None:
     """Request Motion JPEG, stop reading, and reset the connection."""
-    with connected(camera.url) as connection:
+    with open_connection(camera.url) as connection:
         connection.sendall(b"GET /axis-cgi/mjpg/video.cgi HTTP/1.1\r\nHost: camera\r\n\r\n")
         connection.recv(10_000)
         ended.wait(0.3)
@@ -67,11 +67,11 @@ def disconnect_mjpeg(camera: Camera, ended: threading.Event) -> None:
 
 def disconnect_silently(camera: Camera, _: threading.Event) -> None:
     """Send half a request and reset the connection."""
-    with connected(camera.rtsp_url) as connection:
+    with open_connection(camera.rtsp_url) as connection:
         connection.sendall(b"DESCRIBE rtsp://cam")
 
 
-def connected(url: str) -> socket.socket:
+def open_connection(url: str) -> socket.socket:
     """Open a connection that is reset when it is closed."""
     host, _, port = url.partition("://")[2].partition("/")[0].partition(":")
     connection = socket.create_connection((host, int(port)), timeout=10)

@@ -35,7 +35,7 @@ class Stream:
     out_of_order: int = 0
     failure: str = ""
 
-    def note(self, age_s: float | None, *, newer: bool) -> None:
+    def record_frame(self, age_s: float | None, *, newer: bool) -> None:
         """Record a frame that arrives now. ``newer`` states whether it is newer than the frame before."""
         self.arrivals_s.append(time.monotonic())
         self.ages_s.append(age_s)
@@ -72,7 +72,7 @@ def read_rtsp(stream: Stream, url: str, transport: str, ended: threading.Event) 
                 age_s = None
                 if packet.has_sidedata("prft"):
                     age_s = time.time() - struct.unpack_from("=q", bytes(packet.get_sidedata("prft")))[0] / 1e6
-                stream.note(age_s, newer=packet.pts is None or packet.pts > last)
+                stream.record_frame(age_s, newer=packet.pts is None or packet.pts > last)
                 last = packet.pts if packet.pts is not None else last
 
 
@@ -84,7 +84,7 @@ def read_mjpeg(stream: Stream, url: str, ended: threading.Event) -> None:
             if ended.is_set():
                 return
             taken_s = float(headers["x-scope-taken"])
-            stream.note(time.time() - taken_s, newer=taken_s > last_s)
+            stream.record_frame(time.time() - taken_s, newer=taken_s > last_s)
             last_s = taken_s
 
 

@@ -14,7 +14,7 @@ from typing import ClassVar
 STATUS = {"memory_mb": "VmRSS", "anonymous_mb": "RssAnon", "files_mb": "RssFile"}
 
 
-class Pauses:
+class WakeUpDelays:
     """Measures how late a sleeping thread or task wakes up. Long delays mean that the machine or the event loop is busy."""
 
     STEP_S = 0.02  # duration of each sleep

@@ -1,7 +1,7 @@
 """The exceptions that SCOPE raises.
 
 ScopeError
-├── InputError              an instruction, option or setting is wrong (exit code 2)
+├── InputError           the user's input is wrong (exit code 2)
 │   ├── ConfigError         a setting, an option or a URL is wrong
 │   ├── UnknownNameError    a scene, viewpoint, preset, planner or tool does not exist
 │   └── OutputError         a folder or file cannot be written
@@ -52,7 +52,7 @@ class ScopeError(Exception):
 
 
 class InputError(ScopeError):
-    """An instruction, an option or a setting is wrong."""
+    """The user's input is wrong, for example an instruction, a name or a setting."""
 
 
 class ConfigError(InputError):

@@ -16,7 +16,7 @@ GAIT_PHASES = 8
 
 
 class ActorBodies:
-    """The bodies of all actors of a stage. A body is hidden from renders unless ``place`` or ``shown_at`` shows it."""
+    """The bodies of all actors of a stage. A body is hidden from renders unless ``place`` or ``show_at`` shows it."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -55,7 +55,7 @@ class ActorBodies:
         return built
 
     @contextmanager
-    def shown_at(self, time_s: float) -> Iterator[None]:
+    def show_at(self, time_s: float) -> Iterator[None]:
         """While the context is active, show every actor that is in the scene at the given time."""
         shown = [built for actor in self._stage.actors if (built := self.place(actor, time_s)) is not None]
         bpy.context.view_layer.update()

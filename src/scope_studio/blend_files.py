@@ -13,7 +13,7 @@ from mathutils import Vector
 from scope_ptz.geometry.sphere import pan_tilt_deg
 from scope_studio.kit.core.stage import Viewpoint
 
-STRAIGHT_UP_DEG = 89.9
+VERTICAL_TILT_DEG = 89.9
 """Tilt in degrees beyond which a camera's bearing is taken from its up vector, because its axis is almost vertical."""
 
 OTHER_PROJECTION_HFOV_DEG = 60.0
@@ -65,7 +65,7 @@ def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict
     matrix = camera.matrix_world
     axes = matrix.to_3x3().normalized()
     bearing, tilt = _pan_tilt(axes @ Vector((0.0, 0.0, -1.0)))
-    if abs(tilt) > STRAIGHT_UP_DEG:
+    if abs(tilt) > VERTICAL_TILT_DEG:
         bearing, _ = _pan_tilt((axes @ Vector((0.0, 1.0, 0.0))) * -math.copysign(1.0, tilt))
     return {
         "name": name,

@@ -78,8 +78,8 @@ def _instance(instance: Instance, depsgraph: bpy.types.Depsgraph, cache: dict[st
         "name": instance.name,
         "attributes": instance.attributes,
         "parent": instance.parent,
-        "box_min_m": _rounded(points.min(axis=0)),
-        "box_max_m": _rounded(points.max(axis=0)),
+        "box_min_m": _round_values(points.min(axis=0)),
+        "box_max_m": _round_values(points.max(axis=0)),
     }
 
 
@@ -109,9 +109,9 @@ def _texts(instance: Instance) -> list[dict[str, Any]]:
             "id": f"{instance.id}-text-{k:02d}",
             "text": mark.text,
             "parent": instance.id,
-            "centre_m": _rounded(matrix @ Vector(mark.centre)),
-            "right": _rounded(turn @ Vector(mark.right), 6),
-            "up": _rounded(turn @ Vector(mark.up), 6),
+            "centre_m": _round_values(matrix @ Vector(mark.centre)),
+            "right": _round_values(turn @ Vector(mark.right), 6),
+            "up": _round_values(turn @ Vector(mark.up), 6),
             "width_m": round(mark.width_m * scale, 5),
             "height_m": round(mark.height_m * scale, 5),
             "cap_height_m": round(mark.cap_height_m * scale, 5),
@@ -124,10 +124,10 @@ def _sun() -> list[float] | None:
     """Return the unit vector towards the sun, which determines the shadows, or None if the scene has no sun."""
     for obj in bpy.data.objects:
         if obj.type == "LIGHT" and obj.data.type == "SUN":
-            return _rounded(obj.matrix_world.to_quaternion() @ Vector((0, 0, 1)), 6)
+            return _round_values(obj.matrix_world.to_quaternion() @ Vector((0, 0, 1)), 6)
     return None
 
 
-def _rounded(values: Any, digits: int = 4) -> list[float]:
+def _round_values(values: Any, digits: int = 4) -> list[float]:
     """Return the values as rounded floats, without negative zeros."""
     return [round(float(v), digits) + 0.0 for v in values]

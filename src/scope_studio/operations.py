@@ -93,12 +93,12 @@ class Studio:
         self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, time_s: float | None = None
     ) -> None:
         """Render a denoised image (8-bit PNG). With ``time_s``, moving actors are shown at their positions at that time."""
-        with self._actors_shown(time_s):
+        with self._show_actors(time_s):
             render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
 
     def truth(self, viewpoint: str, projection: dict[str, float], out: str, time_s: float | None = None) -> None:
         """Write the instance numbers (uint16) and distances in metres (float32, 0 = sky) of a view to an .npz file."""
-        with self._actors_shown(time_s):
+        with self._show_actors(time_s):
             render.truth(self.viewpoint(viewpoint), projection, Path(out))
 
     def sprites(self, actor: str, viewpoint: str, frames: list[dict[str, Any]], samples: int, out_dir: str) -> None:
@@ -107,11 +107,11 @@ class Studio:
             self.stage, self.actor_bodies, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), self._progress
         )
 
-    def _actors_shown(self, time_s: float | None) -> AbstractContextManager[None]:
+    def _show_actors(self, time_s: float | None) -> AbstractContextManager[None]:
         """While the context is active, show the moving actors at a scene time. Without a time, no actor is built."""
         if self._file_cameras and time_s is not None:
             blend_files.set_time(time_s)
-        return nullcontext() if self._file_cameras or time_s is None else self.actor_bodies.shown_at(time_s)
+        return nullcontext() if self._file_cameras or time_s is None else self.actor_bodies.show_at(time_s)
 
 
 def _module(source: str) -> ModuleType:

@@ -34,7 +34,7 @@ def render_frames(
     ``k.npz`` (distances). Frames that exist already are skipped.
     """
     actor = next(a for a in stage.actors if a.id == actor_id)
-    with _only_shadows() as ground:
+    with _shadow_plane() as ground:
         for k, frame in enumerate(frames):
             picture = out_dir / f"{k:03d}.png"
             if not picture.with_suffix(".npz").exists():
@@ -57,7 +57,7 @@ def render_frames(
 
 
 @contextmanager
-def _only_shadows() -> Iterator[bpy.types.Object]:
+def _shadow_plane() -> Iterator[bpy.types.Object]:
     """While the context is active, hide every visible object. Yield a plane that receives shadows."""
     hidden = [o for o in bpy.data.objects if o.type not in {"LIGHT", "CAMERA"} and not o.hide_render]
     for obj in hidden:

@@ -17,7 +17,7 @@ from anyio import to_thread
 from scope_addon.protocol.address import parse_address
 from scope_addon.protocol.errors import AddOnError
 from scope_addon.protocol.link import CameraLink, Picture, Reply, Request
-from scope_addon.protocol.view import size_of, view_of
+from scope_addon.protocol.view import parse_size, parse_view
 from scope_ptz.camera.base import Camera
 from scope_ptz.geometry import Perspective
 from scope_ptz.serve.security.access import Access
@@ -85,7 +85,7 @@ class FakeBlender:
         if request.operation == "frame":
             return self._picture(arguments)
         if request.operation == "save_preset":
-            view = view_of(arguments)
+            view = parse_view(arguments)
             self._remove(arguments["name"])
             where = place(arguments["name"], view.bearing_deg, view.hfov_deg, saved=True, viewpoint=view.viewpoint)
             self.cameras.append({**where, "tilt_deg": view.tilt_deg, "title": arguments["description"]})
@@ -103,7 +103,7 @@ class FakeBlender:
             return AddOnError(self.broken)
         if arguments["version"] == str(self.version):
             return {"unchanged": str(self.version)}
-        view, (width, height) = view_of(arguments), size_of(arguments)
+        view, (width, height) = parse_view(arguments), parse_size(arguments)
         perspective = Perspective(view.bearing_deg, view.tilt_deg, view.hfov_deg, width, height)
         x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
         colours = np.round(127.5 + 127.5 * perspective.directions(np.stack([x, y], axis=-1))).astype(np.uint8)

@@ -16,15 +16,15 @@ import numpy as np
 import pytest
 
 from scope_addon.protocol.address import parse_address
-from scope_addon.protocol.asking import Asking, Deciding, News, Problem, Shown
 from scope_addon.protocol.errors import AddOnError, ServerRefusedError
+from scope_addon.protocol.instruction_run import InstructionRun, PictureStored, Problem, RunEvent, StepStarted
 from scope_addon.protocol.link import CameraLink
 from scope_addon.protocol.png import png_of_rgba
 from scope_addon.protocol.server import ServerProcess
+from scope_addon.protocol.server_client import ServerClient
 from scope_addon.protocol.steps import End, Step
 from scope_addon.protocol.tasks import Tasks
-from scope_addon.protocol.view import View, bearing_tilt_deg, size_of, view_of
-from scope_addon.protocol.web import Web
+from scope_addon.protocol.view import View, bearing_tilt_deg, parse_size, parse_view
 from scope_ptz.blender.addon_zip import addon_folder
 from scope_ptz.geometry.sphere import camera_axes
 from tests.addon.fake_blender import FakeBlender
@@ -82,10 +82,10 @@ def test_views_have_the_axes_of_the_cameras(bearing_deg: float, tilt_deg: float)
 
 def test_a_glide_turns_the_shorter_way_and_ends_exactly() -> None:
     start, end = (View("gate", (0.0, 0.0, 0.0), bearing, tilt, 60.0) for bearing, tilt in ((350.0, 0.0), (10.0, 8.0)))
-    assert start.towards(end, 0.5).bearing_deg % 360 == pytest.approx(0.0)
-    assert start.towards(end, 0.5).tilt_deg == pytest.approx(4.0)
-    assert start.towards(end, 1.0) == end
-    assert start.towards(end._replace(viewpoint="roof"), 0.1).viewpoint == "roof"
+    assert start.interpolate(end, 0.5).bearing_deg % 360 == pytest.approx(0.0)
+    assert start.interpolate(end, 0.5).tilt_deg == pytest.approx(4.0)
+    assert start.interpolate(end, 1.0) == end
+    assert start.interpolate(end._replace(viewpoint="roof"), 0.1).viewpoint == "roof"
 
 
 @pytest.mark.parametrize(
@@ -100,48 +100,50 @@ def test_a_glide_turns_the_shorter_way_and_ends_exactly() -> None:
     ],
 )
 def test_wrong_views_are_refused(wrong: dict[str, Any]) -> None:
-    assert view_of(VIEW).position_m == (1.0, 2.0, 3.0)
+    assert parse_view(VIEW).position_m == (1.0, 2.0, 3.0)
     with pytest.raises(AddOnError, match="no valid view"):
-        view_of({**VIEW, **wrong})
+        parse_view({**VIEW, **wrong})
 
 
 @pytest.mark.parametrize("wrong", [{}, {"width": 160}, {"width": 1e9, "height": 90}, {"width": 5000, "height": 90}])
 def test_wrong_sizes_are_refused(wrong: dict[str, Any]) -> None:
-    assert size_of({"width": 160, "height": 90}) == (160, 90)
+    assert parse_size({"width": 160, "height": 90}) == (160, 90)
     with pytest.raises(AddOnError, match="picture size"):
-        size_of(wrong)
+        parse_size(wrong)
 
 
-def follow(asking: Asking) -> list[News]:
+def follow(asking: InstructionRun) -> list[RunEvent]:
     """Return the news of a run until it ends."""
-    news: list[News] = []
-    while not news or not isinstance(news[-1], (End, Problem)):
-        news.append(asking.news.get(timeout=60))
+    events: list[RunEvent] = []
+    while not events or not isinstance(events[-1], (End, Problem)):
+        events.append(asking.events.get(timeout=60))
     asking.join(60)
-    return news
+    return events
 
 
 def test_a_run_is_followed_with_its_marked_pictures(served: Served, tmp_path: Path) -> None:
     served.call(served.site.station(CAMERA).control.clear)
-    asking = Asking(parse_address(served.root), "blender-test", CAMERA, "pan right 5 degrees and count the balls", "", tmp_path)
+    asking = InstructionRun(
+        parse_address(served.root), "blender-test", CAMERA, "pan right 5 degrees and count the balls", "", tmp_path
+    )
     asking.start()
-    news = follow(asking)
-    steps, end = [each for each in news if isinstance(each, Step)], news[-1]
+    events = follow(asking)
+    steps, end = [each for each in events if isinstance(each, Step)], events[-1]
     assert [step.call.partition("(")[0] for step in steps] == ["adjust_ptz", "count_objects"]
     assert steps[0].call == "adjust_ptz(pan_deg=5)"
     assert not any(step.failed for step in steps)
     assert isinstance(end, End)
     assert end.outcome == "Answered"
     assert [timing.part for timing in end.timings] == ["planner", "perception", "camera", "pictures", "total"]
-    assert any(isinstance(each, Deciding) for each in news)
-    shown = next(each for each in news if isinstance(each, Shown))
+    assert any(isinstance(each, StepStarted) for each in events)
+    shown = next(each for each in events if isinstance(each, PictureStored))
     assert np.asarray(cv2.imread(str(shown.path))).shape == (180, 320, 3)
     assert [path.name for path in tmp_path.iterdir()] == ["scope-frame.jpg"]
 
 
 def test_a_run_can_be_cancelled(served: Served, tmp_path: Path) -> None:
     served.call(served.site.station(CAMERA).control.clear)
-    asking = Asking(parse_address(served.root), "blender-test", CAMERA, "track the ball for 300 seconds", "", tmp_path)
+    asking = InstructionRun(parse_address(served.root), "blender-test", CAMERA, "track the ball for 300 seconds", "", tmp_path)
     asking.start()
     asking.cancel()
     end = follow(asking)[-1]
@@ -150,7 +152,7 @@ def test_a_run_can_be_cancelled(served: Served, tmp_path: Path) -> None:
 
 
 def test_a_refused_instruction_is_a_problem_in_words(served: Served, tmp_path: Path) -> None:
-    asking = Asking(parse_address(served.root), "blender-test", "nowhere", "go home", "", tmp_path)
+    asking = InstructionRun(parse_address(served.root), "blender-test", "nowhere", "go home", "", tmp_path)
     asking.start()
     (problem,) = follow(asking)
     assert isinstance(problem, Problem)
@@ -159,9 +161,9 @@ def test_a_refused_instruction_is_a_problem_in_words(served: Served, tmp_path: P
 
 def test_tasks_report_results_and_failures(served: Served) -> None:
     tasks, results = Tasks(parse_address(served.root), "blender-test"), []
-    tasks.add(lambda web: web.ask("GET", "/pairs"), lambda reply, problem: results.append((reply, problem)))
-    tasks.add(lambda web: web.ask("GET", "/cameras/nowhere"), lambda reply, problem: results.append((reply, problem)))
-    tasks.add(lambda web: web.ask("GET", "/pairs")["x"], lambda reply, problem: results.append((reply, problem)))
+    tasks.add(lambda client: client.request("GET", "/pairs"), lambda reply, problem: results.append((reply, problem)))
+    tasks.add(lambda client: client.request("GET", "/cameras/nowhere"), lambda reply, problem: results.append((reply, problem)))
+    tasks.add(lambda client: client.request("GET", "/pairs")["x"], lambda reply, problem: results.append((reply, problem)))
     tasks.stop()
     tasks.join(60)
     assert results == [], "only the main thread calls the functions"
@@ -172,16 +174,16 @@ def test_tasks_report_results_and_failures(served: Served) -> None:
 
 
 def test_an_idle_connection_that_the_server_closed_is_opened_again(served: Served) -> None:
-    web = Web(parse_address(served.root), "blender-test")
-    assert web.ask("GET", "/pairs") == ["grammar+ground-truth"]
-    assert web._connection is not None
-    assert web._connection.sock is not None
-    web._connection.sock.shutdown(socket.SHUT_RDWR)
-    assert web.ask("GET", "/pairs") == ["grammar+ground-truth"]
+    client = ServerClient(parse_address(served.root), "blender-test")
+    assert client.request("GET", "/pairs") == ["grammar+ground-truth"]
+    assert client._connection is not None
+    assert client._connection.sock is not None
+    client._connection.sock.shutdown(socket.SHUT_RDWR)
+    assert client.request("GET", "/pairs") == ["grammar+ground-truth"]
     with pytest.raises(ServerRefusedError) as refused:
-        web.ask("POST", "/runs", {})
+        client.request("POST", "/runs", {})
     assert refused.value.status == 422
-    web.close()
+    client.close()
 
 
 @contextmanager
@@ -222,10 +224,10 @@ def replying(content: bytes) -> Iterator[str]:
 )
 def test_other_servers_are_recognised(content: bytes, problem: str) -> None:
     with replying(content) as url:
-        web = Web(parse_address(url), "blender-test")
+        client = ServerClient(parse_address(url), "blender-test")
         with pytest.raises(AddOnError, match=problem):
-            web.ask("GET", "/pairs")
-        web.close()
+            client.request("GET", "/pairs")
+        client.close()
 
 
 def test_no_server_is_a_problem_in_words() -> None:

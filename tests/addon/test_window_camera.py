@@ -233,7 +233,7 @@ async def test_a_wrong_picture_is_an_error(tmp_path: Path, monkeypatch: pytest.M
     async with window_camera(lambda url: blenders.append(FakeBlender(url).start()), tmp_path) as (camera, site):
         for wrong in (b"", b"not a picture", b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\xa0\x00\x00\x00\x5a broken"):
             connection = site.station(CAMERA).add_on.connection
-            monkeypatch.setattr("scope_addon.protocol.link.Web.data", _sending(wrong))
+            monkeypatch.setattr("scope_addon.protocol.link.ServerClient.request_bytes", _sending(wrong))
             with pytest.raises(CameraError, match="picture"):
                 await camera.frame()
             monkeypatch.undo()
@@ -245,14 +245,14 @@ async def test_a_wrong_picture_is_an_error(tmp_path: Path, monkeypatch: pytest.M
 
 
 def _sending(wrong: bytes) -> Callable[..., bytes]:
-    from scope_addon.protocol.web import Web
+    from scope_addon.protocol.server_client import ServerClient
 
-    send = Web.data
+    send = ServerClient.request_bytes
 
-    def data(web: Web, method: str, path: str, body: bytes | None = None, media_type: str = "") -> bytes:
-        return send(web, method, path, wrong if media_type == "image/png" else body, media_type)
+    def request_bytes(client: ServerClient, method: str, path: str, body: bytes | None = None, media_type: str = "") -> bytes:
+        return send(client, method, path, wrong if media_type == "image/png" else body, media_type)
 
-    return data
+    return request_bytes
 
 
 @pytest.mark.anyio

@@ -121,7 +121,7 @@ def test_scene_time_on_the_stage_by_keyboard(page: Page, api: httpx2.Client, sce
     with page.expect_response(f"**/cameras/{scene}/time"):
         page.keyboard.press("Home")
     expect(line).to_have_text("0:00 · paused")
-    sheet.get_by_role("button", name="Ahead 10 seconds").click()
+    sheet.get_by_role("button", name="Forward 10 seconds").click()
     expect(line).to_have_text("0:10 · paused")
     sheet.get_by_role("button", name="Back 10 seconds").click()
     expect(line).to_have_text("0:00 · paused")

@@ -60,7 +60,7 @@ class DrivenBlender:
     def ask(self, instruction: str) -> Any:
         """Run an instruction, and return its end."""
         self(f"session.ask({instruction!r}, '')")
-        self.wait_for("session.asking is None")
+        self.wait_for("session.run is None")
         return self("session.end")
 
     def end(self) -> Any:

@@ -74,7 +74,7 @@ def test_a_question_is_answered_in_the_window(blender: DrivenBlender, display: s
     screenshot(display, before)
     blender("setattr(bpy.context.window_manager.scope, 'question', 'go to the roof preset, then zoom in 2x')")
     assert blender("run('ask')") == ["FINISHED"]
-    blender.wait_for("session.asking is None")
+    blender.wait_for("session.run is None")
     assert blender("session.problem") == ""
     assert blender("session.end")[0] == "Answered"
     assert blender("session.executor.pictures") > 0
@@ -124,7 +124,7 @@ def test_detections_are_marked_in_the_image_editor(blender: DrivenBlender, displ
     blender("setattr(bpy.context.window_manager.scope, 'question', 'how many cones are there?')")
     blender(f"setattr(bpy.context.window_manager.scope, 'pair', {SEEING_PAIR!r})")
     assert blender("run('ask')") == ["FINISHED"]
-    blender.wait_for("session.asking is None")
+    blender.wait_for("session.run is None")
     assert blender("session.end")[0] == "Answered", blender("session.end")
     assert "1" in blender("session.end")[1]
     # The middle row of the picture, which the left and the right side of the box cross.
@@ -147,8 +147,8 @@ def test_detections_are_marked_in_the_image_editor(blender: DrivenBlender, displ
 def test_an_instruction_can_be_cancelled_and_blender_responds_meanwhile(blender: DrivenBlender) -> None:
     blender(f"session.ask({', then '.join(['pan right 1 degree', 'pan left 1 degree'] * 12)!r}, '')")
     blender.wait_for("len(session.steps) > 0")
-    assert blender("session.asking is not None"), "Blender answers while the instruction is in progress"
+    assert blender("session.run is not None"), "Blender answers while the instruction is in progress"
     assert blender("run('cancel')") == ["FINISHED"]
-    blender.wait_for("session.asking is None")
+    blender.wait_for("session.run is None")
     assert blender("session.end")[0] == "Cancelled"
     assert blender("len(session.steps)") < 24

@@ -17,7 +17,7 @@ from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.vapix import moves, scales
 from scope_ptz.virtual_camera.vapix.arguments import Arguments
-from scope_ptz.virtual_camera.vapix.control_queue import CONTROL_S, ControlQueue
+from scope_ptz.virtual_camera.vapix.control_queue import CONTROL_TIMEOUT_S, ControlQueue
 from scope_ptz.virtual_camera.vapix.json_apis import api_discovery, basic_device_info
 from scope_ptz.virtual_camera.vapix.parameters import param, parameters
 from scope_ptz.virtual_camera.vapix.ptz import ptz, ptz_config, ptz_queue
@@ -365,12 +365,12 @@ def test_control_ends_without_commands_and_places_without_polls() -> None:
     assert queue.status(third).position == 0
     queue.check(first)
     for _ in range(4):
-        clock.now += CONTROL_S / 4 - 1
+        clock.now += CONTROL_TIMEOUT_S / 4 - 1
         assert queue.status(second).position == 2
     clock.now += 5
     assert queue.status(second).position == 1
     queue.check(second)
-    clock.now += CONTROL_S + 1
+    clock.now += CONTROL_TIMEOUT_S + 1
     assert queue.status(second).position == 0
 
 

@@ -1,10 +1,10 @@
-"""The error of the add-on. Its message states what is wrong and what to do, and is shown in the sidebar."""
+"""The errors of the add-on. The sidebar shows their messages, which state what is wrong and what to do."""
 
 from __future__ import annotations
 
 
 class AddOnError(Exception):
-    """Something that the user should know."""
+    """An error that is reported to the user."""
 
 
 class ServerRefusedError(AddOnError):

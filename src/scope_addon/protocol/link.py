@@ -1,4 +1,4 @@
-"""The camera's connection to the server. Its threads only pass requests and replies; the main thread carries requests out."""
+"""The camera's connection to the server. Threads only pass on requests and replies. The main thread carries out requests."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from .address import Address
 from .errors import AddOnError, ServerRefusedError
-from .web import Web, part
+from .server_client import ServerClient, quote_part
 
 Description = dict[str, Any]
 
@@ -23,7 +23,7 @@ class Request(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """A picture, which a thread encodes. ``encode`` returns a PNG file; ``version`` is the state of the scene that it shows."""
+    """A picture that a thread still has to encode. ``encode`` returns a PNG file; ``version`` identifies the state of the scene."""
 
     encode: Callable[[], bytes]
     version: str
@@ -46,10 +46,10 @@ class CameraLink:
 
     def __init__(self, address: Address, camera: str, client: str, description: Description) -> None:
         self._address, self._client = address, client
-        self._path = f"/cameras/{part(camera)}/add-on"
+        self._path = f"/cameras/{quote_part(camera)}/add-on"
         self._description = description
-        self._stream = Web(address, client)
-        self._outbox: queue.SimpleQueue[Callable[[Web], None] | None] = queue.SimpleQueue()
+        self._stream = ServerClient(address, client)
+        self._outbox: queue.SimpleQueue[Callable[[ServerClient], None] | None] = queue.SimpleQueue()
         self._stopping = threading.Event()
         self.requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
         self.updates = 0
@@ -81,25 +81,25 @@ class CameraLink:
 
     def reply(self, request: Request, reply: Reply) -> None:
         """Send the reply to a request, in the background."""
-        self._outbox.put(lambda web: self._send(web, request, reply))
+        self._outbox.put(lambda client: self._send(client, request, reply))
 
     def update(self, description: Description) -> None:
         """Send a new description of the scene, in the background."""
 
-        def send(web: Web) -> None:
-            web.ask("PUT", f"{self._path}/scene", description)
+        def send(client: ServerClient) -> None:
+            client.request("PUT", f"{self._path}/scene", description)
             self.updates += 1
 
         self._outbox.put(send)
 
     def _read(self) -> None:
         try:
-            setup = Web(self._address, self._client)
+            setup = ServerClient(self._address, self._client)
             try:
-                connection = setup.ask("POST", self._path, self._description)["connection"]
+                connection = setup.request("POST", self._path, self._description)["connection"]
             finally:
                 setup.close()
-            self._path = f"{self._path}/{part(connection)}"
+            self._path = f"{self._path}/{quote_part(connection)}"
             self._threads[1].start()
             for event in self._stream.events(f"{self._path}/requests"):
                 if self._stopping.is_set():
@@ -117,30 +117,30 @@ class CameraLink:
             self._outbox.put(None)
 
     def _write(self) -> None:
-        web = Web(self._address, self._client)
+        client = ServerClient(self._address, self._client)
         while (send := self._outbox.get()) is not None:
             try:
-                send(web)
+                send(client)
             except ServerRefusedError as error:
                 if error.status != 404:  # the server no longer waits for this reply
                     self._fail(str(error))
             except AddOnError as error:
                 self._fail(str(error))
                 break
-        web.close()
+        client.close()
 
-    def _send(self, web: Web, request: Request, reply: Reply) -> None:
+    def _send(self, client: ServerClient, request: Request, reply: Reply) -> None:
         if isinstance(reply, Picture):
             try:
                 data = reply.encode()
             except (OSError, ValueError) as error:
-                self._send(web, request, AddOnError(f"The picture cannot be read: {error}"))
+                self._send(client, request, AddOnError(f"The picture cannot be read: {error}"))
                 return
-            path = f"{self._path}/pictures/{request.number}?version={part(reply.version)}"
-            web.data("PUT", path, data, "image/png")
+            path = f"{self._path}/pictures/{request.number}?version={quote_part(reply.version)}"
+            client.request_bytes("PUT", path, data, "image/png")
             return
         body = {"error": str(reply)[:500] or "unknown"} if isinstance(reply, AddOnError) else {"result": reply}
-        web.ask("POST", f"{self._path}/replies/{request.number}", body)
+        client.request("POST", f"{self._path}/replies/{request.number}", body)
 
     def _fail(self, problem: str) -> None:
         if not self._stopping.is_set() and not self.problem:

@@ -1,4 +1,4 @@
-"""Write PNG files with the standard library."""
+"""Encode PNG files with the standard library."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ MAX_TEXT = 300  # characters of a text in the sidebar
 
 OUTCOMES = {
     "answered": "Answered",
-    "clarification": "Question back",
+    "clarification": "Needs clarification",
     "refused": "Refused",
     "step_limit": "Too many steps",
     "budget": "Out of time or tokens",
@@ -43,7 +43,7 @@ class End(NamedTuple):
     timings: tuple[Timing, ...]
 
 
-def step_of(record: dict[str, Any]) -> Step:
+def parse_step(record: dict[str, Any]) -> Step:
     """Return the step of a ``call`` record."""
     outcome = record["outcome"]
     call, result = outcome["call"], outcome.get("result") or {}
@@ -60,7 +60,7 @@ def step_of(record: dict[str, Any]) -> Step:
     )
 
 
-def end_of(record: dict[str, Any]) -> End:
+def parse_end(record: dict[str, Any]) -> End:
     """Return the end of an ``end`` record."""
     timings = record["timings"]
     parts = [

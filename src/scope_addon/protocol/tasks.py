@@ -9,10 +9,10 @@ from typing import Any
 
 from .address import Address
 from .errors import AddOnError
-from .web import Web
+from .server_client import ServerClient
 
-Done = Callable[[Any, str], None]
-"""Receives the result, and the reason for a failure or an empty text. The main thread calls it."""
+Callback = Callable[[Any, str], None]
+"""Receives the result, and the reason for a failure, which is empty on success. The main thread calls it."""
 
 
 class Tasks:
@@ -25,14 +25,14 @@ class Tasks:
 
     def __init__(self, address: Address, client: str) -> None:
         self._address, self._client = address, client
-        self._waiting: queue.SimpleQueue[tuple[Callable[[Web], Any], Done] | None] = queue.SimpleQueue()
+        self._queue: queue.SimpleQueue[tuple[Callable[[ServerClient], Any], Callback] | None] = queue.SimpleQueue()
         self._finished: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._work, name="scope-tasks", daemon=True)
         self._thread.start()
 
-    def add(self, task: Callable[[Web], Any], done: Done) -> None:
+    def add(self, task: Callable[[ServerClient], Any], done: Callback) -> None:
         """Carry out a task in the background. ``collect`` calls ``done`` when it has finished."""
-        self._waiting.put((task, done))
+        self._queue.put((task, done))
 
     def collect(self) -> None:
         """Call the functions of finished tasks. Only the main thread calls this."""
@@ -41,22 +41,22 @@ class Tasks:
 
     def stop(self) -> None:
         """End the thread after the current task."""
-        self._waiting.put(None)
+        self._queue.put(None)
 
     def join(self, timeout_s: float) -> None:
         """Wait until the thread has ended."""
         self._thread.join(timeout_s)
 
     def _work(self) -> None:
-        web = Web(self._address, self._client)
-        while (entry := self._waiting.get()) is not None:
+        client = ServerClient(self._address, self._client)
+        while (entry := self._queue.get()) is not None:
             task, done = entry
             result, problem = None, ""
             try:
-                result = task(web)
+                result = task(client)
             except AddOnError as error:
                 problem = str(error)
             except (KeyError, TypeError, ValueError):
                 problem = "The server's reply has an unknown form. Update the add-on."
             self._finished.put(lambda done=done, result=result, problem=problem: done(result, problem))  # type: ignore[misc]
-        web.close()
+        client.close()

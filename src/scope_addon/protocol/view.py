@@ -1,4 +1,4 @@
-"""A view in the scene's coordinates, and the requests of a server, checked."""
+"""A view in the scene's coordinates, and validation of the arguments of requests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class View(NamedTuple):
     """A view: the position, the direction and the horizontal field of view.
 
     Attributes:
-        viewpoint: The name of the camera whose optical centre it has.
+        viewpoint: The name of the camera whose optical centre the view shares.
         position_m: The position in the scene.
         bearing_deg: The direction, clockwise from above, from the scene's y axis.
         tilt_deg: The tilt; positive is up.
@@ -34,8 +34,8 @@ class View(NamedTuple):
         sp, cp, st, ct = math.sin(p), math.cos(p), math.sin(t), math.cos(t)
         return (cp, -sp, 0.0), (-sp * st, -cp * st, ct), (sp * ct, cp * ct, st)
 
-    def towards(self, end: View, fraction: float) -> View:
-        """Return the view on the way to another one, turned by the shorter way. Fraction 1 is exactly the end."""
+    def interpolate(self, end: View, fraction: float) -> View:
+        """Return a view between this one and another, along the shorter turn. Fraction 1 is exactly the other view."""
         if fraction >= 1.0 or end.viewpoint != self.viewpoint:
             return end
         turn = (end.bearing_deg - self.bearing_deg + 180.0) % 360.0 - 180.0
@@ -60,7 +60,7 @@ def bearing_tilt_deg(direction: Vector, up: Vector) -> tuple[float, float]:
     return math.degrees(math.atan2(x, y)), tilt
 
 
-def view_of(arguments: Mapping[str, Any]) -> View:
+def parse_view(arguments: Mapping[str, Any]) -> View:
     """Return the view in the arguments of a request.
 
     Raises:
@@ -77,7 +77,7 @@ def view_of(arguments: Mapping[str, Any]) -> View:
     return View(viewpoint, (x, y, z), bearing, tilt, hfov)
 
 
-def size_of(arguments: Mapping[str, Any]) -> tuple[int, int]:
+def parse_size(arguments: Mapping[str, Any]) -> tuple[int, int]:
     """Return the width and height in the arguments of a request.
 
     Raises:

@@ -12,14 +12,14 @@ import bpy
 from mathutils import Matrix, Vector
 
 from ..protocol.errors import AddOnError
-from ..protocol.view import View, bearing_tilt_deg, view_of
+from ..protocol.view import View, bearing_tilt_deg, parse_view
 
 PRESET, DESCRIPTION, VIEWPOINT, VIEW_CAMERA = "scope_preset", "scope_description", "scope_viewpoint", "scope_view_camera"
 """Custom properties: of presets that were saved through SCOPE, and of the camera that SCOPE moves."""
 
 COLLECTION = "SCOPE presets"
-OTHER_PROJECTION_HFOV_DEG = 60.0  # for orthographic and panoramic cameras, which are shown in perspective
-SAME_PLACE_M = 0.001
+OTHER_PROJECTION_HFOV_DEG = 60.0  # of orthographic and panoramic cameras, whose views SCOPE shows in perspective
+VIEWPOINT_TOLERANCE_M = 0.001  # a saved preset that has moved further from its camera gets a viewpoint of its own
 
 
 def describe(scene: Any) -> dict[str, Any]:
@@ -37,12 +37,12 @@ def describe(scene: Any) -> dict[str, Any]:
     places = {name: o.matrix_world.translation for name, o in zip(names, plain, strict=True)}
     places.update((name, o.matrix_world.translation) for name, o in saved.items() if VIEWPOINT not in o)
     active = previous_camera(scene)
-    cameras = [_described(scene, o, name, o.name, None) for name, o in zip(names, plain, strict=True)]
+    cameras = [_describe_camera(scene, o, name, o.name, None) for name, o in zip(names, plain, strict=True)]
     for name, o in saved.items():
         viewpoint = o.get(VIEWPOINT)
-        if viewpoint not in places or (places[viewpoint] - o.matrix_world.translation).length > SAME_PLACE_M:
+        if viewpoint not in places or (places[viewpoint] - o.matrix_world.translation).length > VIEWPOINT_TOLERANCE_M:
             viewpoint = None
-        cameras.append({**_described(scene, o, name, str(o.get(DESCRIPTION, "")), viewpoint), "saved": True})
+        cameras.append({**_describe_camera(scene, o, name, str(o.get(DESCRIPTION, "")), viewpoint), "saved": True})
     settings = scene.scope
     return {
         "name": _kebab(Path(bpy.data.filepath).stem) if bpy.data.filepath else "unsaved",
@@ -57,7 +57,7 @@ def describe(scene: Any) -> dict[str, Any]:
 
 def save_preset(scene: Any, arguments: Mapping[str, Any]) -> None:
     """Save a view as a preset: a camera in the scene. A preset of the same name is replaced."""
-    name, description, view = str(arguments.get("name", "")), str(arguments.get("description", "")), view_of(arguments)
+    name, description, view = str(arguments.get("name", "")), str(arguments.get("description", "")), parse_view(arguments)
     add_preset(scene, name, view, description, view.viewpoint)
 
 
@@ -67,9 +67,9 @@ def add_preset(scene: Any, name: str, view: View, description: str = "", viewpoi
     Args:
         scene: The scene.
         name: The name of the preset.
-        view: Where it points.
+        view: The view of the preset.
         description: A description; may be empty.
-        viewpoint: The name of the camera whose optical centre the view has; empty if it is a place of its own.
+        viewpoint: The name of the camera whose optical centre the view shares; empty if the view has its own.
     """
     place = find_preset(scene, name)
     if place is None:
@@ -142,7 +142,7 @@ def previous_camera(scene: Any) -> Any:
     return active
 
 
-def _described(scene: Any, camera: Any, name: str, title: str, viewpoint: str | None) -> dict[str, Any]:
+def _describe_camera(scene: Any, camera: Any, name: str, title: str, viewpoint: str | None) -> dict[str, Any]:
     view = view_through(scene, camera, name)
     return {
         "name": name,
@@ -161,7 +161,7 @@ def _direction(matrix: Any) -> tuple[float, float]:
 
 
 def _hfov_deg(data: Any, render: Any) -> float:
-    """Return the horizontal field of view at the aspect ratio of the render settings, which is that of `blender:FILE.blend`."""
+    """Return the horizontal field of view at the aspect ratio of the render settings, as `blender:FILE.blend` does."""
     if data.type != "PERSP":
         return OTHER_PROJECTION_HFOV_DEG
     width, height = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y

@@ -1,4 +1,4 @@
-"""Notice changes of the scene, so that an unchanged picture is not taken again."""
+"""Detect changes of the scene, so that a picture of an unchanged scene is not taken again."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ def version() -> int:
     return _state["version"]
 
 
-def changed() -> None:
+def record_change() -> None:
     """Record a change."""
     _state["version"] = next(_NUMBERS)
 
 
 @contextmanager
 def own_change() -> Iterator[None]:
-    """Within the context, changes of the scene are SCOPE's own and do not count."""
+    """Return a context in which changes of the scene are SCOPE's own and do not count."""
     _state["own"] += 1
     try:
         yield
@@ -43,24 +43,24 @@ def on_update(_scene: Any, graph: Any = None) -> None:
     if _state["own"]:
         return
     if graph is None or any(not _is_ours(update.id) for update in graph.updates):
-        changed()
+        record_change()
 
 
 @persistent
 def on_frame(_scene: Any, _graph: Any = None) -> None:
-    """Handle a change of the current frame of the animation. Rendering a picture reports one, too."""
+    """Handle a change of the animation's current frame. Blender also calls this when SCOPE renders a picture."""
     if not _state["own"]:
-        changed()
+        record_change()
 
 
 def add_handlers() -> None:
-    """Start to notice changes."""
+    """Start detecting changes."""
     bpy.app.handlers.depsgraph_update_post.append(on_update)
     bpy.app.handlers.frame_change_post.append(on_frame)
 
 
 def remove_handlers() -> None:
-    """Stop to notice changes."""
+    """Stop detecting changes."""
     for handlers, handler in ((bpy.app.handlers.depsgraph_update_post, on_update), (bpy.app.handlers.frame_change_post, on_frame)):
         if handler in handlers:
             handlers.remove(handler)

@@ -11,15 +11,15 @@ import bpy
 
 from ..protocol.errors import AddOnError
 from ..protocol.link import CameraLink, Picture, Reply, Request
-from ..protocol.view import size_of, view_of
+from ..protocol.view import parse_size, parse_view
 from . import cameras, changes, pictures
 from .view_camera import ViewCamera
 
-MAX_REST_S = 0.5
-"""Maximum pause in seconds after a picture, in which Blender's window responds. A pause is half as long as its picture took."""
+MAX_PAUSE_S = 0.5
+"""Maximum pause in seconds after a picture. A pause lasts half as long as its picture took, so that Blender's window responds."""
 
-DESCRIBE_S = 1.0
-"""Seconds between checks whether the user has changed the cameras of the scene."""
+DESCRIBE_INTERVAL_S = 1.0
+"""Interval in seconds at which the cameras of the scene are checked for changes by the user."""
 
 
 class Executor:
@@ -33,7 +33,7 @@ class Executor:
     def __init__(self, link: CameraLink, description: dict[str, Any]) -> None:
         self._link, self._description = link, description
         self._pictures: deque[Request] = deque()
-        self._rest_until_s = self._describe_s = 0.0
+        self._pause_until_s = self._next_description_s = 0.0
         self.picture_s = 0.0
         """Seconds that the last picture took."""
         self.pictures = 0
@@ -42,7 +42,7 @@ class Executor:
             self.camera = ViewCamera(bpy.context.scene)
 
     def tick(self) -> bool:
-        """Carry out what has arrived. At most one picture is taken. Return whether something visible changed."""
+        """Carry out the requests that have arrived, with at most one picture. Return whether something visible has changed."""
         seen = False
         while not self._link.requests.empty():
             request = self._link.requests.get()
@@ -51,14 +51,14 @@ class Executor:
             else:
                 self._link.reply(request, self._attempt(request))
                 seen = True
-        if self._pictures and time.monotonic() >= self._rest_until_s:
+        if self._pictures and time.monotonic() >= self._pause_until_s:
             request = self._pictures.popleft()
             self._link.reply(request, self._attempt(request))
         if self.camera.gliding:
             with changes.own_change():
                 self.camera.tick()
             seen = True
-        self._describe_again()
+        self._describe_if_due()
         return seen
 
     def close(self) -> None:
@@ -94,7 +94,7 @@ class Executor:
         scene, arguments = bpy.context.scene, request.arguments
         if request.operation == "look":
             with changes.own_change():
-                self.camera.look(view_of(arguments), glide=not bpy.app.background)
+                self.camera.look(parse_view(arguments), glide=not bpy.app.background)
             return {}
         if request.operation == "frame":
             return self._picture(scene, arguments)
@@ -108,8 +108,8 @@ class Executor:
         return self._description
 
     def _picture(self, scene: Any, arguments: dict[str, Any]) -> Reply:
-        view, size, source = view_of(arguments), size_of(arguments), scene.scope.source
-        version = f"{changes.version()}-{pictures.look_of(source)}"[:60]
+        view, size, source = parse_view(arguments), parse_size(arguments), scene.scope.source
+        version = f"{changes.version()}-{pictures.appearance(source)}"[:60]
         if arguments.get("version") == version:
             return {"unchanged": version}
         began_s = time.monotonic()
@@ -118,13 +118,13 @@ class Executor:
             bpy.context.view_layer.update()
             encode = pictures.take(scene, camera, size, source)
         self.picture_s = time.monotonic() - began_s
-        self._rest_until_s = time.monotonic() + min(MAX_REST_S, self.picture_s / 2)
+        self._pause_until_s = time.monotonic() + min(MAX_PAUSE_S, self.picture_s / 2)
         self.pictures += 1
         return Picture(encode, version)
 
-    def _describe_again(self) -> None:
+    def _describe_if_due(self) -> None:
         now_s = time.monotonic()
-        if now_s >= self._describe_s:
-            self._describe_s = now_s + DESCRIBE_S
+        if now_s >= self._next_description_s:
+            self._next_description_s = now_s + DESCRIBE_INTERVAL_S
             with suppress(AddOnError):  # the user has deleted the last camera; the server keeps the last description
                 self.describe_now()

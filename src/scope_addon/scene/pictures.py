@@ -1,4 +1,4 @@
-"""Take a picture through a camera: with the drawing of the 3D viewport, or with the render engine of the scene."""
+"""Take a picture through a camera, as the 3D viewport draws it or with the render engine of the scene."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ def take(scene: Any, camera: Any, size: tuple[int, int], source: str) -> Callabl
         found = viewport()
         if found is None:
             raise AddOnError("There is no 3D viewport to take pictures with. Open one, or set Pictures to Render in the SCOPE tab.")
-        return _drawn(scene, camera, size, *found)
-    return _rendered(scene, size)
+        return _draw_viewport(scene, camera, size, *found)
+    return _render(scene, size)
 
 
 def viewport() -> tuple[Any, Any] | None:
@@ -49,8 +49,8 @@ def viewport() -> tuple[Any, Any] | None:
     return None
 
 
-def look_of(source: str) -> str:
-    """Return a text that changes when pictures look different because of settings of the viewport or the render engine."""
+def appearance(source: str) -> str:
+    """Return a text that changes with those settings of the viewport or the render engine that change how pictures look."""
     scene, found = bpy.context.scene, viewport() if source == "VIEWPORT" and not bpy.app.background else None
     if found is None:
         return scene.render.engine
@@ -58,7 +58,7 @@ def look_of(source: str) -> str:
     return f"{shading.type}-{shading.light}-{shading.color_type}"
 
 
-def _drawn(scene: Any, camera: Any, size: tuple[int, int], space: Any, region: Any) -> Callable[[], bytes]:
+def _draw_viewport(scene: Any, camera: Any, size: tuple[int, int], space: Any, region: Any) -> Callable[[], bytes]:
     import gpu
 
     width, height = size
@@ -82,7 +82,7 @@ def _drawn(scene: Any, camera: Any, size: tuple[int, int], space: Any, region: A
     return lambda: png_of_rgba(pixels, width, height)
 
 
-def _rendered(scene: Any, size: tuple[int, int]) -> Callable[[], bytes]:
+def _render(scene: Any, size: tuple[int, int]) -> Callable[[], bytes]:
     folder = tempfile.TemporaryDirectory(prefix="scope-", ignore_cleanup_errors=True)
     path = Path(folder.name) / "frame.png"
     try:
@@ -103,7 +103,7 @@ def _rendered(scene: Any, size: tuple[int, int]) -> Callable[[], bytes]:
 
 @contextmanager
 def _settings(scene: Any, size: tuple[int, int], path: Path) -> Iterator[None]:
-    """Within the context, the scene renders a PNG file of the given size; afterwards, it has the settings of the user again."""
+    """Return a context in which the scene renders a PNG file of the given size. On exit, the user's settings are restored."""
     render, image = scene.render, scene.render.image_settings
     before = {name: getattr(render, name) for name in _RENDER_SETTINGS}
     image_before = {name: getattr(image, name) for name in _IMAGE_SETTINGS if hasattr(image, name)}

@@ -12,7 +12,7 @@ from . import cameras
 
 NAME = "SCOPE camera"
 GLIDE_S = 0.35
-"""Seconds in which the camera glides to a new pose on the screen. Pictures never wait for it."""
+"""Duration in seconds of the camera's animated move to a new pose on the screen. Pictures never wait for it."""
 
 
 class ViewCamera:
@@ -36,7 +36,7 @@ class ViewCamera:
 
     @property
     def view(self) -> View | None:
-        """The current view, at the end of a glide; None before the first one."""
+        """The view that the camera has, or reaches at the end of a glide; None before the first one."""
         return self._to
 
     def object(self) -> Any:
@@ -54,7 +54,7 @@ class ViewCamera:
     def look(self, view: View, *, glide: bool) -> None:
         """Go to a view. With ``glide``, the object moves there on the screen over the next ticks."""
         moving = glide and self._to is not None
-        self._from = self._shown() if moving else view
+        self._from = self._displayed_view() if moving else view
         self._to, self._since_s = view, time.monotonic()
         if not moving:
             self._aim(view)
@@ -73,7 +73,7 @@ class ViewCamera:
     def tick(self) -> None:
         """Continue a glide."""
         if self.gliding:
-            shown = self._shown()
+            shown = self._displayed_view()
             self._aim(shown)
             if shown == self._to:
                 self._from = self._to
@@ -83,11 +83,11 @@ class ViewCamera:
         for scene in bpy.data.scenes:
             restore(scene)
 
-    def _shown(self) -> View:
+    def _displayed_view(self) -> View:
         assert self._from is not None
         assert self._to is not None
         share = min(1.0, (time.monotonic() - self._since_s) / GLIDE_S)
-        return self._from.towards(self._to, share * share * (3.0 - 2.0 * share))
+        return self._from.interpolate(self._to, share * share * (3.0 - 2.0 * share))
 
     def _aim(self, view: View) -> Any:
         camera = self.object()

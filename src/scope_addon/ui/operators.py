@@ -58,7 +58,7 @@ class SCOPE_OT_ask(_Operator):
 
     @classmethod
     def poll(cls, context):
-        return session.state == "connected" and session.asking is None and bool(context.window_manager.scope.question.strip())
+        return session.state == "connected" and session.run is None and bool(context.window_manager.scope.question.strip())
 
     def work(self, context):
         settings = context.window_manager.scope
@@ -72,7 +72,7 @@ class SCOPE_OT_cancel(_Operator):
 
     @classmethod
     def poll(cls, _context):
-        return session.asking is not None
+        return session.run is not None
 
     def work(self, _context):
         session.cancel()

@@ -15,7 +15,7 @@ _handles: list[object] = []
 
 
 def add() -> None:
-    """Start to draw."""
+    """Start drawing."""
     if not bpy.app.background:
         _handles.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL"))
 
@@ -28,9 +28,9 @@ def remove() -> None:
 
 def text() -> tuple[str, str]:
     """Return the heading and the text; both empty if there is nothing to say."""
-    if session.asking is not None:
+    if session.run is not None:
         last = session.steps[-1].text if session.steps else session.activity
-        return session.asking.instruction, last
+        return session.run.instruction, last
     if session.end is not None and session.state == "connected":
         return session.end.outcome, session.end.text
     return "", ""
@@ -44,7 +44,7 @@ def _draw() -> None:
     scale = bpy.context.preferences.system.ui_scale
     size, margin = 15 * scale, 14 * scale
     _set_size(size)
-    start, end = _free(region)
+    start, end = _free_range(region)
     letters = max(20, int((0.8 * (end - start) - 2 * margin) / (size * 0.55)))
     lines = [heading[:letters], *textwrap.wrap(body, letters)[:4]]
     width = max(blf.dimensions(0, line)[0] for line in lines)
@@ -57,7 +57,7 @@ def _draw() -> None:
         blf.draw(0, line)
 
 
-def _free(region: Any) -> tuple[float, float]:
+def _free_range(region: Any) -> tuple[float, float]:
     """Return the part of the viewport, in pixels from its left edge, that the toolbar and the sidebar do not cover."""
     start, end = 0.0, float(region.width)
     for other in bpy.context.area.regions:

@@ -30,7 +30,7 @@ def draw_banner(header: Any, context: Any) -> None:
     field = row.row(align=True)
     field.ui_units_x = 18
     field.prop(settings, "question", text="")
-    if session.asking is None:
+    if session.run is None:
         row.operator("scope.ask", text="Ask")
     else:
         row.operator("scope.cancel", text="Cancel", icon="CANCEL")
@@ -46,16 +46,16 @@ class SCOPE_PT_connection(_Panel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         layout, state = self.layout, session.state
         text, icon = STATES[state]
-        place = session.place.partition("//")[2]
+        url = session.server_url.partition("//")[2]
         layout.label(text=text, icon=icon)
-        if place:
-            layout.label(text=place, icon="URL")
+        if url:
+            layout.label(text=url, icon="URL")
         if state == "off":
             layout.operator("scope.connect")
         else:
             layout.operator("scope.disconnect")
         if session.problem:
-            _lines(layout.box(), context, session.problem, icon="ERROR")
+            _draw_lines(layout.box(), context, session.problem, icon="ERROR")
 
 
 class SCOPE_PT_ask(_Panel, bpy.types.Panel):
@@ -77,7 +77,7 @@ class SCOPE_PT_ask(_Panel, bpy.types.Panel):
         if session.end is not None:
             box = layout.box()
             box.label(text=session.end.outcome, icon="CHECKMARK" if session.end.outcome == "Answered" else "INFO")
-            _lines(box, context, session.end.text)
+            _draw_lines(box, context, session.end.text)
 
 
 class SCOPE_PT_steps(_Panel, bpy.types.Panel):
@@ -90,7 +90,7 @@ class SCOPE_PT_steps(_Panel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         layout = self.layout
         if not session.steps:
-            _lines(layout, context, "The steps of an instruction appear here.")
+            _draw_lines(layout, context, "The steps of an instruction appear here.")
         for number, step in enumerate(session.steps, 1):
             column = layout.box().column(align=True)
             row = column.row()
@@ -98,9 +98,9 @@ class SCOPE_PT_steps(_Panel, bpy.types.Panel):
             time = row.row()
             time.alignment = "RIGHT"
             time.label(text=f"{step.duration_s:.2f} s")
-            _lines(column, context, step.call)
+            _draw_lines(column, context, step.call)
             column.separator()
-            _lines(column, context, step.text)
+            _draw_lines(column, context, step.text)
         if session.end is not None:
             row = layout.column(align=True)
             for timing in session.end.timings:
@@ -147,7 +147,7 @@ class SCOPE_PT_pictures(_Panel, bpy.types.Panel):
             layout.label(text=f"{session.executor.pictures} pictures, the last in {session.executor.picture_s:.2f} s")
 
 
-def _lines(layout: Any, context: Any, text: str, icon: str = "NONE") -> None:
+def _draw_lines(layout: Any, context: Any, text: str, icon: str = "NONE") -> None:
     """Draw a text in as many lines as it needs."""
     scale = context.preferences.system.ui_scale
     width = max(20, int((context.region.width - 60 * scale) / (PIXELS_PER_LETTER * scale)))

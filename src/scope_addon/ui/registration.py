@@ -59,13 +59,13 @@ def unregister() -> None:
 def _on_load(*_: Any) -> None:
     for scene in bpy.data.scenes:  # a crash may have left SCOPE's camera in the file
         view_camera.restore(scene)
-    changes.changed()
+    changes.record_change()
     session.file_opened()
 
 
 @persistent
 def _before_save(*_: Any) -> None:
-    """Save the file with its own camera."""
+    """Restore the scene's own camera, so that SCOPE's camera is not saved in the file."""
     for scene in bpy.data.scenes:
         view_camera.restore(scene)
 

@@ -12,13 +12,13 @@ from typing import Any
 import bpy
 
 from ..protocol.address import Address, parse_address
-from ..protocol.asking import Asking, Deciding, Problem, Shown
 from ..protocol.errors import AddOnError
+from ..protocol.instruction_run import InstructionRun, PictureStored, Problem, StepStarted
 from ..protocol.link import CameraLink
 from ..protocol.server import CAMERA, ServerProcess
+from ..protocol.server_client import quote_part
 from ..protocol.steps import End, Step
 from ..protocol.tasks import Tasks
-from ..protocol.web import part
 from ..scene import cameras
 from ..scene.executor import Executor
 from . import picture_view, properties
@@ -27,7 +27,7 @@ ACTIVE_S, WAITING_S = 0.02, 0.1
 """Seconds between two calls of the timer, while connected and while the server starts."""
 
 MAX_STEPS = 60
-START_S = 60.0  # until a server that was started must be ready
+START_S = 60.0  # time limit for the start of a server
 
 
 class Session:
@@ -44,8 +44,7 @@ class Session:
         self.steps: list[Step] = []
         self.end: End | None = None
         self.activity = ""
-        self.asked_s = 0.0
-        self.asking: Asking | None = None
+        self.run: InstructionRun | None = None
         self.executor: Executor | None = None
         self._server: ServerProcess | None = None
         self._server_since_s = 0.0
@@ -53,7 +52,7 @@ class Session:
         self._tasks: Tasks | None = None
         self._address: Address | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
-        self._greeted = False
+        self._presets_requested = False
         self._updates = 0
 
     @property
@@ -64,7 +63,7 @@ class Session:
         return "starting" if self._server is not None else "off"
 
     @property
-    def place(self) -> str:
+    def server_url(self) -> str:
         """The address of the server; empty if there is none."""
         return self._address.url if self._address is not None else ""
 
@@ -96,8 +95,8 @@ class Session:
 
     def disconnect(self) -> None:
         """Disconnect, and end the server if the add-on started it."""
-        if self.asking is not None:
-            self.asking.abandon()
+        if self.run is not None:
+            self.run.abandon()
         if self._tasks is not None:
             self._tasks.stop()
         if self._link is not None:
@@ -107,8 +106,8 @@ class Session:
         if self._server is not None:
             self._server.stop()
             threading.Thread(target=self._server.wait, name="scope-server-end", daemon=True).start()
-        self.asking = self._tasks = self._link = self.executor = self._server = self._address = None
-        self.presets, self._greeted, self.activity = [], False, ""
+        self.run = self._tasks = self._link = self.executor = self._server = self._address = None
+        self.presets, self._presets_requested, self.activity = [], False, ""
         properties.set_pairs([])
 
     def ask(self, instruction: str, pair: str) -> None:
@@ -119,37 +118,36 @@ class Session:
         """
         if self._address is None or self.state != "connected":
             raise AddOnError("Connect to a server first.")
-        if self.asking is not None:
+        if self.run is not None:
             raise AddOnError("An instruction is in progress. Wait until it ends, or cancel it.")
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="scope-", ignore_cleanup_errors=True)
         self.steps, self.end, self.activity, self.problem = [], None, "Planning the first step", ""
-        self.asked_s = time.monotonic()
         chosen = "" if pair == "NONE" else pair
-        self.asking = Asking(self._address, self.client, self.camera, instruction, chosen, Path(self._folder.name))
-        self.asking.start()
+        self.run = InstructionRun(self._address, self.client, self.camera, instruction, chosen, Path(self._folder.name))
+        self.run.start()
 
     def cancel(self) -> None:
         """Cancel the run in progress, if any."""
-        if self.asking is not None:
+        if self.run is not None:
             self.activity = "Cancelling"
-            self.asking.cancel()
+            self.run.cancel()
 
     def go_to_preset(self, name: str) -> None:
         """Go to a preset, in the background."""
-        self._task("POST", f"/cameras/{part(self.camera)}/presets/{part(name)}/go")
+        self._task("POST", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}/go")
 
     def go_home(self) -> None:
         """Go to the view of the scene's own camera, in the background."""
-        self._task("POST", f"/cameras/{part(self.camera)}/home")
+        self._task("POST", f"/cameras/{quote_part(self.camera)}/home")
 
     def save_preset(self, name: str) -> None:
         """Save the view of SCOPE's camera as a preset, in the background."""
-        self._task("PUT", f"/cameras/{part(self.camera)}/presets/{part(name)}", {"description": ""})
+        self._task("PUT", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}", {"description": ""})
 
     def remove_preset(self, name: str) -> None:
         """Remove a preset, in the background."""
-        self._task("DELETE", f"/cameras/{part(self.camera)}/presets/{part(name)}")
+        self._task("DELETE", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}")
 
     def scene_changed(self) -> None:
         """Send the description of the scene, after the add-on itself has changed its cameras."""
@@ -157,7 +155,7 @@ class Session:
             self.executor.describe_now()
 
     def file_opened(self) -> None:
-        """Go on with the scene of another file."""
+        """Connect the scene of the file that was opened."""
         if self._link is not None and self._address is not None:
             address, self.executor = self._address, None
             self._link.stop()
@@ -168,14 +166,14 @@ class Session:
                 self.problem = str(error)
 
     def tick(self) -> float | None:
-        """Do what is due. Return the seconds until the next call; None if there is nothing left to do."""
+        """Process everything that has arrived. Return the seconds until the next call; None if there is nothing left to do."""
         redraw = self._watch_server()
         if self._link is not None:
             redraw |= self._watch_link(self._link)
         if self._tasks is not None:
             self._tasks.collect()
-        if self.asking is not None:
-            redraw |= self._watch_run(self.asking)
+        if self.run is not None:
+            redraw |= self._watch_run(self.run)
         if redraw:
             tag_redraw()
         return ACTIVE_S if self._link is not None else WAITING_S if self._server is not None else None
@@ -207,7 +205,7 @@ class Session:
         description = cameras.describe(bpy.context.scene)
         self._link = CameraLink(address, self.camera, self.client, description)
         self._link.start()
-        self.executor, self._greeted, self._updates = Executor(self._link, description), False, 0
+        self.executor, self._presets_requested, self._updates = Executor(self._link, description), False, 0
 
     def _watch_link(self, link: CameraLink) -> bool:
         if link.ended:
@@ -217,8 +215,8 @@ class Session:
             self.disconnect()
             self.problem = problem
             return True
-        if link.connected and not self._greeted:
-            self._greeted = True
+        if link.connected and not self._presets_requested:
+            self._presets_requested = True
             self._task("GET", "/pairs", done=self._set_pairs)
             self._refresh_presets()
             return True
@@ -227,28 +225,28 @@ class Session:
             self._refresh_presets()
         return self.executor is not None and self.executor.tick()
 
-    def _watch_run(self, asking: Asking) -> bool:
+    def _watch_run(self, run: InstructionRun) -> bool:
         seen = False
-        while not asking.news.empty():
-            news, seen = asking.news.get(), True
-            if isinstance(news, Step):
-                self.steps = [*self.steps, news][-MAX_STEPS:]
+        while not run.events.empty():
+            event, seen = run.events.get(), True
+            if isinstance(event, Step):
+                self.steps = [*self.steps, event][-MAX_STEPS:]
                 self.activity = f"Planning step {len(self.steps) + 1}"
-            elif isinstance(news, Deciding):
-                self.activity = f"Working on step {news.step}"
-            elif isinstance(news, Shown):
-                picture_view.show(news.path)
+            elif isinstance(event, StepStarted):
+                self.activity = f"Working on step {event.step}"
+            elif isinstance(event, PictureStored):
+                picture_view.show(event.path)
             else:
-                if isinstance(news, End):
-                    self.end = news
-                elif isinstance(news, Problem):
-                    self.problem = news.text
-                self.asking, self.activity = None, ""
+                if isinstance(event, End):
+                    self.end = event
+                elif isinstance(event, Problem):
+                    self.problem = event.text
+                self.run, self.activity = None, ""
                 self._refresh_presets()
         return seen
 
     def _refresh_presets(self) -> None:
-        self._task("GET", f"/cameras/{part(self.camera)}/presets", done=self._set_presets)
+        self._task("GET", f"/cameras/{quote_part(self.camera)}/presets", done=self._set_presets)
 
     def _set_presets(self, reply: Any) -> None:
         self.presets = [str(each["name"]) for each in reply]
@@ -270,11 +268,11 @@ class Session:
                 self._refresh_presets()
             tag_redraw()
 
-        self._tasks.add(lambda web: web.ask(method, path, body), finished)
+        self._tasks.add(lambda client: client.request(method, path, body), finished)
 
 
 def tag_redraw() -> None:
-    """Let all 3D viewports be drawn again."""
+    """Redraw all 3D viewports and image editors."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type in ("VIEW_3D", "IMAGE_EDITOR"):
@@ -282,7 +280,7 @@ def tag_redraw() -> None:
 
 
 session = Session()
-"""The session of this Blender."""
+"""The session of this Blender instance."""
 
 
 def on_timer() -> float | None:

@@ -69,8 +69,8 @@ async def serve_console(site: Site, access: Access, *, port: int = 8000) -> Asyn
     api = Mount(API_PREFIX, api_application(site, access))
     async with mcp_route(site, access) as mcp:
         page = st.App(FOLDER / "ui.py", routes=[sign_in_route(access), api, mcp, assets])
-        gate = AccessMiddleware(page, access, page_policy=PAGE_POLICY)
-        async with page.lifespan()(Starlette()), serve(site, access, port=port, app=gate) as bound:
+        guarded_page = AccessMiddleware(page, access, page_policy=PAGE_POLICY)
+        async with page.lifespan()(Starlette()), serve(site, access, port=port, app=guarded_page) as bound:
             yield bound
 
 

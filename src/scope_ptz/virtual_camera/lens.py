@@ -87,7 +87,7 @@ class VirtualLens:
 
     def move_focus(self, position: float) -> None:
         """Move the focus to a position within its range. This turns autofocus off."""
-        self._travel(_clamped(position), 1 / TRAVEL_S)
+        self._travel(_clamp(position), 1 / TRAVEL_S)
 
     def drive_focus(self, speed: float) -> None:
         """Move the focus towards the far (``speed`` above 0) or near end of its range. This turns autofocus off.
@@ -110,7 +110,7 @@ class VirtualLens:
 
     def set_iris(self, opening: float) -> None:
         """Open the iris to a fraction of its range. This turns the automatic iris off."""
-        self._state = replace(self._state, autoiris=False, iris=_clamped(opening))
+        self._state = replace(self._state, autoiris=False, iris=_clamp(opening))
 
     def apply(self, image: NDArray[np.uint8], zoom: float) -> NDArray[np.uint8]:
         """Apply the effect of the lens to an image: blur it if it is out of focus, and darken or brighten it with the iris.
@@ -134,5 +134,5 @@ class VirtualLens:
         self._state = replace(self._state, autofocus=autofocus, start=here, end=end, speed=speed, started_s=now_s)
 
 
-def _clamped(value: float) -> float:
+def _clamp(value: float) -> float:
     return min(max(value, 0.0), 1.0)

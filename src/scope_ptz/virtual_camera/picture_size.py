@@ -29,7 +29,7 @@ def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
     return width, height
 
 
-def fitted(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+def crop_and_scale(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
     """Scale an image to a size. If the aspect ratio differs, the image is cropped, never stretched.
 
     Args:

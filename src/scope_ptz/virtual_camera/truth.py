@@ -8,7 +8,7 @@ from time import monotonic, time
 from scope_ptz.camera.base import FrameOrigin
 from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
 
-KEPT_EXPOSURES = 3000
+MAX_STORED_EXPOSURES = 3000
 """Maximum number of stored exposures: two minutes at 25 frames per second."""
 
 TOLERANCE_S = 0.001
@@ -24,7 +24,7 @@ class TruthLog:
 
     def __init__(self, device: VirtualDevice) -> None:
         self._device = device
-        self._exposures: deque[tuple[float, float, FrameOrigin]] = deque(maxlen=KEPT_EXPOSURES)
+        self._exposures: deque[tuple[float, float, FrameOrigin]] = deque(maxlen=MAX_STORED_EXPOSURES)
         device.observers.append(self._note)
 
     def close(self) -> None:

@@ -17,7 +17,7 @@ from scope_ptz.errors import CameraError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.geometry import Pose
 from scope_ptz.virtual_camera.device import VirtualDevice
-from scope_ptz.virtual_camera.http.certificate import Certificate, self_signed
+from scope_ptz.virtual_camera.http.certificate import Certificate, create_certificate
 from tests.camera.faults.drivers import HEIGHT, ONVIF, PASSWORD, USER, WIDTH, Driver, served
 from tests.camera.faults.runs import ask, expect_answer
 
@@ -28,7 +28,7 @@ THERE = Pose(40.0, -12.0, 2.0)
 
 @pytest.fixture(scope="module")
 def certificate() -> Certificate:
-    return self_signed("yard", ("127.0.0.1", "localhost"))
+    return create_certificate("yard", ("127.0.0.1", "localhost"))
 
 
 async def _trust(port: int, fingerprint: str) -> ssl.SSLContext:
@@ -50,7 +50,7 @@ async def test_right_certificate(driver: Driver, device: VirtualDevice, certific
 
 
 async def test_wrong_certificate(driver: Driver, device: VirtualDevice, certificate: Certificate) -> None:
-    other = self_signed("intruder", ("127.0.0.1",))
+    other = create_certificate("intruder", ("127.0.0.1",))
     async with served(device, certificate=certificate) as camera_server:
         with pytest.raises(CertificateError, match=r"is not the configured one\. Nothing was sent") as caught:
             await _trust(camera_server.port, other.fingerprint)
@@ -72,7 +72,7 @@ async def test_changed_certificate(driver: Driver, device: VirtualDevice, certif
         async with driver.opened(port, tls=trust) as camera:
             await camera.pose()
             await first.aclose()
-            async with served(intruder, port=port, certificate=self_signed("intruder", ("127.0.0.1",))):
+            async with served(intruder, port=port, certificate=create_certificate("intruder", ("127.0.0.1",))):
                 with pytest.raises(CameraUnreachableError, match="certificate is not trusted"):
                     await camera.move(THERE)
                 with pytest.raises(CertificateError, match="renewed"):
@@ -127,4 +127,4 @@ async def test_addresses_that_the_camera_states_begin_with_https(device: Virtual
 
 def test_the_key_is_kept(certificate: Certificate) -> None:
     assert "PRIVATE" not in repr(certificate)
-    assert certificate.fingerprint != self_signed("yard", ("127.0.0.1", "localhost")).fingerprint
+    assert certificate.fingerprint != create_certificate("yard", ("127.0.0.1", "localhost")).fingerprint

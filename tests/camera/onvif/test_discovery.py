@@ -8,7 +8,7 @@ from scope_ptz.camera.onvif.discovery import FoundDevice, discover, parse_match
 from scope_ptz.errors import InputError
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.device import VirtualDevice
-from scope_ptz.virtual_camera.onvif.discovery import Discoverable, discoverable
+from scope_ptz.virtual_camera.onvif.discovery import DiscoverableCamera, serve_discovery
 
 MATCH = """<e:Envelope xmlns:e="http://www.w3.org/2003/05/soap-envelope" xmlns:d="http://schemas.xmlsoap.org/ws/2005/04/discovery">
 <e:Body><d:ProbeMatches><d:ProbeMatch><d:Scopes>{scopes}</d:Scopes><d:XAddrs>{places}</d:XAddrs></d:ProbeMatch></d:ProbeMatches>
@@ -21,8 +21,8 @@ def _match(places: str, scopes: str = "") -> list[FoundDevice]:
 
 @pytest.mark.anyio
 async def test_virtual_camera_is_found(analytic_scene: Scene) -> None:
-    camera = Discoverable(VirtualDevice(analytic_scene, name="yard gate"), 8123)
-    async with discoverable([camera], port=0) as port:
+    camera = DiscoverableCamera(VirtualDevice(analytic_scene, name="yard gate"), 8123)
+    async with serve_discovery([camera], port=0) as port:
         found = await discover(["127.0.0.1"], wait_s=0.4, port=port)
     assert found == [FoundDevice("127.0.0.1:8123", "yard gate", "M5075-G")]
     assert found[0].spec == "onvif://USER@127.0.0.1:8123"

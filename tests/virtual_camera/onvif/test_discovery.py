@@ -16,7 +16,7 @@ from scope_ptz.errors import ConfigError
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.faults import Faults
 from scope_ptz.virtual_camera.identity import device_uuid
-from scope_ptz.virtual_camera.onvif.discovery import GROUP, Discoverable, discoverable
+from scope_ptz.virtual_camera.onvif.discovery import GROUP, DiscoverableCamera, serve_discovery
 from scope_ptz.virtual_camera.onvif.discovery_messages import parse_query
 
 pytestmark = pytest.mark.anyio
@@ -43,7 +43,7 @@ PROBE = question("<d:Probe><d:Types>dn:NetworkVideoTransmitter</d:Types></d:Prob
 @pytest.fixture
 async def port(device: VirtualDevice) -> AsyncIterator[int]:
     """A port of the system's choice in place of 3702, so that tests at the same time do not hear each other."""
-    async with discoverable([Discoverable(device, HTTP_PORT)], port=0) as port:
+    async with serve_discovery([DiscoverableCamera(device, HTTP_PORT)], port=0) as port:
         yield port
 
 
@@ -141,7 +141,7 @@ async def test_hello_and_bye(device: VirtualDevice) -> None:
         membership = socket.inet_aton(GROUP) + socket.inet_aton("127.0.0.1")
         listener.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
         listener.setblocking(False)
-        async with discoverable([Discoverable(device, HTTP_PORT)], port=listener.getsockname()[1]):
+        async with serve_discovery([DiscoverableCamera(device, HTTP_PORT)], port=listener.getsockname()[1]):
             pass
         async with asyncio.timeout(20):
             messages = [etree.fromstring(await asyncio.get_running_loop().sock_recv(listener, 65536)) for _ in range(2)]
@@ -153,8 +153,8 @@ async def test_hello_and_bye(device: VirtualDevice) -> None:
 
 async def test_several_devices_answer_one_probe(device: VirtualDevice, searcher: socket.socket) -> None:
     other = VirtualDevice(device.scene, name="other", width=320, height=180)
-    cameras = [Discoverable(device, HTTP_PORT), Discoverable(other, HTTP_PORT + 1)]
-    async with discoverable(cameras, port=0) as port:
+    cameras = [DiscoverableCamera(device, HTTP_PORT), DiscoverableCamera(other, HTTP_PORT + 1)]
+    async with serve_discovery(cameras, port=0) as port:
         first = await ask(searcher, port, PROBE)
         second = await ask(searcher, port)
     found = {each.findtext(".//d:ProbeMatch/d:XAddrs", namespaces=NAMES) for each in (first, second)}
@@ -164,7 +164,7 @@ async def test_several_devices_answer_one_probe(device: VirtualDevice, searcher:
 async def test_an_interface_that_is_not_there_is_an_error(device: VirtualDevice) -> None:
     for host in ("203.0.113.7", "::1"):
         with pytest.raises(ConfigError, match="without discovery"):
-            async with discoverable([Discoverable(device, HTTP_PORT)], host=host, port=0):
+            async with serve_discovery([DiscoverableCamera(device, HTTP_PORT)], host=host, port=0):
                 raise AssertionError
 
 

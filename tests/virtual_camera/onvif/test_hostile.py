@@ -18,8 +18,8 @@ from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.server import ServedCamera, listen
 from scope_ptz.virtual_camera.onvif import wsdl
 from scope_ptz.virtual_camera.onvif.app import OnvifApp, RequestTarget
-from scope_ptz.virtual_camera.onvif.login import CLOCK_TOLERANCE_S
 from scope_ptz.virtual_camera.onvif.soap import MAX_REQUEST_BYTES, SoapFault
+from scope_ptz.virtual_camera.onvif.username_tokens import CLOCK_TOLERANCE_S
 from tests.virtual_camera.onvif.conftest import HandClock
 from tests.virtual_camera.onvif.envelopes import DEVICE, MEDIA, PTZ, ago, envelope, post, ptz_request, token
 

@@ -19,7 +19,7 @@ from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.server import ServedCamera, serve
 from scope_ptz.virtual_camera.identity import device_uuid
 from scope_ptz.virtual_camera.onvif.app import OnvifApp
-from scope_ptz.virtual_camera.onvif.discovery import Discoverable, discoverable
+from scope_ptz.virtual_camera.onvif.discovery import DiscoverableCamera, serve_discovery
 from tests.virtual_camera.onvif.conftest import ACCOUNTS, RTSP_PORT, HandClock
 from tests.virtual_camera.onvif.envelopes import MEDIA2, Answer, envelope, post, ptz_request, token
 
@@ -106,7 +106,7 @@ async def test_onvif_python(analytic_scene: Scene, tmp_path: Path) -> None:
     device = VirtualDevice(analytic_scene, accounts=ACCOUNTS, width=320, height=180, time_scale=100.0)
     async with AsyncExitStack() as stack:
         (camera,) = await stack.enter_async_context(serve([device], onvif=lambda each: OnvifApp(each, rtsp_port=RTSP_PORT)))
-        await stack.enter_async_context(discoverable([Discoverable(device, camera.port)]))
+        await stack.enter_async_context(serve_discovery([DiscoverableCamera(device, camera.port)]))
         script = Path(__file__).with_name("media2_client.py")
         heard: dict[str, Any] = json.loads(
             await run(str(python), str(script), str(camera.port), CAMERA_PASSWORD=ACCOUNTS[0].password)

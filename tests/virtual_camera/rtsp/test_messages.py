@@ -91,7 +91,7 @@ def test_any_bytes_are_a_message_a_refusal_or_unfinished(content: bytes, start: 
 def test_a_reply_repeats_the_sequence_number_and_headers() -> None:
     reply = Reply(401, (("WWW-Authenticate", "a"), ("WWW-Authenticate", "b")), b"why")
     expected = "RTSP/1.0 401 Unauthorized|CSeq: 3|WWW-Authenticate: a|WWW-Authenticate: b|Content-Length: 3||why"
-    assert reply.encoded("3").decode() == expected.replace("|", "\r\n")
+    assert reply.encode("3").decode() == expected.replace("|", "\r\n")
 
 
 @pytest.mark.parametrize(

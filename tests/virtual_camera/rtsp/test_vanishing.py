@@ -66,7 +66,7 @@ async def test_closed_ports_end_a_session_at_once(open_device: VirtualDevice) ->
 async def test_a_silent_client_by_udp_is_given_up_and_reports_keep_one_alive(
     open_device: VirtualDevice, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sessions, "ORPHAN_S", 0.5)
+    monkeypatch.setattr(sessions, "ORPHAN_TIMEOUT_S", 0.5)
     async with serving(open_device) as served:
         pairs = [udp_pair() for _ in range(2)]
         clients = []
@@ -105,7 +105,7 @@ async def test_an_unused_session_expires_and_requests_keep_one_alive(open_device
 async def test_a_client_that_reads_nothing_costs_no_memory_and_is_dropped(
     analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sinks, "STUCK_S", 1.0)
+    monkeypatch.setattr(sinks, "SEND_TIMEOUT_S", 1.0)
     async with serving(VirtualDevice(analytic_scene, width=640, height=360), rate_hz=100) as served:
         stuck, reader = RtspClient(served.port), RtspClient(served.port)
         async with stuck, reader:

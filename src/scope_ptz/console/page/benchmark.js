@@ -2,7 +2,7 @@
 
 import { get, post } from "./api.js";
 import { on, shared } from "./app_state.js";
-import { STATES, percent, words } from "./benchmark_words.js";
+import { STATES, percent, displayName } from "./benchmark_labels.js";
 import { h, notify } from "./dom.js";
 import { makeEvaluation } from "./evaluation.js";
 
@@ -14,7 +14,7 @@ export function makeBenchmark() {
   const detail = makeEvaluation({ changed: refresh, removed: () => { chosen = ""; refresh(); } });
   const element = h("section", { className: "page runs benchmark", "aria-label": "Benchmark", hidden: true },
     h("div", { className: "finder" }, form.element, h("h2", {}, "Evaluations"), list), detail.element);
-  let chosen = "", timer = 0, asked = 0;
+  let chosen = "", timer = 0, requests = 0;
 
   async function start(body) {
     const evaluation = await post("/benchmark/evaluations", body);
@@ -25,21 +25,21 @@ export function makeBenchmark() {
   async function refresh() {
     clearTimeout(timer);
     if (element.hidden) return;
-    const mine = ++asked;
+    const request = ++requests;
     let busy = false;
     try {
       const rows = await get("/benchmark/evaluations");
-      if (mine !== asked) return;
+      if (request !== requests) return;
       if (!rows.some((each) => each.id === chosen)) chosen = rows[0]?.id ?? "";
       const running = rows.find((each) => each.state === "running") ?? null;
       busy = Boolean(running) || rows.some((each) => each.report === "making");
-      form.busyWith(running);
+      form.setRunning(running);
       draw(rows);
       detail.show(rows.find((each) => each.id === chosen) ?? null);
     } catch (error) {
-      if (mine === asked) list.replaceChildren(h("li", { className: "problem" }, error.message));
+      if (request === requests) list.replaceChildren(h("li", { className: "problem" }, error.message));
     }
-    if (mine === asked) timer = setTimeout(refresh, busy ? POLL_MS : SLOW_POLL_MS);
+    if (request === requests) timer = setTimeout(refresh, busy ? POLL_MS : SLOW_POLL_MS);
   }
 
   function draw(rows) {
@@ -61,7 +61,7 @@ export function makeBenchmark() {
     const how = row.state === "running" && progress?.runs ? `${progress.done} of ${progress.runs}` : STATES[row.state];
     return h("li", { "data-id": row.id }, h("button", { type: "button", value: row.id, onclick: () => { chosen = row.id; refresh(); } },
       h("span", { className: "what" }, row.pair.replace("+", " + ")),
-      h("span", { className: "when" }, `${row.split}${row.limit ? `, at most ${row.limit}` : ""}${row.categories.length ? `, ${row.categories.map(words).join(", ")}` : ""}`),
+      h("span", { className: "when" }, `${row.split}${row.limit ? `, at most ${row.limit}` : ""}${row.categories.length ? `, ${row.categories.map(displayName).join(", ")}` : ""}`),
       h("span", { className: `when ${row.state}` }, `${when} · ${how}${score}`)));
   }
 
@@ -108,7 +108,7 @@ function makeForm(onStart) {
     for (const name of [...picked]) if (!counts[name]) picked.delete(name);
     const focus = chips.contains(document.activeElement) ? document.activeElement.value : null;
     chips.replaceChildren(...Object.entries(counts).map(([name, count]) => h("button", { type: "button", className: "chip", value: name, "aria-pressed": String(picked.has(name)),
-      title: `${count} tasks`, onclick: () => { if (!picked.delete(name)) picked.add(name); draw(); } }, words(name))));
+      title: `${count} tasks`, onclick: () => { if (!picked.delete(name)) picked.add(name); draw(); } }, displayName(name))));
     if (focus) chips.querySelector(`[value="${focus}"]`)?.focus();
     const all = picked.size ? [...picked].reduce((total, name) => total + counts[name], 0) : chosen?.tasks ?? 0;
     const tasks = Math.min(all, Number(limit.value) || all);
@@ -132,5 +132,5 @@ function makeForm(onStart) {
     }
   }
 
-  return { element, load, busyWith(now) { if (Boolean(now) !== Boolean(running)) { running = now; draw(); } } };
+  return { element, load, setRunning(now) { if (Boolean(now) !== Boolean(running)) { running = now; draw(); } } };
 }

@@ -22,7 +22,7 @@ export function makeCameras() {
   const element = h("section", { className: "page cameras", "aria-label": "Cameras", hidden: true }, h("h1", {}, "Cameras"),
     h("p", { className: "lead" }, "This page shows one camera at a time. Each camera has its own conversation."), problem,
     h("h2", {}, "Cameras of this site"), site, none, h("h2", {}, "Scenes"), scenes);
-  const cards = new Map(), asked = new Set();
+  const cards = new Map(), pending = new Set();
   let timer = 0, showing = false;
 
   async function refresh() {
@@ -39,15 +39,15 @@ export function makeCameras() {
       problem.textContent = "";
       for (const name of names) if (!cards.has(name)) cards.set(name, null);
       // Load the cards separately, so that a camera that does not answer does not delay the others.
-      await Promise.race([Promise.allSettled(names.filter((name) => !asked.has(name)).map(show)), new Promise((resolve) => setTimeout(resolve, REFRESH_MS))]);
+      await Promise.race([Promise.allSettled(names.filter((name) => !pending.has(name)).map(show)), new Promise((resolve) => setTimeout(resolve, REFRESH_MS))]);
     } catch (error) {
       problem.textContent = error.message;
     }
   }
 
   async function show(name) {
-    asked.add(name); // do not request the card again while the camera does not answer
-    const facts = await get(`/cameras/${part(name)}/card`).finally(() => asked.delete(name));
+    pending.add(name); // do not request the card again while the camera does not answer
+    const facts = await get(`/cameras/${part(name)}/card`).finally(() => pending.delete(name));
     if (!cards.get(name)) {
       const created = makeCard(facts, refresh);
       cards.set(name, created);
@@ -130,11 +130,11 @@ function makeCard(first, refresh) {
   }
 
   function mark() {
-    const mine = shared.camera === name;
-    element.classList.toggle("current", mine);
-    select.textContent = mine ? "Shown on this page" : "Show";
-    select.setAttribute("aria-label", mine ? `${name} is shown on this page` : `Show ${name} on this page`);
-    if (mine) element.setAttribute("aria-current", "true");
+    const selected = shared.camera === name;
+    element.classList.toggle("current", selected);
+    select.textContent = selected ? "Shown on this page" : "Show";
+    select.setAttribute("aria-label", selected ? `${name} is shown on this page` : `Show ${name} on this page`);
+    if (selected) element.setAttribute("aria-current", "true");
     else element.removeAttribute("aria-current");
   }
 

@@ -49,7 +49,7 @@ export function iconButton(name, label, onclick, props = {}) {
 
 let notices;
 
-export function noticesIn(element) {
+export function setNoticeArea(element) {
   notices = element;
 }
 

@@ -1,7 +1,7 @@
 // A dialog that lists the drafts of benchmark tasks from runs with good feedback, and the reasons why other runs cannot become drafts.
 
 import { get, url } from "./api.js";
-import { words } from "./benchmark_words.js";
+import { displayName } from "./benchmark_labels.js";
 import { h, icon, iconButton } from "./dom.js";
 
 // Open the dialog for the runs that match a query. Its link downloads the drafts.
@@ -23,7 +23,7 @@ function describe(rows, query) {
   const good = rows.filter((each) => each.draft).length;
   return [h("p", {}, `${good} of ${rows.length} ${rows.length === 1 ? "run" : "runs"} with good feedback can become ${good === 1 ? "a draft" : "drafts"}. The command below validates the drafts against the ground truth and keeps the valid ones.`),
     h("ul", { className: "draft-list" }, rows.map((each) => h("li", { className: each.draft ? "" : "not" }, icon(each.draft ? "good" : "close"),
-      h("div", {}, h("p", { className: "what" }, each.instruction || each.run), h("p", { className: "muted" }, each.draft ? `${words(each.draft.category)}, from preset ${each.draft.start} in ${each.scene}` : each.reason))))),
+      h("div", {}, h("p", { className: "what" }, each.instruction || each.run), h("p", { className: "muted" }, each.draft ? `${displayName(each.draft.category)}, from preset ${each.draft.start} in ${each.scene}` : each.reason))))),
     h("div", { className: "row" }, h("code", {}, "scope bench drafts drafts.jsonl --out FOLDER"), h("span", { className: "space" }),
       h("a", { className: "button primary", href: url(`/runs/export?format=drafts&${query}`), download: "drafts.jsonl" }, "Download"))];
 }

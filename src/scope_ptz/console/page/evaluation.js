@@ -2,7 +2,7 @@
 
 import { part, post, request, url } from "./api.js";
 import { shared } from "./app_state.js";
-import { STATES, percent, words } from "./benchmark_words.js";
+import { STATES, percent, displayName } from "./benchmark_labels.js";
 import { askFor, h, notify, svg } from "./dom.js";
 import { makeFailures } from "./failures.js";
 
@@ -50,7 +50,7 @@ export function makeEvaluation({ changed, removed }) {
 
   function describe(row) {
     const when = new Date(row.started).toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
-    const parts = [`Split ${row.split}`, row.limit && `at most ${row.limit} tasks`, row.categories.length && row.categories.map(words).join(", "), `started ${when}${row.actor ? ` by ${row.actor}` : ""}`,
+    const parts = [`Split ${row.split}`, row.limit && `at most ${row.limit} tasks`, row.categories.length && row.categories.map(displayName).join(", "), `started ${when}${row.actor ? ` by ${row.actor}` : ""}`,
       row.resumed && `resumed ${row.resumed === 1 ? "once" : `${row.resumed} times`}`];
     return parts.filter(Boolean).join(" · ");
   }
@@ -81,8 +81,8 @@ export function makeEvaluation({ changed, removed }) {
     categories.replaceChildren(h("table", {}, h("caption", {}, "By category"), h("tbody", {}, progress.categories.map((each) => {
       const fill = h("i", {});
       fill.style.width = `${100 * (each.accuracy ?? 0)}%`;
-      return h("tr", {}, h("th", { scope: "row" }, words(each.category)), h("td", { className: "share" }, h("span", { className: "track" }, fill)),
-        h("td", {}, each.accuracy === null ? "–" : `${(100 * each.accuracy).toFixed(0)} %`), h("td", { className: "muted" }, `${each.correct} of ${each.runs}`));
+      return h("tr", {}, h("th", { scope: "row" }, displayName(each.category)), h("td", { className: "share" }, h("span", { className: "track" }, fill)),
+        h("td", {}, each.accuracy === null ? "–" : `${(100 * each.accuracy).toFixed(0)}%`), h("td", { className: "muted" }, `${each.correct} of ${each.runs}`));
     }))));
   }
 

@@ -1,7 +1,7 @@
 // The failures of an evaluation: expected and actual answers, error modes, and the steps and pictures of each run.
 
 import { get, part, url } from "./api.js";
-import { MODES, VERDICTS, words } from "./benchmark_words.js";
+import { MODES, VERDICTS, displayName } from "./benchmark_labels.js";
 import { h, iconButton, seconds } from "./dom.js";
 
 const PAGE = 60;
@@ -10,7 +10,7 @@ export function makeFailures() {
   const title = h("h2", {}), mode = h("select", { "aria-label": "Error mode", onchange: () => load() });
   const list = h("ul", { className: "failures" }), more = h("button", { type: "button", className: "link", hidden: true, onclick: () => load(true) }, "More");
   const element = h("section", { className: "failed", "aria-label": "Failures" }, h("div", { className: "row" }, title, h("span", { className: "space" }), mode), list, more);
-  let evaluation = "", known = "", rows = [], asked = 0;
+  let evaluation = "", known = "", rows = [], requests = 0;
 
   function show(row) {
     const failed = (row?.progress?.done ?? 0) - (row?.progress?.correct ?? 0);
@@ -24,23 +24,23 @@ export function makeFailures() {
   }
 
   async function load(next = false) {
-    const mine = ++asked, address = `/benchmark/evaluations/${part(evaluation)}`;
+    const request = ++requests, address = `/benchmark/evaluations/${part(evaluation)}`;
     try {
       // A reload during the evaluation keeps the number of rows.
       const offset = next ? rows.length : 0, limit = next ? PAGE : Math.min(500, Math.max(PAGE, rows.length));
       const page = await get(`${address}/trials?verdict=failed&limit=${limit}&offset=${offset}${mode.value ? `&error_mode=${mode.value}` : ""}`);
-      if (mine !== asked) return;
+      if (request !== requests) return;
       rows = next ? [...rows, ...page.trials] : page.trials;
       draw(page);
     } catch (error) {
-      if (mine === asked) list.replaceChildren(h("li", { className: "problem" }, error.message));
+      if (request === requests) list.replaceChildren(h("li", { className: "problem" }, error.message));
     }
   }
 
   function draw(page) {
     title.textContent = page.count ? `Failures: ${page.count}` : "Failures";
     const selected = mode.value, all = Object.entries(page.error_modes);
-    mode.replaceChildren(h("option", { value: "" }, "All error modes"), ...all.map(([name, count]) => h("option", { value: name }, `${MODES[name] ?? words(name)} (${count})`)));
+    mode.replaceChildren(h("option", { value: "" }, "All error modes"), ...all.map(([name, count]) => h("option", { value: name }, `${MODES[name] ?? displayName(name)} (${count})`)));
     mode.value = selected;
     mode.hidden = !all.length;
     more.hidden = rows.length >= page.count;
@@ -49,7 +49,7 @@ export function makeFailures() {
       h("span", { className: "what" }, each.instruction),
       h("span", { className: "pair" }, h("b", {}, "Expected"), h("span", {}, each.expected || "–")),
       h("span", { className: "pair" }, h("b", {}, "Answered"), h("span", {}, each.answer || "nothing")),
-      h("span", { className: "tags" }, h("span", { className: "tag" }, each.error_mode ? MODES[each.error_mode] ?? words(each.error_mode) : VERDICTS[each.headline]), h("span", {}, `${words(each.category)} · ${each.scene}`))))));
+      h("span", { className: "tags" }, h("span", { className: "tag" }, each.error_mode ? MODES[each.error_mode] ?? displayName(each.error_mode) : VERDICTS[each.headline]), h("span", {}, `${displayName(each.category)} · ${each.scene}`))))));
     if (!rows.length) list.replaceChildren(h("li", { className: "empty" }, "All finished tasks were answered correctly."));
     if (focus) list.querySelector(`button[value="${CSS.escape(focus)}"]`)?.focus();
   }
@@ -74,7 +74,7 @@ function viewer(evaluation, rows, first) {
   async function open(to) {
     index = (to + rows.length) % rows.length;
     const row = rows[index];
-    count.textContent = `${index + 1} of ${rows.length} · ${words(row.category)} · ${row.difficulty} · ${row.scene}, preset ${row.preset}`;
+    count.textContent = `${index + 1} of ${rows.length} · ${displayName(row.category)} · ${row.difficulty} · ${row.scene}, preset ${row.preset}`;
     heading.textContent = row.instruction;
     details = null;
     picture.replaceChildren();
@@ -103,12 +103,12 @@ function viewer(evaluation, rows, first) {
     const scroll = facts.scrollTop;
     facts.replaceChildren(
       h("dl", { className: "answers" }, ...pairs([["Expected", trial.expected || "–"], ["Answered", trial.answer || "nothing"],
-        ["Verdict", `${VERDICTS[trial.headline]}${trial.error_mode ? ` (${MODES[trial.error_mode] ?? words(trial.error_mode)})` : ""}: ${trial.reason}`], demands.length && ["Required", demands.join(" ")]])),
+        ["Verdict", `${VERDICTS[trial.headline]}${trial.error_mode ? ` (${MODES[trial.error_mode] ?? displayName(trial.error_mode)})` : ""}: ${trial.reason}`], demands.length && ["Required", demands.join(" ")]])),
       h("ul", { className: "checks", "aria-label": "Checks" }, checks.map((each) => h("li", { className: each.passed === false ? "bad" : "", title: each.reason }, `${each.name} ${each.passed === null ? "undecided" : each.passed ? "passed" : "failed"}`))),
       missing ? "" : h("ol", { className: "steps" },
         start && h("li", { className: "step" }, h("div", {}, h("p", { className: "tool" }, h("b", {}, "start"), " ", h("span", { className: "arguments" }, `preset ${trial.preset}`))), pick(start)),
         ...steps.map((each) => h("li", { className: each.failed ? "step failed" : "step" }, h("div", {},
-          h("p", { className: "tool" }, h("b", {}, words(each.tool)), " ", h("span", { className: "arguments" }, Object.entries(each.arguments).map(([key, value]) => `${key} ${typeof value === "object" ? JSON.stringify(value) : value}`).join(", "))),
+          h("p", { className: "tool" }, h("b", {}, displayName(each.tool)), " ", h("span", { className: "arguments" }, Object.entries(each.arguments).map(([key, value]) => `${key} ${typeof value === "object" ? JSON.stringify(value) : value}`).join(", "))),
           h("p", { className: "result" }, each.message), h("p", { className: "small" }, seconds(each.seconds))), h("div", { className: "shots" }, each.pictures.map((one) => pick(one.name)))))));
     facts.scrollTop = scroll;
     if (focus) [...facts.querySelectorAll("button")].find((each) => each.getAttribute("aria-label") === focus)?.focus();
@@ -118,7 +118,7 @@ function viewer(evaluation, rows, first) {
     const step = details.steps.findIndex((each) => each.pictures.some((one) => one.name === name));
     if (step < 0) return "The view at the start";
     const found = details.steps[step].pictures.find((one) => one.name === name);
-    const label = `Step ${step + 1}, ${words(details.steps[step].tool)}`;
+    const label = `Step ${step + 1}, ${displayName(details.steps[step].tool)}`;
     return found.marks ? `${label}: ${found.marks} marked` : name.includes("full") ? `${label}: panorama` : label;
   }
 

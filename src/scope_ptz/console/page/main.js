@@ -5,7 +5,7 @@ import { emit, on, shared } from "./app_state.js";
 import { makeBenchmark } from "./benchmark.js";
 import { makeCameras } from "./cameras.js";
 import { asks, controls } from "./control_text.js";
-import { h, iconButton, noticesIn, notify } from "./dom.js";
+import { h, iconButton, setNoticeArea, notify } from "./dom.js";
 import { makeMap } from "./map.js";
 import { makePanel } from "./panel.js";
 import { makePresets } from "./presets.js";
@@ -19,7 +19,7 @@ const VIEWS = [["live", "Live"], ["runs", "Runs"], ["timings", "Timings"], ["ben
 export async function mount(root) {
   theme(localStorage.getItem("scope-theme"));
   const notices = h("div", { className: "notices", role: "status" });
-  noticesIn(notices);
+  setNoticeArea(notices);
   const cameras = h("select", { className: "camera", "aria-label": "Camera", onchange: () => choose(cameras.value) });
   const control = h("p", { className: "control" }), signOut = h("a", { href: "#", hidden: true, onclick: endSession }, "Sign out");
   const tabs = VIEWS.map(([name, label]) => h("button", { type: "button", onclick: () => show(name), value: name }, label));

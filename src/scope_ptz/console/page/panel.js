@@ -18,9 +18,9 @@ export function makePanel() {
   const form = h("form", { className: "composer", onsubmit: (event) => { event.preventDefault(); submit(); } }, text,
     h("div", { className: "row" }, h("label", { htmlFor: "preview-first", className: "check", title: "Show the moves before the camera makes them" }, first, "Preview first"),
       h("span", { className: "space" }), cancel, send));
-  const fresh = h("button", { type: "button", className: "link", title: "Start a new conversation", onclick: begin }, icon("plus"), "New");
+  const newButton = h("button", { type: "button", className: "link", title: "Start a new conversation", onclick: begin }, icon("plus"), "New");
   const element = h("aside", { className: "panel", "aria-label": "Instructions" },
-    h("div", { className: "row head" }, pair, health, h("span", { className: "space" }), fresh), thread, form);
+    h("div", { className: "row head" }, pair, health, h("span", { className: "space" }), newButton), thread, form);
   const shown = new Map(); // turns by the id of their run
   let conversation = null, restores = 0;
   let ready = false, early = false; // whether the conversation has been loaded; whether an instruction was entered before that

@@ -26,12 +26,12 @@ export function makeRuns() {
   let next = null, timer = 0, chosen = "", requests = 0;
 
   function query() {
-    const words = new URLSearchParams();
-    if (search.value.trim()) words.set("text", search.value.trim());
-    if (rating.value) words.set("rating", rating.value);
-    if (outcome.value) words.set("outcome", outcome.value);
-    if (!every.checked && shared.camera) words.set("camera", shared.camera);
-    return words.toString();
+    const parameters = new URLSearchParams();
+    if (search.value.trim()) parameters.set("text", search.value.trim());
+    if (rating.value) parameters.set("rating", rating.value);
+    if (outcome.value) parameters.set("outcome", outcome.value);
+    if (!every.checked && shared.camera) parameters.set("camera", shared.camera);
+    return parameters.toString();
   }
 
   async function load(after = null) {

@@ -18,7 +18,7 @@ export function makeSceneTime(camera) {
   const slider = h("input", { type: "range", min: 0, max: MIN_RANGE_S, step: 0.1, "aria-label": "Scene time in seconds" });
   const speed = h("select", { "aria-label": "Speed of scene time", title: "Speed of scene time", onchange: () => change({ speed: Number(speed.value) }) });
   const element = h("div", { className: "scene-time", role: "group", "aria-label": "Scene time" }, toggle,
-    iconButton("back", `Back ${STEP_S} seconds`, () => step(-STEP_S)), slider, iconButton("ahead", `Ahead ${STEP_S} seconds`, () => step(STEP_S)), clock, speed);
+    iconButton("back", `Back ${STEP_S} seconds`, () => step(-STEP_S)), slider, iconButton("ahead", `Forward ${STEP_S} seconds`, () => step(STEP_S)), clock, speed);
   let now = { time_s: 0, playing: true, speed: 1 }, at = performance.now(), dragged = false, sought = null, sending = false;
 
   const present = () => now.time_s + (now.playing ? ((performance.now() - at) / 1000) * now.speed : 0);

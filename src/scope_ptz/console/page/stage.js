@@ -52,18 +52,18 @@ export function makeStage() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     // One of two widths, so that viewers with windows of different sizes share one encoding.
     const wide = element.clientWidth * Math.min(devicePixelRatio, 2) > 640 ? 1280 : 640;
-    const mine = (socket = new WebSocket(`${scheme}://${location.host}${url(`/cameras/${part(camera)}/live?width=${wide}&client=${tabId()}`)}`));
-    mine.binaryType = "arraybuffer";
-    mine.onmessage = async (event) => {
+    const opened = (socket = new WebSocket(`${scheme}://${location.host}${url(`/cameras/${part(camera)}/live?width=${wide}&client=${tabId()}`)}`));
+    opened.binaryType = "arraybuffer";
+    opened.onmessage = async (event) => {
       if (typeof event.data === "string") {
-        if (mine === socket) receive(JSON.parse(event.data).state);
+        if (opened === socket) receive(JSON.parse(event.data).state);
         return;
       }
-      await draw(event.data, mine);
-      if (mine.readyState === WebSocket.OPEN) mine.send("drawn");
+      await draw(event.data, opened);
+      if (opened.readyState === WebSocket.OPEN) opened.send("drawn");
     };
-    mine.onclose = (event) => {
-      if (mine !== socket) return;
+    opened.onclose = (event) => {
+      if (opened !== socket) return;
       showMessage(event.reason || "The connection was lost. Reconnecting …", true);
       get("/me").catch(() => {}); // without a valid session, this leads to the sign-in page
       retry = setTimeout(connect, 1500);
@@ -83,11 +83,11 @@ export function makeStage() {
     emit("status", state);
   }
 
-  async function draw(data, mine) {
+  async function draw(data, opened) {
     const length = new DataView(data).getUint32(0);
     const facts = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
     const bitmap = await createImageBitmap(new Blob([new Uint8Array(data, 4 + length)], { type: "image/jpeg" }));
-    if (mine !== socket) { bitmap.close(); return; }
+    if (opened !== socket) { bitmap.close(); return; }
     if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
       canvas.width = bitmap.width;
       canvas.height = bitmap.height;

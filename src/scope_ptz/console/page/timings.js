@@ -45,7 +45,7 @@ function sums(rows) {
   const all = rows.reduce((sum, row) => sum + row.total_s, 0);
   return PARTS.map(([key, name]) => {
     const sum = rows.reduce((total, row) => total + (key === "tools_s" ? tools(row) : row[key]), 0);
-    return h("div", {}, h("dt", {}, name), h("dd", {}, `${Math.round((100 * sum) / all)} %`, h("small", {}, seconds(sum))));
+    return h("div", {}, h("dt", {}, name), h("dd", {}, `${Math.round((100 * sum) / all)}%`, h("small", {}, seconds(sum))));
   });
 }
 

@@ -132,16 +132,16 @@ async def serve_virtual_cameras(
         ConfigError: A package is missing, a port is in use, or a camera without accounts would be open to the network.
     """
     try:
-        from scope_ptz.virtual_camera.http.certificate import self_signed
+        from scope_ptz.virtual_camera.http.certificate import create_certificate
         from scope_ptz.virtual_camera.http.server import listen, serve
         from scope_ptz.virtual_camera.onvif.app import OnvifApp
-        from scope_ptz.virtual_camera.onvif.discovery import Discoverable, discoverable
+        from scope_ptz.virtual_camera.onvif.discovery import DiscoverableCamera, serve_discovery
         from scope_ptz.virtual_camera.rtsp.server import RtspServer
     except ModuleNotFoundError as error:
         raise ConfigError(f"{error.name} is missing. Install it with: pip install 'scope-ptz[serve]'") from error
     ports, rtsp_ports = ([first + k if first else 0 for k in range(len(devices))] for first in (options.port, options.rtsp_port))
     hosts = tuple(dict.fromkeys(("localhost", "127.0.0.1", "::1", options.host)))
-    certificates = [self_signed(device.name, hosts) for device in devices] if options.https else []
+    certificates = [create_certificate(device.name, hosts) for device in devices] if options.https else []
     async with AsyncExitStack() as stack:
         listeners = [stack.enter_context(listener) for listener in listen(options.host, rtsp_ports)]
         rtsp_port_of = {device: listener.getsockname()[1] for device, listener in zip(devices, listeners, strict=True)}
@@ -160,9 +160,9 @@ async def serve_virtual_cameras(
             await stack.enter_async_context(RtspServer(camera.source, realm=camera.unit.realm).listen(listener))
             camera.unit.rtsp_port = rtsp_port_of[camera.device]
         if options.discovery:
-            discoverable_cameras = [Discoverable(camera.device, camera.port, tls=options.https) for camera in cameras]
+            discoverable_cameras = [DiscoverableCamera(camera.device, camera.port, tls=options.https) for camera in cameras]
             try:
-                await stack.enter_async_context(discoverable(discoverable_cameras, host=options.host))
+                await stack.enter_async_context(serve_discovery(discoverable_cameras, host=options.host))
             except ConfigError as error:  # the cameras can be used without discovery
                 logger.warning("%s", error)
         prefetches = [await to_thread.run_sync(device.prefetch) for device in devices] if options.prefetch else []

@@ -15,7 +15,7 @@ from scope_ptz.virtual_camera.vapix.replies import Client
 Handler = Callable[[Request, Client], Awaitable[Response]]
 
 
-class Gate:
+class AccessControl:
     """Admits the clients of one camera. Plain-text passwords (Basic) are neither requested nor accepted.
 
     Args:

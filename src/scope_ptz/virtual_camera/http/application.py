@@ -13,7 +13,7 @@ from starlette.routing import BaseRoute, Mount, Route
 from starlette.types import ASGIApp
 
 from scope_ptz.virtual_camera.accounts import Role
-from scope_ptz.virtual_camera.http.access import Gate
+from scope_ptz.virtual_camera.http.access import AccessControl
 from scope_ptz.virtual_camera.http.faults import FaultMiddleware
 from scope_ptz.virtual_camera.http.truth_headers import TruthHeaders
 from scope_ptz.virtual_camera.http.vapix_routes import VapixRoutes
@@ -46,22 +46,22 @@ class CameraApplication:
     def __init__(self, unit: VapixUnit, source: LiveSource, truth: TruthLog | None, onvif: ASGIApp | None) -> None:
         self.closing = anyio.Event()
         device = unit.device
-        gate = Gate(device.accounts, unit.realm)
-        vapix = VapixRoutes(unit, source, gate, TruthHeaders(truth) if truth is not None else None, self.closing)
+        access = AccessControl(device.accounts, unit.realm)
+        vapix = VapixRoutes(unit, source, access, TruthHeaders(truth) if truth is not None else None, self.closing)
         self.jpegs = vapix.jpegs
-        self._virtual = VirtualRoutes(device, gate, truth)
+        self._virtual = VirtualRoutes(device, access, truth)
 
         async def page(_: Request, __: Client) -> Response:
             return HTMLResponse(PAGE.format(name=escape(device.name)))
 
         routes: list[BaseRoute] = [
-            Route("/", gate.for_role(Role.VIEWER, page)),
+            Route("/", access.for_role(Role.VIEWER, page)),
             *vapix.routes(),
             *self._virtual.routes(),
         ]
         if onvif is not None:
             routes.append(Mount("/onvif", onvif))
-        faults = Middleware(FaultMiddleware, device=device, gate=gate, closing=self.closing)
+        faults = Middleware(FaultMiddleware, device=device, access=access, closing=self.closing)
         self.app = Starlette(routes=routes, middleware=[faults])
 
     def close(self) -> None:

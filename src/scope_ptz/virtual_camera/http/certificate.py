@@ -45,7 +45,7 @@ class Certificate:
         return context
 
 
-def self_signed(name: str, hosts: tuple[str, ...]) -> Certificate:
+def create_certificate(name: str, hosts: tuple[str, ...]) -> Certificate:
     """Create a new key and a self-signed certificate.
 
     Args:

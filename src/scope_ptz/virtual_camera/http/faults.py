@@ -8,7 +8,7 @@ import anyio
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from scope_ptz.virtual_camera.device import VirtualDevice
-from scope_ptz.virtual_camera.http.access import Gate
+from scope_ptz.virtual_camera.http.access import AccessControl
 from scope_ptz.virtual_camera.http.connection import abort_connection
 
 CONTROL_PATH = "/virtual/"
@@ -28,12 +28,12 @@ class FaultMiddleware:
     Args:
         app: The application that handles the requests.
         device: The camera.
-        gate: Creates the reply for a refused account.
+        access: Creates the reply for a refused account.
         closing: Set when the server shuts down, which ends all delays.
     """
 
-    def __init__(self, app: ASGIApp, device: VirtualDevice, gate: Gate, closing: anyio.Event) -> None:
-        self._app, self._device, self._gate, self._closing = app, device, gate, closing
+    def __init__(self, app: ASGIApp, device: VirtualDevice, access: AccessControl, closing: anyio.Event) -> None:
+        self._app, self._device, self._access, self._closing = app, device, access, closing
         self._random = random.Random(0)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -47,7 +47,7 @@ class FaultMiddleware:
         if faults.down or self._random.random() < faults.drop:
             await abort_connection(scope, receive)
         elif faults.unauthorized:
-            await self._gate.refusal()(scope, receive, send)
+            await self._access.refusal()(scope, receive, send)
         else:
             await self._answer(scope, receive, send)
 
@@ -55,7 +55,7 @@ class FaultMiddleware:
         async def faulty(message: Message) -> None:
             if self._device.faults.down:
                 raise _ConnectionAbortedError
-            await send(_damaged(message) if self._device.faults.garbage else message)
+            await send(_corrupt(message) if self._device.faults.garbage else message)
 
         try:
             await self._app(scope, receive, faulty)
@@ -63,7 +63,7 @@ class FaultMiddleware:
             await abort_connection(scope, receive)
 
 
-def _damaged(message: Message) -> Message:
+def _corrupt(message: Message) -> Message:
     """Return a message with its body replaced by garbage."""
     if message["type"] == "http.response.start":
         kept = [(name, value) for name, value in message["headers"] if name.lower() != b"content-length"]

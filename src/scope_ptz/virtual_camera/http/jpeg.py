@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.errors import CameraError, InputError
 from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
-from scope_ptz.virtual_camera.picture_size import fitted, parse_resolution
+from scope_ptz.virtual_camera.picture_size import crop_and_scale, parse_resolution
 
 DEFAULT_COMPRESSION = 30
 """The default compression of AXIS cameras, on a scale from 0 (best quality) to 100."""
@@ -45,7 +45,7 @@ def picture_format(device: VirtualDevice, resolution: str, compression: str) -> 
 
 def encode(image: NDArray[np.uint8], requested: PictureFormat) -> bytes:
     """Encode an RGB image as a JPEG. If the aspect ratio differs, the image is cropped, never stretched."""
-    image = fitted(image, requested.width, requested.height)
+    image = crop_and_scale(image, requested.width, requested.height)
     quality = round(98 - 0.85 * requested.compression)
     done, content = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])
     if not done:

@@ -16,7 +16,7 @@ from scope_ptz.virtual_camera.live_source import LiveSource
 from scope_ptz.virtual_camera.pace import Pace
 
 BOUNDARY = "myboundary"
-STUCK_S = 20.0
+SEND_TIMEOUT_S = 20.0
 """Seconds for which sending a frame may block before the client is disconnected, because it does not read."""
 
 
@@ -64,7 +64,7 @@ class MotionJpeg(Response):
                 group.cancel_scope.cancel()
 
             group.start_soon(cancel_after, self._closing.wait)
-            group.start_soon(cancel_after, lambda: _until_gone(receive))
+            group.start_soon(cancel_after, lambda: _wait_for_disconnect(receive))
             complete = await self._send_parts(send)
             group.cancel_scope.cancel()
         if complete:
@@ -81,7 +81,7 @@ class MotionJpeg(Response):
                 if not pace.accepts(exposure.taken_s):
                     continue
                 part = await self._part(exposure)
-                with anyio.move_on_after(STUCK_S) as patience:
+                with anyio.move_on_after(SEND_TIMEOUT_S) as patience:
                     await send({"type": "http.response.body", "body": part, "more_body": True})
                 if patience.cancelled_caught:
                     return False
@@ -101,6 +101,6 @@ class MotionJpeg(Response):
         return f"--{BOUNDARY}\r\n{lines}\r\n".encode() + jpeg + b"\r\n"
 
 
-async def _until_gone(receive: Receive) -> None:
+async def _wait_for_disconnect(receive: Receive) -> None:
     while (await receive())["type"] != "http.disconnect":
         pass

@@ -13,7 +13,7 @@ from starlette.routing import Route
 
 from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.accounts import Role
-from scope_ptz.virtual_camera.http.access import Gate, Handler, is_local
+from scope_ptz.virtual_camera.http.access import AccessControl, Handler, is_local
 from scope_ptz.virtual_camera.http.jpeg import SharedJpegs, picture_format, with_comment
 from scope_ptz.virtual_camera.http.streams import MotionJpeg, StreamOptions
 from scope_ptz.virtual_camera.http.truth_headers import TruthHeaders
@@ -40,13 +40,15 @@ class VapixRoutes:
     Args:
         unit: The VAPIX state of the camera.
         source: Its live picture.
-        gate: Authenticates clients.
+        access: Authenticates clients.
         truth: Builds the ground truth that is sent with pictures to clients on this machine; None to send none.
         closing: Set when the server shuts down.
     """
 
-    def __init__(self, unit: VapixUnit, source: LiveSource, gate: Gate, truth: TruthHeaders | None, closing: anyio.Event) -> None:
-        self._unit, self._source, self._gate, self._truth, self._closing = unit, source, gate, truth, closing
+    def __init__(
+        self, unit: VapixUnit, source: LiveSource, access: AccessControl, truth: TruthHeaders | None, closing: anyio.Event
+    ) -> None:
+        self._unit, self._source, self._access, self._truth, self._closing = unit, source, access, truth, closing
         self.jpegs = SharedJpegs(unit.device)
 
     def routes(self) -> list[Route]:
@@ -63,7 +65,7 @@ class VapixRoutes:
             ("jpg/image.cgi", Role.VIEWER, self._image),
             ("mjpg/video.cgi", Role.VIEWER, self._video),
         ]
-        return [Route(f"/axis-cgi/{path}", self._gate.for_role(role, page), methods=METHODS) for path, role, page in pages]
+        return [Route(f"/axis-cgi/{path}", self._access.for_role(role, page), methods=METHODS) for path, role, page in pages]
 
     async def _image(self, request: Request, _: Client) -> Response:
         arguments = await read_arguments(request)

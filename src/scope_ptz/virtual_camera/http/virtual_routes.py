@@ -14,12 +14,12 @@ from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.faults import Faults, validate_faults
-from scope_ptz.virtual_camera.http.access import Gate, Handler, is_foreign_page, is_local
+from scope_ptz.virtual_camera.http.access import AccessControl, Handler, is_foreign_page, is_local
 from scope_ptz.virtual_camera.http.vapix_routes import read_arguments, read_body
 from scope_ptz.virtual_camera.truth import TOLERANCE_S, TruthLog, origin_fields
 from scope_ptz.virtual_camera.vapix.replies import Client
 
-DOWN_S = 10.0
+DEFAULT_DOWN_S = 10.0
 """Default number of seconds for which a rebooting camera is off the network."""
 
 MAX_WITHIN_S = 5.0
@@ -31,12 +31,12 @@ class VirtualRoutes:
 
     Args:
         device: The camera.
-        gate: Authenticates clients.
+        access: Authenticates clients.
         truth: The ground truth of frames; None for no route to it.
     """
 
-    def __init__(self, device: VirtualDevice, gate: Gate, truth: TruthLog | None) -> None:
-        self._device, self._gate, self._truth = device, gate, truth
+    def __init__(self, device: VirtualDevice, access: AccessControl, truth: TruthLog | None) -> None:
+        self._device, self._access, self._truth = device, access, truth
         self._reboot: asyncio.Task[None] | None = None
 
     def routes(self) -> list[Route]:
@@ -55,7 +55,7 @@ class VirtualRoutes:
             self._reboot.cancel()
 
     def _endpoint(self, handler: Handler, role: Role = Role.ADMINISTRATOR) -> Callable[[Request], Awaitable[Response]]:
-        admitted = self._gate.for_role(role, handler)
+        admitted = self._access.for_role(role, handler)
 
         async def endpoint(request: Request) -> Response:
             if not is_local(request) or is_foreign_page(request):
@@ -67,7 +67,7 @@ class VirtualRoutes:
     async def _faults(self, request: Request, _: Client) -> Response:
         if request.method == "POST":
             try:
-                self._device.faults = changed_faults(self._device.faults, await read_body(request))
+                self._device.faults = apply_fault_changes(self._device.faults, await read_body(request))
             except InputError as problem:
                 return JSONResponse({"error": str(problem)}, 400)
         elif request.method == "DELETE":
@@ -77,7 +77,7 @@ class VirtualRoutes:
     async def _start_reboot(self, request: Request, _: Client) -> Response:
         try:
             arguments = await read_arguments(request)
-            down_s = arguments.number("down_s", 0, 600) if "down_s" in arguments else DOWN_S
+            down_s = arguments.number("down_s", 0, 600) if "down_s" in arguments else DEFAULT_DOWN_S
         except InputError as problem:
             return JSONResponse({"error": str(problem)}, 400)
         self.close()
@@ -107,7 +107,7 @@ class VirtualRoutes:
         return JSONResponse({**origin_fields(origin), "hfov_deg": hfov_deg, "taken_s": taken_s})
 
 
-def changed_faults(faults: Faults, body: bytes) -> Faults:
+def apply_fault_changes(faults: Faults, body: bytes) -> Faults:
     """Return faults after applying the changes in a JSON object.
 
     Raises:

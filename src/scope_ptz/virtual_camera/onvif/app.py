@@ -17,7 +17,6 @@ from scope_ptz.virtual_camera.identity import serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_time_s
 from scope_ptz.virtual_camera.onvif.device_service import PATHS, DeviceService
 from scope_ptz.virtual_camera.onvif.imaging_service import ImagingService
-from scope_ptz.virtual_camera.onvif.login import Stamp, UsernameTokens, creation_time, not_authorized
 from scope_ptz.virtual_camera.onvif.media2_service import Media2Service
 from scope_ptz.virtual_camera.onvif.media_service import MediaService
 from scope_ptz.virtual_camera.onvif.operations import Operations, Reply, Request
@@ -31,6 +30,7 @@ from scope_ptz.virtual_camera.onvif.soap import (
     as_bytes,
     parse_envelope,
 )  # fmt: skip
+from scope_ptz.virtual_camera.onvif.username_tokens import Stamp, UsernameTokens, creation_time, not_authorized
 from scope_ptz.virtual_camera.onvif.wsdl import DEVICE, IMAGING, MEDIA, MEDIA2, PTZ, load_document, load_operations
 
 CONTENT_TYPE = "application/soap+xml; charset=utf-8"
@@ -127,7 +127,7 @@ class OnvifApp:
             _LOG.debug("Arguments of %s: %s", name, error)
             raise SoapFault(f"The arguments of {name} do not match the types in its WSDL.", "InvalidArgs") from error
         reply = operation.run(Request(arguments, target.host, target.origin, stamp))
-        return as_bytes(self._serialized(namespace, name, reply))
+        return as_bytes(self._serialize(namespace, name, reply))
 
     def _authorize(self, envelope: Envelope, target: RequestTarget, role: Role) -> Stamp | None:
         """Check that the sender has the role that a request requires.
@@ -159,13 +159,13 @@ class OnvifApp:
         uri = scope["raw_path"].decode("latin-1") + (f"?{query}" if query else "")
         return RequestTarget(host, origin, self._digest.check(answer.decode("latin-1"), scope["method"], uri))
 
-    def _serialized(self, namespace: str, name: str, reply: Reply) -> Any:
+    def _serialize(self, namespace: str, name: str, reply: Reply) -> Any:
         return self._messages[namespace, name].output.serialize(**reply).content
 
     def _capabilities(self, namespace: str) -> Any:
         """Return the capabilities of a service, by its namespace, as an XML element."""
         reply = self._operations[namespace]["GetServiceCapabilities"].run(Request(None, "", ""))
-        return self._serialized(namespace, "GetServiceCapabilities", reply).find(f".//{{{namespace}}}Capabilities")
+        return self._serialize(namespace, "GetServiceCapabilities", reply).find(f".//{{{namespace}}}Capabilities")
 
 
 def _address(scope: Scope, stated: str) -> tuple[str, str]:

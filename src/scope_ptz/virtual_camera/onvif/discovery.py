@@ -16,7 +16,7 @@ from scope_ptz.errors import ConfigError
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.identity import device_uuid
 from scope_ptz.virtual_camera.onvif.device_service import PATHS, scopes
-from scope_ptz.virtual_camera.onvif.discovery_messages import Sender, Target, parse_query
+from scope_ptz.virtual_camera.onvif.discovery_messages import DiscoveryMessages, Target, parse_query
 from scope_ptz.virtual_camera.onvif.wsdl import DEVICE
 
 GROUP = "239.255.255.250"
@@ -32,7 +32,7 @@ Address = tuple[str, int]
 
 
 @dataclass(frozen=True, slots=True)
-class Discoverable:
+class DiscoverableCamera:
     """A device that WS-Discovery announces, with the address of its web server.
 
     Attributes:
@@ -47,9 +47,9 @@ class Discoverable:
 
 
 class _Responder(asyncio.DatagramProtocol):
-    def __init__(self, cameras: Sequence[Discoverable], host: str) -> None:
+    def __init__(self, cameras: Sequence[DiscoverableCamera], host: str) -> None:
         instance = int(time())
-        self._senders = [(camera, Sender(_target(camera, host), instance)) for camera in cameras]
+        self._messages = [(camera, DiscoveryMessages(_target(camera, host), instance)) for camera in cameras]
         self._transport: asyncio.DatagramTransport | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -57,16 +57,16 @@ class _Responder(asyncio.DatagramProtocol):
 
     def announce(self, group: Address, *, leaving: bool = False) -> None:
         """Announce that the devices have appeared, or that they are leaving."""
-        for camera, sender in self._senders:
+        for camera, messages in self._messages:
             if not camera.device.faults.down:
-                self._send(sender.bye() if leaving else sender.hello(), group)
+                self._send(messages.bye() if leaving else messages.hello(), group)
 
     def datagram_received(self, data: bytes, address: Address) -> None:
         query = parse_query(data) if len(data) <= MAX_DATAGRAM_BYTES else None
-        for camera, sender in self._senders:
-            if query is not None and not camera.device.faults.down and query.matches(sender.target):
-                xaddr = sender.target.xaddr or _xaddr(_own_address(address), camera)
-                self._send(sender.match(query, xaddr), address)
+        for camera, messages in self._messages:
+            if query is not None and not camera.device.faults.down and query.matches(messages.target):
+                xaddr = messages.target.xaddr or _xaddr(_own_address(address), camera)
+                self._send(messages.match(query, xaddr), address)
 
     def error_received(self, error: Exception) -> None:
         logger.debug("WS-Discovery: %s", error)
@@ -77,7 +77,9 @@ class _Responder(asyncio.DatagramProtocol):
 
 
 @asynccontextmanager
-async def discoverable(cameras: Sequence[Discoverable], *, host: str = "127.0.0.1", port: int = PORT) -> AsyncIterator[int]:
+async def serve_discovery(
+    cameras: Sequence[DiscoverableCamera], *, host: str = "127.0.0.1", port: int = PORT
+) -> AsyncIterator[int]:
     """Announce cameras and answer probes while the context is open, and yield the UDP port.
 
     Args:
@@ -125,12 +127,12 @@ def _listen(interface: str, port: int) -> socket.socket:
     return listener
 
 
-def _target(camera: Discoverable, host: str) -> Target:
+def _target(camera: DiscoverableCamera, host: str) -> Target:
     xaddr = "" if ip_address(host).is_unspecified else _xaddr(host, camera)
     return Target(device_uuid(camera.device), tuple(scopes(camera.device)), xaddr)
 
 
-def _xaddr(host: str, camera: Discoverable) -> str:
+def _xaddr(host: str, camera: DiscoverableCamera) -> str:
     return f"{'https' if camera.tls else 'http'}://{host}:{camera.http_port}{PATHS[DEVICE]}"
 
 

@@ -10,7 +10,7 @@ from uuid import UUID, uuid4
 from lxml import etree
 from lxml.builder import ElementMaker
 
-from scope_ptz.virtual_camera.onvif.soap import ENVELOPE, MEMBER_ADDRESSING, SoapFault, as_bytes, parse_envelope
+from scope_ptz.virtual_camera.onvif.soap import ENVELOPE, SUBMISSION_ADDRESSING, SoapFault, as_bytes, parse_envelope
 from scope_ptz.virtual_camera.onvif.wsdl import DEVICE
 
 DISCOVERY = "http://schemas.xmlsoap.org/ws/2005/04/discovery"
@@ -21,9 +21,9 @@ TYPES = {(NETWORK, "NetworkVideoTransmitter"), (DEVICE, "Device")}
 """The types of the device, as pairs of namespace and name."""
 
 _ANONYMOUS = "http://schemas.xmlsoap.org/ws/2004/08/addressing/role/anonymous"
-_NAMESPACES = {"env": ENVELOPE, "wsa": MEMBER_ADDRESSING, "d": DISCOVERY, "dn": NETWORK, "tds": DEVICE}
+_NAMESPACES = {"env": ENVELOPE, "wsa": SUBMISSION_ADDRESSING, "d": DISCOVERY, "dn": NETWORK, "tds": DEVICE}
 _E = ElementMaker(namespace=ENVELOPE, nsmap=_NAMESPACES)
-_A = ElementMaker(namespace=MEMBER_ADDRESSING)
+_A = ElementMaker(namespace=SUBMISSION_ADDRESSING)
 _D = ElementMaker(namespace=DISCOVERY)
 _TYPES_TEXT = "dn:NetworkVideoTransmitter tds:Device"
 _METADATA_VERSION = "1"
@@ -75,7 +75,7 @@ class Query:
             return False
         rule = self.match_by.removeprefix(DISCOVERY)
         if rule in ("", "/rfc3986"):
-            return all(any(_begins(scope, wanted) for scope in target.scopes) for wanted in self.scopes)
+            return all(any(_has_prefix(scope, wanted) for scope in target.scopes) for wanted in self.scopes)
         return rule == "/strcmp0" and set(self.scopes) <= set(target.scopes)
 
 
@@ -85,12 +85,12 @@ def parse_query(data: bytes) -> Query | None:
         envelope = parse_envelope(data)
         if envelope.header is None:
             return None
-        message_id = (envelope.header.findtext(f"{{{MEMBER_ADDRESSING}}}MessageID") or "").strip()
+        message_id = (envelope.header.findtext(f"{{{SUBMISSION_ADDRESSING}}}MessageID") or "").strip()
         if not message_id or len(message_id) > 256:
             return None
         body = envelope.body
         if body.tag == f"{{{DISCOVERY}}}Resolve":
-            address = body.findtext(f"{{{MEMBER_ADDRESSING}}}EndpointReference/{{{MEMBER_ADDRESSING}}}Address") or ""
+            address = body.findtext(f"{{{SUBMISSION_ADDRESSING}}}EndpointReference/{{{SUBMISSION_ADDRESSING}}}Address") or ""
             return Query(message_id, address.strip())
         if body.tag != f"{{{DISCOVERY}}}Probe":
             return None
@@ -107,7 +107,7 @@ def parse_query(data: bytes) -> Query | None:
         return None
 
 
-class Sender:
+class DiscoveryMessages:
     """Builds the messages of one device, numbered so that clients can put them in order.
 
     Args:
@@ -161,7 +161,7 @@ def _qname(element: etree._Element, name: str) -> tuple[str, str]:
     return element.nsmap.get(prefix or None, ""), local
 
 
-def _begins(scope: str, prefix: str) -> bool:
+def _has_prefix(scope: str, prefix: str) -> bool:
     """Return whether a scope matches a prefix: equal scheme and host, and a path that begins with the segments of the prefix."""
     ours, theirs = urlsplit(scope), urlsplit(prefix)
     if (ours.scheme.lower(), ours.netloc.lower()) != (theirs.scheme.lower(), theirs.netloc.lower()):

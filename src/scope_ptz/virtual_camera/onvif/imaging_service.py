@@ -12,7 +12,7 @@ from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Rep
 from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
 
 DARKEST_DB = 20.0
-"""Attenuation of light by the closed iris in dB, in which ONVIF states iris values. The open iris has 0 dB."""
+"""Attenuation of the closed iris in dB, the unit of ONVIF iris values. The open iris has 0 dB."""
 
 _MODES = ["AUTO", "MANUAL"]
 _POSITIONS = {"Min": 0.0, "Max": 1.0}
@@ -74,7 +74,7 @@ class ImagingService:
         _require_source(request)
         lens, settings = self._device.lens, request.ImagingSettings
         focus, exposure = settings.Focus, settings.Exposure
-        iris = None if exposure is None or exposure.Iris is None else _checked(exposure.Iris, 0.0, DARKEST_DB)
+        iris = None if exposure is None or exposure.Iris is None else _validate_range(exposure.Iris, 0.0, DARKEST_DB)
         if focus is not None and (focus.AutoFocusMode == "AUTO") != lens.autofocus:
             lens.set_autofocus(on=focus.AutoFocusMode == "AUTO")
         if exposure is not None:
@@ -89,11 +89,11 @@ class ImagingService:
         if wanted is None:
             raise invalid_argument("A move request must specify a focus move.", "SettingsInvalid")
         if wanted.Absolute is not None:
-            lens.move_focus(_checked(wanted.Absolute.Position, 0.0, 1.0))
+            lens.move_focus(_validate_range(wanted.Absolute.Position, 0.0, 1.0))
         elif wanted.Relative is not None:
-            lens.move_focus(lens.focus + _checked(wanted.Relative.Distance, -1.0, 1.0))
+            lens.move_focus(lens.focus + _validate_range(wanted.Relative.Distance, -1.0, 1.0))
         elif wanted.Continuous is not None:
-            lens.drive_focus(_checked(wanted.Continuous.Speed, -1.0, 1.0))
+            lens.drive_focus(_validate_range(wanted.Continuous.Speed, -1.0, 1.0))
         else:
             raise invalid_argument("A move request must be absolute, relative or continuous.", "SettingsInvalid")
         return {}
@@ -110,7 +110,7 @@ def _require_source(request: Request) -> None:
         raise SoapFault(f"There is no video source '{str(request.VideoSourceToken)[:64]}'.", "InvalidArgVal", "NoSource")
 
 
-def _checked(value: Any, low: float, high: float) -> float:
+def _validate_range(value: Any, low: float, high: float) -> float:
     """Return a number in a request after checking its range.
 
     Raises:

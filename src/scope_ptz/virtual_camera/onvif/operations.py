@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scope_ptz.virtual_camera.accounts import Role
-from scope_ptz.virtual_camera.onvif.login import Stamp
+from scope_ptz.virtual_camera.onvif.username_tokens import Stamp
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ class PtzConfiguration:
     Attributes:
         spaces: The coordinate spaces of the camera.
         name: The name of the configuration.
-        position: URI of the space of positions in status and presets, which is also the default space of absolute moves.
+        position: URI of the space in which status and presets report positions. It is also the default space of absolute moves.
         translation: URI of the default space of relative moves.
         timeout_s: The default duration of a continuous move in seconds.
         speed: The default speed of pan and tilt, as a fraction of the top speed.
@@ -76,8 +76,8 @@ class PtzConfiguration:
                 "Zoom": {"x": self.zoom_speed, "space": s.ZOOM_SPEED},
             },
             "DefaultPTZTimeout": timedelta(seconds=self.timeout_s),
-            "PanTiltLimits": {"Range": _described(pan_tilt)},
-            "ZoomLimits": {"Range": _described(self.spaces.zoom_positions[0])},
+            "PanTiltLimits": {"Range": _describe(pan_tilt)},
+            "ZoomLimits": {"Range": _describe(self.spaces.zoom_positions[0])},
         }
 
     def _node(self) -> dict[str, Any]:
@@ -101,7 +101,7 @@ class PtzConfiguration:
             "PanTiltSpeedSpace": self.spaces.speeds,
             "ZoomSpeedSpace": self.spaces.zoom_speeds,
         }
-        return {name: [_described(space) for space in group] for name, group in groups.items()}
+        return {name: [_describe(space) for space in group] for name, group in groups.items()}
 
     def _get_node(self, request: Request) -> Reply:
         require_token("PTZ node", request.NodeToken, NODE, "NoEntity")
@@ -142,7 +142,7 @@ class PtzConfiguration:
         Missing values and 0 mean the default.
 
         Raises:
-            SoapFault: A number is not from 0 to 1, or the space is unknown.
+            SoapFault: A number is not between 0 and 1, or the space is unknown.
         """
         pan_tilt, zoom = getattr(speed, "PanTilt", None), getattr(speed, "Zoom", None)
         fraction, zoom_fraction = self.speed, self.zoom_speed
@@ -159,7 +159,7 @@ class PtzConfiguration:
         require_token("PTZ configuration", token, CONFIGURATION, "NoConfig")
 
 
-def _described(space: s.Space) -> dict[str, Any]:
+def _describe(space: s.Space) -> dict[str, Any]:
     described: dict[str, Any] = {"URI": space.uri, "XRange": {"Min": space.x[0], "Max": space.x[1]}}
     if space.y is not None:
         described["YRange"] = {"Min": space.y[0], "Max": space.y[1]}

@@ -12,12 +12,12 @@ ENVELOPE = "http://www.w3.org/2003/05/soap-envelope"
 ERRORS = "http://www.onvif.org/ver10/error"
 SECURITY = "http://docs.oasis-open.org/wss/2004/01/oasis-200401-wss-wssecurity-secext-1.0.xsd"
 ADDRESSING = "http://www.w3.org/2005/08/addressing"
-MEMBER_ADDRESSING = "http://schemas.xmlsoap.org/ws/2004/08/addressing"  # W3C Member Submission, which WS-Discovery uses
+SUBMISSION_ADDRESSING = "http://schemas.xmlsoap.org/ws/2004/08/addressing"  # W3C Member Submission, which WS-Discovery uses
 
 MAX_REQUEST_BYTES = 65536
 """Maximum size of a request in bytes. The largest common request (SetConfiguration) is about 4 kB."""
 
-_UNDERSTOOD = {SECURITY, ADDRESSING, MEMBER_ADDRESSING}  # namespaces of the headers that a request may mark as mandatory
+_UNDERSTOOD = {SECURITY, ADDRESSING, SUBMISSION_ADDRESSING}  # namespaces of the headers that a request may mark as mandatory
 _E = ElementMaker(namespace=ENVELOPE, nsmap={"env": ENVELOPE, "ter": ERRORS})
 _LANGUAGE = "{http://www.w3.org/XML/1998/namespace}lang"
 

@@ -23,10 +23,10 @@ from scope_ptz.virtual_camera.rtsp.sinks import InterleavedSink, limit_send_buff
 from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat, StreamUrl, parse_url, stream_format
 from scope_ptz.virtual_camera.rtsp.transport_header import TransportOffer, choose_transport
 
-IDLE_S = 60.0
+IDLE_TIMEOUT_S = 60.0
 """Seconds after which a connection without sessions is closed."""
 
-READ_S = 10.0  # maximum time in seconds to receive the rest of a message, or to send a reply
+IO_TIMEOUT_S = 10.0  # maximum time in seconds to receive the rest of a message, or to send a reply
 GARBAGE = b"\x00\xff<<<%%garbage}{\r\n\r\n"  # sent instead of each reply while the fault ``garbage`` is set
 SERVER = "scope-ptz"
 
@@ -43,7 +43,7 @@ class RtspConnection:
         source: Its live picture.
         sessions: The sessions of the camera, which all its connections share.
         digest: Authenticates the client.
-        chance: Random number generator that decides which requests are dropped.
+        rng: Random number generator that decides which requests are dropped.
         reader: The incoming data of the connection.
         writer: The outgoing data of the connection.
     """
@@ -54,12 +54,12 @@ class RtspConnection:
         source: LiveSource,
         sessions: Sessions,
         digest: DigestAuthenticator,
-        chance: random.Random,
+        rng: random.Random,
         reader: asyncio.StreamReader,
         writer: asyncio.StreamWriter,
     ) -> None:
         self._device, self._source, self._sessions, self._digest = device, source, sessions, digest
-        self._chance = chance
+        self._rng = rng
         self._reader, self._writer = reader, writer
         self._local_address: str = writer.get_extra_info("sockname")[0]
         self._peer: str = writer.get_extra_info("peername")[0]
@@ -100,15 +100,15 @@ class RtspConnection:
     async def _serve_next(self) -> bool:
         """Wait for a message and handle it. Return whether the connection stays open."""
         try:
-            async with asyncio.timeout(IDLE_S):
+            async with asyncio.timeout(IDLE_TIMEOUT_S):
                 first = await self._reader.readexactly(1)
         except TimeoutError:
             return any(not session.ended for session in self._own.values())
         try:
-            async with asyncio.timeout(READ_S):
+            async with asyncio.timeout(IO_TIMEOUT_S):
                 message = await read_message(self._reader, first)
         except MalformedError as error:
-            await self._write(Reply(error.status).encoded(None))
+            await self._write(Reply(error.status).encode(None))
             return False
         if isinstance(message, Interleaved):
             self._touch(message.channel)
@@ -125,7 +125,7 @@ class RtspConnection:
         faults = self._device.faults
         if faults.stall_s:
             await asyncio.sleep(faults.stall_s)
-        if self._device.faults.down or self._chance.random() < faults.drop:
+        if self._device.faults.down or self._rng.random() < faults.drop:
             self.abort()
             return False
         if faults.garbage:
@@ -138,12 +138,12 @@ class RtspConnection:
         except ScopeError as error:
             logger.warning("%s of %s failed: %s", request.method, self._device.name, error)
             reply = Reply(500)
-        await self._write(Reply(reply.status, (("Server", SERVER), *reply.headers), reply.body).encoded(request.cseq))
+        await self._write(Reply(reply.status, (("Server", SERVER), *reply.headers), reply.body).encode(request.cseq))
         return True
 
     async def _write(self, content: bytes) -> None:
         self._writer.write(content)
-        async with asyncio.timeout(READ_S):
+        async with asyncio.timeout(IO_TIMEOUT_S):
             await self._writer.drain()
 
     async def _answer(self, request: Request) -> Reply:

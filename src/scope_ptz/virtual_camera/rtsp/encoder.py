@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.errors import CameraError, ConfigError
-from scope_ptz.virtual_camera.picture_size import fitted
+from scope_ptz.virtual_camera.picture_size import crop_and_scale
 from scope_ptz.virtual_camera.rtsp.rtp import CLOCK_HZ
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class H264Encoder:
         from av import FFmpegError
         from av.video.frame import PictureType, VideoFrame
 
-        yuv = cv2.cvtColor(fitted(image, self.width, self.height), cv2.COLOR_RGB2YUV_I420)
+        yuv = cv2.cvtColor(crop_and_scale(image, self.width, self.height), cv2.COLOR_RGB2YUV_I420)
         frame = VideoFrame.from_ndarray(np.asarray(yuv, np.uint8), format="yuv420p")
         frame.time_base = Fraction(1, CLOCK_HZ)
         self._last_pts = frame.pts = max(self._last_pts + 1, round(time_s * CLOCK_HZ))

@@ -150,11 +150,11 @@ class _Stream:
                     key_s = taken_s
                     self.keyframe_from_s = inf if requested else self.keyframe_from_s
                 nals = await to_thread.run_sync(_encode, encoder, exposure, taken_s, keyframe)
-                unit = AccessUnit(taken_s, keyframe, tuple(payloads(self._damaged(nals))))
+                unit = AccessUnit(taken_s, keyframe, tuple(payloads(self._corrupt(nals))))
                 for viewer in list(self.viewers):
                     viewer.offer(unit)
 
-    def _damaged(self, nals: list[bytes]) -> list[bytes]:
+    def _corrupt(self, nals: list[bytes]) -> list[bytes]:
         """Return NAL units after applying the camera's faults.
 
         Parameter sets stay intact, so that decoders still try to decode the rest.

@@ -87,7 +87,7 @@ class Reply:
     headers: tuple[tuple[str, str], ...] = ()
     body: bytes = field(default=b"", repr=False)
 
-    def encoded(self, cseq: str | None) -> bytes:
+    def encode(self, cseq: str | None) -> bytes:
         """Return the bytes of the reply.
 
         Args:

@@ -39,7 +39,7 @@ class RtspServer:
         self._source = source
         self._realm = realm
         self._sessions = Sessions(source, timeout_s=session_timeout_s)
-        self._chance = random.Random(0)
+        self._rng = random.Random(0)
         self._connections: dict[asyncio.Task[None], RtspConnection] = {}
 
     @property
@@ -77,7 +77,7 @@ class RtspServer:
         device = self.device
         # Load the encoder now: a build without one fails early, and the first client does not have to wait.
         await to_thread.run_sync(parameter_sets, device.width, device.height, self._source.rate_hz)
-        server = await asyncio.start_server(self._connected, sock=listener, limit=MAX_LINE_BYTES)
+        server = await asyncio.start_server(self._accept, sock=listener, limit=MAX_LINE_BYTES)
         watcher = asyncio.create_task(self._watch())
         try:
             yield self
@@ -90,14 +90,14 @@ class RtspServer:
                 await asyncio.gather(watcher, *self._connections, return_exceptions=True)
                 await server.wait_closed()
 
-    def _connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         if len(self._connections) >= MAX_CONNECTIONS or self.device.faults.down:
             writer.transport.abort()
             return
         # Many RTSP clients do not support qop, and ignore replies to keep-alive requests.
         # So each connection has its own nonce, valid as long as the connection, and an intercepted response is useless on others.
         digest = DigestAuthenticator(self.device.accounts, self._realm, qop=False, nonce_lifetime_s=inf)
-        connection = RtspConnection(self.device, self._source, self._sessions, digest, self._chance, reader, writer)
+        connection = RtspConnection(self.device, self._source, self._sessions, digest, self._rng, reader, writer)
         task = asyncio.create_task(connection.run())
         self._connections[task] = connection
         task.add_done_callback(self._connections.pop)

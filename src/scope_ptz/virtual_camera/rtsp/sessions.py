@@ -13,7 +13,7 @@ from scope_ptz.virtual_camera.rtsp.session import Session
 from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat
 
 MAX_SESSIONS = 32
-ORPHAN_S = 15.0
+ORPHAN_TIMEOUT_S = 15.0
 """Seconds of inactivity after which a session without a connection ends. A UDP client may reconnect until then."""
 
 
@@ -84,7 +84,7 @@ class Sessions:
         """End the sessions whose clients have been inactive for too long."""
         now_s = monotonic()
         for session in list(self._sessions.values()):
-            limit_s = self.timeout_s if session.connected else min(ORPHAN_S, self.timeout_s)
+            limit_s = self.timeout_s if session.connected else min(ORPHAN_TIMEOUT_S, self.timeout_s)
             if now_s - session.alive_s > limit_s:
                 await self.end(session)
 

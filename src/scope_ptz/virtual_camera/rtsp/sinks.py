@@ -10,7 +10,7 @@ from typing import Protocol
 
 from scope_ptz.virtual_camera.rtsp.messages import RefusedError
 
-STUCK_S = 10.0
+SEND_TIMEOUT_S = 10.0
 """Seconds after which a client that reads nothing counts as disconnected."""
 
 UNSENT_BYTES = 32 * 1024
@@ -58,9 +58,9 @@ class InterleavedSink:
         self._writer, self.channels = writer, channels
 
     async def send(self, packets: Sequence[bytes]) -> bool:
-        self._writer.write(b"".join(_framed(self.channels[0], packet) for packet in packets))
+        self._writer.write(b"".join(_frame_packet(self.channels[0], packet) for packet in packets))
         try:
-            async with asyncio.timeout(STUCK_S):
+            async with asyncio.timeout(SEND_TIMEOUT_S):
                 await self._writer.drain()
         except TimeoutError:
             raise ConnectionError("The client has stopped reading.") from None
@@ -68,13 +68,13 @@ class InterleavedSink:
 
     def report(self, packet: bytes) -> None:
         if not self._writer.transport.is_closing():
-            self._writer.write(_framed(self.channels[1], packet))
+            self._writer.write(_frame_packet(self.channels[1], packet))
 
     def close(self) -> None:
         """Do nothing: the connection stays open, because requests use it too."""
 
 
-def _framed(channel: int, packet: bytes) -> bytes:
+def _frame_packet(channel: int, packet: bytes) -> bytes:
     return b"$" + bytes((channel,)) + len(packet).to_bytes(2, "big") + packet
 
 
@@ -138,7 +138,7 @@ async def open_udp(
     """
     loop = asyncio.get_running_loop()
     try:
-        pair = _bound_pair(local_host)
+        pair = _bind_pair(local_host)
     except OSError as error:
         raise RefusedError(503) from error
     opened: list[asyncio.DatagramTransport] = []
@@ -156,7 +156,7 @@ async def open_udp(
     return UdpSink(opened[0], opened[1])
 
 
-def _bound_pair(host: str) -> tuple[socket.socket, socket.socket]:
+def _bind_pair(host: str) -> tuple[socket.socket, socket.socket]:
     """Return UDP sockets at an even port and at the next one."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     for _ in range(_PORT_ATTEMPTS):

@@ -10,7 +10,7 @@ from scope_ptz.errors import CameraError
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.vapix.replies import Client
 
-CONTROL_S = 60.0
+CONTROL_TIMEOUT_S = 60.0
 """How long a client keeps control after its last command, in seconds."""
 
 PRIORITIES = {Role.ADMINISTRATOR: 10, Role.OPERATOR: 30, Role.VIEWER: 50}
@@ -92,9 +92,9 @@ class ControlQueue:
         if place is None:
             return QueueStatus(0, 0, self.poll_s)
         place.polled_s = self._now_s()
-        left_s = max(0.0, CONTROL_S - (self._now_s() - self._places[0].active_s))
+        left_s = max(0.0, CONTROL_TIMEOUT_S - (self._now_s() - self._places[0].active_s))
         position = self._places.index(place)
-        return QueueStatus(position + 1, round(left_s + CONTROL_S * max(0, position - 1)), self.poll_s)
+        return QueueStatus(position + 1, round(left_s + CONTROL_TIMEOUT_S * max(0, position - 1)), self.poll_s)
 
     def check(self, client: Client) -> None:
         """Check that a client may move the camera, and renew its control.
@@ -114,8 +114,8 @@ class ControlQueue:
     def _place(self, client: Client) -> _Place | None:
         """Remove the clients whose control or place has expired, and return the place of a client; None if it has none."""
         now_s = self._now_s()
-        while self._places and now_s - self._places[0].active_s > CONTROL_S:
-            over_s = self._places.pop(0).active_s + CONTROL_S
+        while self._places and now_s - self._places[0].active_s > CONTROL_TIMEOUT_S:
+            over_s = self._places.pop(0).active_s + CONTROL_TIMEOUT_S
             if self._places:
                 self._places[0].active_s = over_s
         self._places[1:] = [place for place in self._places[1:] if now_s - place.polled_s <= self.poll_s]

@@ -8,7 +8,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.vapix import replies
 from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
-from scope_ptz.virtual_camera.vapix.control_queue import CONTROL_S, PRIORITIES
+from scope_ptz.virtual_camera.vapix.control_queue import CONTROL_TIMEOUT_S, PRIORITIES
 from scope_ptz.virtual_camera.vapix.identity import identity
 from scope_ptz.virtual_camera.vapix.queries import limit_values, preset_data
 from scope_ptz.virtual_camera.vapix.replies import Client, Reply
@@ -178,7 +178,7 @@ def _ptz(unit: VapixUnit) -> dict[str, str]:
         "Various.V1.ZoomEnabled": "true",
     }
     for number, (role, priority) in enumerate(PRIORITIES.items()):
-        group = {"Priority": priority, "TimeoutTime": round(CONTROL_S), "TimeoutType": "activity", "UseCookie": "no"}
+        group = {"Priority": priority, "TimeoutTime": round(CONTROL_TIMEOUT_S), "TimeoutType": "activity", "UseCookie": "no"}
         content |= {f"UserCtlQueue.U{number}.{name}": value for name, value in group.items()}
         content[f"UserCtlQueue.U{number}.UserGroup"] = role.name.capitalize()
     return {f"PTZ.{name}": str(value) for name, value in content.items()}

@@ -14,7 +14,7 @@ import bpy
 from scope_studio.kit.core.finishes import PALETTE, paint
 from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import Shader, plain
-from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.shapes import rounded_rectangle
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import write
@@ -254,7 +254,7 @@ def plate(lines: Sequence[str], cap_m: float, colour: str, ink: str, *, border: 
     width = max(extent(line, cap_m) for line in lines) + cap_m * 2 * pad
     height = cap_m * (1.55 * len(lines) - 0.55 + 2 * pad)
     corner = min(0.02, height * 0.1)
-    s.prism(rounded(width, height, corner), (-0.012, 0.0), paint(colour, dirt=0.10, roughness=0.35), "XZ")
+    s.prism(rounded_rectangle(width, height, corner), (-0.012, 0.0), paint(colour, dirt=0.10, roughness=0.35), "XZ")
     if border:
         edge = cap_m * 0.10
         for z in (-height / 2 + edge * 2, height / 2 - edge * 2):

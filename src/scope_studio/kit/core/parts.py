@@ -10,7 +10,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 Point = tuple[float, float, float]
-Flat = tuple[float, float]
+Point2D = tuple[float, float]
 
 _AXES = {
     "X": lambda a, b, h: (h, a, b),
@@ -105,7 +105,7 @@ class Parts:
 
     def prism(
         self,
-        outline: Sequence[Flat],
+        outline: Sequence[Point2D],
         low: float,
         high: float,
         material: bpy.types.Material,
@@ -134,7 +134,7 @@ class Parts:
 
     def lathe(
         self,
-        profile: Sequence[Flat],
+        profile: Sequence[Point2D],
         centre: Point,
         material: bpy.types.Material,
         *,

@@ -16,7 +16,7 @@ def arc(centre: tuple[float, float], radius: float, start_deg: float, stop_deg: 
     return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
 
 
-def rounded(
+def rounded_rectangle(
     width: float, height: float, radius: float, centre: tuple[float, float] = (0.0, 0.0), steps: int = 5
 ) -> list[tuple[float, float]]:
     """Return the outline of a rectangle with rounded corners, anticlockwise."""

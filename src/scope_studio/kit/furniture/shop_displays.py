@@ -116,7 +116,7 @@ def a_board(lines: Sequence[str], colour: str, ink: str, *, cap_m: float = 0.075
     return s.built()
 
 
-FRUIT: dict[str, tuple[tuple[float, float, float], float]] = {
+PRODUCE: dict[str, tuple[tuple[float, float, float], float]] = {
     "apples": ((0.42, 0.035, 0.03), 0.038),
     "green apples": ((0.26, 0.40, 0.05), 0.038),
     "oranges": ((0.80, 0.27, 0.015), 0.040),
@@ -131,7 +131,7 @@ FRUIT: dict[str, tuple[tuple[float, float, float], float]] = {
 def crate(load: str | None = None, *, colour: str | None = None) -> Built:
     """Build a slatted crate of timber or plastic, 0.55 x 0.38 x 0.24 m, with its long side along x.
 
-    It is empty, or heaped with ``load``, a key of ``FRUIT``.
+    It is empty, or heaped with ``load``, a key of ``PRODUCE``.
     """
     s = Solid(f"crate of {load}" if load else "empty crate")
     body = timber() if colour is None else paint(colour, dirt=0.2, roughness=0.5)
@@ -146,7 +146,7 @@ def crate(load: str | None = None, *, colour: str | None = None) -> Built:
     s.box((0.54, 0.37, 0.012), (0, 0, 0.025), body, 0.002)
     if load is None:
         return s.built()
-    colour_rgb, r = FRUIT[load]
+    colour_rgb, r = PRODUCE[load]
     skin = plain(f"fruit {load}", colour_rgb, 0.32)
     rng = Random(load)
     s.box((0.52, 0.35, 0.10), (0, 0, 0.13), plain(f"fruit shade {load}", tuple(c * 0.25 for c in colour_rgb), 0.8), 0.02)
@@ -173,15 +173,16 @@ PETALS = {
 
 
 def blooms(
-    s: Solid, colours: Sequence[str], spread_m: float, low: float, high: float, count: int, seed: int, *, ball: bool = False
+    s: Solid, colours: Sequence[str], spread_m: float, low: float, high: float, count: int, seed: int, *, trailing: bool = False
 ) -> None:
-    """Add flower heads and leaves between two heights. They stand upright or, with ``ball``, trail over the edge of a container."""
+    """Add flower heads and leaves between two heights. They stand upright or, with ``trailing``, hang over the edge of a
+    container."""
     rng = Random(f"blooms {seed} {colours}")
     green = [plain("flower leaf 0", (0.085, 0.190, 0.040), 0.6), plain("flower leaf 1", (0.15, 0.27, 0.07), 0.6)]
     for k in range(count * 6):
         a, fraction = rng.uniform(0, 2 * math.pi), rng.random() ** 0.5
         r, flower = spread_m * fraction, k % 3 == 0
-        if ball:
+        if trailing:
             z = low + (high - low) * (0.75 - 1.7 * fraction**3 * rng.random()) + (0.03 if flower else 0.0)
         else:
             z = low + (high - low) * (rng.uniform(0.55, 1.0) if flower else rng.uniform(0.0, 0.75)) * (1.1 - 0.35 * fraction**2)

@@ -103,7 +103,7 @@ def hanging_basket(colours: Sequence[str], *, seed: int = 0) -> Built:
         s.rod((0, 0, 0), (0.2 * math.cos(a), 0.2 * math.sin(a), -0.42), 0.004, steel(), sides=4)
     moss = plain("basket moss", (0.045, 0.060, 0.022), 0.95)
     s.lathe([(0.02, -0.66), (0.12, -0.63), (0.20, -0.53), (0.22, -0.43), (0.16, -0.42)], moss, steps=16)
-    blooms(s, colours, 0.30, -0.58, -0.26, 80, seed, ball=True)
+    blooms(s, colours, 0.30, -0.58, -0.26, 80, seed, trailing=True)
     return s.built()
 
 

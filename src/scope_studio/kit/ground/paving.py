@@ -31,7 +31,7 @@ def _courses(
     return node.outputs["Color"], node.outputs["Fac"]
 
 
-def _jittered(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
+def _jitter(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
     """Return positions shifted by slight noise, which makes courses irregular, as if laid by hand."""
     noise = s.node("ShaderNodeTexNoise")
     s.feed(noise.inputs["Vector"], p)
@@ -73,7 +73,7 @@ def slab_material(name: str = "square paving", *, pitch_m: float = 7.2) -> bpy.t
     slab, slab_joint = _courses(s, p, (0.9, 0.6), 0.009, (0.285, 0.240, 0.178), (0.205, 0.184, 0.150), (0.095, 0.085, 0.072))
     tint = s.ramp(s.noise(p, 1.9, 2.0), 0.35, 0.65, 0.0, 0.35)
     slab = s.mix(tint, slab, (0.30, 0.275, 0.235))
-    sett, sett_joint = _courses(s, _jittered(s, p, 0.006, 9.0), (0.20, 0.10), 0.008, (0.15, 0.145, 0.14), (0.085, 0.083, 0.082),
+    sett, sett_joint = _courses(s, _jitter(s, p, 0.006, 9.0), (0.20, 0.10), 0.008, (0.15, 0.145, 0.14), (0.085, 0.083, 0.082),
                                 (0.045, 0.041, 0.036))  # fmt: skip
     lines = [s.ramp(s.math("PINGPONG", c, pitch_m / 2), 0.298, 0.302, 1.0, 0.0, smooth=False) for c in (x, y)]
     band = s.math("MAXIMUM", lines[0], lines[1])
@@ -102,7 +102,7 @@ def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.t
     turned = s.node("ShaderNodeMapping")
     s.feed(turned.inputs["Vector"], p)
     turned.inputs["Rotation"].default_value = (0.0, 0.0, math.radians(turn_deg))
-    wavy = _jittered(s, turned.outputs[0], 0.012, 5.0)
+    wavy = _jitter(s, turned.outputs[0], 0.012, 5.0)
     colour, joints = _courses(s, wavy, (0.19, 0.12), 0.009, (0.20, 0.19, 0.175), (0.105, 0.102, 0.098), (0.05, 0.045, 0.038))
     warm = s.ramp(s.noise(s.scaled(p, (6.0, 9.0, 1.0)), 1.0, 1.0), 0.5, 0.62, 0.0, 0.5)
     return _worn_stone(s, p, s.mix(warm, colour, (0.20, 0.155, 0.125)), joints, 0.2)

@@ -42,7 +42,7 @@ def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
     for socket, warmth in zip(grey.inputs, (1.0, 1.0, 1.03), strict=True):
         s.feed(socket, s.math("MULTIPLY", tone, warmth))
     colour: Value = s.mix(_patchwork(s, p, fine), grey.outputs[0], (0.012, 0.012, 0.0125))
-    low = s.math("ADD", s.noise(p, 0.34, 4.0, 0.5, 0.4), s.math("MULTIPLY", _edges(s, gutters, x, y), 0.085))
+    low = s.math("ADD", s.noise(p, 0.34, 4.0, 0.5, 0.4), s.math("MULTIPLY", _gutter_mask(s, gutters, x, y), 0.085))
     puddle = s.ramp(low, 0.585, 0.615)
     damp = s.ramp(low, 0.40, 0.60)
     rough = s.mix(damp, (0.46, 0.46, 0.46), (0.20, 0.20, 0.20))
@@ -87,7 +87,7 @@ def road_paint(colour: str) -> bpy.types.Material:
     return s.surface(base_color=colour_out, roughness=s.ramp(s.noise(p, 1.3), 0.35, 0.65, 0.12, 0.34))
 
 
-def _edges(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:
+def _gutter_mask(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:
     """Return a mask with soft edges that is 1 along the gutters."""
     total: Value = 0.0
     for bar in gutters:

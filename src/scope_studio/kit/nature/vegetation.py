@@ -21,21 +21,21 @@ Rgb = tuple[float, float, float]
 class Species:
     """Parameters of a tree species.
 
-    ``crown`` is the outline: "round", "column", "cone" or "weeping". ``bare_share`` is the fraction of the height below the lowest
-    bough. ``leaf_m`` is the size of a leaf, and ``slim`` is its width divided by its length. ``dark`` and ``bright`` are the two
-    colours of the leaves.
+    ``crown`` is the outline: "round", "column", "cone" or "weeping". ``bare_fraction`` is the fraction of the height below the
+    lowest bough. ``leaf_m`` is the size of a leaf, and ``leaf_aspect`` is its width divided by its length. ``dark`` and ``bright``
+    are the two colours of the leaves.
     """
 
     name: str
     height_m: float
     crown_radius_m: float
-    bare_share: float
+    bare_fraction: float
     crown: str
     leaf_m: float
     dark: Rgb
     bright: Rgb
     bark: Rgb
-    slim: float = 0.62
+    leaf_aspect: float = 0.62
 
 
 OAK = Species("oak", 11.5, 5.0, 0.20, "round", 0.20, (0.043, 0.084, 0.017), (0.152, 0.217, 0.043), (0.085, 0.068, 0.050))
@@ -81,8 +81,8 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
     azimuth = rng.uniform(0, 6.28)
     for k in range(boughs):
         fraction = (k + 0.5) / boughs
-        z_share = sp.bare_share + (0.93 - sp.bare_share) * fraction
-        index = z_share * sp.height_m / top * 8
+        z_fraction = sp.bare_fraction + (0.93 - sp.bare_fraction) * fraction
+        index = z_fraction * sp.height_m / top * 8
         base = _along(trunk, min(index, 7.99))
         azimuth += 2.4 + rng.uniform(-0.5, 0.5)
         rise, reach = _bough_shape(sp, fraction)
@@ -189,15 +189,15 @@ def _leaves(
     centres = centres + gen.normal(size=centres.shape) * spread * np.array([1, 1, 0.75])
     outward = (ends - starts)[which]
     outward /= np.linalg.norm(outward, axis=1, keepdims=True) + 1e-9
-    return cards(gen, centres, outward, size, sp.slim)
+    return cards(gen, centres, outward, size, sp.leaf_aspect)
 
 
 def cards(
-    gen: np.random.Generator, centres: np.ndarray, outward: np.ndarray, size_m: float, slim: float
+    gen: np.random.Generator, centres: np.ndarray, outward: np.ndarray, size_m: float, leaf_aspect: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return diamond-shaped leaves at ``centres`` (n, 3) that point roughly in the directions ``outward``.
 
-    ``slim`` is the width of a leaf divided by its length.
+    ``leaf_aspect`` is the width of a leaf divided by its length.
 
     Returns:
         Points (4n, 3), quads (n, 4) and tints (4n,).
@@ -212,9 +212,9 @@ def cards(
     quad = np.stack(
         [
             centres,
-            centres + axis * length * 0.5 + side * length * slim / 2 + lift,
+            centres + axis * length * 0.5 + side * length * leaf_aspect / 2 + lift,
             centres + axis * length,
-            centres + axis * length * 0.5 - side * length * slim / 2 + lift,
+            centres + axis * length * 0.5 - side * length * leaf_aspect / 2 + lift,
         ],
         axis=1,
     )

@@ -20,7 +20,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.core.volumes import Skin, normals
 from scope_studio.kit.people import clothing, figure, heads
 from scope_studio.kit.people.hand_props import HOLDABLE, hold
-from scope_studio.kit.people.poses import Joints, Pose, named, solve
+from scope_studio.kit.people.poses import Joints, Pose, named_pose, solve
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ def _person(
     """Build a person in a pose, with clothes and a prop."""
     if holding is not None and holding not in HOLDABLE:
         raise ValueError(f"'holding' must be one of {sorted(HOLDABLE)}, not {holding!r}")
-    stance = custom_pose or named(pose, phase, random)
+    stance = custom_pose or named_pose(pose, phase, random)
     joints = solve(stance)
     s = Solid(name)
     scale = appearance.height_m / 1.77

@@ -39,7 +39,7 @@ def _rest(s: Shader) -> Value:
     return s.node("ShaderNodeAttribute", attribute_name=REST).outputs["Vector"]
 
 
-def _near(
+def _ellipsoid_mask(
     s: Shader, where: Value, centre: tuple[float, float, float], radii: tuple[float, float, float], soft: float = 0.35
 ) -> Value:
     """Return a mask that is 1 inside an ellipsoid in rest coordinates and 0 outside."""
@@ -63,26 +63,30 @@ def skin(tone: int, hair: str | None, *, stubble: bool) -> bpy.types.Material:
     )
     for side in (-1, 1):
         colour = s.mix(
-            s.math("MULTIPLY", _near(s, where, (side * 0.042, 0.075, -0.026), (0.024, 0.03, 0.020), 0.9), 0.18),
+            s.math("MULTIPLY", _ellipsoid_mask(s, where, (side * 0.042, 0.075, -0.026), (0.024, 0.03, 0.020), 0.9), 0.18),
             colour,
             (base[0], base[1] * 0.6, base[2] * 0.55),
         )
     if stubble:
-        beard = s.math("MULTIPLY", _near(s, where, (0, 0.045, -0.086), (0.07, 0.062, 0.042), 0.5), 0.55)
+        beard = s.math("MULTIPLY", _ellipsoid_mask(s, where, (0, 0.045, -0.086), (0.07, 0.062, 0.042), 0.5), 0.55)
         colour = s.mix(beard, colour, HAIR[hair or "brown"])
     colour = s.mix(
-        s.math("MULTIPLY", _near(s, where, (0, 0.090, -0.0605), (0.0235, 0.02, 0.0095), 0.4), 0.55),
+        s.math("MULTIPLY", _ellipsoid_mask(s, where, (0, 0.090, -0.0605), (0.0235, 0.02, 0.0095), 0.4), 0.55),
         colour,
         (base[0] * 0.62, base[1] * 0.36, base[2] * 0.36),
     )
-    colour = s.mix(s.math("MULTIPLY", _near(s, where, (0, 0.095, -0.0612), (0.021, 0.02, 0.0018), 0.5), 0.8), colour, dark)
+    colour = s.mix(
+        s.math("MULTIPLY", _ellipsoid_mask(s, where, (0, 0.095, -0.0612), (0.021, 0.02, 0.0018), 0.5), 0.8), colour, dark
+    )
     for x, y, z in EYES:
         side = 1 if x > 0 else -1
-        colour = s.mix(s.math("MULTIPLY", _near(s, where, (x, y, z + 0.001), (0.023, 0.03, 0.013), 0.7), 0.45), colour, dark)
-        colour = s.mix(_near(s, where, (x, y, z), (0.0125, 0.03, 0.0052), 0.3), colour, (0.48, 0.45, 0.42))
-        colour = s.mix(_near(s, where, (x, y, z + 0.0008), (0.0058, 0.03, 0.0056), 0.3), colour, (0.015, 0.010, 0.008))
-        colour = s.mix(_near(s, where, (x, y, z + 0.0052), (0.0142, 0.03, 0.0020), 0.4), colour, (0.02, 0.013, 0.010))
-        brow = _near(s, where, (x + side * 0.002, y, z + 0.0175), (0.0185, 0.04, 0.0042), 0.4)
+        colour = s.mix(
+            s.math("MULTIPLY", _ellipsoid_mask(s, where, (x, y, z + 0.001), (0.023, 0.03, 0.013), 0.7), 0.45), colour, dark
+        )
+        colour = s.mix(_ellipsoid_mask(s, where, (x, y, z), (0.0125, 0.03, 0.0052), 0.3), colour, (0.48, 0.45, 0.42))
+        colour = s.mix(_ellipsoid_mask(s, where, (x, y, z + 0.0008), (0.0058, 0.03, 0.0056), 0.3), colour, (0.015, 0.010, 0.008))
+        colour = s.mix(_ellipsoid_mask(s, where, (x, y, z + 0.0052), (0.0142, 0.03, 0.0020), 0.4), colour, (0.02, 0.013, 0.010))
+        brow = _ellipsoid_mask(s, where, (x + side * 0.002, y, z + 0.0175), (0.0185, 0.04, 0.0042), 0.4)
         colour = s.mix(s.math("MULTIPLY", brow, 0.85), colour, tuple(c * 0.7 for c in HAIR[hair or "brown"]))
     pores = s.bump(s.noise(where, 220.0, 2.0), 0.12, 0.002)
     return s.surface(
@@ -102,7 +106,7 @@ def hair(colour: str) -> bpy.types.Material:
     return s.surface(base_color=tint, roughness=0.48, normal=s.bump(strands, 0.7, 0.006))
 
 
-def _woven(s: Shader, colour: str) -> tuple[Value, Value, Value]:
+def _woven_cloth(s: Shader, colour: str) -> tuple[Value, Value, Value]:
     """Return the colour, fold height and weave height of plain cloth.
 
     The colour is paler where the cloth is worn, soiled in patches, and dark in the folds.
@@ -122,7 +126,7 @@ def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
     if name in bpy.data.materials:
         return bpy.data.materials[name]
     s = Shader(name)
-    tone, folds, weave = _woven(s, colour)
+    tone, folds, weave = _woven_cloth(s, colour)
     _, _, z = s.xyz(_rest(s))
     for position in bands:
         tone = s.mix(s.band(z, position - 0.026, position + 0.026, 0.0015), tone, (0.62, 0.63, 0.64))
@@ -141,7 +145,7 @@ def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
     if name in bpy.data.materials:
         return bpy.data.materials[name]
     s = Shader(name)
-    tone, folds, weave = _woven(s, colour)
+    tone, folds, weave = _woven_cloth(s, colour)
     x, y, z = s.xyz(_rest(s))
     away, front = s.math("ABSOLUTE", x), s.ramp(y, 0.0, 0.012)
     dark = tuple(c * 0.45 for c in PALETTE[colour])

@@ -9,7 +9,7 @@ from random import Random
 from mathutils import Matrix, Vector
 
 SIDES = (-1, 1)
-"""Left (x < 0) and right (x > 0). All pairs below are in this order."""
+"""Left (x < 0) and right (x > 0). Pairs of limbs and joints are in this order."""
 
 STRIDE_M = 1.32
 """Length in metres of one gait cycle (two steps) of a person of average height."""
@@ -222,7 +222,7 @@ def standing(random: Random) -> Pose:
     )
 
 
-def named(name: str, phase: float, random: Random) -> Pose:
+def named_pose(name: str, phase: float, random: Random) -> Pose:
     """Return the pose with this name, or raise ValueError if there is none."""
     base = standing(random)
     relaxed = Arm(3, 9, 18)

@@ -15,7 +15,7 @@ import bpy
 
 from scope_studio.kit.core.finishes import sheet, steel
 from scope_studio.kit.core.lettering import extent
-from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.shapes import rounded_rectangle
 from scope_studio.kit.core.solid import Solid
 
 LIFT_M = 0.0035
@@ -71,11 +71,13 @@ def board(
     edge = edge if edge is not None else min(0.05, 0.035 * min(width, height) + 0.006)
     corner = min(0.10, 0.09 * min(width, height))
     ink = border or INK.get(background, "black")
-    s.prism(rounded(width, height, corner), (-0.010, -0.006), steel(), "XZ")
-    s.prism(rounded(width, height, corner), (-0.006, -0.004), sheet(background), "XZ")
+    s.prism(rounded_rectangle(width, height, corner), (-0.010, -0.006), steel(), "XZ")
+    s.prism(rounded_rectangle(width, height, corner), (-0.006, -0.004), sheet(background), "XZ")
     gap = edge * 0.45
-    s.prism(rounded(width - 2 * gap, height - 2 * gap, max(0.004, corner - gap)), (-0.004, -0.002), sheet(ink), "XZ")
-    s.prism(rounded(width - 2 * edge, height - 2 * edge, max(0.004, corner - edge)), (-0.002, 0.0), sheet(background), "XZ")
+    s.prism(rounded_rectangle(width - 2 * gap, height - 2 * gap, max(0.004, corner - gap)), (-0.004, -0.002), sheet(ink), "XZ")
+    s.prism(
+        rounded_rectangle(width - 2 * edge, height - 2 * edge, max(0.004, corner - edge)), (-0.002, 0.0), sheet(background), "XZ"
+    )
     if back and height > 0.35:
         for k in range(max(2, round(height / 0.6))):
             z = height * ((k + 0.5) / max(2, round(height / 0.6)) - 0.5)
@@ -201,7 +203,7 @@ def _route_patch(s: Solid, spec: Panel, left: float, v: float, cap: float) -> fl
     width = extent(spec.route or "", cap) + 1.1 * cap
     centre = left + width / 2
     if spec.route_background or colour != spec.background:
-        flat(s, rounded(width, cap * 1.75, cap * 0.22, (centre, v)), sheet(colour), 0.003)
+        flat(s, rounded_rectangle(width, cap * 1.75, cap * 0.22, (centre, v)), sheet(colour), 0.003)
     write(
         s,
         spec.route or "",

@@ -13,7 +13,7 @@ from mathutils import Matrix, Vector
 
 from scope_studio.kit.core import shading
 from scope_studio.kit.core.finishes import glow
-from scope_studio.kit.core.parts import Flat, Parts
+from scope_studio.kit.core.parts import Parts, Point2D
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
@@ -37,7 +37,7 @@ def _tractor_parts() -> Parts:
     chassis.running_gear(parts, 1.75, [-1.75], _REAR, _FRONT - 0.1)
     chassis.cab(parts, _FRONT, depth=2.15, top=3.02)
     chassis.stores(parts, 0.75)
-    sleeper: list[Flat] = [
+    sleeper: list[Point2D] = [
         (0.95, 2.98),
         (_FRONT - 0.55, 3.0),
         (_FRONT - 0.42, 3.10),
@@ -47,7 +47,7 @@ def _tractor_parts() -> Parts:
     ]
     parts.prism(sleeper, -1.12, 1.12, pw.paint_slot(0), bevel_m=0.08, segments=2, smooth=True)
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         parts.prism([(0.93, 1.05), (0.93, 3.6), (0.35, 3.3), (0.35, 1.05)], 1.13, 1.17, pw.paint_slot(0), bevel_m=0.01)
         parts.box((0.03, 0.16, 0.05), (1.20, 2.2, 3.0), pw.lamp("amber"), bevel_m=0.01)
     parts.matrix = Matrix.Identity(4)
@@ -99,7 +99,7 @@ def _bogie(parts: Parts, *, bed_m: float) -> None:
     chassis.mudguard(parts, -half + 2.1, 0.52, 0.84, 1.22, dark)
     chassis.mudguard(parts, -half + 4.74, 0.52, 0.84, 1.22, dark)
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         parts.box((0.12, 0.14, bed_m - 0.12), (0.75, half - 3.1, (bed_m - 0.12) / 2 + 0.10), dark)
         parts.box((0.30, 0.34, 0.05), (0.75, half - 3.1, 0.06), dark)
         for z in (0.58, 0.92):
@@ -129,7 +129,7 @@ def _body_parts(kind: str) -> Parts:
     parts.box((2.50, 0.10, top - bed), (0, half - 0.05, (top + bed) / 2), pw.paint_slot(0), bevel_m=0.02)
     parts.box((2.50, TRAILER_M, 0.08), (0, 0, top), shading.plain("trailer roof", (0.42, 0.43, 0.43), 0.6), bevel_m=0.02)
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         if kind == "box":
             parts.box((0.06, TRAILER_M - 0.1, top - bed - 0.1), (1.23, 0, (top + bed) / 2), pw.paint_slot(0), bevel_m=0.01)
         else:

@@ -12,7 +12,7 @@ from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from scope_studio.kit.core import lettering, shading
-from scope_studio.kit.core.parts import Flat, Parts, Point
+from scope_studio.kit.core.parts import Parts, Point, Point2D
 from scope_studio.kit.core.stage import Built, TextMark
 from scope_studio.kit.vehicles import paintwork as pw
 from scope_studio.kit.vehicles import wheels
@@ -27,7 +27,7 @@ class Station:
     """
 
     y: float
-    section: Sequence[Flat]
+    section: Sequence[Point2D]
     dy: dict[int, float] = field(default_factory=dict)
 
 
@@ -92,7 +92,7 @@ def shell(
     for material in (pw.paint_slot(), pw.black_trim(), pw.clear_glass(), pw.clear_glass(0.78)):
         data.materials.append(material)
     data.polygons.foreach_set("use_smooth", [True] * len(data.polygons))
-    return _evaluated(data, cutters, levels)
+    return _evaluate(data, cutters, levels)
 
 
 def _ring_point(station: Station, j: int, rows: int) -> Point:
@@ -149,7 +149,7 @@ def _crease_border(
                 vert[corner] = 0.85
 
 
-def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.types.Mesh:
+def _evaluate(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.types.Mesh:
     """Return the mesh after subdivision and subtraction of the cutters."""
     collection = bpy.context.scene.collection
     obj = bpy.data.objects.new("shell", data)
@@ -230,7 +230,7 @@ def words(
     """
     flat, faces = lettering.letters(body, cap_m)
     if onto is not None:
-        flat, faces = _subdivided(flat, faces)
+        flat, faces = _subdivide(flat, faces)
     xs, ys = [p[0] for p in flat], [p[1] for p in flat]
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     squeeze = min(1.0, width_m / width)
@@ -248,7 +248,7 @@ def words(
     return Lettering(points, faces, colour, TextMark(body, centre, right, up, width * squeeze, height, cap_m))
 
 
-def _subdivided(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
+def _subdivide(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
     """Split long triangles, so that letters can follow a curve."""
     bm = bmesh.new()
     verts = [bm.verts.new(p) for p in points]

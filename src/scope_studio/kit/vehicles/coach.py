@@ -7,7 +7,7 @@ import math
 from mathutils import Matrix
 
 from scope_studio.kit.core import shading
-from scope_studio.kit.core.parts import Flat, Parts
+from scope_studio.kit.core.parts import Parts, Point2D
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
@@ -22,7 +22,7 @@ def _coach_parts() -> Parts:
     parts = Parts()
     front, rear, half, top = _COACH_FRONT, _COACH_REAR, _COACH_HALF, _COACH_TOP
     paint, trim, glass = pw.paint_slot(), pw.black_trim(), pw.glass()
-    section: list[Flat] = [
+    section: list[Point2D] = [
         (rear + 0.02, 0.42), (rear, 0.9), (rear, 2.2), (rear + 0.10, top - 0.10), (rear + 0.35, top),
             (front - 0.55, top), (front - 0.22, top - 0.10),
         (front - 0.10, 2.6), (front, 1.25), (front, 0.6), (front - 0.06, 0.34),
@@ -42,7 +42,7 @@ def _coach_parts() -> Parts:
     parts.box((1.3, 0.04, 0.18), (0, front + 0.005, 0.82), trim)
     windows = [4.05, 2.62, 1.19, -0.24, -1.67, -3.10, -4.53]
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         parts.box((0.02, 9.95, 1.12), (half - 0.003, -0.40 + 0.02, 2.14), trim, bevel_m=0.008)
         for y in windows:
             if sign < 0 and y == windows[0]:

@@ -7,7 +7,7 @@ import math
 from mathutils import Matrix
 
 from scope_studio.kit.core import shading
-from scope_studio.kit.core.parts import Flat, Parts
+from scope_studio.kit.core.parts import Parts, Point2D
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
@@ -25,14 +25,14 @@ _UPPER = (3.46, 0.92)
 def _parts() -> Parts:
     parts = Parts()
     paint = pw.paint_slot()
-    section: list[Flat] = [
+    section: list[Point2D] = [
         (REAR_M, 0.40), (REAR_M, 3.9), (REAR_M + 0.10, TOP_M - 0.06), (REAR_M + 0.30, TOP_M), (FRONT_M - 0.60, TOP_M),
         (FRONT_M - 0.30, TOP_M - 0.12), (FRONT_M - 0.14, 2.9), (FRONT_M, 1.2), (FRONT_M, 0.5), (FRONT_M - 0.06, 0.32),
     ]  # fmt: skip
     parts.prism(section, -HALF_M, HALF_M, paint, bevel_m=0.09, segments=3, smooth=True)
     _front(parts)
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         _side(parts, kerb=sign < 0)
     parts.matrix = Matrix.Identity(4)
     for y, twin in ((2.75, False), (-2.65, True)):

@@ -6,7 +6,7 @@ import math
 
 from mathutils import Matrix, Vector
 
-from scope_studio.kit.core.parts import Flat, Parts, Point
+from scope_studio.kit.core.parts import Parts, Point, Point2D
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings
@@ -61,7 +61,7 @@ def _track(parts: Parts, x: float, length: float, height: float, width: float) -
             parts.box((width, 0.018, 0.035), (0, rib * total / shoes, 0.014), fittings.worn_steel(), bevel_m=0.004)
         parts.box((width * 0.30, total / shoes * 0.98, 0.06), (0, 0, 0.075), fittings.iron(), bevel_m=0.01)
     parts.matrix = outer
-    frame: list[Flat] = [
+    frame: list[Point2D] = [
         (-reach, height * 0.36),
         (reach, height * 0.36),
         (reach + 0.05, height * 0.6),
@@ -90,7 +90,7 @@ def _track(parts: Parts, x: float, length: float, height: float, width: float) -
 def _cab(parts: Parts, x0: float, x1: float, y0: float, y1: float, z0: float, z1: float) -> None:
     """Add a glazed operator's cab with painted pillars, a black roof edge and a sill at seat height."""
     paint, glass, trim = pw.paint_slot(), pw.glass(), pw.black_trim()
-    profile: list[Flat] = [
+    profile: list[Point2D] = [
         (y0, z0),
         (y1 - 0.10, z0),
         (y1, z0 + 0.55),
@@ -101,15 +101,15 @@ def _cab(parts: Parts, x0: float, x1: float, y0: float, y1: float, z0: float, z1
         (y0, z1 - 0.08),
     ]
     parts.prism(profile, x0, x1, paint, bevel_m=0.045, segments=2, smooth=True)
-    upper: list[Flat] = [
+    upper: list[Point2D] = [
         (y0 + 0.52, z0 + 0.70),
         (y1 - 0.08, z0 + 0.70),
         (y1 - 0.10, z0 + 0.92),
         (y1 - 0.32, z1 - 0.12),
         (y0 + 0.52, z1 - 0.12),
     ]
-    rear: list[Flat] = [(y0 + 0.10, z0 + 0.78), (y0 + 0.44, z0 + 0.78), (y0 + 0.44, z1 - 0.14), (y0 + 0.10, z1 - 0.14)]
-    lower: list[Flat] = [(y0 + 0.56, z0 + 0.18), (y1 - 0.16, z0 + 0.18), (y1 - 0.08, z0 + 0.62), (y0 + 0.56, z0 + 0.62)]
+    rear: list[Point2D] = [(y0 + 0.10, z0 + 0.78), (y0 + 0.44, z0 + 0.78), (y0 + 0.44, z1 - 0.14), (y0 + 0.10, z1 - 0.14)]
+    lower: list[Point2D] = [(y0 + 0.56, z0 + 0.18), (y1 - 0.16, z0 + 0.18), (y1 - 0.08, z0 + 0.62), (y0 + 0.56, z0 + 0.62)]
     for x, out in ((x0, -1), (x1, 1)):
         for shape, material, lift in ((upper, glass, 0.006), (rear, glass, 0.006), (lower, glass, 0.004)):
             low, high = sorted((x - out * 0.02, x + out * lift))
@@ -240,15 +240,15 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
     boom = upper @ Matrix.Translation(foot) @ chord
     parts.matrix = boom
     # The boom is bent: its lower part is steeper than the line between its ends, and its upper part is less steep.
-    bend: Flat = (_BOOM * 0.42, 1.10)
-    low: list[Flat] = [
+    bend: Point2D = (_BOOM * 0.42, 1.10)
+    low: list[Point2D] = [
         (-0.16, -0.18),
         (0.4, -0.05),
         (bend[0] - 0.05, bend[1] - 0.42),
         (bend[0] + 0.5, bend[1] - 0.40),
         (_BOOM, -0.16),
     ]
-    high: list[Flat] = [
+    high: list[Point2D] = [
         (_BOOM + 0.16, 0.06),
         (_BOOM, 0.22),
         (bend[0] + 0.8, bend[1] + 0.18),
@@ -332,8 +332,8 @@ def _bucket(parts: Parts) -> None:
     It opens towards -z. When the bucket points down, this is the direction of the cab.
     """
     wear, half = fittings.worn_steel(), 0.62
-    spine: list[Flat] = [(0.05, 0.34), (0.35, 0.46), (0.75, 0.42), (1.08, 0.20), (1.22, -0.10), (1.22, -0.48)]
-    inside: list[Flat] = [(1.17, -0.46), (1.16, -0.09), (1.03, 0.16), (0.73, 0.36), (0.36, 0.40), (0.10, 0.28)]
+    spine: list[Point2D] = [(0.05, 0.34), (0.35, 0.46), (0.75, 0.42), (1.08, 0.20), (1.22, -0.10), (1.22, -0.48)]
+    inside: list[Point2D] = [(1.17, -0.46), (1.16, -0.09), (1.03, 0.16), (0.73, 0.36), (0.36, 0.40), (0.10, 0.28)]
     for k in range(5):
         parts.prism([spine[k], spine[k + 1], inside[4 - k], inside[5 - k]], -half, half, wear)
     for side in (-half, half):

@@ -6,7 +6,7 @@ import bpy
 from mathutils import Matrix
 
 from scope_studio.kit.core import shading
-from scope_studio.kit.core.parts import Flat, Parts
+from scope_studio.kit.core.parts import Parts, Point2D
 from scope_studio.kit.vehicles import paintwork as pw
 
 DARK_PAINTS = {"black", "blue", "dark blue", "red", "dark red", "green", "dark green", "grey", "purple", "brown"}
@@ -18,7 +18,7 @@ def contrast(colour: str) -> str:
     return "white" if colour in DARK_PAINTS else "dark blue"
 
 
-def mirrored(parts: Parts, sign: int) -> None:
+def set_side(parts: Parts, sign: int) -> None:
     """Set the matrix of ``parts``, so that parts are added as modelled (``sign`` +1) or mirrored to the left side (-1)."""
     parts.matrix = Matrix.Scale(sign, 4, (1, 0, 0))
 
@@ -28,7 +28,7 @@ def aluminium() -> bpy.types.Material:
     return shading.plain("lorry aluminium", (0.50, 0.51, 0.52), 0.38, 0.7)
 
 
-def seats_behind_glass(parts: Parts, places: list[Flat], sill: float, face: float, axis: str) -> None:
+def seats_behind_glass(parts: Parts, places: list[Point2D], sill: float, face: float, axis: str) -> None:
     """Add flat seat backs with head rests directly behind glass.
 
     ``places`` are positions (horizontal, height) in the plane that is normal to ``axis`` at ``face``.

@@ -8,7 +8,7 @@ import bpy
 from mathutils import Matrix
 
 from scope_studio.kit.core import shading
-from scope_studio.kit.core.parts import Flat, Parts
+from scope_studio.kit.core.parts import Parts, Point2D
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
@@ -30,7 +30,7 @@ def _box_parts() -> Parts:
     rail, dark = fittings.aluminium(), chassis.chassis_paint()
     parts.box((2.30, 6.0, 0.12), (0, -1.20, 1.10), dark)
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         for z in (1.17, 3.66):
             parts.box((0.03, 6.14, 0.09), (1.24, -1.20, z), rail)
         for y in (-4.24, 1.84):
@@ -45,7 +45,7 @@ def _box_parts() -> Parts:
         for y in (-3.9, -2.6, 0.0, 1.4):
             parts.box((0.02, 0.10, 0.04), (1.262, y, 1.10), pw.lamp("amber"), bevel_m=0.005)
     parts.matrix = Matrix.Identity(4)
-    fairing: list[Flat] = [(1.90, 2.80), (2.95, 2.82), (2.90, 2.95), (2.45, 3.45), (2.05, 3.66), (1.90, 3.66)]
+    fairing: list[Point2D] = [(1.90, 2.80), (2.95, 2.82), (2.90, 2.95), (2.45, 3.45), (2.05, 3.66), (1.90, 3.66)]
     parts.prism(fairing, -1.10, 1.10, pw.paint_slot(0), bevel_m=0.07, segments=2, smooth=True)
     parts.box((2.40, 0.05, 0.10), (0, -4.27, 1.17), dark)
     return parts
@@ -84,7 +84,7 @@ def _tipper_parts() -> Parts:
     for x in (-0.42, 0.42):
         parts.box((0.12, y1 - y0 - 0.2, 0.16), (x, (y0 + y1) / 2, floor - 0.14), dark)
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         parts.prism([(1.12, floor), (1.18, floor), (1.24, top), (1.16, top)], y0, y1, body, axis="Y")
         parts.box((0.12, y1 - y0 + 0.02, 0.12), (1.21, (y0 + y1) / 2, top), body, bevel_m=0.02)
         for k in range(8):
@@ -156,7 +156,7 @@ def tipper(cab_colour: str, body_colour: str, *, plate: str) -> Built:
     return bw.finish("tipper", bw.body_mesh("tipper", _tipper_parts), paints, letters, extra_parts)
 
 
-def _tank_outline(grow: float = 0.0) -> list[Flat]:
+def _tank_outline(grow: float = 0.0) -> list[Point2D]:
     """Return the cross-section of the tank, enlarged by ``grow`` metres."""
     return [
         ((1.20 + grow) * math.cos(a), 2.12 + (0.90 + grow) * math.sin(a)) for a in (2 * math.pi * (k + 0.5) / 40 for k in range(40))
@@ -182,7 +182,7 @@ def _tanker_parts() -> Parts:
     for y in (-3.3, -1.9, -0.4, 1.0):
         parts.lathe([(0.27, 0), (0.27, 0.10), (0.22, 0.14), (0.05, 0.16)], (0, y, 3.04), fittings.aluminium())
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         parts.tube(
             [(0.38, y0 + 0.4, 3.05), (0.38, y0 + 0.4, 3.50), (0.38, y1 - 0.4, 3.50), (0.38, y1 - 0.4, 3.05)],
             0.02,

@@ -8,7 +8,7 @@ import bpy
 from mathutils import Matrix
 
 from scope_studio.kit.core import shading
-from scope_studio.kit.core.parts import Flat, Parts
+from scope_studio.kit.core.parts import Parts, Point2D
 from scope_studio.kit.vehicles import fittings, wheels
 from scope_studio.kit.vehicles import paintwork as pw
 
@@ -21,7 +21,7 @@ def chassis_paint() -> bpy.types.Material:
 def cab(parts: Parts, front_y: float, *, depth: float = 1.72, width: float = 2.40, top: float = 2.86) -> None:
     """Add a day cab with its front face at ``front_y``: body, glazing, grille, bumper, lamps, steps, mirrors, visor."""
     half, y, back = width / 2, front_y, front_y - depth
-    body: list[Flat] = [
+    body: list[Point2D] = [
         (back, 1.02), (y - 0.35, 1.02), (y - 0.05, 0.90), (y - 0.01, 1.30), (y - 0.03, 1.72), (y - 0.19, 2.58),
         (y - 0.32, top - 0.08), (y - 0.55, top), (back + 0.10, top + 0.04), (back, top - 0.05),
     ]  # fmt: skip
@@ -63,9 +63,9 @@ def cab(parts: Parts, front_y: float, *, depth: float = 1.72, width: float = 2.4
                 -half - 0.01, half + 0.01, pw.paint_slot(), bevel_m=0.04, segments=2)  # fmt: skip
     parts.box((width - 0.9, 0.05, 0.16), (0, y + 0.11, 0.74), trim)
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         x = half + 0.004
-        side: list[Flat] = [
+        side: list[Point2D] = [
             (y - 0.24, 1.66),
             (y - 0.36, 2.52),
             (back + 0.52, 2.56),
@@ -131,7 +131,7 @@ def mudguard(parts: Parts, y: float, radius: float, x0: float, x1: float, materi
         for a in (math.pi * (0.98 - 0.96 * k / 10) for k in range(11))
     ]
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         for k in range(10):
             ring = [outer[k], outer[k + 1], inner[9 - k], inner[10 - k]]
             parts.prism(ring, x0, x1, material)
@@ -153,7 +153,7 @@ def running_gear(parts: Parts, front: float, rears: list[float], rear_end: float
     mudguard(parts, front, 0.5, 0.80, 1.20, pw.black_trim())
     parts.box((2.30, 0.10, 0.14), (0, rear_end + 0.06, 0.56), fittings.aluminium())
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         parts.box((0.08, 0.10, 0.40), (0.45, rear_end + 0.10, 0.74), dark)
         parts.box((0.44, 0.06, 0.15), (0.96, rear_end + 0.03, 0.74), wheels.shade(), bevel_m=0.015)
         for x, colour in ((1.09, "amber"), (0.95, "red"), (0.81, "red")):
@@ -165,7 +165,7 @@ def running_gear(parts: Parts, front: float, rears: list[float], rear_end: float
 def side_guards(parts: Parts, y0: float, y1: float) -> None:
     """Add guard rails between the axles, from ``y0`` to ``y1`` on both sides."""
     for sign in (-1, 1):
-        fittings.mirrored(parts, sign)
+        fittings.set_side(parts, sign)
         for z in (0.50, 0.80):
             parts.box((0.03, y1 - y0, 0.12), (1.17, (y0 + y1) / 2, z), fittings.aluminium())
         for k in range(3):

@@ -7,7 +7,7 @@ import math
 import bpy
 
 from scope_studio.kit.core import shading
-from scope_studio.kit.core.parts import Flat, Parts
+from scope_studio.kit.core.parts import Parts, Point2D
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
@@ -46,7 +46,7 @@ def _roller_parts() -> Parts:
         parts.disc(0.22, -0.86, 0.86, (0, y, 0.68), paint, steps=24)
         front = 1 if y > 0 else -1
         for sign in (-1, 1):
-            yoke: list[Flat] = [
+            yoke: list[Point2D] = [
                 (y - front * 0.14, 0.54),
                 (y + front * 0.14, 0.54),
                 (y + front * 0.16, 0.95),
@@ -55,7 +55,7 @@ def _roller_parts() -> Parts:
                 (y - front * 0.60, 1.26),
             ]
             parts.prism(yoke, sign * 0.90 - 0.05, sign * 0.90 + 0.05, paint, bevel_m=0.02)
-        deck: list[Flat] = [
+        deck: list[Point2D] = [
             (y + front * 0.72, 1.16),
             (y + front * 0.74, 1.42),
             (y + front * 0.60, 1.54),
@@ -121,10 +121,10 @@ def _dumper_parts() -> Parts:
     parts.box((1.36, 0.85, 0.08), (0, -0.35, 0.92), iron)
     for k in range(6):
         parts.box((0.9, 0.02, 0.03), (0, -2.15, 1.02 + 0.07 * k), trim, bevel_m=0.0)
-    skip: list[Flat] = [(-0.02, 1.10), (1.70, 1.02), (2.35, 1.62), (0.0, 1.75), (-0.12, 1.60)]
+    skip: list[Point2D] = [(-0.02, 1.10), (1.70, 1.02), (2.35, 1.62), (0.0, 1.75), (-0.12, 1.60)]
     parts.prism(skip, -0.86, 0.86, paint, bevel_m=0.04)
     for sign in (-1, 1):
-        rim: list[Flat] = [(-0.16, 1.60), (-0.05, 2.02), (2.00, 1.86), (2.38, 1.62), (2.3, 1.52), (0.0, 1.62)]
+        rim: list[Point2D] = [(-0.16, 1.60), (-0.05, 2.02), (2.00, 1.86), (2.38, 1.62), (2.3, 1.52), (0.0, 1.62)]
         parts.prism(rim, sign * 0.94 - 0.05, sign * 0.94 + 0.05, paint, bevel_m=0.02)
         parts.tube([(sign * 0.56, -0.72, 1.5), (sign * 0.56, -0.72, 2.72)], 0.05, iron, sides=8)
         parts.box((0.34, 1.15, 0.05), (sign * 0.92, -1.35, 1.26), trim, bevel_m=0.02)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 
 from scope_studio.kit.core.finishes import concrete, glow, lens, paint, rubber, sheet, steel
-from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.shapes import rounded_rectangle
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
@@ -19,7 +19,7 @@ def cone(height: float = 0.75) -> Built:
     s = Solid("cone")
     k = height / 0.75
     orange, white = paint("orange", dirt=0.34, roughness=0.46), sheet("white", dirt=0.30)
-    base = rounded(0.43 * k, 0.43 * k, 0.05 * k)
+    base = rounded_rectangle(0.43 * k, 0.43 * k, 0.05 * k)
     s.prism(base, (0.0, 0.022 * k), rubber(), "XY")
     s.prism([(x * 0.93, y * 0.93) for x, y in base], (0.022 * k, 0.040 * k), rubber(), "XY")
     for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1)):

@@ -46,7 +46,7 @@ def _ink(colour: str) -> bpy.types.Material:
     )
 
 
-def _corrugated(s: Solid, length: float, x: float, z0: float, z1: float, skin: bpy.types.Material) -> None:
+def _corrugated_wall(s: Solid, length: float, x: float, z0: float, z1: float, skin: bpy.types.Material) -> None:
     """Add a side wall at ``x`` with trapezoidal corrugations, 36 mm deep, along y."""
     side = 1 if x > 0 else -1
     count = round((length - 0.24) / 0.278)
@@ -82,7 +82,7 @@ def container(
     length = LENGTH_M[feet]
     w, d, h = WIDTH_M / 2, length / 2, HEIGHT_M
     for x in (-w + 0.014, w - 0.014):
-        _corrugated(s, length, x, 0.16, h - 0.10, skin)
+        _corrugated_wall(s, length, x, 0.16, h - 0.10, skin)
     for x in (-w + 0.06, w - 0.06):
         for y in (-d + 0.06, d - 0.06):
             s.box((0.12, 0.12, h - 0.2), (x, y, h / 2), skin, 0.012)

@@ -82,7 +82,7 @@ def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = Fal
             if b - a < 0.05:
                 continue
             if hole:
-                for (x0, _, z0), (x1, _, z1) in _outside(ends):
+                for (x0, _, z0), (x1, _, z1) in _outside_hole(ends):
                     s.tube([(x0, 0, z0), (x1, 0, z1)], 0.0026, wire, sides=4)
             else:
                 s.tube(ends, 0.0026, wire, sides=4)
@@ -94,7 +94,9 @@ def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = Fal
     return s.built()
 
 
-def _outside(ends: Sequence[tuple[float, float, float]]) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
+def _outside_hole(
+    ends: Sequence[tuple[float, float, float]],
+) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
     """Return the parts of a wire that are outside the hole, an arch 1.0 m wide and 1.25 m high."""
     (x0, _, z0), (x1, _, z1) = ends
     pieces, steps, start = [], 48, None

@@ -21,11 +21,13 @@ ROW_B = [(-45.4 + BAY_M * k, str(24 + k)) for k in range(12)]
 ROW_A_Y, ROW_B_Y = -14.5, -26.5
 """y coordinates of the two rows."""
 VISITORS = [(-44.0 + 2.8 * k, str(36 + k)) for k in range(5)]
-"""x coordinate of the middle, and number, of each bay for visitors."""
+"""x coordinate of the middle, and number, of each bay for visitors. The cars face south."""
 VISITORS_Y = -41.5
+"""y coordinate of the row for visitors."""
 TRAILER_BAYS = [(3.5 + 4.2 * k, str(61 + k)) for k in range(5)]
 """y coordinate of the middle, and number, of each trailer bay along the west fence."""
 TRAILER_X = -48.5
+"""x coordinate of the middle of the trailer bays."""
 
 MASTS = (
     (-17.0, -10.6, 0.0, "sodium", 2, True, "L1"),
@@ -148,6 +150,7 @@ def _bays(stage: Stage) -> None:
 
 
 CHARGING = ("21", "22", "23")
+"""Numbers of the bays with a charging point."""
 OCCUPIED = {
     "12": "dark blue", "13": "silver", "15": "red", "16": "white", "18": "grey", "20": "black", "22": "white", "23": "light blue",
     "25": "green", "26": "yellow", "28": "silver", "29": "dark red", "31": "white", "33": "orange", "34": "grey", "37": "blue",

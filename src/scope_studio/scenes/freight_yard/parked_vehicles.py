@@ -27,7 +27,7 @@ PARKED_CARS = {
 
 def build(stage: Stage) -> None:
     """Place the parked vehicles."""
-    _docked(stage)
+    _docked_lorries(stage)
     _trailers(stage)
     _cars(stage)
     _forklifts(stage)
@@ -59,7 +59,7 @@ def _combination(
     )
 
 
-def _docked(stage: Stage) -> None:
+def _docked_lorries(stage: Stage) -> None:
     _combination(
         stage,
         artics.tractor("blue", plate="KX20 HGF", name="NORTHGATE", lit=True),
@@ -325,7 +325,7 @@ def _forklifts(stage: Stage) -> None:
         )
         if vest:
             sx, sy, sz = forklift.SEAT
-            dx, dy = _turned(sx, sy, bearing)
+            dx, dy = _rotate(sx, sy, bearing)
             stage.place(
                 driver(vest, helmet, 11),
                 "worker",
@@ -338,7 +338,7 @@ def _forklifts(stage: Stage) -> None:
                 driving="forklift",
                 parent=truck,
             )
-            dx, dy = _turned(0.0, 1.68, bearing)
+            dx, dy = _rotate(0.0, 1.68, bearing)
             stage.place(
                 pallet_load("cartons", label="BATCH 41"),
                 "pallet",
@@ -350,7 +350,7 @@ def _forklifts(stage: Stage) -> None:
             )
 
 
-def _turned(x: float, y: float, bearing_deg: float) -> tuple[float, float]:
+def _rotate(x: float, y: float, bearing_deg: float) -> tuple[float, float]:
     """Return a point rotated from object coordinates to world axes, for an object with this bearing."""
     b = math.radians(bearing_deg)
     return x * math.cos(b) + y * math.sin(b), -x * math.sin(b) + y * math.cos(b)

@@ -14,11 +14,14 @@ from scope_studio.kit.works.fencing import FENCE_PANEL_M
 from scope_studio.scenes.highway_works.land import COMPOUND
 
 GATE_X = -33.0
+"""x coordinate of the middle of the compound's gate."""
 LINE_X = -9.3
 """x coordinate of the line of cones and barriers between the works and the traffic."""
 
 TAPER = [(-15.1 + 5.8 * k / 9, -79.0 + 4.2 * k) for k in range(10)]
+"""Positions of the cones that lead traffic out of the closed lane."""
 CONES = [(LINE_X, y) for y in (-35.0, -28.5, -22.0, -15.5, -9.0, -2.5, 7.2, 10.8, 27.0, 31.0)]
+"""Positions of the cones along the closed lane."""
 RESERVE_CONES = [(-1.72, y) for y in (9.2, 11.3, 13.5)]
 """Cones on the central reserve, next to the works and a damaged guardrail.
 

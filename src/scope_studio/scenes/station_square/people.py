@@ -197,7 +197,7 @@ def _walkers() -> list[ActorPath]:
             "person",
             "traveller with a blue suitcase",
             _with_case,
-            traffic.timed(traveller, 1.35),
+            traffic.timed_path(traveller, 1.35),
             52.0,
             {"top": "orange", "state": "walking", "with": "suitcase"},
             stride_m=poses.STRIDE_M,
@@ -210,7 +210,7 @@ def _walkers() -> list[ActorPath]:
             lambda phase: characters.pedestrian(
                 top="dark red", trousers="black", pose="walk", phase=phase, holding="bag", seed=502
             ),
-            traffic.timed(commuter, 1.45),
+            traffic.timed_path(commuter, 1.45),
             54.0,
             {"top": "dark red", "state": "walking", "holding": "bag"},
             stride_m=poses.STRIDE_M,
@@ -221,7 +221,7 @@ def _walkers() -> list[ActorPath]:
             "dog",
             "black dog",
             lambda phase: dogs.dog("black", phase=phase),
-            traffic.timed(trot, 1.5),
+            traffic.timed_path(trot, 1.5),
             0.0,
             {"colour": "black", "state": "walking"},
             stride_m=0.62,

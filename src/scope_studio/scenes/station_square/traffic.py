@@ -151,7 +151,9 @@ def _ground(x: float, y: float) -> float:
     return ROAD_M if y < -11.9 or 23.6 < x < 32.4 else 0.0
 
 
-def timed(corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0) -> list[tuple[float, float, float, float]]:
+def timed_path(
+    corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0
+) -> list[tuple[float, float, float, float]]:
     """Return the waypoints (t_s, x, y, z) of a path on the ground through ``corners``, at constant speed."""
     way, t = [(start_s, *corners[0], _ground(*corners[0]))], start_s
     for (x0, y0), (x1, y1) in pairwise(corners):
@@ -212,7 +214,7 @@ def actors() -> list[ActorPath]:
             "taxi",
             "yellow taxi",
             lambda _phase: _moving_taxi(),
-            timed(taxi, 7.5),
+            timed_path(taxi, 7.5),
             42.0,
             {"colour": "yellow", "state": "moving", "plate": "SD20 KWN"},
         ),
@@ -222,7 +224,7 @@ def actors() -> list[ActorPath]:
             "cyclist",
             "cyclist on a red bicycle",
             lambda _phase: _rider(),
-            timed(ride, 3.6, 2.0),
+            timed_path(ride, 3.6, 2.0),
             46.0,
             {"colour": "light blue", "state": "riding", "bicycle": "red"},
         ),

@@ -73,8 +73,8 @@ class UsernameTokens:
         if password is None or not password.get("Type", _DIGEST).endswith(_DIGEST):
             raise not_authorized("The device accepts only password digests.")
         created = _text(token, _UTILITY, "Created")
-        nonce = _decoded(_text(token, SECURITY, "Nonce"))
-        digest = _decoded(_text(token, SECURITY, "Password"))
+        nonce = _decode_base64(_text(token, SECURITY, "Nonce"))
+        digest = _decode_base64(_text(token, SECURITY, "Password"))
         account = self._accounts.find(_text(token, SECURITY, "Username"))
         # An unknown name takes as long to reject as a wrong password, so that names cannot be found by timing.
         secret = secrets.token_hex(16) if account is None else account.password
@@ -123,7 +123,7 @@ def _text(token: Any, namespace: str, name: str) -> str:
     return str(text)
 
 
-def _decoded(text: str) -> bytes:
+def _decode_base64(text: str) -> bytes:
     try:
         return base64.b64decode(text, validate=True)
     except (binascii.Error, ValueError) as error:

@@ -30,12 +30,12 @@ class Event(NamedTuple):
     data: Any
 
 
-class Web:
-    """A client of one server's API. Each thread needs its own, because it keeps one connection open.
+class ServerClient:
+    """A client of a server's API. Each thread needs its own client, because a client keeps one connection open.
 
     Args:
         address: The server.
-        client: The name of this client, which the server uses to distinguish Blenders with the same token.
+        client: The name of this client, by which the server distinguishes Blender instances with the same token.
     """
 
     def __init__(self, address: Address, client: str) -> None:
@@ -52,7 +52,7 @@ class Web:
                     opened.shutdown(socket.SHUT_RDWR)
             connection.close()
 
-    def ask(self, method: str, path: str, body: object = None) -> Any:
+    def request(self, method: str, path: str, body: object = None) -> Any:
         """Send a request with a JSON body, and return the JSON of the reply; None if the reply is empty.
 
         Raises:
@@ -60,10 +60,12 @@ class Web:
             AddOnError: The server did not answer, or its reply is not JSON.
         """
         content = None if body is None else json.dumps(body).encode()
-        return _parsed(self.data(method, path, content, "application/json"))
+        return _parse_json(self.request_bytes(method, path, content, "application/json"))
 
-    def data(self, method: str, path: str, body: bytes | None = None, media_type: str = "application/octet-stream") -> bytes:
-        """Send a request, and return the body of the reply. Raises the same errors as ``ask``."""
+    def request_bytes(
+        self, method: str, path: str, body: bytes | None = None, media_type: str = "application/octet-stream"
+    ) -> bytes:
+        """Send a request, and return the body of the reply. Raises the same errors as ``request``."""
         fresh = self._connection is None
         try:
             return self._once(method, path, body, media_type)
@@ -142,8 +144,8 @@ class Web:
         return AddOnError(f"The connection to the server at {self._address.url} was lost.")
 
 
-def part(name: str) -> str:
-    """Return a name as one part of a path."""
+def quote_part(name: str) -> str:
+    """Return a name, quoted as one part of a path."""
     return quote(name, safe="")
 
 
@@ -154,7 +156,7 @@ def _events(reply: http.client.HTTPResponse) -> Iterator[Event | None]:
         field, _, value = text.partition(":")
         if not text:
             if data:
-                yield Event(name, _parsed("\n".join(data).encode()))
+                yield Event(name, _parse_json("\n".join(data).encode()))
             name, data = "message", list[str]()
         elif not field:
             yield None
@@ -164,7 +166,7 @@ def _events(reply: http.client.HTTPResponse) -> Iterator[Event | None]:
             data.append(value[1:] if value.startswith(" ") else value)
 
 
-def _parsed(content: bytes) -> Any:
+def _parse_json(content: bytes) -> Any:
     if not content:
         return None
     try:

@@ -1,4 +1,4 @@
-"""Run an instruction on the server and follow it, in a thread."""
+"""Run an instruction on the server, and follow the run in a thread."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from typing import NamedTuple
 
 from .address import Address
 from .errors import AddOnError
-from .steps import End, Step, end_of, step_of
-from .web import Web, part
+from .server_client import ServerClient, quote_part
+from .steps import End, Step, parse_end, parse_step
 
 _PICTURE = re.compile(r"(?:frames|pictures)/[A-Za-z0-9._-]{1,60}")
 
 
-class Deciding(NamedTuple):
-    """The planner is about to decide its next step; ``step`` is the number of the last one."""
+class StepStarted(NamedTuple):
+    """The planner decides on its next step. ``step`` is the number of that step."""
 
     step: int
 
 
-class Shown(NamedTuple):
-    """A picture of the run, with the detections marked, was stored in a file."""
+class PictureStored(NamedTuple):
+    """A picture of the run, with detections marked, was stored in a file."""
 
     path: Path
 
@@ -34,10 +34,10 @@ class Problem(NamedTuple):
     text: str
 
 
-News = Step | End | Deciding | Shown | Problem
+RunEvent = Step | End | StepStarted | PictureStored | Problem
 
 
-class Asking:
+class InstructionRun:
     """An instruction and its run.
 
     Args:
@@ -54,11 +54,11 @@ class Asking:
         self._body = {"camera": camera, "instruction": instruction, **({"pair": pair} if pair else {})}
         self._run = ""
         self._cancelled = threading.Event()
-        self._stream = Web(address, client)
+        self._stream = ServerClient(address, client)
         self._thread = threading.Thread(target=self._work, name="scope-run", daemon=True)
         self.instruction = instruction
-        self.news: queue.SimpleQueue[News] = queue.SimpleQueue()
-        """What happens, for the main thread. The last entry is an ``End`` or a ``Problem``."""
+        self.events: queue.SimpleQueue[RunEvent] = queue.SimpleQueue()
+        """The events of the run, for the main thread. The last one is an ``End`` or a ``Problem``."""
 
     def start(self) -> None:
         """Start the run, in the background."""
@@ -79,58 +79,58 @@ class Asking:
             self._thread.join(timeout_s)
 
     def _work(self) -> None:
-        web = Web(self._address, self._client)
+        client = ServerClient(self._address, self._client)
         try:
-            self._run = str(web.ask("POST", "/runs", self._body)["id"])
+            self._run = str(client.request("POST", "/runs", self._body)["id"])
             if self._cancelled.is_set():
                 self._cancel()
-            if not self._follow(web):
-                self.news.put(Problem("The server ended the connection before the run was over."))
+            if not self._follow(client):
+                self.events.put(Problem("The server ended the connection before the run was over."))
         except AddOnError as error:
-            self.news.put(Problem(str(error)))
+            self.events.put(Problem(str(error)))
         except Exception as error:  # a thread that fails silently would leave the sidebar at "working"
-            self.news.put(Problem(f"The run cannot be followed: {type(error).__name__}."))
+            self.events.put(Problem(f"The run cannot be followed: {type(error).__name__}."))
         finally:
-            web.close()
+            client.close()
 
-    def _follow(self, web: Web) -> bool:
+    def _follow(self, client: ServerClient) -> bool:
         """Pass on the records of the run. Return whether it has ended."""
-        for event in self._stream.events(f"/runs/{part(self._run)}/events"):
+        for event in self._stream.events(f"/runs/{quote_part(self._run)}/events"):
             if event is None:
                 continue
             if event.name == "decision":
-                self.news.put(Deciding(int(event.data["step"])))
+                self.events.put(StepStarted(int(event.data["step"])))
             elif event.name == "call":
-                step = step_of(event.data)
-                self.news.put(step)
-                self._fetch(web, step.picture)
+                step = parse_step(event.data)
+                self.events.put(step)
+                self._fetch(client, step.picture)
             elif event.name == "end":
-                self.news.put(end_of(event.data))
+                self.events.put(parse_end(event.data))
                 return True
         return False
 
-    def _fetch(self, web: Web, picture: str) -> None:
+    def _fetch(self, client: ServerClient, picture: str) -> None:
         """Download a picture with its marks. A picture that is not available is not shown."""
         if not _PICTURE.fullmatch(picture):
             return
         try:
-            data = web.data("GET", f"/runs/{part(self._run)}/pictures/{picture}?marks=true")
+            data = client.request_bytes("GET", f"/runs/{quote_part(self._run)}/pictures/{picture}?marks=true")
         except AddOnError:
             return
-        # The name is our own, so that nothing from the server becomes part of a path.
+        # The name is fixed, so that nothing from the server becomes part of a path.
         path = self._folder / "scope-frame.jpg"
         fresh = path.with_suffix(".new")
         fresh.write_bytes(data)
         fresh.replace(path)
-        self.news.put(Shown(path))
+        self.events.put(PictureStored(path))
 
     def _cancel(self) -> None:
         if not self._run:
             return
-        web = Web(self._address, self._client)
+        client = ServerClient(self._address, self._client)
         try:
-            web.ask("POST", f"/runs/{part(self._run)}/cancel")
+            client.request("POST", f"/runs/{quote_part(self._run)}/cancel")
         except AddOnError as error:
-            self.news.put(Problem(f"The run could not be cancelled: {error}"))
+            self.events.put(Problem(f"The run could not be cancelled: {error}"))
         finally:
-            web.close()
+            client.close()

@@ -7,5 +7,5 @@ export const MODES = {
   vlm_counting: "miscounted", vlm_query: "misperceived", reasoning: "wrong reasoning",
 };
 
-export const words = (name) => (name === "ocr" ? "OCR" : name.replaceAll("_", " "));
-export const percent = (value) => `${(100 * value).toFixed(1)} %`;
+export const displayName = (name) => (name === "ocr" ? "OCR" : name.replaceAll("_", " "));
+export const percent = (value) => `${(100 * value).toFixed(1)}%`;
