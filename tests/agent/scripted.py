@@ -1,4 +1,4 @@
-"""Deliberate stand-ins for tests of the loop: a planner that follows a script, eyes and a camera that say what they are told."""
+"""Fakes for tests of the loop: a planner that follows a script, and perception and a camera with predefined replies."""
 
 from __future__ import annotations
 
@@ -136,6 +136,6 @@ def make_agent(
     budgets: Budgets | None = None,
 ) -> Agent:
     """An agent of stand-ins."""
-    planner, eyes = ScriptedPlanner(*script), ScriptedPerception(*counts)
+    planner, perception = ScriptedPlanner(*script), ScriptedPerception(*counts)
     labels = RunLabels(perception_note="scripted, for tests", seed=7)
-    return Agent(planner, camera or ScriptedCamera(), eyes, images or NoImages(), budgets=budgets, labels=labels)
+    return Agent(planner, camera or ScriptedCamera(), perception, images or NoImages(), budgets=budgets, labels=labels)

@@ -67,12 +67,12 @@ def test_step_limit() -> None:
 
 
 def test_time_budget_also_ends_a_planner_that_hangs() -> None:
-    class Hanging(ScriptedPlanner):
+    class HangingPlanner(ScriptedPlanner):
         async def step(self, state: State) -> Any:
             await anyio.sleep(30)
 
     agent = make_agent(answer(), budgets=Budgets(time_s=0.05))
-    agent.planner = Hanging()
+    agent.planner = HangingPlanner()
     done = anyio.run(agent.run, "wait")
     assert done.ended.outcome == "budget"
     assert "time" in done.ended.text

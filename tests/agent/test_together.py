@@ -29,7 +29,7 @@ WRONG = ("count_objects", {"thing": "cars"})
 PAUSE_S = 0.15
 
 
-class SlowEyes(ScriptedPerception):
+class SlowPerception(ScriptedPerception):
     """Slow perception that records concurrent calls and their frames. Counts are the number of letters of the description."""
 
     def __init__(self) -> None:
@@ -58,10 +58,10 @@ class SlowEyes(ScriptedPerception):
         return Answer(source=self.name, text=str(await self._look(frame, question)))
 
 
-def run(*script: Any, eyes: Any = None, **options: Any) -> tuple[RunResult, list[Any]]:
+def run(*script: Any, perception: Any = None, **options: Any) -> tuple[RunResult, list[Any]]:
     records: list[Any] = []
     agent = make_agent(*script, **options)
-    agent.perception = eyes or SlowEyes()
+    agent.perception = perception or SlowPerception()
     return anyio.run(lambda: agent.run("do it", listener=records.append)), records
 
 
@@ -83,10 +83,10 @@ def test_only_adjacent_calls_on_the_current_view_run_concurrently() -> None:
 
 
 def test_concurrent_calls_share_a_frame_and_return_in_order() -> None:
-    eyes, camera = SlowEyes(), ScriptedCamera()
-    done, records = run(calls(CONES, CARS, COLOUR), answer(), eyes=eyes, camera=camera)
-    assert eyes.most_at_once == 3
-    assert len({id(frame) for frame in eyes.frames}) == 1
+    perception, camera = SlowPerception(), ScriptedCamera()
+    done, records = run(calls(CONES, CARS, COLOUR), answer(), perception=perception, camera=camera)
+    assert perception.most_at_once == 3
+    assert len({id(frame) for frame in perception.frames}) == 1
     made = [r for r in records if isinstance(r, Called)]
     assert [r.outcome.call.name for r in made] == ["count_objects", "count_objects", "query_answer"]
     assert [r.index for r in made] == [0, 1, 2]
@@ -130,7 +130,7 @@ def test_interrupted_perception_calls_are_recorded() -> None:
 
 def test_runs_with_concurrent_perception_calls_can_be_replayed(tmp_path: Path) -> None:
     agent = make_agent(calls(COLOUR, CONES, CARS), calls(MOVE), calls(CONES, COLOUR), answer())
-    agent.perception = SlowEyes()
+    agent.perception = SlowPerception()
     folder = RunFolder.create(tmp_path, "look")
     agent.images = folder
 

@@ -18,7 +18,7 @@ SCENE = "analytic-yard"
 
 
 @dataclass(frozen=True)
-class Done:
+class CommandResult:
     """The exit code and the output of a command."""
 
     code: int
@@ -32,7 +32,7 @@ class Done:
         return json.loads(line)
 
 
-Scope = Callable[..., Done]
+Scope = Callable[..., CommandResult]
 
 
 @pytest.fixture(scope="session")
@@ -48,14 +48,14 @@ def scope(scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys:
     monkeypatch.setenv("SCOPE_RUNS_DIR", str(tmp_path / "runs"))
     monkeypatch.setenv("COLUMNS", "200")
 
-    def run(*arguments: str) -> Done:
+    def run(*arguments: str) -> CommandResult:
         monkeypatch.setattr("sys.argv", ["scope", *arguments])
         capsys.readouterr()
         with pytest.raises(SystemExit) as ended:
             main()
         code = ended.value.code
         assert code is None or isinstance(code, int)
-        return Done(code or 0, *capsys.readouterr())
+        return CommandResult(code or 0, *capsys.readouterr())
 
     return run
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import SCENE, Done, Scope
+from tests.cli.conftest import SCENE, CommandResult, Scope
 from tests.support.programs import started
 
 
-def say(scope: Scope, monkeypatch: pytest.MonkeyPatch, *lines: str) -> Done:
+def say(scope: Scope, monkeypatch: pytest.MonkeyPatch, *lines: str) -> CommandResult:
     monkeypatch.setattr("sys.stdin", StringIO("\n".join(lines) + "\n"))
     return scope("chat", "--scene", SCENE)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import SCENE, Done, Scope
+from tests.cli.conftest import SCENE, CommandResult, Scope
 from tests.support.misbehaving import Misbehaving, echo_key, good, nobody_listens, say, status
 
 KEY = "sk-very-secret-0123456789"
@@ -21,7 +21,7 @@ def keys(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(f"SCOPE_{role}_KEY", KEY)
 
 
-def shown(done: Done, folder: Path) -> str:
+def shown(done: CommandResult, folder: Path) -> str:
     """Return all output, after checking that it does not contain the key."""
     kept = "".join(
         path.read_text(errors="replace") for path in folder.rglob("*") if path.suffix in (".jsonl", ".json", ".txt", ".md")
@@ -53,7 +53,7 @@ def test_a_server_that_is_gone(scope: Scope, tmp_path: Path) -> None:
 def test_perception_failures_are_errors_for_the_planner_and_counted(scope: Scope, tmp_path: Path) -> None:
     with (
         Misbehaving([say("", COUNT)], then=say("I could not see.")) as planner,
-        Misbehaving(then=status(500, f"bad {KEY}")) as eyes,
+        Misbehaving(then=status(500, f"bad {KEY}")) as perception,
     ):
         done = scope(
             *ASK,
@@ -64,7 +64,7 @@ def test_perception_failures_are_errors_for_the_planner_and_counted(scope: Scope
             "--perception",
             "moondream",
             "--perception-url",
-            eyes.url,
+            perception.url,
             "--json",
         )
         last = next(r for r in reversed(planner.requests) if r.chat).data["messages"][-1]
@@ -80,8 +80,8 @@ def test_perception_failures_are_errors_for_the_planner_and_counted(scope: Scope
 
 def test_a_count_of_incomplete_detections_is_a_lower_bound(scope: Scope, tmp_path: Path) -> None:
     box = {"x_min": 0.1, "y_min": 0.1, "x_max": 0.2, "y_max": 0.2}
-    with Misbehaving(then=good(moondream={"detect": {"objects": [box, {**box, "x_min": "left"}]}})) as eyes:
-        done = scope(*ASK, "--perception", "moondream", "--perception-url", eyes.url, "--json")
+    with Misbehaving(then=good(moondream={"detect": {"objects": [box, {**box, "x_min": "left"}]}})) as perception:
+        done = scope(*ASK, "--perception", "moondream", "--perception-url", perception.url, "--json")
     assert "at least 1 cone" in shown(done, tmp_path)
     assert done.json["tool_calls"][0]["result"]["complete"] is False
 

@@ -59,11 +59,11 @@ def test_the_nineteen_pairs(scope: Scope) -> None:
 
 
 def test_a_pair_by_name_on_two_servers(scope: Scope) -> None:
-    with Misbehaving(then=good(follow_script)) as brain, Misbehaving() as eyes:
-        done = ask(scope, "--pair", "qwen3-30b-a3b+moondream3", "--planner-url", brain.url, "--perception-url", eyes.url)
+    with Misbehaving(then=good(follow_script)) as brain, Misbehaving() as perception:
+        done = ask(scope, "--pair", "qwen3-30b-a3b+moondream3", "--planner-url", brain.url, "--perception-url", perception.url)
         assert done.code == 0, done.err
         assert MODEL in done.err  # the server serves another model, and that is said
-        assert [r.path.rpartition("/")[2] for r in eyes.requests] == ["detect"]
+        assert [r.path.rpartition("/")[2] for r in perception.requests] == ["detect"]
     (line,) = done.out.splitlines()
     said = json.loads(line)
     assert said["answer"] == "I looked."
@@ -120,11 +120,11 @@ def test_models_of_the_user_and_their_urls(scope: Scope, tmp_path: Path, monkeyp
 
 def test_keys_are_read_from_the_environment_and_not_stored(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SCOPE_PLANNER_KEY", KEY)
-    with Misbehaving(then=good(follow_script)) as brain, Misbehaving() as eyes:
-        done = ask(scope, "--planner-url", brain.url, "--perception", "moondream2", "--perception-url", eyes.url)
+    with Misbehaving(then=good(follow_script)) as brain, Misbehaving() as perception:
+        done = ask(scope, "--planner-url", brain.url, "--perception", "moondream2", "--perception-url", perception.url)
         assert done.code == 0
         assert all(r.headers["authorization"] == f"Bearer {KEY}" for r in brain.requests)
-        assert not any(KEY in str(r.headers) for r in eyes.requests)
+        assert not any(KEY in str(r.headers) for r in perception.requests)
     written = "".join(p.read_text() for p in tmp_path.rglob("*.jsonl"))
     assert KEY not in written + done.out + done.err
 
@@ -181,8 +181,8 @@ def test_a_server_with_several_models_requires_a_name(scope: Scope) -> None:
 WRONG = {
     "pair and planner": ("--pair", "qwen3-4b+moondream2", "--planner", "grammar"),
     "no address": ("--planner", "qwen3-4b"),
-    "no address of the eyes": ("--perception", "moondream2"),
-    "eyes in the planner's place": ("--pair", "ground-truth+grammar"),
+    "no perception address": ("--perception", "moondream2"),
+    "perception backend as the planner": ("--pair", "ground-truth+grammar"),
     "a built-in and an unknown one": ("--pair", "grammar+moondream9"),
     "an unknown pair": ("--pair", "qwen3-4b+moondream9", "--planner-url", "http://127.0.0.1:9/v1"),
     "a planner that cannot plan": ("--planner", "moondream2", "--planner-url", "http://127.0.0.1:9/v1"),
@@ -212,10 +212,10 @@ def test_a_dead_server_is_a_planner_error(scope: Scope) -> None:
 
 def test_perception_can_be_composed(scope: Scope) -> None:
     pytest.importorskip("rapidocr")
-    with Misbehaving() as eyes:
+    with Misbehaving() as perception:
         done = scope(
             "ask", "what colour is the van?", "--scene", SCENE, "--json",
-            "--perception", "moondream3", "--perception-url", eyes.url, "--reader", "rapidocr",
+            "--perception", "moondream3", "--perception-url", perception.url, "--reader", "rapidocr",
         )  # fmt: skip
         assert done.code == 0, done.err
         assert "white van" in done.json["answer"].lower()

@@ -166,9 +166,9 @@ def test_failures_are_counted_and_no_verdict_is_invented(scope: Scope) -> None:
 def test_perception_that_fails_at_one_request_does_not_pass(scope: Scope) -> None:
     with Misbehaving(then=good(moondream={**MOONDREAM, "detect": {"error": "out of memory"}})) as server:
         report = profiled(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
-    eyes = report["perception"]["perception"]
-    assert (set(eyes["by_skill"]), eyes["never_worked"]) == ({"query", "caption", "point"}, ["detect"])
-    assert "out of memory" in eyes["first_failure"]
+    perception = report["perception"]["perception"]
+    assert (set(perception["by_skill"]), perception["never_worked"]) == ({"query", "caption", "point"}, ["detect"])
+    assert "out of memory" in perception["first_failure"]
     assert report["real_time"] == "unknown"
 
 

@@ -84,7 +84,7 @@ def browser() -> Iterator[Browser]:
 
 
 @dataclass
-class Watched:
+class PageWithErrors:
     """A browser context, with the errors of its pages."""
 
     context: BrowserContext
@@ -111,18 +111,18 @@ class Watched:
 
 
 @pytest.fixture
-def watched(console: str, browser: Browser) -> Iterator[Watched]:
+def watched(console: str, browser: Browser) -> Iterator[PageWithErrors]:
     """A new browser profile. The test fails on errors in the browser console and on requests to other hosts."""
     with watching(console, browser) as found:
         yield found
 
 
 @contextmanager
-def watching(console: str, browser: Browser) -> Iterator[Watched]:
+def watching(console: str, browser: Browser) -> Iterator[PageWithErrors]:
     """Return a context with a new browser profile. At its end, errors in the browser console and requests to other hosts fail."""
     context = browser.new_context(viewport={"width": 1280, "height": 720})
     context.set_default_timeout(60_000)
-    found = Watched(context, console)
+    found = PageWithErrors(context, console)
     yield found
     for page in context.pages:
         page.goto("about:blank")  # leaving the page gives up control

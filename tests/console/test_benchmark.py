@@ -10,7 +10,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
-from tests.console.conftest import Watched
+from tests.console.conftest import PageWithErrors
 
 pytestmark = pytest.mark.full
 SLOW_MS = 240_000
@@ -18,7 +18,7 @@ SLOW_MS = 240_000
 
 
 @pytest.fixture
-def page(watched: Watched) -> Iterator[Page]:
+def page(watched: PageWithErrors) -> Iterator[Page]:
     expect.set_options(timeout=30_000)
     opened = watched.open()
     show(opened)
@@ -43,7 +43,7 @@ def start(page: Page, limit: int, *categories: str) -> None:
     expect(page.locator(".state")).to_have_text("Running")
 
 
-def test_an_evaluation_is_started_watched_and_reported(page: Page, watched: Watched) -> None:
+def test_an_evaluation_is_started_watched_and_reported(page: Page, watched: PageWithErrors) -> None:
     start(page, 4, "counting", "single call")
     expect(page.get_by_role("button", name="Start", exact=True)).to_be_disabled()
     expect(page.locator(".start")).to_contain_text("An evaluation is in progress")

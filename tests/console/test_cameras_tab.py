@@ -12,7 +12,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from tests.console.conftest import Watched, eventually, running_console, watching
+from tests.console.conftest import PageWithErrors, eventually, running_console, watching
 
 pytestmark = pytest.mark.full
 
@@ -38,13 +38,13 @@ cameras:
 
 
 @pytest.fixture
-def watched(site: str, browser: Browser) -> Iterator[Watched]:
+def watched(site: str, browser: Browser) -> Iterator[PageWithErrors]:
     with watching(site, browser) as found:
         yield found
 
 
 @pytest.fixture
-def page(watched: Watched) -> Page:
+def page(watched: PageWithErrors) -> Page:
     return watched.open()
 
 
@@ -154,7 +154,7 @@ def test_the_slider_moves_the_scene_while_it_is_dragged(page: Page, api: httpx2.
     expect(part.get_by_role("button", name="Pause scene time")).to_be_visible()
 
 
-def test_only_the_one_in_control_changes_scene_time(page: Page, watched: Watched, api: httpx2.Client, scene: str) -> None:
+def test_only_the_one_in_control_changes_scene_time(page: Page, watched: PageWithErrors, api: httpx2.Client, scene: str) -> None:
     page.keyboard.press("h")
     expect(page.locator(".control")).to_contain_text("You are in control")
     other = watched.open()

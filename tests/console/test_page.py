@@ -10,7 +10,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, Route, expect
 
-from tests.console.conftest import Watched
+from tests.console.conftest import PageWithErrors
 
 pytestmark = pytest.mark.full
 
@@ -32,7 +32,7 @@ def wait_for_pose(page: Page, holds: Callable[[tuple[float, float, float]], bool
 
 
 @pytest.fixture
-def page(watched: Watched) -> Page:
+def page(watched: PageWithErrors) -> Page:
     opened = watched.open()
     with opened.expect_response(re.compile("/home$")) as home:  # the server replies when the camera has arrived
         opened.get_by_role("button", name="Home view (H)").click()
@@ -166,7 +166,7 @@ def test_nothing_covers_the_stop_button(page: Page, size: tuple[int, int]) -> No
     assert page.get_by_role("button", name="Stop", exact=True).evaluate(covering) == []
 
 
-def test_second_tab_joins_and_stops(page: Page, watched: Watched) -> None:
+def test_second_tab_joins_and_stops(page: Page, watched: PageWithErrors) -> None:
     other = watched.open()
     page.get_by_label("Instruction", exact=True).fill("keep panning right in 5 degree steps until you see a tram")
     page.keyboard.press("Enter")
@@ -193,7 +193,7 @@ def test_an_instruction_sent_during_a_run_is_kept(page: Page) -> None:
     expect(page.locator(".turn .answer p").last).to_be_visible()
 
 
-def test_an_instruction_sent_early_waits_for_the_camera(watched: Watched) -> None:
+def test_an_instruction_sent_early_waits_for_the_camera(watched: PageWithErrors) -> None:
     def delay(route: Route) -> None:
         opened.wait_for_timeout(1000)
         route.continue_()
@@ -208,14 +208,14 @@ def test_an_instruction_sent_early_waits_for_the_camera(watched: Watched) -> Non
         expect(text).to_have_value("")
 
 
-def test_control_is_handed_over(page: Page, watched: Watched) -> None:
+def test_control_is_handed_over(page: Page, watched: PageWithErrors) -> None:
     other = watched.open()
     other.get_by_role("button", name="Ask for control").click()
     page.get_by_role("button", name="Hand over").click()
     expect(other.locator(".control")).to_contain_text("You are in control")
 
 
-def test_two_browsers_never_fight(page: Page, watched: Watched) -> None:
+def test_two_browsers_never_fight(page: Page, watched: PageWithErrors) -> None:
     """The one in control moves the camera; nothing that the other one does moves it, until control is handed over."""
     other = watched.open()
     expect(other.locator(".control")).to_contain_text("is in control")

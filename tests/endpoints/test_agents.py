@@ -48,11 +48,11 @@ async def _no_sleep(_: float) -> None:
     return None
 
 
-def eyes_at(url: str, backend: str, patience: Timeouts = PATIENT) -> Perception:
+def perception_at(url: str, backend: str, patience: Timeouts = PATIENT) -> Perception:
     return make_backend(BackendSpec(name="eyes", backend=backend, model="m", endpoint=endpoint(url, patience)))
 
 
-class Told:
+class ScriptedReplies:
     """A finished run, its records, and its trace."""
 
     def __init__(self, run: RunResult, records: list[Any], trace: str) -> None:
@@ -60,11 +60,11 @@ class Told:
         self.calls = [record for record in records if isinstance(record, Called)]
 
 
-async def run(planner: Planner, eyes: Perception, folder: Path) -> Told:
+async def run(planner: Planner, perception: Perception, folder: Path) -> ScriptedReplies:
     """Run an agent and return the result, after checking that the trace does not contain the key."""
     records: list[Any] = []
     path = folder / "trace.jsonl"
-    agent = Agent(planner, camera := ScriptedCamera(), eyes, NoImages())
+    agent = Agent(planner, camera := ScriptedCamera(), perception, NoImages())
     with TraceWriter(path) as writer:
 
         def both(record: Any) -> None:
@@ -73,12 +73,12 @@ async def run(planner: Planner, eyes: Perception, folder: Path) -> Told:
 
         done = await agent.run("how many cones are there?", listener=both)
     await planner.close()
-    await eyes.close()
+    await perception.close()
     trace = path.read_text()
     assert KEY not in trace
     assert isinstance(records[-1], Ended)
     assert camera.log[-1] in ("frame", "move", "stop")
-    return Told(done, records, trace)
+    return ScriptedReplies(done, records, trace)
 
 
 @pytest.mark.parametrize("stream", [False, True], ids=["whole", "streaming"])
@@ -180,7 +180,7 @@ async def test_a_failing_perception_server_is_an_error_for_the_planner(
 ) -> None:
     planner = ScriptedPlanner(calls(tool), answer("I could not see."))
     with Misbehaving(then=fault.make()) as server:
-        told = await run(planner, eyes_at(server.url, backend, fault.timeouts), tmp_path)
+        told = await run(planner, perception_at(server.url, backend, fault.timeouts), tmp_path)
     assert (told.ended.outcome, told.ended.perception_failures) == ("answered", 1)
     outcome = planner.states[-1].history[0].outcomes[0]
     assert outcome.result is None
@@ -194,7 +194,7 @@ async def test_a_failing_perception_server_is_an_error_for_the_planner(
 async def test_an_unreachable_perception_server_opens_the_breaker(backend: str, tmp_path: Path) -> None:
     planner = ScriptedPlanner(*[calls(COUNT)] * 8, answer("I could not see."))
     with never_accepts() as url:
-        told = await run(planner, eyes_at(url, backend, Timeouts(connect_s=0.2)), tmp_path)
+        told = await run(planner, perception_at(url, backend, Timeouts(connect_s=0.2)), tmp_path)
     assert told.ended.outcome == "answered"
     assert told.ended.perception_failures == 8
     assert told.ended.server_events == {"connect-timeout": 3, "circuit-open": 5}
@@ -205,7 +205,7 @@ async def test_perception_recovers(backend: str, tmp_path: Path) -> None:
     found = say(json.dumps([{"bbox_2d": [1, 1, 9, 9], "label": "cone"}])) if backend == "openai_vision" else good()
     planner = ScriptedPlanner(calls(COUNT), calls(COUNT), answer("One."))
     with Misbehaving([http_status(500)], then=found) as server:
-        told = await run(planner, eyes_at(server.url, backend), tmp_path)
+        told = await run(planner, perception_at(server.url, backend), tmp_path)
     failed, worked = (call.outcome for call in told.calls)
     assert failed.error
     assert worked.result is not None
@@ -238,7 +238,7 @@ ODD_PLACES: list[tuple[str, Behaviour, int | None]] = [
 async def test_unusual_places(name: str, behaviour: Behaviour, count: int | None, tmp_path: Path) -> None:
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=behaviour) as server:
-        told = await run(planner, eyes_at(server.url, "moondream"), tmp_path)
+        told = await run(planner, perception_at(server.url, "moondream"), tmp_path)
     assert told.ended.outcome == "answered"
     outcome = told.calls[0].outcome
     if count is None:
@@ -263,7 +263,7 @@ async def test_places_that_are_no_numbers_are_errors(text: str, backend: str, tm
     reply = body(text) if backend == "moondream" else say(text)
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=reply) as server:
-        told = await run(planner, eyes_at(server.url, backend), tmp_path)
+        told = await run(planner, perception_at(server.url, backend), tmp_path)
     assert told.calls[0].outcome.error
     assert told.ended.server_events == {"malformed": 1}
 
@@ -285,11 +285,11 @@ ODD_WORDS = [
 
 @pytest.mark.parametrize(("text", "count"), [odd[1:] for odd in ODD_WORDS], ids=[odd[0] for odd in ODD_WORDS])
 async def test_unusual_names_for_places(text: str, count: int | None, tmp_path: Path) -> None:
-    eyes = BackendSpec(name="eyes", backend="openai_vision", model="m", coordinates="qwen3-vl")
+    perception = BackendSpec(name="eyes", backend="openai_vision", model="m", coordinates="qwen3-vl")
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=good(Say(text))) as server:
-        eyes = eyes.model_copy(update={"endpoint": endpoint(server.url)})
-        told = await run(planner, make_backend(eyes), tmp_path)
+        perception = perception.model_copy(update={"endpoint": endpoint(server.url)})
+        told = await run(planner, make_backend(perception), tmp_path)
     outcome = told.calls[0].outcome
     if count is None:
         assert outcome.error
@@ -312,9 +312,9 @@ async def test_500_points_are_limited_and_incomplete(backend: str) -> None:
         reply = say(json.dumps([{"point_2d": [1000 * x, 1000 * y], "label": "cone"} for x, y in _many(500)]))
     with Misbehaving(then=reply) as server:
         spec = BackendSpec(name="eyes", backend=backend, model="m", endpoint=endpoint(server.url), coordinates="qwen3-vl")
-        eyes = make_backend(spec)
-        seen = await eyes.point(frame, "cones")
-        await eyes.close()
+        perception = make_backend(spec)
+        seen = await perception.point(frame, "cones")
+        await perception.close()
     assert 50 <= len(seen.points) <= 500
     assert all(0 <= point.x <= 1 and 0 <= point.y <= 1 for point in seen.points)
     assert len(seen.points) == 500 or not seen.complete

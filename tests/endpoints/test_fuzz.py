@@ -93,13 +93,13 @@ def ruined_chat(say: Say, rng: random.Random) -> Behaviour:
     return behave
 
 
-async def run(planner: Planner, eyes: Perception) -> tuple[RunResult, list[Called]]:
+async def run(planner: Planner, perception: Perception) -> tuple[RunResult, list[Called]]:
     records: list[Any] = []
     try:
-        done = await Agent(planner, ScriptedCamera(), eyes, NoImages()).run("count the cones", listener=records.append)
+        done = await Agent(planner, ScriptedCamera(), perception, NoImages()).run("count the cones", listener=records.append)
     finally:
         await planner.close()
-        await eyes.close()
+        await perception.close()
     for record in records:
         record.model_dump_json().encode()
     return done, [record for record in records if isinstance(record, Called)]

@@ -31,7 +31,7 @@ def failing(*kinds: FailureKind, status: int | None = None, retry_after_s: float
     return attempt
 
 
-class Naps:
+class RecordedSleeps:
     """A replacement for sleep that only records the durations."""
 
     def __init__(self) -> None:
@@ -41,8 +41,8 @@ class Naps:
         self.slept.append(seconds)
 
 
-def make(retries: int = 2, total_s: float = 120.0, seed: int = 1, breaker: Breaker | None = None) -> tuple[Caller, Naps]:
-    naps = Naps()
+def make(retries: int = 2, total_s: float = 120.0, seed: int = 1, breaker: Breaker | None = None) -> tuple[Caller, RecordedSleeps]:
+    naps = RecordedSleeps()
     at = Endpoint(url=URL, retries=retries, timeouts=Timeouts(total_s=total_s, first_byte_s=1.0))
     return Caller(at, sleep=naps, rng=random.Random(seed), breaker=breaker or Breaker(threshold=1000)), naps
 

@@ -16,7 +16,7 @@ import pytest
 
 import scope_ptz
 from scope_ptz.cli import main
-from tests.cli.conftest import Done
+from tests.cli.conftest import CommandResult
 
 SOURCES = Path(scope_ptz.__file__).parents[1]
 PLUGINS = Path(__file__).parents[1] / "plugins"
@@ -45,7 +45,7 @@ def separate_process(site: Path, folder: Path, *arguments: str) -> subprocess.Co
     return subprocess.run(command, env=environment, capture_output=True, text=True, cwd=folder, check=False, timeout=300)
 
 
-Scope = Callable[..., Done]
+Scope = Callable[..., CommandResult]
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def scope(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     monkeypatch.chdir(tmp_path)
     before = set(sys.modules)
 
-    def run(site: Path, *arguments: str, stdin: str = "") -> Done:
+    def run(site: Path, *arguments: str, stdin: str = "") -> CommandResult:
         if str(site) not in sys.path:
             monkeypatch.syspath_prepend(site)
         monkeypatch.setattr("sys.argv", ["scope", *arguments])
@@ -66,7 +66,7 @@ def scope(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
             main()
         code = ended.value.code
         assert code is None or isinstance(code, int)
-        return Done(code or 0, *capsys.readouterr())
+        return CommandResult(code or 0, *capsys.readouterr())
 
     yield run
     for name in set(sys.modules) - before:

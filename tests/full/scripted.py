@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
-from tests.full.sweeping import asked
+from tests.full.evaluation_sweep import asked
 from tests.support.misbehaving import (
     Behaviour,
     Exchange,
@@ -56,7 +56,7 @@ SCRIPT = [
 BROKEN = [row for row in SCRIPT if row[-1] != OK]
 
 
-def looks_nowhere(request: Request) -> Say:
+def ignores_pictures(request: Request) -> Say:
     if request.data["messages"][-1]["role"] == "tool":
         return Say("There is nothing to see.")
     return Say("", tool_calls=(("get_presets", {}),))
@@ -74,14 +74,14 @@ class Scripted:
             return await good()(exchange)
         act = self.script.pop(0) if self.script else OK
         self.did.append((asked(exchange.request), act))
-        return await (BEHAVIOURS[act][1] if act != OK else good(looks_nowhere))(exchange)
+        return await (BEHAVIOURS[act][1] if act != OK else good(ignores_pictures))(exchange)
 
     def failures(self, instruction: str) -> Counter[str]:
         """What went wrong at a task, as the program calls it."""
         return Counter(BEHAVIOURS[act][0] for words, act in self.did if words == instruction and act != OK)
 
 
-def told_of(events: dict[str, int]) -> Counter[str]:
+def mentions(events: dict[str, int]) -> Counter[str]:
     """Failures of servers by kind; of the two timeouts it is chance which one comes first where both have the same limit."""
     counted = Counter[str]()
     for kind, number in events.items():

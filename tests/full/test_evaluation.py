@@ -15,9 +15,7 @@ import pytest
 from scope_ptz.bench.engine.logs import read_evaluation, uuids_in
 from scope_ptz.bench.engine.runs import SUPERSEDED
 from tests.cli.conftest import Scope
-from tests.full.figures import Marks, by_category, by_run, kappa, marks
-from tests.full.scripted import BEHAVIOURS, BROKEN, LIMIT, SCRIPT, Scripted, told_of
-from tests.full.sweeping import (
+from tests.full.evaluation_sweep import (
     ADEPT,
     COUNTED,
     COUNTING,
@@ -27,16 +25,17 @@ from tests.full.sweeping import (
     TASKS,
     TURNING,
     Judged,
-    Swept,
+    SweepRun,
     gullible,
     judged,
     planners,
     swept,
 )
-from tests.full.test_served_models import eyes_server
+from tests.full.figures import Marks, by_category, by_run, kappa, marks
+from tests.full.scripted import BEHAVIOURS, BROKEN, LIMIT, SCRIPT, Scripted, mentions
 from tests.support.misbehaving import Misbehaving
 
-__all__ = ["eyes_server", "judged", "planners", "swept"]
+__all__ = ["judged", "perception_server", "planners", "swept"]
 
 pytestmark = [
     pytest.mark.full,
@@ -49,7 +48,7 @@ pytestmark = [
 ]
 
 
-def test_a_killed_sweep_resumes_and_keeps_finished_runs(swept: Swept) -> None:
+def test_a_killed_sweep_resumes_and_keeps_finished_runs(swept: SweepRun) -> None:
     assert FINISHED_BEFORE_THE_KILL <= len(swept.finished) < len(TASKS)
     assert swept.again.code == 0, swept.again.err
     assert f"{len(swept.finished)} of {len(TASKS)} runs are finished" in swept.again.out
@@ -72,7 +71,7 @@ def test_a_killed_sweep_resumes_and_keeps_finished_runs(swept: Swept) -> None:
     assert kept == [now[trial.sample] for trial in kept]
 
 
-def test_the_pairs_act_as_trained(swept: Swept) -> None:
+def test_the_pairs_act_as_trained(swept: SweepRun) -> None:
     for pair, learned in ((NOVICE, (TURNING,)), (ADEPT, (TURNING, *SHORT))):
         trials = read_evaluation(swept.logs[pair]).trials
         assert {t.task.id for t in trials if t.headline == "correct"} - {COUNTING.id} == {task.id for task in learned}
@@ -99,7 +98,7 @@ def test_judged_twice_by_a_checkpoint(judged: Judged) -> None:
             assert all(j.input_tokens > 0 and j.output_tokens > 0 for j in trial.judgements)
 
 
-def test_how_far_the_judge_agrees_with_itself_and_with_the_checks(swept: Swept, judged: Judged) -> None:
+def test_how_far_the_judge_agrees_with_itself_and_with_the_checks(swept: SweepRun, judged: Judged) -> None:
     done = swept.program.run("bench", "agree", "--json", *map(str, judged.logs.values()))
     assert done.code == 0, done.err
     told = json.loads(done.out)
@@ -118,7 +117,7 @@ def test_how_far_the_judge_agrees_with_itself_and_with_the_checks(swept: Swept, 
     assert (repeats["runs"], repeats["raw"], repeats["kappa"], repeats["left_out"]) == (len(rows), 1.0, 1.0, 0)
 
 
-def test_the_figures_of_the_report_are_those_of_the_logs(swept: Swept, judged: Judged, tmp_path: Path) -> None:
+def test_the_figures_of_the_report_are_those_of_the_logs(swept: SweepRun, judged: Judged, tmp_path: Path) -> None:
     done = swept.program.run("bench", "report", *map(str, judged.logs.values()), "--out", str(tmp_path / "report"))
     assert done.code == 0, done.err
     tables = {path.stem: by_run(path) for path in (tmp_path / "report" / "tables").glob("*.csv")}
@@ -183,7 +182,7 @@ def test_a_sweep_on_a_misbehaving_server_loses_nothing_and_counts_everything(
         assert len(broken) == len(BROKEN)
         # Each failure of the server is counted in the run that it befell, made good or not.
         for trial in before.trials:
-            assert told_of(trial.server_events) == moody.failures(trial.task.instruction)
+            assert mentions(trial.server_events) == moody.failures(trial.task.instruction)
         assert len(moody.did) == sum(map(len, SCRIPT)) + 2 * (LIMIT - len(SCRIPT))
         # The run ended by what the server did to it last, and that is all that a broken run says.
         for trial in broken:

@@ -138,12 +138,12 @@ def test_the_profile_of_a_served_checkpoint(scope: Scope, planner_server: Served
 
 
 @pytest.fixture(scope="session")
-def eyes_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+def perception_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     """A server with a vision model that is trained on the prompts of perception."""
     from tests.full import vision
 
     folder = tmp_path_factory.mktemp("eyes")
-    checkpoint = vision.taught(folder / "eyes")
+    checkpoint = vision.train_detector(folder / "eyes")
     with transformers_serve(checkpoint, folder / "serve.log") as url:
         yield Served(url, str(checkpoint))
 
@@ -160,12 +160,12 @@ models:
 
 
 def test_planner_perception_and_detector_are_checkpoints(
-    scope: Scope, planner_server: Served, eyes_server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    scope: Scope, planner_server: Served, perception_server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tests.full.tiny_eyes import tiny_owlv2
+    from tests.full.tiny_vision_models import tiny_owlv2
 
     mine = tmp_path / "models.yaml"
-    mine.write_text(MINE.format(eyes=eyes_server, owl=tiny_owlv2(tmp_path / "owl")))
+    mine.write_text(MINE.format(eyes=perception_server, owl=tiny_owlv2(tmp_path / "owl")))
     monkeypatch.setenv("SCOPE_MODELS", str(mine))
     brain = ("--planner-url", planner_server.url, "--planner-model", planner_server.model, "--scene", SCENE, "--json")
     said = scope("ask", SQUARE, *brain, "--perception", "tiny-eyes").json

@@ -173,10 +173,10 @@ def _shaken(prompt: str, rng: random.Random) -> str:
     """The same prompt with other digits, and with other letters in what tools brought back: poses, times, counts and what eyes
     say must not be what the model goes by."""
 
-    def stirred(match: re.Match[str]) -> str:
+    def augmented(match: re.Match[str]) -> str:
         return re.sub(r"[a-z]", lambda m: rng.choice("etaoinshr") if rng.random() < _STIRRED else m[0], match[0])
 
-    told = re.sub(r"(?<=<tool_response>).*?(?=</tool_response>)", stirred, prompt, flags=re.DOTALL)
+    told = re.sub(r"(?<=<tool_response>).*?(?=</tool_response>)", augmented, prompt, flags=re.DOTALL)
     return re.sub(r"\d", lambda _: rng.choice("0123456789"), told)
 
 

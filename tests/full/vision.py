@@ -43,9 +43,9 @@ def frame(corner: str) -> Frame:
     return pictures.frame(square(corner))
 
 
-def taught(folder: Path) -> Path:
+def train_detector(folder: Path) -> Path:
     """The checkpoint, which answers the backends' own prompts. Imports torch."""
-    from tests.full import tiny_eyes
+    from tests.full import tiny_vision_models
 
     sent = sent_size(frame("nowhere"), STYLE, 1280 * 1024)
     places = {corner: found(corner) for corner in CORNERS}
@@ -55,4 +55,4 @@ def taught(folder: Path) -> Path:
         (query_prompt(QUESTION), {c: "No." if c == "nowhere" else f"Yes, {c}." for c in CORNERS}),
         (CAPTION_PROMPT, {c: f"A square: {c}." for c in CORNERS}),
     ]
-    return tiny_eyes.tiny_vision_chat(folder, lessons)
+    return tiny_vision_models.tiny_vision_chat(folder, lessons)

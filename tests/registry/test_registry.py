@@ -29,7 +29,7 @@ PAPER_EYES = [
     ("Moondream3-preview-2025-09-18", 9, 2, "fp16"),
     ("Qwen2.5-VL-7B-Instruct", 7, 7, "fp16"),
 ]
-# The paper's table of accuracies: the macro average by planner, under each pair of eyes.
+# The paper's table of accuracies: the macro average by planner, for each perception model.
 PLANNERS = ["qwen3-4b", "qwen3-4b-fp8", "qwen3-30b-a3b", "qwen3-30b-a3b-fp8", "qwen3-32b", "qwen3-next-80b-a3b"]
 PAPER_AVERAGES = {
     "moondream2": [59.7, 60.3, 67.3, 69.6, 68.0, 70.6],
@@ -52,7 +52,9 @@ def test_the_papers_models_match_its_table(registry: Registry, role: str, table:
 
 
 def test_the_papers_nineteen_pairs(registry: Registry) -> None:
-    expected = {f"{p}+{eyes}": a for eyes, averages in PAPER_AVERAGES.items() for p, a in zip(PLANNERS, averages, strict=True)}
+    expected = {
+        f"{p}+{perception}": a for perception, averages in PAPER_AVERAGES.items() for p, a in zip(PLANNERS, averages, strict=True)
+    }
     expected["qwen3-next-80b-a3b+qwen2.5-vl-7b"] = 68.3
     pairs = {p.name: p.paper_average for p in registry.pairs.values() if p.origin == "paper"}
     assert pairs == expected

@@ -1,7 +1,7 @@
-"""A deliberate fake for tests of the tools: a world of points on a sphere whose every view is known in closed form.
+"""Fakes for tests of the tools: a camera and perception of a world of points on a sphere, with all views known in closed form.
 
-The camera draws a smooth colour field over all directions; the eyes see objects as clouds of directions and box whatever part of a
-cloud falls into the frame. No packs, no re-projection: what a tool does can be checked against exact numbers.
+The camera draws a smooth colour field over all directions. Objects are clouds of directions, and perception returns the box of those
+directions that are in the frame. There are no packs and no re-projection, so results of tools can be compared with exact numbers.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ def solid(
 
 
 @dataclass
-class AnalyticEyes(Perception):
+class AnalyticPerception(Perception):
     things: list[Thing]
     name: str = "analytic"
     fail: bool = False
@@ -128,7 +128,7 @@ class AnalyticEyes(Perception):
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         if self.fail:
-            raise PerceptionError("The eyes are shut.")
+            raise PerceptionError("Perception is switched off.")
         self.asked.append(description)
         boxes = []
         for thing in self.things:
@@ -149,7 +149,7 @@ class AnalyticEyes(Perception):
 
     async def query(self, frame: Frame, question: str) -> Answer:
         if self.fail:
-            raise PerceptionError("The eyes are shut.")
+            raise PerceptionError("Perception is switched off.")
         return Answer(source=self.name, text=f"{len(self.things)} things", known=True)
 
     async def caption(self, frame: Frame) -> Caption:
@@ -171,6 +171,6 @@ class MemoryStore:
         return f"picture-{len(self.frames)}.png"
 
 
-def thing_moving(name: str, pan_deg: float, tilt_deg: float, rate: tuple[float, float]) -> Thing:
+def moving_object(name: str, pan_deg: float, tilt_deg: float, rate: tuple[float, float]) -> Thing:
     """A small solid that drifts."""
     return replace(solid(name, pan_deg, tilt_deg, (1.0, 1.0, 2.0), 20.0), rate=rate)

@@ -22,7 +22,7 @@ from scope_ptz.tools.query_answer import AnswerResult
 from scope_ptz.tools.registry import run_tool
 from scope_ptz.tools.results import Result
 from scope_ptz.tools.sweep import plan_sweep, sweep
-from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticEyes, MemoryStore, colour_of, solid, thing_moving
+from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticPerception, MemoryStore, colour_of, moving_object, solid
 
 
 class HoldingCamera(AnalyticCamera):
@@ -35,12 +35,12 @@ class HoldingCamera(AnalyticCamera):
         self.clock.held = False
 
 
-def call(camera: Camera, eyes: AnalyticEyes, name: str, **arguments: Any) -> Result:
-    return anyio.run(run_tool, ToolContext(camera, eyes, MemoryStore()), name, arguments)
+def call(camera: Camera, perception: AnalyticPerception, name: str, **arguments: Any) -> Result:
+    return anyio.run(run_tool, ToolContext(camera, perception, MemoryStore()), name, arguments)
 
 
-def cones() -> AnalyticEyes:
-    return AnalyticEyes([solid("cones", pan, -8, (0.6, 0.6, 1), 15) for pan in (-170, -100, -10, 5, 60, 178)])
+def cones() -> AnalyticPerception:
+    return AnalyticPerception([solid("cones", pan, -8, (0.6, 0.6, 1), 15) for pan in (-170, -100, -10, 5, 60, 178)])
 
 
 def test_current_counts_objects_in_view_and_full_counts_everything_once() -> None:
@@ -53,14 +53,14 @@ def test_current_counts_objects_in_view_and_full_counts_everything_once() -> Non
 
 
 def test_a_failed_perception_call_is_an_error_and_never_a_zero() -> None:
-    eyes = cones()
-    eyes.fail = True
+    perception = cones()
+    perception.fail = True
     with pytest.raises(PerceptionError, match="shut"):
-        call(HoldingCamera(), eyes, "count_objects", description="cones")
+        call(HoldingCamera(), perception, "count_objects", description="cones")
 
 
 def test_notes_of_perception_are_part_of_the_result() -> None:
-    eyes = cones()
+    perception = cones()
 
     async def detect(frame: Frame, description: str) -> Detections:
         doubt = Agreement(other="vlm", said="7 found", share=0.2)
@@ -69,8 +69,8 @@ def test_notes_of_perception_are_part_of_the_result() -> None:
             source="owl", boxes=boxes, complete=False, notes=("The reply was cut off: there may be more.",), agreement=doubt
         )
 
-    eyes.detect = detect  # type: ignore[method-assign]
-    result = call(HoldingCamera(), eyes, "count_objects", description="cones")
+    perception.detect = detect  # type: ignore[method-assign]
+    result = call(HoldingCamera(), perception, "count_objects", description="cones")
     assert isinstance(result, CountResult)
     assert (result.count, result.complete) == (1, False)
     assert result.message.startswith("At least 1 of 'cones'")
@@ -95,8 +95,8 @@ def test_the_panorama_shows_every_direction_at_its_place() -> None:
 
 def test_a_sweep_takes_one_instant_and_returns_to_the_pose() -> None:
     camera = HoldingCamera(start=Pose(33, -4, 3))
-    eyes = AnalyticEyes([thing_moving("dog", 0, -5, (20, 0))])
-    call(camera, eyes, "count_objects", description="dog", view="full")
+    perception = AnalyticPerception([moving_object("dog", 0, -5, (20, 0))])
+    call(camera, perception, "count_objects", description="dog", view="full")
     assert camera.now == Pose(33, -4, 3)
     assert camera.clock.time_s == 0.0
 

@@ -17,7 +17,7 @@ from scope_ptz.tools.get_presets import PresetsResult
 from scope_ptz.tools.registry import TOOLS, parse_call, run_tool, schemas
 from scope_ptz.tools.results import MoveResult, Result
 from scope_ptz.tools.take_image import ImageResult
-from tests.support.analytic import AnalyticCamera, AnalyticEyes, MemoryStore
+from tests.support.analytic import AnalyticCamera, AnalyticPerception, MemoryStore
 
 NAMES = [
     "adjust_ptz",
@@ -33,7 +33,7 @@ NAMES = [
 
 
 def call(camera: AnalyticCamera, tool: str, **arguments: Any) -> Result:
-    return anyio.run(run_tool, ToolContext(camera, AnalyticEyes([]), MemoryStore()), tool, arguments)
+    return anyio.run(run_tool, ToolContext(camera, AnalyticPerception([]), MemoryStore()), tool, arguments)
 
 
 def test_the_papers_nine_tools_in_openai_format() -> None:

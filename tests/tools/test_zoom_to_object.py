@@ -12,7 +12,7 @@ from scope_ptz.geometry import Perspective, Pose
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
 from scope_ptz.tools.zoom_to_object import ZoomResult
-from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticEyes, MemoryStore, Thing, solid
+from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticPerception, MemoryStore, Thing, solid
 
 
 def truth(info: CameraInfo, pose: Pose, thing: Thing) -> tuple[float, float, float]:
@@ -24,8 +24,8 @@ def truth(info: CameraInfo, pose: Pose, thing: Thing) -> tuple[float, float, flo
     return float((high - low).max()), float(middle[0]), float(middle[1])
 
 
-def zoom(camera: AnalyticCamera, eyes: AnalyticEyes, description: str = "van") -> ZoomResult:
-    result = anyio.run(run_tool, ToolContext(camera, eyes, MemoryStore()), "zoom_to_object", {"description": description})
+def zoom(camera: AnalyticCamera, perception: AnalyticPerception, description: str = "van") -> ZoomResult:
+    result = anyio.run(run_tool, ToolContext(camera, perception, MemoryStore()), "zoom_to_object", {"description": description})
     assert isinstance(result, ZoomResult)
     return result
 
@@ -46,10 +46,10 @@ def test_target_ends_in_the_middle_at_its_size(
     towards = view.directions(np.array(place))
     pan, tilt = np.degrees(np.arctan2(towards[0], towards[1])), np.degrees(np.arcsin(towards[2]))
     thing = solid("van", float(pan), float(tilt), size, distance_m, spin_deg)
-    eyes = AnalyticEyes([thing])
-    result = zoom(camera, eyes)
+    perception = AnalyticPerception([thing])
+    result = zoom(camera, perception)
     assume(result.found)
-    assert len(eyes.asked) <= 3
+    assert len(perception.asked) <= 3
     fill, dx, dy = truth(camera.info, camera.now, thing)
     if not result.limited_by:
         assert abs(dx) <= 0.02
@@ -68,7 +68,7 @@ def test_target_ends_in_the_middle_at_its_size(
 @settings(max_examples=25, deadline=None)
 def test_nothing_found_moves_nothing(start: Pose) -> None:
     camera = AnalyticCamera(start=start)
-    result = zoom(camera, AnalyticEyes([]), "unicorn")
+    result = zoom(camera, AnalyticPerception([]), "unicorn")
     assert not result.found
     assert camera.visited == []
     assert "Nothing" in result.message
@@ -77,7 +77,7 @@ def test_nothing_found_moves_nothing(start: Pose) -> None:
 def test_of_several_objects_the_first_is_taken_and_the_count_is_reported() -> None:
     camera = AnalyticCamera()
     near, far = solid("van", -12, -5, (2, 5, 2), 20), solid("van", 14, -3, (2, 5, 2), 30)
-    result = zoom(camera, AnalyticEyes([near, far]))
+    result = zoom(camera, AnalyticPerception([near, far]))
     assert result.matches == 2
     assert "2 match" in result.message
     assert abs(camera.now.pan_deg - -12) < 3
@@ -85,17 +85,17 @@ def test_of_several_objects_the_first_is_taken_and_the_count_is_reported() -> No
 
 def test_a_failed_perception_call_does_not_move_the_camera() -> None:
     camera = AnalyticCamera(start=Pose(10, -5, 1))
-    eyes = AnalyticEyes([solid("van", 20, -5, (2, 5, 2), 40)])
-    detect = eyes.detect
+    perception = AnalyticPerception([solid("van", 20, -5, (2, 5, 2), 40)])
+    detect = perception.detect
 
     async def once(frame, description):  # type: ignore[no-untyped-def]
         found = await detect(frame, description)
-        eyes.fail = True
+        perception.fail = True
         return found
 
-    eyes.detect = once  # type: ignore[method-assign]
+    perception.detect = once  # type: ignore[method-assign]
     try:
-        zoom(camera, eyes)
+        zoom(camera, perception)
     except Exception as error:
         assert "shut" in str(error)
         assert camera.now == Pose(10, -5, 1)

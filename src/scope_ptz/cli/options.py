@@ -293,7 +293,7 @@ class JudgeFlags:
         str | None,
         typer.Option(
             "--judge-model",
-            help="Name of the judge on its server (or SCOPE_JUDGE_MODEL; default: gpt-oss-120b, else the only one it lists).",
+            help="Name of the judge model on its server (or SCOPE_JUDGE_MODEL; default: gpt-oss-120b, else the only one it lists).",
             rich_help_panel=JUDGE_PANEL,
         ),
     ] = None

@@ -41,14 +41,16 @@ class Retention:
 
 
 @dataclass(frozen=True, slots=True)
-class Pruned:
+class PruneReport:
     """The removed runs, or those that a dry run would remove: their ids, and the total size of their folders in bytes."""
 
     runs: list[str]
     freed_bytes: int
 
 
-def prune(database: Database, root: Path, retention: Retention, *, dry_run: bool = False, now_s: float | None = None) -> Pruned:
+def prune(
+    database: Database, root: Path, retention: Retention, *, dry_run: bool = False, now_s: float | None = None
+) -> PruneReport:
     """Remove the runs beyond the limits, the oldest first, with their folders.
 
     Raises:
@@ -75,7 +77,7 @@ def prune(database: Database, root: Path, retention: Retention, *, dry_run: bool
             numbers = [number for number, _, _ in removed[start : start + 500]]
             with database.write_transaction() as connection:
                 connection.execute(delete(RUNS).where(RUNS.c.number.in_(numbers)))
-    return Pruned([run_id for _, run_id, _ in removed], sum(size for _, _, size in removed))
+    return PruneReport([run_id for _, run_id, _ in removed], sum(size for _, _, size in removed))
 
 
 def keep(database: Database, run_id: str, *, kept: bool = True) -> None:

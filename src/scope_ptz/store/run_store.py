@@ -11,7 +11,7 @@ from scope_ptz.store.database import BUSY_S, FILE_NAME, Database
 from scope_ptz.store.export import ExportFormat, export_runs
 from scope_ptz.store.indexing import IndexReport, index_run, index_runs
 from scope_ptz.store.queries import MAX_PAGE, RunPage, StoredRun, count_matching, list_runs, load_run
-from scope_ptz.store.retention import Pruned, Retention, prune
+from scope_ptz.store.retention import PruneReport, Retention, prune
 from scope_ptz.store.rows import RunFilter
 
 
@@ -19,7 +19,7 @@ class RunStore:
     """The runs in a folder, with an index in its file ``store.sqlite``.
 
     The run folders are the primary data. A deleted database can be rebuilt from them, except for feedback, conversations
-    and the marks of runs to keep. The modules ``feedback`` and ``conversations`` operate on ``database``.
+    and the marks on runs that are to be kept. The modules ``feedback`` and ``conversations`` operate on ``database``.
 
     Args:
         root: The runs folder. It is created if needed.
@@ -53,7 +53,7 @@ class RunStore:
         index_run(self.database, self.folder(run_id))
 
     def runs(self, chosen: RunFilter | None = None, *, limit: int = 50, after: str | None = None) -> RunPage:
-        """Return runs, the newest first. See ``list_runs``."""
+        """Return runs, newest first. See ``list_runs``."""
         return list_runs(self.database, chosen or RunFilter(), limit=limit, after=after)
 
     def count(self, chosen: RunFilter | None = None) -> int:
@@ -70,12 +70,12 @@ class RunStore:
             raise UnknownNameError("run", run_id[:120], ())
         return self.root / run_id
 
-    def prune(self, retention: Retention, *, dry_run: bool = False) -> Pruned:
+    def prune(self, retention: Retention, *, dry_run: bool = False) -> PruneReport:
         """Remove the runs beyond the limits, with their folders. See ``retention.prune``."""
         return prune(self.database, self.root, retention, dry_run=dry_run)
 
     def ids(self, chosen: RunFilter) -> list[str]:
-        """Return the ids of all runs that match a filter, the newest first."""
+        """Return the ids of all runs that match a filter, newest first."""
         ids: list[str] = []
         page = self.runs(chosen, limit=MAX_PAGE)
         while True:

@@ -18,7 +18,7 @@ from scope_ptz.bench.engine.sample_files import open_sample
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Exchange, Finish, State, ToolOutcome
-from tests.cli.conftest import Done, Scope
+from tests.cli.conftest import CommandResult, Scope
 
 MODULE = """
 import re
@@ -96,7 +96,7 @@ def test_changed_source_is_a_different_evaluation(
     monkeypatch.syspath_prepend(str(tmp_path))
     options = ("--tasks", str(tasks_file), "--agent", "quick_loop:Agent", "--no-pictures", "--limit", "2", "--out", "logs")
 
-    def run_as(answer: str) -> Done:
+    def run_as(answer: str) -> CommandResult:
         (tmp_path / "quick_loop.py").write_text(QUICK.format(answer=answer))
         importlib.invalidate_caches()
         monkeypatch.delitem(sys.modules, "quick_loop", raising=False)

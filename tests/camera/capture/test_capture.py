@@ -191,7 +191,7 @@ async def test_a_failed_capture_resumes_and_puts_the_camera_back(tmp_path: Path,
 async def test_a_picture_that_fails_once_is_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(frame_taking, "RETRY_S", 0.0)
 
-    class Shaky(BlobCamera):
+    class ShakyCamera(BlobCamera):
         attempts = 0
 
         async def frame(self) -> Frame:
@@ -200,7 +200,7 @@ async def test_a_picture_that_fails_once_is_tried_again(tmp_path: Path, monkeypa
                 raise CameraError("The network is slow.")
             return await super().frame()
 
-    camera = Shaky()
+    camera = ShakyCamera()
     session = await taken(camera, tmp_path, close_ups=0)
     assert session.complete
     assert len(session.shots) == len(camera.truths) < camera.attempts

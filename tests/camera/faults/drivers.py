@@ -114,14 +114,14 @@ def set_faults(device: VirtualDevice, **faults: Any) -> None:
     device.faults = type(device.faults).model_validate(faults)
 
 
-def set_patience(camera: NetworkCamera, reply_s: float = 5.0) -> None:
+def set_timeouts(camera: NetworkCamera, reply_s: float = 5.0) -> None:
     """Change how long an open camera waits for replies. Only what is lost on purpose may be given up early on a busy machine."""
     http = camera._client.http
     http._timeouts = DeviceTimeouts(connect_s=1.0, reply_s=reply_s)
     http._client.timeout = httpx2.Timeout(reply_s, connect=1.0)
 
 
-def stands(device: VirtualDevice) -> bool:
+def is_stationary(device: VirtualDevice) -> bool:
     """Return whether no motor of a virtual camera turns, whatever it reports."""
     return device.velocity == Velocity() and device.commanded_velocity == Velocity() and not device.moving()
 

@@ -18,8 +18,8 @@ from tests.camera.faults.drivers import (
     VIEWER,
     VIEWER_PASSWORD,
     Driver,
+    is_stationary,
     served,
-    stands,
     until,
 )
 from tests.camera.faults.runs import ask, expect_answer, expect_camera_error
@@ -36,7 +36,7 @@ async def test_operator_can_do_all_that_the_tools_need(driver: Driver, device: V
             await anext(stream)
         await camera.drive(5.0, timeout_s=5.0)
         await camera.stop()
-        assert stands(device)
+        assert is_stationary(device)
 
 
 async def test_operator_cannot_change_presets(driver: Driver, device: VirtualDevice) -> None:
@@ -72,5 +72,5 @@ async def test_viewer_sees_by_onvif_and_cannot_move(device: VirtualDevice, tmp_p
         await expect_camera_error(run, CameraSignInError, "requires the role operator")
         with pytest.raises(CameraSignInError, match="role operator"):
             await camera.drive(5.0, timeout_s=5.0)
-    await until(lambda: stands(device))
+    await until(lambda: is_stationary(device))
     assert device.pose() == Pose(device.home.pan_deg, device.home.tilt_deg, device.home.zoom)

@@ -18,7 +18,7 @@ from scope_ptz.camera.network.errors import (
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.device import VirtualDevice
-from tests.camera.faults.drivers import Driver, make_device, served, set_faults, set_patience, stands, until, when_moved
+from tests.camera.faults.drivers import Driver, is_stationary, make_device, served, set_faults, set_timeouts, until, when_moved
 from tests.camera.faults.runs import ask, expect_answer, expect_camera_error
 
 pytestmark = pytest.mark.anyio
@@ -33,7 +33,7 @@ async def test_unreachable_during_a_move(driver: Driver, analytic_scene: Scene, 
         run = await ask(camera, "pan right 90 degrees, then take a picture", tmp_path)
         await expect_camera_error(run, CameraUnreachableError, "check")
         assert [call.fault for call in run.trace.calls] == ["camera"]
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
         set_faults(device)
         await expect_answer(await ask(camera, "pan left 10 degrees", tmp_path))
 
@@ -47,7 +47,7 @@ async def test_unreachable_during_a_sweep(driver: Driver, device: VirtualDevice,
         # A count that is not known is not zero.
         assert failed.outcome.call.name == "count_objects"
         assert failed.outcome.result is None
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
         set_faults(device)
 
 
@@ -56,15 +56,15 @@ async def test_slow(driver: Driver, analytic_scene: Scene, tmp_path: Path) -> No
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
 
         def slow_down() -> None:
-            set_patience(camera, 0.3)
+            set_timeouts(camera, 0.3)
             # Later, since requests that are on their way keep the patience with which they were sent.
             asyncio.get_running_loop().call_later(0.1, partial(set_faults, device, stall_s=60.0))
 
         when_moved(device, slow_down)
         run = await ask(camera, "pan right 90 degrees", tmp_path)
         await expect_camera_error(run, CameraTimeoutError, "did not answer in time")
-        set_patience(camera)
-        await until(lambda: stands(device))
+        set_timeouts(camera)
+        await until(lambda: is_stationary(device))
         # Merely slow is no fault.
         set_faults(device, stall_s=0.02)
         await expect_answer(await ask(camera, "pan left 10 degrees", tmp_path))
@@ -77,7 +77,7 @@ async def test_password_changed_meanwhile(driver: Driver, analytic_scene: Scene,
         when_moved(device, partial(set_faults, device, unauthorized=True))
         run = await ask(camera, "pan right 90 degrees", tmp_path)
         await expect_camera_error(run, CameraSignInError, "refuses the")
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
         set_faults(device)
 
 
@@ -94,7 +94,7 @@ async def test_rebooted_during_a_move(driver: Driver, analytic_scene: Scene, tmp
         when_moved(device, reboot)
         run = await ask(camera, "pan right 90 degrees", tmp_path)
         await expect_camera_error(run, PositionNotReachedError, "the position never arrived")
-        assert stands(device)
+        assert is_stationary(device)
         await expect_answer(await ask(camera, "pan right 10 degrees", tmp_path))
 
 
@@ -115,7 +115,7 @@ async def test_position_never_arrives(driver: Driver, device: VirtualDevice, tmp
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         run = await ask(camera, "pan right 40 degrees", tmp_path)
         await expect_camera_error(run, PositionNotReachedError, "The pan motor may be blocked")
-        assert stands(device)
+        assert is_stationary(device)
 
 
 async def test_move_that_does_not_end(driver: Driver, analytic_scene: Scene, tmp_path: Path) -> None:
@@ -123,7 +123,7 @@ async def test_move_that_does_not_end(driver: Driver, analytic_scene: Scene, tmp
     async with served(device) as camera_server, driver.opened(camera_server.port, settling={"timeout_s": 0.3}) as camera:
         run = await ask(camera, "pan right 90 degrees", tmp_path)
         await expect_camera_error(run, PositionNotReachedError, "still moves after 0.3 s")
-        assert stands(device)
+        assert is_stationary(device)
 
 
 async def test_somebody_else_moves_the_camera(driver: Driver, analytic_scene: Scene, tmp_path: Path) -> None:
@@ -132,7 +132,7 @@ async def test_somebody_else_moves_the_camera(driver: Driver, analytic_scene: Sc
         when_moved(device, lambda: device.move(Pose(-20.0, 0.0, 1.0)))
         run = await ask(camera, "pan right 90 degrees", tmp_path)
         await expect_camera_error(run, PositionNotReachedError, "somebody else moved the camera")
-        assert stands(device)
+        assert is_stationary(device)
 
 
 async def test_cancelled_move_is_stopped(driver: Driver, analytic_scene: Scene) -> None:
@@ -141,4 +141,4 @@ async def test_cancelled_move_is_stopped(driver: Driver, analytic_scene: Scene) 
         with anyio.move_on_after(0.3) as scope:
             await camera.move(Pose(device.pose().pan_deg + 150.0, 0.0, 1.0))
         assert scope.cancelled_caught
-        assert stands(device)
+        assert is_stationary(device)

@@ -25,10 +25,10 @@ from tests.camera.faults.drivers import (
     WIDTH,
     Driver,
     NetworkCamera,
+    is_stationary,
     make_device,
     served,
-    set_patience,
-    stands,
+    set_timeouts,
     until,
     when_moved,
 )
@@ -55,7 +55,7 @@ async def test_partition_during_a_move(driver: Driver, analytic_scene: Scene, fa
     async with connected(driver, device) as (camera, network):
 
         def part() -> None:
-            set_patience(camera, 1.0 if replies_only else 0.3)  # the stop needs time to arrive
+            set_timeouts(camera, 1.0 if replies_only else 0.3)  # the stop needs time to arrive
             # Later, since requests that are on their way keep the patience with which they were sent.
             asyncio.get_running_loop().call_later(0.1, setattr, network, "fate", fate)
 
@@ -64,8 +64,8 @@ async def test_partition_during_a_move(driver: Driver, analytic_scene: Scene, fa
         await expect_camera_error(run, CameraTimeoutError, "did not answer in time")
         network.fate = "forward"
         network.cut()
-        set_patience(camera)
-        await until(lambda: stands(device))
+        set_timeouts(camera)
+        await until(lambda: is_stationary(device))
         if replies_only:  # the stop went through, though nobody heard of it
             assert device.pose().pan_deg < 80.0
         await expect_answer(await ask(camera, "pan left 10 degrees", tmp_path))
@@ -83,7 +83,7 @@ async def test_connections_are_reset_and_refused(driver: Driver, analytic_scene:
         run = await ask(camera, "pan right 90 degrees", tmp_path)
         await expect_camera_error(run, CameraUnreachableError, "heck the")
         network.fate = "forward"
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
         await expect_answer(await ask(camera, "pan left 10 degrees", tmp_path))
 
 

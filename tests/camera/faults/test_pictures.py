@@ -11,7 +11,7 @@ import pytest
 from scope_ptz.camera.network.errors import PictureError
 from scope_ptz.geometry import Pose
 from scope_ptz.virtual_camera.device import VirtualDevice
-from tests.camera.faults.drivers import Driver, served, set_faults, stands
+from tests.camera.faults.drivers import Driver, is_stationary, served, set_faults
 from tests.camera.faults.runs import Run, ask, expect_answer, expect_camera_error
 
 pytestmark = pytest.mark.anyio
@@ -32,7 +32,7 @@ async def test_broken_picture(driver: Driver, device: VirtualDevice, fault: str,
         failed = await expect_camera_error(run, PictureError, words)
         assert _fault_of(run) == fault
         assert failed.replies == ()  # perception never saw the picture
-        assert stands(device)
+        assert is_stationary(device)
         set_faults(device)
         await expect_answer(await ask(camera, COUNT, tmp_path))
 
@@ -45,7 +45,7 @@ async def test_frozen_picture(driver: Driver, device: VirtualDevice, tmp_path: P
         run = await ask(camera, f"pan right 40 degrees. {COUNT}", tmp_path)
         await expect_camera_error(run, PictureError, "frozen")
         assert _fault_of(run) == "frozen"
-        assert stands(device)
+        assert is_stationary(device)
         set_faults(device)
 
 

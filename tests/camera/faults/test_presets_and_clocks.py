@@ -8,7 +8,7 @@ import pytest
 
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.virtual_camera.device import VirtualDevice
-from tests.camera.faults.drivers import Driver, served, set_faults, stands, when_moved
+from tests.camera.faults.drivers import Driver, is_stationary, served, set_faults, when_moved
 from tests.camera.faults.runs import ask, expect_answer
 
 pytestmark = pytest.mark.anyio
@@ -28,7 +28,7 @@ async def test_preset_deleted_meanwhile(driver: Driver, device: VirtualDevice, t
         assert run.trace.ended is not None
         assert run.trace.ended.bad_calls == 1
         assert first.name in run.trace.ended.text
-        assert stands(device)
+        assert is_stationary(device)
         assert device.pose().pan_deg == pytest.approx(device.home.pan_deg + 10.0, abs=0.1)
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.virtual_camera.device import VirtualDevice
-from tests.camera.faults.drivers import Driver, served, set_faults, stands, until
+from tests.camera.faults.drivers import Driver, is_stationary, served, set_faults, until
 from tests.support.partition import BadNetwork
 
 pytestmark = pytest.mark.anyio
@@ -25,7 +25,7 @@ BYTES_EACH = 1500  # of memory that one reconnect may leave, as the logins that 
 MEASURED_TIMES = 101  # fewer show no trend of memory
 
 
-def held() -> dict[str, int]:
+def resource_usage() -> dict[str, int]:
     """Return what this process holds."""
     gc.collect()
     children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
@@ -41,14 +41,14 @@ async def expect_nothing_left(times: int, once: Callable[[], Awaitable[None]]) -
     """Do something many times and compare what is held before and afterwards."""
     for _ in range(3):
         await once()  # what is made at the first use and kept
-    before, grown_bytes = held(), 0
+    before, grown_bytes = resource_usage(), 0
     if times < MEASURED_TIMES:
         for _ in range(times):
             await once()
     else:
         grown_bytes = await _grown_bytes(times, once)
-    await until(lambda: held()["files"] <= before["files"] + 2)
-    after = held()
+    await until(lambda: resource_usage()["files"] <= before["files"] + 2)
+    after = resource_usage()
     assert after["threads"] <= before["threads"] + WORKERS, [thread.name for thread in threading.enumerate()]
     assert after["tasks"] <= before["tasks"] + 2
     assert after["processes"] == before["processes"]
@@ -97,7 +97,7 @@ async def test_reopened_cameras_leave_nothing(driver: Driver, device: VirtualDev
                     await anext(stream)
 
         await expect_nothing_left(times, once)
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
 
 
 @pytest.mark.parametrize("times", [5, pytest.param(150, marks=pytest.mark.full)])

@@ -19,7 +19,18 @@ from scope_ptz.camera.network.errors import CameraTimeoutError, CameraUnreachabl
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.device import VirtualDevice
-from tests.camera.faults.drivers import HEIGHT, PASSWORD, USER, WIDTH, Driver, NetworkCamera, make_device, served, stands, until
+from tests.camera.faults.drivers import (
+    HEIGHT,
+    PASSWORD,
+    USER,
+    WIDTH,
+    Driver,
+    NetworkCamera,
+    is_stationary,
+    make_device,
+    served,
+    until,
+)
 from tests.support.misbehaving import Misbehaving, good
 from tests.support.partition import BadNetwork, Fate
 
@@ -56,11 +67,11 @@ async def test_link_lost_during_a_drive(driver: Driver, device: VirtualDevice, f
         with pytest.raises((CameraUnreachableError, CameraTimeoutError)):
             await camera.drive(DPS, timeout_s=0.3)
         if driver.name == "onvif":  # the device knows the timeout
-            await until(lambda: stands(device))
+            await until(lambda: is_stationary(device))
         else:  # VAPIX has none: the stop is sent until it arrives
-            assert not stands(device)
+            assert not is_stationary(device)
         network.fate = "forward"
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
 
 
 async def test_link_lost_for_good_outlives_the_camera_object(driver: Driver, device: VirtualDevice) -> None:
@@ -73,14 +84,14 @@ async def test_link_lost_for_good_outlives_the_camera_object(driver: Driver, dev
                 network.cut()
                 camera._watch._give_up_s = 0.0
             network.fate = "forward"
-            await until(lambda: stands(device))
+            await until(lambda: is_stationary(device))
 
 
 async def test_drive_ends_at_its_timeout(driver: Driver, device: VirtualDevice) -> None:
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         await camera.drive(DPS, timeout_s=0.2)
-        assert not stands(device)
-        await until(lambda: stands(device))
+        assert not is_stationary(device)
+        await until(lambda: is_stationary(device))
 
 
 async def test_drive_ends_although_the_event_loop_is_blocked(driver: Driver, device: VirtualDevice) -> None:
@@ -101,9 +112,9 @@ async def test_drive_ends_although_the_event_loop_is_blocked(driver: Driver, dev
             await camera.drive(DPS, timeout_s=0.2)
             for _ in range(400):
                 threading.Event().wait(0.05)  # no task runs meanwhile, on purpose
-                if stands(device):
+                if is_stationary(device):
                     break
-            assert stands(device)
+            assert is_stationary(device)
     finally:
         blocked.set()
         await anyio.to_thread.run_sync(thread.join)
@@ -113,8 +124,8 @@ async def test_drive_ends_when_the_camera_is_closed(driver: Driver, device: Virt
     async with served(device) as camera_server:
         async with driver.opened(camera_server.port) as camera:
             await camera.drive(DPS, 2.0, 0.1, timeout_s=LONG_S)
-            assert not stands(device)
-        await until(lambda: stands(device))
+            assert not is_stationary(device)
+        await until(lambda: is_stationary(device))
         assert device.pose().pan_deg - device.home.pan_deg < TIMED_OUT_DEG
 
 
@@ -124,7 +135,7 @@ async def test_drive_ends_on_cancel(driver: Driver, device: VirtualDevice) -> No
             while True:
                 await camera.drive(DPS, timeout_s=LONG_S)
         assert scope.cancelled_caught
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
         assert device.pose().pan_deg - device.home.pan_deg < TIMED_OUT_DEG
 
 
@@ -133,7 +144,7 @@ async def test_renewed_drive_goes_on_and_a_move_after_it_is_not_cut_short(driver
         for _ in range(4):
             await camera.drive(DPS, timeout_s=1.0)
             await anyio.sleep(0.1)
-            assert not stands(device)
+            assert not is_stationary(device)
         there = Pose(device.pose().pan_deg + 20.0, device.home.tilt_deg, 1.0)
         assert (await camera.move(there)).pose.pan_deg == pytest.approx(there.pan_deg, abs=0.15)
 
@@ -165,10 +176,10 @@ async def test_program_that_drives_is_ended(driver: Driver, device: VirtualDevic
         assert process.stdout is not None
         with anyio.fail_after(60):
             assert await process.stdout.readline() == b"driving\n", (await process.communicate())[1]
-        assert not stands(device)
+        assert not is_stationary(device)
         process.send_signal(number)
         await process.communicate()
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
         assert device.pose().pan_deg - device.home.pan_deg < TIMED_OUT_DEG
 
 
@@ -190,7 +201,7 @@ async def test_command_that_moves_is_ended(driver: Driver, device: VirtualDevice
             process.send_signal(number)
             _, errors = await process.communicate()
         assert process.returncode == 130, errors
-        await until(lambda: stands(device))
+        await until(lambda: is_stationary(device))
         assert device.pose().pan_deg < 160.0
     trace = read_trace(next((tmp_path / "runs").iterdir()))
     assert trace.ended is not None

@@ -16,7 +16,7 @@ from scope_ptz.errors import CameraError
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.device import VirtualDevice
 from tests.camera.faults.drivers import HEIGHT, PASSWORD, USER, WIDTH, Driver, make_device, served, set_faults
-from tests.cli.conftest import Done, Scope, scenes, scope
+from tests.cli.conftest import CommandResult, Scope, scenes, scope
 from tests.support.loopback import nobody_listens
 from tests.support.misbehaving import Misbehaving, good
 
@@ -24,7 +24,7 @@ __all__ = ["scenes", "scope"]
 
 WRONG = "not-the-password"
 
-Ask = Callable[[Driver, int], Done]
+Ask = Callable[[Driver, int], CommandResult]
 
 
 @contextmanager
@@ -46,14 +46,14 @@ def ask(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     monkeypatch.setenv("SCOPE_CACHE_DIR", str(tmp_path / "cache"))
     with Misbehaving(then=good(moondream={})) as server:
 
-        def run(driver: Driver, port: int) -> Done:
+        def run(driver: Driver, port: int) -> CommandResult:
             model = ("--perception", "moondream2", "--perception-url", server.url)
             return scope("ask", "pan right 40 degrees", "--camera", spec(driver, port), *model)
 
         yield run
 
 
-def expect_one_line(done: Done, words: str) -> None:
+def expect_one_line(done: CommandResult, words: str) -> None:
     assert done.code == 1
     assert done.out == ""
     (line,) = done.err.splitlines()

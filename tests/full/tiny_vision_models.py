@@ -1,6 +1,6 @@
-"""Tiny checkpoints of eyes, made on the spot: detectors with random weights, and a vision model that learns to see one thing.
+"""Tiny vision checkpoints: detectors with random weights, and a vision model that is trained to see one kind of object.
 
-They are loaded, in process and by servers, by the code that loads real ones; only their size is a toy's.
+The code that loads real checkpoints, in process and in servers, loads them as well. Only their size differs.
 """
 
 from __future__ import annotations

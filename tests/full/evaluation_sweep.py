@@ -1,4 +1,4 @@
-"""A sweep of two tiny planners with tiny eyes over the lite split, killed and begun again; and its judging by a tiny judge."""
+"""A sweep of two tiny planners with a tiny vision model over the lite split, killed and resumed, and judged by a tiny judge."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from tests.bench.engine.making import counting, turning
-from tests.cli.conftest import Done
+from tests.cli.conftest import CommandResult
 from tests.full.serving import transformers_serve
 from tests.full.test_served_models import Served, lesson_of
 from tests.support.misbehaving import Mind, Misbehaving, Request, Say, good
@@ -47,7 +47,7 @@ TURNING, COUNTING = turning(1, 20.0), counting(1, "ball", 3)
 LITE = load_split("lite")
 TASKS = (TURNING, COUNTING, *LITE)
 SHORT = tuple(t for t in LITE if t.category in COMMANDS and len(t.reference) < 3 and t.reference[0].tool != "zoom_to_object")
-"""Commands that need no eyes."""
+"""Commands that need no perception."""
 
 
 def planning(learned: Sequence[Task]) -> Mind:
@@ -88,13 +88,13 @@ class Program:
         command = [sys.executable, "-m", "scope_ptz.cli", *arguments]
         return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
-    def run(self, *arguments: str) -> Done:
+    def run(self, *arguments: str) -> CommandResult:
         with self.start(*arguments) as process:
             try:
                 out, err = process.communicate()
             finally:
                 process.kill()
-        return Done(process.returncode, out, err)
+        return CommandResult(process.returncode, out, err)
 
     def unwritten(self) -> dict[tuple[str, int], str]:
         """Runs that a program has finished and not yet written into its log, by task and epoch: what tells each from all others."""
@@ -141,13 +141,13 @@ def planners(tmp_path_factory: pytest.TempPathFactory, scenes: Path) -> Iterator
 
 
 @dataclass(frozen=True)
-class Swept:
+class SweepRun:
     """``finished``: the runs that were finished when the sweep was killed; ``again``: the same command after that."""
 
     program: Program
     finished: dict[tuple[str, int], str]
     killed: Path
-    again: Done
+    again: CommandResult
 
     @property
     def logs(self) -> dict[str, Path]:
@@ -155,10 +155,12 @@ class Swept:
 
 
 @pytest.fixture(scope="module")
-def swept(planners: dict[str, Served], eyes_server: Served, tmp_path_factory: pytest.TempPathFactory, scenes: Path) -> Swept:
+def swept(
+    planners: dict[str, Served], perception_server: Served, tmp_path_factory: pytest.TempPathFactory, scenes: Path
+) -> SweepRun:
     """A sweep that is killed in the midst of its first pair, and begun again."""
     program = Program(tmp_path_factory.mktemp("sweep"), scenes)
-    (program.folder / "models.yaml").write_text(MINE.format(eyes=eyes_server, **planners))
+    (program.folder / "models.yaml").write_text(MINE.format(eyes=perception_server, **planners))
     dump_tasks(TASKS, program.folder / "tasks.jsonl")
     command = (
         "bench", "sweep", "--pairs", "tiny-novice+tiny-eyes,tiny-adept+tiny-eyes", "--concurrency", "1", "--max-steps", "8",
@@ -177,7 +179,7 @@ def swept(planners: dict[str, Served], eyes_server: Served, tmp_path_factory: py
         process.communicate()
     (killed,) = program.logs.glob("*.eval")
     finished |= program.unwritten() | {run: str(uuid) for run, uuid in uuids_in(killed).items()}
-    return Swept(program, finished, killed, program.run(*command))
+    return SweepRun(program, finished, killed, program.run(*command))
 
 
 BLAMED = {
@@ -206,11 +208,11 @@ class Judged:
 
     judge: str
     logs: dict[str, Path]
-    rounds: list[Done]
+    rounds: list[CommandResult]
 
 
 @pytest.fixture(scope="module")
-def judged(swept: Swept, tmp_path_factory: pytest.TempPathFactory) -> Judged:
+def judged(swept: SweepRun, tmp_path_factory: pytest.TempPathFactory) -> Judged:
     """Both logs, judged twice by a checkpoint that has learned from a rehearsal on copies of them."""
     from tests.full.tiny_models import tiny_judge
 

@@ -31,7 +31,7 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def checkpoint(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return vision.taught(tmp_path_factory.mktemp("vision"))
+    return vision.train_detector(tmp_path_factory.mktemp("vision"))
 
 
 @pytest.fixture(scope="module")
@@ -51,32 +51,32 @@ def spec(request: pytest.FixtureRequest, checkpoint: Path) -> BackendSpec:
 
 @asynccontextmanager
 async def opened(spec: BackendSpec) -> AsyncIterator[Perception]:
-    eyes = make_backend(spec)
+    perception = make_backend(spec)
     try:
-        yield eyes
+        yield perception
     finally:
-        await eyes.close()
+        await perception.close()
 
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("corner", ["top left", "bottom right"])
 async def test_a_vision_model_locates_an_object(spec: BackendSpec, corner: str) -> None:
     frame = vision.frame(corner)
-    async with opened(spec) as eyes:
-        (box,) = (await eyes.detect(frame, "square")).boxes
+    async with opened(spec) as perception:
+        (box,) = (await perception.detect(frame, "square")).boxes
         expected = tuple(v / 1000 for v in vision.CORNERS[corner] or ())
         assert (box.x_min, box.y_min, box.x_max, box.y_max) == pytest.approx(expected)
-        (point,) = (await eyes.point(frame, "square")).points
+        (point,) = (await perception.point(frame, "square")).points
         assert (point.x, point.y) == pytest.approx(box.centre)
-        assert (await eyes.query(frame, vision.QUESTION)).text == f"Yes, {corner}."
-        assert (await eyes.caption(frame)).text == f"A square: {corner}."
+        assert (await perception.query(frame, vision.QUESTION)).text == f"Yes, {corner}."
+        assert (await perception.caption(frame)).text == f"A square: {corner}."
 
 
 @pytest.mark.anyio
 async def test_a_vision_model_reports_an_absence(spec: BackendSpec) -> None:
-    async with opened(spec) as eyes:
-        assert (await eyes.detect(vision.frame("nowhere"), "square")).boxes == ()
-        assert (await eyes.query(vision.frame("nowhere"), vision.QUESTION)).text == "No."
+    async with opened(spec) as perception:
+        assert (await perception.detect(vision.frame("nowhere"), "square")).boxes == ()
+        assert (await perception.query(vision.frame("nowhere"), vision.QUESTION)).text == "No."
 
 
 @pytest.mark.anyio
@@ -95,27 +95,27 @@ class TestConformance(PerceptionConformance):
 
     async def test_absent_things_are_an_empty_list(self) -> None:
         """The tiny model knows only one object, so the picture does not contain it."""
-        async with opened(self.spec) as eyes:
-            assert (await eyes.detect(vision.frame("nowhere"), self.absent)).boxes == ()
+        async with opened(self.spec) as perception:
+            assert (await perception.detect(vision.frame("nowhere"), self.absent)).boxes == ()
 
 
 def detector(maker: str, folder: Path, threshold: float) -> Perception:
-    from tests.full import tiny_eyes
+    from tests.full import tiny_vision_models
 
-    model = str(getattr(tiny_eyes, maker)(folder))
+    model = str(getattr(tiny_vision_models, maker)(folder))
     return make_backend(BackendSpec(name=maker, backend="zero_shot", model=model, options={"threshold": threshold}))
 
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("maker", ["tiny_owlv2", "tiny_grounding_dino"])
 async def test_detections_are_in_the_frame_and_best_first(maker: str, tmp_path: Path) -> None:
-    eyes, frame = detector(maker, tmp_path, threshold=0.0), vision.frame("top left")
-    found = await eyes.detect(frame, "orange cone")
+    perception, frame = detector(maker, tmp_path, threshold=0.0), vision.frame("top left")
+    found = await perception.detect(frame, "orange cone")
     assert found.boxes and found.latency_s > 0 and found.source == maker
     scores = [b.score or 0.0 for b in found.boxes]
     assert scores == sorted(scores, reverse=True)
     assert all(0 <= b.x_min < b.x_max <= 1 and 0 <= b.y_min < b.y_max <= 1 for b in found.boxes)
-    assert len((await eyes.point(frame, "orange cone")).points) == len(found.boxes)
+    assert len((await perception.point(frame, "orange cone")).points) == len(found.boxes)
 
 
 @pytest.mark.anyio
@@ -127,9 +127,9 @@ async def test_scores_below_the_threshold_give_no_detections(maker: str, tmp_pat
 @pytest.mark.anyio
 @pytest.mark.parametrize("backend", ["zero_shot", "transformers_local"])
 async def test_a_missing_model_is_an_error(backend: str, tmp_path: Path) -> None:
-    eyes = make_backend(BackendSpec(name="eyes", backend=backend, model=str(tmp_path / "nowhere")))
+    perception = make_backend(BackendSpec(name="eyes", backend=backend, model=str(tmp_path / "nowhere")))
     with pytest.raises(PerceptionError):
-        await eyes.detect(vision.frame("top left"), "square")
+        await perception.detect(vision.frame("top left"), "square")
 
 
 @given(st.integers(14, 6000), st.integers(14, 6000), st.sampled_from([28, 32]), st.sampled_from([3136, 65536]))
