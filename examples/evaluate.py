@@ -20,14 +20,14 @@ def main() -> None:
     print(f"{len(tasks)} tasks, for example: {tasks[0].instruction!r}")
 
     with tempfile.TemporaryDirectory() as out:
-        ours = scope_ptz.evaluate("grammar", "ground-truth", tasks=tasks, out=out, pictures=False)
+        grammar = scope_ptz.evaluate("grammar", "ground-truth", tasks=tasks, out=out, pictures=False)
         baseline = scope_ptz.evaluate(SaysNo(), "ground-truth", tasks=tasks, out=out, pictures=False)
         print(f"\n{'category':<24}{'grammar':>10}{'says-no':>10}")
-        for category, score in ours.scores.items():
+        for category, score in grammar.scores.items():
             print(f"{category:<24}{score:>10.0%}{baseline.scores[category]:>10.0%}")
-        print(f"{'macro':<24}{ours.macro:>10.0%}{baseline.macro:>10.0%}")
+        print(f"{'macro':<24}{grammar.macro:>10.0%}{baseline.macro:>10.0%}")
 
-        table = scope_ptz.load_results(ours.log).to_pandas()
+        table = scope_ptz.load_results(grammar.log).to_pandas()
         print("\nWhy runs of the grammar failed:")
         print(table["error_mode"].value_counts().to_string())
 

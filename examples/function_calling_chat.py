@@ -2,7 +2,7 @@
 
     python function_calling_chat.py --url http://localhost:8080/v1 --model qwen3.5-4b "Take a picture. What is on the road?"
 
-Without --url, the client uses the environment variable OPENAI_BASE_URL, or the server of OpenAI.
+Without --url, the client uses the environment variable OPENAI_BASE_URL, or OpenAI's server.
 """
 
 import argparse

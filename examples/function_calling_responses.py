@@ -2,7 +2,7 @@
 
     python function_calling_responses.py --url http://localhost:8000/v1 --model gpt-oss-20b "How many workers are there?"
 
-Without --url, the client uses the environment variable OPENAI_BASE_URL, or the server of OpenAI.
+Without --url, the client uses the environment variable OPENAI_BASE_URL, or OpenAI's server.
 """
 
 import argparse

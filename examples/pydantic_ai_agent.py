@@ -3,7 +3,7 @@
     pip install 'pydantic-ai-slim[openai]'
     python pydantic_ai_agent.py --url http://localhost:8080/v1 --model qwen3.5-4b "Take a picture. What is on the road?"
 
-Without --url, the framework uses the environment variable OPENAI_BASE_URL, or the server of OpenAI.
+Without --url, the framework uses the environment variable OPENAI_BASE_URL, or OpenAI's server.
 """
 
 import argparse

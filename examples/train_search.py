@@ -20,8 +20,7 @@ HELD_OUT_SEED = 1_000_000  # searches of the evaluation, which training never se
 
 
 class Policy:
-    """A policy with eight weights. Its only memory is the direction in which it turns, which it reverses at the end of the pan
-    range."""
+    """A policy with eight weights. It remembers only its direction of turn, which it reverses at the end of the pan range."""
 
     def __init__(self, weights):
         self.weights, self.direction, self.last_pan = weights, 1.0, None

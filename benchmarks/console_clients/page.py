@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from console_clients.viewers import Viewer
 
 ANSWER_S = 5.0
-"""Maximum time in seconds until the page lets itself be clicked and read. A page that takes longer counts as a failure."""
+"""Maximum time in seconds for a click on the page, or for reading its records. If it takes longer, it counts as a failure."""
 
 WATCH_PAGE = """
 window.scope = { drawn: [], stops: [] };
@@ -91,8 +91,8 @@ class Clicks:
 
     Attributes:
         replies: For each reply to ``stop``, the seconds since the click and the status code.
-        taken_s: For each click, the seconds until the browser had made it.
-        failures: Why the page could not be clicked or read, for each time that it could not.
+        taken_s: For each click, the seconds that the browser took to make it.
+        failures: The reason for each failure to click or to read the page.
     """
 
     replies: list[list[float]] = field(default_factory=list)
@@ -111,18 +111,18 @@ class Clicks:
             self.failures.append(reason(str(error)))
 
     def read(self, page: Page, viewer: Viewer) -> None:
-        """Read the replies to the clicks and the frames that the page has drawn. Record it if the page does not answer."""
+        """Read the replies to the clicks and the frames that the page has drawn. If the page does not answer, record a failure."""
         from playwright.sync_api import TimeoutError as PlaywrightTimeoutError
 
         try:
-            noted = read_page(page)
+            records = read_page(page)
         except PlaywrightTimeoutError:
             self.failures.append(f"The page's scripts did not run for {ANSWER_S:g} s.")
             return
-        self.replies += noted["stops"]
-        viewer.arrivals_s += [at for at, _, _ in noted["drawn"]]
-        viewer.ages_s += [age for _, age, _ in noted["drawn"]]
-        numbers = [number for _, _, number in noted["drawn"]]
+        self.replies += records["stops"]
+        viewer.arrivals_s += [at for at, _, _ in records["drawn"]]
+        viewer.ages_s += [age for _, age, _ in records["drawn"]]
+        numbers = [number for _, _, number in records["drawn"]]
         viewer.out_of_order += sum(b <= a for a, b in itertools.pairwise(numbers))
 
     def results(self) -> dict[str, Any]:

@@ -28,7 +28,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="module")
-def open_once() -> Iterator[None]:
+def opened_once() -> Iterator[None]:
     """Open each scene once in the tests of a module, because decoding its pictures takes most of an example's time."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(scenes, "open_scene", lru_cache(scenes.open_scene))

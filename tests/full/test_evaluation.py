@@ -33,6 +33,7 @@ from tests.full.evaluation_sweep import (
 )
 from tests.full.figures import Marks, by_category, by_run, kappa, marks
 from tests.full.scripted import BEHAVIOURS, BROKEN, LIMIT, SCRIPT, Scripted, mentions
+from tests.full.test_served_models import perception_server
 from tests.support.misbehaving import Misbehaving
 
 __all__ = ["judged", "perception_server", "planners", "swept"]

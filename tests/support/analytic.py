@@ -1,7 +1,8 @@
 """Fakes for tests of the tools: a camera and perception of a world of points on a sphere, with all views known in closed form.
 
-The camera draws a smooth colour field over all directions. Objects are clouds of directions, and perception returns the box of those
-directions that are in the frame. There are no packs and no re-projection, so results of tools can be compared with exact numbers.
+The camera draws a smooth colour field over all directions. Objects are clouds of directions, and perception returns the box of
+those directions that are in the frame. There are no packs and no re-projection, so results of tools can be compared with exact
+numbers.
 """
 
 from __future__ import annotations

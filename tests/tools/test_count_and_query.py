@@ -55,7 +55,7 @@ def test_current_counts_objects_in_view_and_full_counts_everything_once() -> Non
 def test_a_failed_perception_call_is_an_error_and_never_a_zero() -> None:
     perception = cones()
     perception.fail = True
-    with pytest.raises(PerceptionError, match="shut"):
+    with pytest.raises(PerceptionError, match="switched off"):
         call(HoldingCamera(), perception, "count_objects", description="cones")
 
 

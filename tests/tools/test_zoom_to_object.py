@@ -97,7 +97,7 @@ def test_a_failed_perception_call_does_not_move_the_camera() -> None:
     try:
         zoom(camera, perception)
     except Exception as error:
-        assert "shut" in str(error)
+        assert "switched off" in str(error)
         assert camera.now == Pose(10, -5, 1)
     else:
         raise AssertionError("the failure was swallowed")

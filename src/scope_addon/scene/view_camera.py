@@ -36,7 +36,7 @@ class ViewCamera:
 
     @property
     def view(self) -> View | None:
-        """The view that the camera has, or reaches at the end of a glide; None before the first one."""
+        """The view that the camera has, or reaches at the end of a glide; None before the first view is set."""
         return self._to
 
     def object(self) -> Any:
@@ -86,8 +86,8 @@ class ViewCamera:
     def _displayed_view(self) -> View:
         assert self._from is not None
         assert self._to is not None
-        share = min(1.0, (time.monotonic() - self._since_s) / GLIDE_S)
-        return self._from.interpolate(self._to, share * share * (3.0 - 2.0 * share))
+        fraction = min(1.0, (time.monotonic() - self._since_s) / GLIDE_S)
+        return self._from.interpolate(self._to, fraction * fraction * (3.0 - 2.0 * fraction))
 
     def _aim(self, view: View) -> Any:
         camera = self.object()

@@ -170,14 +170,14 @@ def _rows(tiles: list[_Tile]) -> list[list[_Tile]]:
         if tile is not None and not tile.panel.is_panorama:
             group.append(tile)
             continue
-        rows += _spread(group)
+        rows += _distribute(group)
         group = []
         if tile is not None:
             rows.append([tile])
     return rows
 
 
-def _spread(group: list[_Tile]) -> list[list[_Tile]]:
+def _distribute(group: list[_Tile]) -> list[list[_Tile]]:
     """Distribute tiles over rows of two, three or four, as evenly as possible."""
     if not group:
         return []

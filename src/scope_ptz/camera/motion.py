@@ -34,12 +34,12 @@ class Motor:
             return distance
         ramp = min(self.speed / self.acceleration, total / 2)
         if t <= ramp:
-            gone = self.acceleration * t**2 / 2
+            covered = self.acceleration * t**2 / 2
         elif t >= total - ramp:
-            gone = d - self.acceleration * (total - t) ** 2 / 2
+            covered = d - self.acceleration * (total - t) ** 2 / 2
         else:
-            gone = self.acceleration * ramp**2 / 2 + self.speed * (t - ramp)
-        return math.copysign(gone, distance)
+            covered = self.acceleration * ramp**2 / 2 + self.speed * (t - ramp)
+        return math.copysign(covered, distance)
 
     def after_command(self, speed: float, target_speed: float, hold_s: float, time_s: float) -> tuple[float, float]:
         """Return the distance and the speed ``time_s`` after a velocity command.

@@ -1,4 +1,4 @@
-"""Connect to the judge's server that options and environment variables name."""
+"""Connect to the judge's server, which options or environment variables specify."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ GROUPS: dict[Kind, str] = {"camera": CAMERAS, "planner": PLANNERS, "perception":
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """An installed plug-in, which may not be imported yet.
+    """An installed plug-in. It is imported on first use.
 
     Attributes:
         kind: Whether it provides a camera, a planner or a perception backend.

@@ -46,7 +46,7 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
         server = _Server(configuration(app))
         running = asyncio.create_task(server.serve([listener]))
         try:
-            await _until_ready(server, running)
+            await _wait_until_ready(server, running)
             yield int(listener.getsockname()[1])
         finally:
             with anyio.CancelScope(shield=True):
@@ -73,7 +73,9 @@ async def mcp_route(site: Site, access: Access) -> AsyncIterator[Route]:
 
 
 async def _without_mcp(_: Request) -> Response:
-    return error_reply(501, "not_installed", "This server has no MCP. Install it with: pip install 'scope-ptz[serve]'.")
+    return error_reply(
+        501, "not_installed", "MCP is not installed on this server. Install it with: pip install 'scope-ptz[serve]'."
+    )
 
 
 def configuration(app: ASGIApp) -> uvicorn.Config:
@@ -95,7 +97,7 @@ def configuration(app: ASGIApp) -> uvicorn.Config:
     )
 
 
-async def _until_ready(server: _Server, running: asyncio.Task[None]) -> None:
+async def _wait_until_ready(server: _Server, running: asyncio.Task[None]) -> None:
     """Wait until a server listens. If its task ends before that, raise the task's error."""
     waiting = asyncio.ensure_future(server.ready.wait())
     await asyncio.wait({waiting, running}, return_when=asyncio.FIRST_COMPLETED)

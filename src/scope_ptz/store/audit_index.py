@@ -35,7 +35,7 @@ def index_audit_log(database: Database, path: Path) -> int:
     path, added = path.resolve(), 0
     while True:
         with database.write_transaction() as connection:
-            number, offset = _file(connection, path)
+            number, offset = _log_position(connection, path)
             try:
                 if path.stat().st_size < offset:
                     connection.execute(delete(AUDIT).where(AUDIT.c.file == number))
@@ -80,7 +80,7 @@ def list_audit(
     ]
 
 
-def _file(connection: Connection, path: Path) -> tuple[int, int]:
+def _log_position(connection: Connection, path: Path) -> tuple[int, int]:
     """Return the number of an audit log in the index, and how many of its bytes are indexed. A new log is added."""
     row = connection.execute(select(AUDIT_FILES).where(AUDIT_FILES.c.path == str(path))).mappings().first()
     if row is not None:

@@ -52,13 +52,13 @@ class RunStore:
         """Index one run folder again. Raises ``TraceError`` if its trace cannot be read."""
         index_run(self.database, self.folder(run_id))
 
-    def runs(self, chosen: RunFilter | None = None, *, limit: int = 50, after: str | None = None) -> RunPage:
+    def runs(self, run_filter: RunFilter | None = None, *, limit: int = 50, after: str | None = None) -> RunPage:
         """Return runs, newest first. See ``list_runs``."""
-        return list_runs(self.database, chosen or RunFilter(), limit=limit, after=after)
+        return list_runs(self.database, run_filter or RunFilter(), limit=limit, after=after)
 
-    def count(self, chosen: RunFilter | None = None) -> int:
+    def count(self, run_filter: RunFilter | None = None) -> int:
         """Return the number of runs that match a filter."""
-        return count_matching(self.database, chosen or RunFilter())
+        return count_matching(self.database, run_filter or RunFilter())
 
     def run(self, run_id: str) -> StoredRun:
         """Return the stored data of a run. Raises ``UnknownNameError`` if there is no such run."""
@@ -74,15 +74,15 @@ class RunStore:
         """Remove the runs beyond the limits, with their folders. See ``retention.prune``."""
         return prune(self.database, self.root, retention, dry_run=dry_run)
 
-    def ids(self, chosen: RunFilter) -> list[str]:
+    def ids(self, run_filter: RunFilter) -> list[str]:
         """Return the ids of all runs that match a filter, newest first."""
         ids: list[str] = []
-        page = self.runs(chosen, limit=MAX_PAGE)
+        page = self.runs(run_filter, limit=MAX_PAGE)
         while True:
             ids += [run.id for run in page.runs]
             if page.next is None:
                 return ids
-            page = self.runs(chosen, limit=MAX_PAGE, after=page.next)
+            page = self.runs(run_filter, limit=MAX_PAGE, after=page.next)
 
     def export(self, runs: list[str], out: Path, kind: ExportFormat) -> int:
         """Write runs to a file and return their number. See ``export_runs``."""

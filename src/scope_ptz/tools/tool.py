@@ -31,7 +31,7 @@ class Tool:
         name: The name in calls.
         arguments: The model that validates a call's arguments. Its docstring is the description that planners receive.
         run: Carries out a call.
-        title: The name for people, such as "Turn and zoom".
+        title: The display name, such as "Turn and zoom".
         repeatable: Whether two equal calls, one after the other, have the same effect as one.
         moves: Whether the tool can move the camera.
         perceives: Whether the tool calls perception.

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 from scope_ptz.camera.network.errors import CameraReplyError
 from scope_ptz.errors import CameraError
 
-MAX_SHOWN = 120
+MAX_QUOTED = 120
 """Maximum number of characters to quote from a device's error message."""
 
 _PRESET = re.compile(r"presetposno(\d{1,6})=(.*)")
+# In replies from the queue, the names of HTML anchors are the place, the seconds and the poll interval.
 _ANCHOR = re.compile(r'name="(-?\d{1,9})"')
 
 
@@ -79,10 +80,10 @@ def text_of(body: bytes) -> str:
         text = body.decode("iso-8859-1")
     stripped = text.lstrip().removeprefix("#").lstrip()
     if stripped[:6].lower() == "error:":
-        raise VapixError(f"The camera refused the request: {_shown(stripped[6:])}.")
+        raise VapixError(f"The camera refused the request: {_quote(stripped[6:])}.")
     if "\0" in text or (stripped[:1] == "<" and "name=" not in stripped[:20]):
         raise CameraReplyError(
-            "The camera's reply is not VAPIX text. Check that it is an AXIS camera and that its firmware is healthy."
+            "The camera's reply is not VAPIX text. Check that it is an AXIS camera and that its firmware is up to date."
         )
     return text
 
@@ -117,7 +118,8 @@ def parse_limits(body: bytes) -> DeviceLimits:
 
     Raises:
         VapixError: The device refuses the request.
-        CameraReplyError: A limit is missing or not a number, or a minimum is not below its maximum (for zoom, above it).
+        CameraReplyError: A limit is missing or not a number, or a maximum is too small. The maximum of pan and of tilt must be
+            greater than the minimum; that of zoom may be equal to it.
     """
     values = _lower(values_of(text_of(body)))
     fields = [_optional(values, name) for name in ("minfieldangle", "maxfieldangle")]
@@ -213,7 +215,7 @@ def _flag(values: dict[str, str], name: str) -> bool | None:
     return {"on": True, "off": False}.get(values.get(name, "").lower())
 
 
-def _shown(text: str) -> str:
+def _quote(text: str) -> str:
     """Return the start of a device's message as one printable line."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
-    return line[:MAX_SHOWN].rstrip(".") or "no reason given"
+    return line[:MAX_QUOTED].rstrip(".") or "no reason given"

@@ -41,7 +41,7 @@ class VapixRequest:
 def absolute(channel: int, pan_deg: float, tilt_deg: float, zoom_units: int) -> VapixRequest:
     """Move to an absolute position. Angles are in degrees; zoom is in the device's units (1 to 19999)."""
     _check_finite(pan_deg=pan_deg, tilt_deg=tilt_deg)
-    query = {"pan": _number(_within(pan_deg, 180.0)), "tilt": _number(_within(tilt_deg, 180.0))}
+    query = {"pan": _number(_clamp(pan_deg, 180.0)), "tilt": _number(_clamp(tilt_deg, 180.0))}
     return _ptz(channel, **query, zoom=str(min(max(zoom_units, 1), 19999)))
 
 
@@ -185,7 +185,7 @@ def _check_finite(**values: float) -> None:
             raise InputError(f"{name} must be a finite number; got {value}.")
 
 
-def _within(value: float, limit: float) -> float:
+def _clamp(value: float, limit: float) -> float:
     return min(max(value, -limit), limit)
 
 

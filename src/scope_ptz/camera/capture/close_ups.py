@@ -23,7 +23,7 @@ STRONG_EDGE = 24.0
 HORIZON_DEG, FALLOFF_DEG = -4.0, 22.0
 """Centre and width, in degrees of tilt, of the bell curve that weights detail.
 
-It favours directions near the horizon, where distant objects are, which look small.
+It favours directions near the horizon, because distant objects look small.
 """
 
 Floats = NDArray[np.float64]

@@ -20,8 +20,8 @@ WHOLE_CIRCLE_DEG = 340.0
 """Minimum pan range, in degrees, that is swept as a full circle, because the frames at its two ends overlap."""
 
 EXTREME_REACH = 0.7
-"""Frames of the highest and lowest rows overlap as planned only up to this fraction of the way from their centre to their outer
-edge, because further out a row would need many more frames."""
+"""Fraction of the upper half of frames in the highest row, and of the lower half in the lowest row, in which neighbouring frames
+must overlap as planned. To overlap nearer to the edge, too, these rows would need many more frames."""
 
 MAX_FRAMES = 5000
 
@@ -66,7 +66,7 @@ class Ranges:
         return cut
 
 
-def whole_circle(limits: Limits) -> bool:
+def is_full_circle(limits: Limits) -> bool:
     """Return whether frames within these limits form a full circle."""
     return limits.pan_endless or limits.max_pan_deg - limits.min_pan_deg >= WHOLE_CIRCLE_DEG
 
@@ -109,7 +109,7 @@ def _tilts(limits: Limits, view: Perspective, overlap: float) -> list[float]:
 
 
 def _pans(limits: Limits, step_deg: float, row: int) -> list[float]:
-    if whole_circle(limits):
+    if is_full_circle(limits):
         count = max(3, math.ceil(360.0 / step_deg - 1e-9))
         low = limits.min_pan_deg if not limits.pan_endless else -180.0
         high = limits.max_pan_deg if not limits.pan_endless else 180.0

@@ -22,11 +22,11 @@ from scope_ptz.geometry import Perspective, Pose
 SETTINGS, FRAMES, CLOSE_UPS = "capture.json", "frames.jsonl", "close-ups.json"
 
 
-class _Stored(BaseModel):
+class _StoredModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class CaptureSettings(_Stored):
+class CaptureSettings(_StoredModel):
     """The settings of a capture. A capture can be resumed only with the same settings.
 
     Attributes:
@@ -63,7 +63,7 @@ class CaptureSettings(_Stored):
     rolled: bool = False
 
 
-class Shot(_Stored):
+class Shot(_StoredModel):
     """A frame of a capture, or a pose that the rules of the site do not permit.
 
     Attributes:
@@ -92,7 +92,7 @@ class Shot(_Stored):
         return Pose(self.pan_deg, self.tilt_deg, self.zoom)
 
 
-class _State(_Stored):
+class _State(_StoredModel):
     settings: CaptureSettings
     started_at: str
     complete: bool = False
@@ -256,9 +256,9 @@ class CaptureSession:
         data = content.encode() if isinstance(content, str) else content
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            fresh = self.folder / f".{name}.new"
-            fresh.write_bytes(data)
-            fresh.replace(self.folder / name)
+            temporary = self.folder / f".{name}.new"
+            temporary.write_bytes(data)
+            temporary.replace(self.folder / name)
         except OSError as error:
             raise self._unwritable(error) from error
 

@@ -30,7 +30,7 @@ class Region(_Rules):
     tilt_deg: tuple[Degrees, Degrees] = (-90.0, 90.0)
 
     @model_validator(mode="after")
-    def _in_order(self) -> Region:
+    def _check_order(self) -> Region:
         if self.tilt_deg[0] >= self.tilt_deg[1]:
             raise ValueError("tilt_deg must be [bottom, top], with bottom below top")
         if self.pan_deg[0] == self.pan_deg[1]:
@@ -57,7 +57,7 @@ class PixelMask(_Rules):
     bottom: Fraction
 
     @model_validator(mode="after")
-    def _in_order(self) -> PixelMask:
+    def _check_order(self) -> PixelMask:
         if self.left >= self.right or self.top >= self.bottom:
             raise ValueError("left must be less than right, and top less than bottom")
         return self
@@ -105,7 +105,7 @@ class CameraRules(_Rules):
         soft_limits: Limits inside those of the device.
         keep_out: Regions that no frame shows and at which the camera is never aimed.
         masks: Rectangles of the picture that are black in every frame, such as a text overlay.
-        dead_zone_deg: Turns smaller than this are not made, which reduces wear on the motors. Zooming is never skipped.
+        dead_zone_deg: Smaller turns are skipped, which reduces wear on the motors. Zooming is never skipped.
         min_interval_s: Minimum time between two moves. A move that is requested earlier waits.
     """
 

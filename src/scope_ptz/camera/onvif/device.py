@@ -95,7 +95,7 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
     """
     information = await client.call("devicemgmt", "GetDeviceInformation")
     manufacturer, model, firmware = (_word(information[key]) for key in ("Manufacturer", "Model", "FirmwareVersion"))
-    mapping = mapping.over(known_mapping(model))
+    mapping = mapping.with_missing_from(known_mapping(model))
     ptz, picture = choose_profiles(await client.call("media", "GetProfiles"), str(client.address), width, profile)
     configuration = ptz.PTZConfiguration
     offered, timeout = await _options(client, configuration)

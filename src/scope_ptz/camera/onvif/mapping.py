@@ -13,9 +13,9 @@ ASSUMED_PAN_DEG = (-180.0, 180.0)
 ASSUMED_TILT_DEG = (-90.0, 90.0)
 """The angles at the ends of the generic space on most devices. A driver uses them only to measure the actual angles."""
 
-ASSUMED_FIELDS_DEG = (60.0, 6.0)  # at the widest and the closest zoom, also used only to measure the actual ones
+ASSUMED_FIELDS_DEG = (60.0, 6.0)  # at the widest and the narrowest view, also only to measure the actual fields of view
 ASSUMED_SPEED = Velocity(60.0, 60.0, 0.5)
-"""Top speeds that are assumed for a device without measured ones.
+"""Top speeds that are assumed for a device whose speeds have not been measured.
 
 If they are wrong, continuous moves are slower or faster than requested. Stopping does not depend on them.
 """
@@ -39,7 +39,7 @@ class OnvifMapping:
     zoom_max: float | None = None
     top_speed: Velocity | None = None
 
-    def over(self, other: OnvifMapping) -> OnvifMapping:
+    def with_missing_from(self, other: OnvifMapping) -> OnvifMapping:
         """Return this mapping, with missing values taken from another one."""
         return OnvifMapping(
             self.pan_deg or other.pan_deg,

@@ -23,10 +23,10 @@ def runs_audit(
     from scope_ptz.cli.exit import put, put_json
     from scope_ptz.store.audit_index import list_audit
 
-    first, end = parse_time("--since", since), parse_time("--until", until)
+    from_time, to_time = parse_time("--since", since), parse_time("--until", until)
     with open_store(runs_dir) as store:
         index_audit_logs(store, audit)
-        entries = list_audit(store.database, camera=camera, since=first, until=end, limit=limit)
+        entries = list_audit(store.database, camera=camera, since=from_time, until=to_time, limit=limit)
     if as_json:
         put_json([entry.model_dump(mode="json") for entry in entries])
         return

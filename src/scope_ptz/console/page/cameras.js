@@ -2,7 +2,7 @@
 
 import { get, part, url } from "./api.js";
 import { emit, on, shared } from "./app_state.js";
-import { controls } from "./control_text.js";
+import { controlText } from "./control_text.js";
 import { h, icon } from "./dom.js";
 import { makeSceneTime } from "./scene_time.js";
 import { makeVirtualCamera } from "./virtual_camera.js";
@@ -104,7 +104,7 @@ function makeCard(first, refresh) {
     }
     abilities.hidden = !card.abilities.length;
     who.textContent = card.run ? "An instruction is in progress." : card.control.mine ? "You are in control."
-      : card.control.holder ? controls(card.control.holder) : failed ? "" : "Nobody is in control.";
+      : card.control.holder ? controlText(card.control.holder) : failed ? "" : "Nobody is in control.";
     if (time) {
       time.element.hidden = !card.scene_time;
       later.hidden = Boolean(card.scene_time);

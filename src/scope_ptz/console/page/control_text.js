@@ -4,9 +4,9 @@ import { shared } from "./app_state.js";
 
 const LOCAL = "local"; // the name of every client of a server without tokens
 
-export function controls(holder) {
+export function controlText(holder) {
   if (holder === LOCAL) return "This computer is in control, in another window or program.";
   return holder === shared.me?.name ? `${holder} is in control, in another window.` : `${holder} is in control.`;
 }
 
-export const asks = (name) => (name === LOCAL ? "Another window or program on this computer asks for control." : `${name} asks for control.`);
+export const requestText = (name) => (name === LOCAL ? "Another window or program on this computer asks for control." : `${name} asks for control.`);

@@ -37,7 +37,7 @@ export function panTiltOf(direction) {
 
 // The horizontal field of view in degrees at a magnification, interpolated in the table of the optics.
 export function fieldOfView(table, zoom) {
-  if (!table?.length) return 60;
+  if (!table?.length) return 60; // a typical field of view, until the table is known
   if (zoom <= table[0][0]) return table[0][1];
   for (let i = 1; i < table.length; i++) {
     const [z1, f1] = table[i];

@@ -4,7 +4,7 @@ import { command, get, part, request as send } from "./api.js";
 import { emit, on, shared } from "./app_state.js";
 import { makeBenchmark } from "./benchmark.js";
 import { makeCameras } from "./cameras.js";
-import { asks, controls } from "./control_text.js";
+import { controlText, requestText } from "./control_text.js";
 import { h, iconButton, setNoticeArea, notify } from "./dom.js";
 import { makeMap } from "./map.js";
 import { makePanel } from "./panel.js";
@@ -76,11 +76,11 @@ export async function mount(root) {
     const asking = now.requests.find((each) => each.client !== shared.me?.client);
     const answer = (grant) => command(shared.camera, "/control/answer", { client: asking.client, grant }).then((value) => value && showControl(value));
     if (now.mine && asking) {
-      control.replaceChildren(asks(asking.name), h("button", { type: "button", onclick: () => answer(true) }, "Hand over"),
+      control.replaceChildren(requestText(asking.name), h("button", { type: "button", onclick: () => answer(true) }, "Hand over"),
         h("button", { type: "button", onclick: () => answer(false) }, "Keep"));
     } else if (now.holder && !now.mine) {
       const waiting = now.requests.some((each) => each.client === shared.me?.client);
-      control.replaceChildren(controls(now.holder), waiting ? " You have asked for control." : h("button", { type: "button", onclick: () => command(shared.camera, "/control").then((value) => value && showControl(value)) }, "Ask for control"));
+      control.replaceChildren(controlText(now.holder), waiting ? " You have asked for control." : h("button", { type: "button", onclick: () => command(shared.camera, "/control").then((value) => value && showControl(value)) }, "Ask for control"));
     } else {
       control.replaceChildren(now.mine ? "You are in control." : "");
     }

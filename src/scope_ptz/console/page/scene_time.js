@@ -19,7 +19,7 @@ export function makeSceneTime(camera) {
   const speed = h("select", { "aria-label": "Speed of scene time", title: "Speed of scene time", onchange: () => change({ speed: Number(speed.value) }) });
   const element = h("div", { className: "scene-time", role: "group", "aria-label": "Scene time" }, toggle,
     iconButton("back", `Back ${STEP_S} seconds`, () => step(-STEP_S)), slider, iconButton("ahead", `Forward ${STEP_S} seconds`, () => step(STEP_S)), clock, speed);
-  let now = { time_s: 0, playing: true, speed: 1 }, at = performance.now(), dragged = false, sought = null, sending = false;
+  let now = { time_s: 0, playing: true, speed: 1 }, at = performance.now(), dragged = false, pendingTime = null, sending = false;
 
   const present = () => now.time_s + (now.playing ? ((performance.now() - at) / 1000) * now.speed : 0);
 
@@ -31,7 +31,7 @@ export function makeSceneTime(camera) {
   }
 
   function draw() {
-    const held = dragged || sought !== null; // the user's newest position has not been sent yet
+    const held = dragged || pendingTime !== null; // the user's newest position has not been sent yet
     const time_s = held ? Number(slider.value) : present();
     if (toggle.dataset.playing !== String(now.playing)) {
       toggle.dataset.playing = now.playing;
@@ -66,11 +66,11 @@ export function makeSceneTime(camera) {
 
   // The scene follows the slider while it is dragged. Only the newest position is sent.
   async function seek() {
-    sought = Number(slider.value);
+    pendingTime = Number(slider.value);
     if (sending) return;
-    while (sought !== null) {
-      const time_s = sought;
-      sought = null;
+    while (pendingTime !== null) {
+      const time_s = pendingTime;
+      pendingTime = null;
       await change({ time_s });
     }
   }
@@ -87,23 +87,23 @@ export function makeStageTime() {
   const read = h("span", { className: "clock" });
   const summary = h("summary", { title: "Scene time: pause, seek, speed" }, icon("clock"), read);
   const element = h("details", { className: "stage-time popup", hidden: true }, summary, h("div", { className: "sheet" }, h("h2", {}, "Scene time"), times.element));
-  let passing = null, shown = "";
+  let sceneTime = null, shown = "";
 
   element.addEventListener("keydown", (event) => {
     if (event.key === "Escape" && element.open) { element.open = false; summary.focus(); }
   });
   addEventListener("pointerdown", (event) => { if (!element.contains(event.target)) element.open = false; });
   on("status", (status) => {
-    passing = status.scene_time ?? null;
-    element.hidden = !passing;
-    element.classList.toggle("stopped", passing?.playing === false);
+    sceneTime = status.scene_time ?? null;
+    element.hidden = !sceneTime;
+    element.classList.toggle("stopped", sceneTime?.playing === false);
   });
   on("frame", (facts) => {
-    if (!passing) return;
-    times.update({ ...passing, time_s: facts.time_s });
-    const text = `${clockText(facts.time_s).slice(0, -2)}${passing.playing ? (passing.speed === 1 ? "" : ` · ${passing.speed}×`) : " · paused"}`;
+    if (!sceneTime) return;
+    times.update({ ...sceneTime, time_s: facts.time_s });
+    const text = `${clockText(facts.time_s).slice(0, -2)}${sceneTime.playing ? (sceneTime.speed === 1 ? "" : ` · ${sceneTime.speed}×`) : " · paused"}`;
     if (text !== shown) { shown = text; read.textContent = text; }
   });
-  on("camera", () => { passing = null; element.hidden = true; element.open = false; });
+  on("camera", () => { sceneTime = null; element.hidden = true; element.open = false; });
   return element;
 }

@@ -54,7 +54,7 @@ def mapping_of(
         return configured
     fields = measured_fields(calibration) if "field of view" in calibration.replaces else None
     measured = OnvifMapping(calibration.pan_deg, calibration.tilt_deg, fields)
-    return configured.over(measured)
+    return configured.with_missing_from(measured)
 
 
 async def open_onvif(

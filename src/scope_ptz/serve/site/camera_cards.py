@@ -23,7 +23,7 @@ Ability = Literal["move", "drive", "presets", "focus", "iris", "scene_time", "gr
 HealthState = Literal["connected", "ready", "failed"]
 
 CHECK_TIMEOUT_S = 20.0
-"""Seconds without an answer after which a check counts a camera as failed."""
+"""Time limit of a check in seconds. A camera that does not answer within it has failed."""
 
 CHECK_REUSE_S = 2.0
 """Seconds for which the result of a check is reused, so that several pages can share one check."""
@@ -95,9 +95,13 @@ class CameraCards:
         except ScopeError as error:
             return replace(card, health="failed", problem=error)
         if scene is not None:
-            ruled = has_rules(station.spec)
+            has_camera_rules = has_rules(station.spec)
             card = replace(
-                card, title=scene.title, scene=scene, abilities=_scene_abilities(scene, ruled=ruled), has_picture=not ruled
+                card,
+                title=scene.title,
+                scene=scene,
+                abilities=_scene_abilities(scene, has_camera_rules=has_camera_rules),
+                has_picture=not has_camera_rules,
             )
         if not station.is_open and kind in ("simulated", "blender"):
             return card if station.problem is None else replace(card, health="failed", problem=station.problem)
@@ -117,12 +121,12 @@ class CameraCards:
         """Return the error of a camera; None if the camera works. Concurrent requests share one check."""
         task, since_s = self._checks.get(station.name, (None, 0.0))
         if task is None or (task.done() and monotonic() - since_s > CHECK_REUSE_S):
-            task = asyncio.create_task(_problem(station))
+            task = asyncio.create_task(_find_problem(station))
             self._checks[station.name] = task, monotonic()
         return await asyncio.shield(task)
 
 
-async def _problem(station: Station) -> ScopeError | None:
+async def _find_problem(station: Station) -> ScopeError | None:
     try:
         with anyio.fail_after(CHECK_TIMEOUT_S):
             await (await station.camera()).pose()
@@ -139,10 +143,10 @@ def _scene_facts(name: str) -> SceneFacts:
     return SceneFacts(name, file.title, viewpoints, len(file.presets), len(file.actors), file.captured is None)
 
 
-def _scene_abilities(scene: SceneFacts, *, ruled: bool) -> tuple[Ability, ...]:
+def _scene_abilities(scene: SceneFacts, *, has_camera_rules: bool) -> tuple[Ability, ...]:
     known: list[tuple[Ability, bool]] = [
         ("move", True), ("drive", True), ("presets", True), ("scene_time", True),
-        ("ground_truth", scene.has_truth), ("virtual_camera", not ruled),
+        ("ground_truth", scene.has_truth), ("virtual_camera", not has_camera_rules),
     ]  # fmt: skip
     return tuple(name for name, has in known if has)
 

@@ -31,7 +31,7 @@ def has_scene_time(spec: str) -> bool:
 
 
 def is_blender_window(spec: str) -> bool:
-    """Return whether a camera is the open scene of a Blender, to which an add-on connects."""
+    """Return whether a camera is the open scene of a Blender window, which an add-on connects."""
     return parse_camera(spec).scheme == BLENDER_WINDOW
 
 

@@ -71,7 +71,7 @@ def create_certificate(name: str, hosts: tuple[str, ...]) -> Certificate:
         except ValueError:
             alternatives.append(x509.DNSName(host))
     now = datetime.now(UTC)
-    made = (
+    certificate = (
         x509.CertificateBuilder().subject_name(subject).issuer_name(subject).public_key(key.public_key())
         .serial_number(x509.random_serial_number())
         .not_valid_before(now - timedelta(days=1)).not_valid_after(now + timedelta(days=VALID_DAYS))
@@ -81,4 +81,4 @@ def create_certificate(name: str, hosts: tuple[str, ...]) -> Certificate:
     private = key.private_bytes(
         serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
     )  # fmt: skip
-    return Certificate(made.public_bytes(serialization.Encoding.PEM).decode(), private.decode())
+    return Certificate(certificate.public_bytes(serialization.Encoding.PEM).decode(), private.decode())

@@ -26,7 +26,7 @@ from scope_ptz.virtual_camera.vapix.replies import Client, Reply
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 MAX_BODY_BYTES = 64 * 1024  # maximum size of a request body
-MAX_FIELDS = 200  # maximum number of arguments in the query, and in the body
+MAX_ARGUMENTS = 200  # maximum number of arguments in the query, and in the body
 
 METHODS = ["GET", "POST"]
 
@@ -41,7 +41,7 @@ class VapixRoutes:
         unit: The VAPIX state of the camera.
         source: Its live picture.
         access: Authenticates clients.
-        truth: Builds the ground truth that is sent with pictures to clients on this machine; None to send none.
+        truth: Builds the ground truth that is sent with pictures to clients on this machine; None if it is not sent.
         closing: Set when the server shuts down.
     """
 
@@ -126,7 +126,7 @@ async def read_arguments(request: Request) -> Arguments:
     query = request.scope["query_string"].decode("latin-1")
     body = (await read_body(request)).decode("utf-8", "replace").strip()
     try:
-        pairs = [pair for text in (query, body) for pair in parse_qsl(text, keep_blank_values=True, max_num_fields=MAX_FIELDS)]
+        pairs = [pair for text in (query, body) for pair in parse_qsl(text, keep_blank_values=True, max_num_fields=MAX_ARGUMENTS)]
     except ValueError as error:
         raise HTTPException(400) from error
     return Arguments(dict(reversed(pairs)))

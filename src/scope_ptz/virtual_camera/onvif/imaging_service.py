@@ -85,15 +85,15 @@ class ImagingService:
 
     def _move(self, request: Request) -> Reply:
         _require_source(request)
-        lens, wanted = self._device.lens, request.Focus
-        if wanted is None:
+        lens, focus_move = self._device.lens, request.Focus
+        if focus_move is None:
             raise invalid_argument("A move request must specify a focus move.", "SettingsInvalid")
-        if wanted.Absolute is not None:
-            lens.move_focus(_validate_range(wanted.Absolute.Position, 0.0, 1.0))
-        elif wanted.Relative is not None:
-            lens.move_focus(lens.focus + _validate_range(wanted.Relative.Distance, -1.0, 1.0))
-        elif wanted.Continuous is not None:
-            lens.drive_focus(_validate_range(wanted.Continuous.Speed, -1.0, 1.0))
+        if focus_move.Absolute is not None:
+            lens.move_focus(_validate_range(focus_move.Absolute.Position, 0.0, 1.0))
+        elif focus_move.Relative is not None:
+            lens.move_focus(lens.focus + _validate_range(focus_move.Relative.Distance, -1.0, 1.0))
+        elif focus_move.Continuous is not None:
+            lens.drive_focus(_validate_range(focus_move.Continuous.Speed, -1.0, 1.0))
         else:
             raise invalid_argument("A move request must be absolute, relative or continuous.", "SettingsInvalid")
         return {}

@@ -58,8 +58,8 @@ class PtzService:
         find_profile(self._device, request.ProfileToken)
         status = {"Position": self.position(self._device.pose()), "UtcTime": device_datetime(self._device)}
         if (moving := self._device.reported_moving()) is not None:
-            word = "MOVING" if moving else "IDLE"
-            status["MoveStatus"] = {"PanTilt": word, "Zoom": word}
+            status_text = "MOVING" if moving else "IDLE"
+            status["MoveStatus"] = {"PanTilt": status_text, "Zoom": status_text}
         return {"PTZStatus": status}
 
     def _absolute(self, request: Request) -> Reply:
@@ -83,11 +83,11 @@ class PtzService:
         if pan_tilt is not None:
             space = s.requested_space(self._spaces.translations, pan_tilt, self._configuration.translation)
             space.check(pan_tilt, "InvalidTranslation")
-            there = self._spaces.turned(here, space, pan_tilt.x, pan_tilt.y)
+            there = self._spaces.turn(here, space, pan_tilt.x, pan_tilt.y)
             pose = replace(there, zoom=pose.zoom)
         if zoom is not None:
             s.requested_space(self._spaces.zoom_translations, zoom, s.ZOOM_TRANSLATION).check(zoom, "InvalidTranslation")
-            pose = replace(pose, zoom=self._spaces.zoomed(here, zoom.x).zoom)
+            pose = replace(pose, zoom=self._spaces.change_zoom(here, zoom.x).zoom)
         self._move(pose, request.Speed)
         return {}
 
@@ -107,7 +107,7 @@ class PtzService:
         if velocity == Velocity():
             self._device.stop(sent_s=self._sent_s(request, latest=False))
             return {}
-        # A move that was sent before a stop but arrives after it is dropped. The reply is that of a completed move.
+        # The device drops a move that was sent before a stop but arrives after that stop. The reply is that of a successful move.
         self._device.drive(velocity, timeout_s=timeout_s, sent_s=self._sent_s(request, latest=True))
         return {}
 

@@ -30,7 +30,7 @@ ZOOM_SPEED = _ZOOM + "ZoomGenericSpeedSpace"
 _TOLERANCE = 1e-4  # clients that calculate in single precision may slightly exceed the end of a range
 
 Range = tuple[float, float]
-UNIT: Range = (-1.0, 1.0)
+SIGNED_UNIT: Range = (-1.0, 1.0)
 FRACTION: Range = (0.0, 1.0)
 
 
@@ -93,18 +93,18 @@ class Spaces:
 
     @property
     def positions(self) -> tuple[Space, ...]:
-        return Space(POSITION, UNIT, UNIT), Space(POSITION_DEGREES, self._pan, self._tilt)
+        return Space(POSITION, SIGNED_UNIT, SIGNED_UNIT), Space(POSITION_DEGREES, self._pan, self._tilt)
 
     @property
     def translations(self) -> tuple[Space, ...]:
-        degrees = Space(TRANSLATION_DEGREES, _both_ways(self._pan), _both_ways(self._tilt))
-        return Space(TRANSLATION, UNIT, UNIT), Space(TRANSLATION_FOV, UNIT, UNIT), degrees
+        degrees = Space(TRANSLATION_DEGREES, _symmetric(self._pan), _symmetric(self._tilt))
+        return Space(TRANSLATION, SIGNED_UNIT, SIGNED_UNIT), Space(TRANSLATION_FOV, SIGNED_UNIT, SIGNED_UNIT), degrees
 
-    velocities = (Space(VELOCITY, UNIT, UNIT),)
+    velocities = (Space(VELOCITY, SIGNED_UNIT, SIGNED_UNIT),)
     speeds = (Space(SPEED, FRACTION),)
     zoom_positions = (Space(ZOOM_POSITION, FRACTION),)
-    zoom_translations = (Space(ZOOM_TRANSLATION, UNIT),)
-    zoom_velocities = (Space(ZOOM_VELOCITY, UNIT),)
+    zoom_translations = (Space(ZOOM_TRANSLATION, SIGNED_UNIT),)
+    zoom_velocities = (Space(ZOOM_VELOCITY, SIGNED_UNIT),)
     zoom_speeds = (Space(ZOOM_SPEED, FRACTION),)
 
     def at_position(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
@@ -118,15 +118,15 @@ class Spaces:
         low, high = self._zoom
         return replace(pose, zoom=low + x * (high - low))
 
-    def turned(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
+    def turn(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
         """Return the pose after a translation of pan and tilt in a space. The pose may lie beyond the limits."""
         if space.uri == TRANSLATION_FOV:
-            return self._centred(pose, x, y)
+            return self._centre(pose, x, y)
         if space.uri == TRANSLATION:
             x, y = x * _span(self._pan) / 2, y * _span(self._tilt) / 2
         return pose.turned(x, y)
 
-    def zoomed(self, pose: Pose, x: float) -> Pose:
+    def change_zoom(self, pose: Pose, x: float) -> Pose:
         """Return the pose after a translation of the zoom by ``x``, a signed fraction of its range, clamped to the range."""
         low, high = self._zoom
         return replace(pose, zoom=min(max(pose.zoom + x * (high - low), low), high))
@@ -142,7 +142,7 @@ class Spaces:
         low, high = self._zoom
         return min(max((pose.zoom - low) / (high - low), 0.0), 1.0)
 
-    def _centred(self, pose: Pose, x: float, y: float) -> Pose:
+    def _centre(self, pose: Pose, x: float, y: float) -> Pose:
         """Return the pose that centres the point ``x``, ``y`` of the image, whose edges are at -1 and 1."""
         size = 1000
         view = Perspective(pose.pan_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), size, round(size / self.aspect))
@@ -154,7 +154,7 @@ def _span(limits: Range) -> float:
     return limits[1] - limits[0]
 
 
-def _both_ways(limits: Range) -> Range:
+def _symmetric(limits: Range) -> Range:
     return -_span(limits), _span(limits)
 
 

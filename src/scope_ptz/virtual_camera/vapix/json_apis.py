@@ -38,7 +38,7 @@ def basic_device_info(unit: VapixUnit, method: str, body: bytes) -> Reply:
     """Answer ``basicdeviceinfo.cgi``."""
     about = identity(unit)
 
-    def some(request: dict[str, Any]) -> dict[str, Any]:
+    def selected_properties(request: dict[str, Any]) -> dict[str, Any]:
         names = request.get("params", {}).get("propertyList") if isinstance(request.get("params"), dict) else None
         if not isinstance(names, list):
             raise _RequestError(MISSING, "Required parameter missing or invalid")
@@ -46,10 +46,14 @@ def basic_device_info(unit: VapixUnit, method: str, body: bytes) -> Reply:
             raise _RequestError(INVALID_VALUE, "Invalid parameter value specified")
         return {"propertyList": {name: about[name] for name in names}}
 
-    def everything(_: dict[str, Any]) -> dict[str, Any]:
+    def all_properties(_: dict[str, Any]) -> dict[str, Any]:
         return {"propertyList": about}
 
-    methods = {"getAllProperties": everything, "getAllUnrestrictedProperties": everything, "getProperties": some}
+    methods = {
+        "getAllProperties": all_properties,
+        "getAllUnrestrictedProperties": all_properties,
+        "getProperties": selected_properties,
+    }
     return _answer(method, body, DEVICE_INFO_VERSION, methods)
 
 
@@ -66,14 +70,14 @@ def _answer(http_method: str, body: bytes, version: str, methods: dict[str, Call
         request = None
     if not isinstance(request, dict):
         return _refusal({}, INVALID_JSON, "Invalid JSON", version)
-    name, asked = request.get("method"), request.get("apiVersion", version)
+    name, requested_version = request.get("method"), request.get("apiVersion", version)
     head = {key: request[key] for key in ("context",) if isinstance(request.get(key), str)}
     if not isinstance(name, str):
         return _refusal(head, MISSING, "Required parameter missing or invalid", version)
     head["method"] = name[:100]
     if name == "getSupportedVersions":
         return replies.document({"apiVersion": version, **head, "data": {"apiVersions": [version]}})
-    if not isinstance(asked, str) or asked.split(".")[0] != version.split(".")[0]:
+    if not isinstance(requested_version, str) or requested_version.split(".")[0] != version.split(".")[0]:
         return _refusal(head, WRONG_VERSION, "Requested API version is not supported", version)
     if name not in methods:
         return _refusal(head, UNKNOWN_METHOD, "Method not supported", version)

@@ -100,20 +100,20 @@ def _doorway(s: Solid, spec: Front, wood: bpy.types.Material) -> None:
 def _room(s: Solid, spec: Front) -> None:
     """Add the room behind the glass: five inner faces and a row of ceiling lamps."""
     w, d, z1 = spec.width_m / 2 - 0.06, -INSIDE_M, 2.74
-    walls = _inside(f"{spec.room} {spec.lit}", PALETTE[spec.room], 0.42 if spec.lit else 0.03)
-    floor = _inside(f"floor {spec.lit}", (0.16, 0.105, 0.065), 0.25 if spec.lit else 0.02)
-    top = _inside(f"ceiling {spec.lit}", (0.6, 0.6, 0.58), 0.5 if spec.lit else 0.03)
+    walls = _indoor_material(f"{spec.room} {spec.lit}", PALETTE[spec.room], 0.42 if spec.lit else 0.03)
+    floor = _indoor_material(f"floor {spec.lit}", (0.16, 0.105, 0.065), 0.25 if spec.lit else 0.02)
+    top = _indoor_material(f"ceiling {spec.lit}", (0.6, 0.6, 0.58), 0.5 if spec.lit else 0.03)
     z0 = 0.13
     s.add([(-w, d, z0), (w, d, z0), (w, d, z1), (-w, d, z1)], [(1, 0, 3, 2)], walls)
     for x in (-w, w):
         s.add([(x, 0, z0), (x, d, z0), (x, d, z1), (x, 0, z1)], [(0, 1, 2, 3)], walls)
     s.add([(-w, 0, z0), (w, 0, z0), (w, d, z0), (-w, d, z0)], [(0, 1, 2, 3)], floor)
     s.add([(-w, 0, z1), (w, 0, z1), (w, d, z1), (-w, d, z1)], [(3, 2, 1, 0)], top)
-    lamp = _inside(f"shop lamp {spec.lit}", (1.0, 0.93, 0.80), 3.2 if spec.lit else 0.0)
+    lamp = _indoor_material(f"shop lamp {spec.lit}", (1.0, 0.93, 0.80), 3.2 if spec.lit else 0.0)
     for k in range(max(2, round(spec.width_m / 1.6))):
         x = -w + 2 * w * (k + 0.5) / max(2, round(spec.width_m / 1.6))
         s.box((0.16, 0.9, 0.04), (x, -1.2, z1 - 0.03), lamp, 0.01)
-    shelf = _inside(f"shop shelf {spec.lit}", (0.30, 0.19, 0.10), 0.3 if spec.lit else 0.02)
+    shelf = _indoor_material(f"shop shelf {spec.lit}", (0.30, 0.19, 0.10), 0.3 if spec.lit else 0.02)
     for z in (0.75, 1.25, 1.75, 2.2):
         s.box((2 * w - 0.4, 0.30, 0.035), (0, d + 0.17, z), shelf, 0.004)
     for k in range(4):
@@ -132,7 +132,7 @@ def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
         while x < half_m - 0.3:
             tint = rng.choice(STOCK)
             width, height = rng.uniform(0.07, 0.22), rng.uniform(0.12, 0.36)
-            goods = _inside(f"stock {tint}", PALETTE[tint], 0.30)
+            goods = _indoor_material(f"stock {tint}", PALETTE[tint], 0.30)
             for _ in range(rng.randrange(2, 6)):
                 if x > half_m - 0.3:
                     break
@@ -141,7 +141,7 @@ def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
             x += rng.choice((0.02, 0.05, 0.25))
 
 
-def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.types.Material:
+def _indoor_material(name: str, colour: tuple[float, float, float], glow: float) -> bpy.types.Material:
     """Return a slightly emissive indoor material. Emission renders faster and with less noise than lamps behind glass."""
     full = f"inside {name}"
     existing = bpy.data.materials.get(full)
@@ -192,13 +192,13 @@ def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | Non
     s.box((board, 0.10, 0.52), (0, 0.08, 3.085), paint(colour, dirt=0.15, roughness=0.30), 0.012)
     for z in (2.84, 3.33):
         s.box((board, 0.12, 0.03), (0, 0.085, z), paint(ink if ink in PALETTE else "white", dirt=0.1), 0.006)
-    room = board - 0.30
+    available = board - 0.30
     shift = 0.0
     if small:
         side = extent(small, 0.085)
-        room -= side + 0.25
+        available -= side + 0.25
         shift = -(side + 0.25) / 2
-    cap = min(cap_m, cap_m * room / extent(name, cap_m))
+    cap = min(cap_m, cap_m * available / extent(name, cap_m))
     with s.at(0, 0.131, 3.085):
         write(s, name, cap, shift, 0.0, ink, lift=0.002)
         if small:

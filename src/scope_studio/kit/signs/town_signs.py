@@ -105,15 +105,22 @@ def post_sign(
     s = Solid(f"{background} sign")
     caps = [cap * (1.5 if k == 0 else 0.8) for k in range(len(lines))]
     width = max(extent(line, c) for line, c in zip(lines, caps, strict=True)) + 0.22
-    tall = sum(c * 1.7 for c in caps) + 0.14 + (0.30 if pointer else 0.0)
-    s.rod((0, -0.05, 0), (0, -0.05, height + tall), 0.032, steel())
-    with s.at(0, 0, height + tall / 2):
-        board(s, width, tall, background, edge=0.018, back=False)
-        v = tall / 2 - 0.07
+    board_height = sum(c * 1.7 for c in caps) + 0.14 + (0.30 if pointer else 0.0)
+    s.rod((0, -0.05, 0), (0, -0.05, height + board_height), 0.032, steel())
+    with s.at(0, 0, height + board_height / 2):
+        board(s, width, board_height, background, edge=0.018, back=False)
+        v = board_height / 2 - 0.07
         for line, c in zip(lines, caps, strict=True):
             v -= c * 0.85
             write(s, line, c, 0, v, "white" if background not in ("white", "yellow") else "black")
             v -= c * 0.85
         if pointer:
-            arrow(s, 0.0, -tall / 2 + 0.20, 0.22, pointer, sheet("white" if background not in ("white", "yellow") else "black"))
+            arrow(
+                s,
+                0.0,
+                -board_height / 2 + 0.20,
+                0.22,
+                pointer,
+                sheet("white" if background not in ("white", "yellow") else "black"),
+            )
     return s.built()

@@ -47,6 +47,7 @@ def build(stage: Stage) -> None:
 
 
 def _paint() -> dict[str, list[Stencil]]:
+    """Return the painted rectangles on the roads, by colour."""
     near, far = JUNCTION
     white: list[Stencil] = []
     y = -46.0
@@ -78,10 +79,12 @@ def _paint() -> dict[str, list[Stencil]]:
 
 
 def _steps(start: float, stop: float, step: float) -> list[float]:
+    """Return positions at equal distances."""
     return [start + step * k for k in range(max(0, int((stop - start) / step)))]
 
 
 def _gutters() -> tuple[Stencil, ...]:
+    """Return the strips along which puddles are larger."""
     near, far = JUNCTION
     return (
         Stencil(WEST_KERB - 0.2, WEST_KERB + 1.1, -50, 50),
@@ -94,6 +97,7 @@ def _gutters() -> tuple[Stencil, ...]:
 
 
 def _blocks() -> list[list[tuple[float, float]]]:
+    """Return the outlines of the footways between the roads."""
     near, far = JUNCTION
     radius, out = 3.2, 130.0
     west = [(-out, -near), *_corner(WEST_KERB, -near, radius, 270), *_corner(WEST_KERB, near, radius, 0), (-out, near)]
@@ -266,12 +270,12 @@ def _background(stage: Stage) -> None:
     rng = random.Random("behind")
     species = (vegetation.OAK, vegetation.LIME, vegetation.COPPER, vegetation.BIRCH, vegetation.POPLAR)
     prototypes = [vegetation.tree(sp, 60 + k, detail=0.16) for k, sp in enumerate(species)]
-    fresh = set(range(len(prototypes)))
+    unused = set(range(len(prototypes)))
 
     def scatter(x: float, y: float, scale: float) -> None:
         k = rng.choices(range(len(prototypes)), weights=(5, 5, 1, 3, 2))[0]
-        built = prototypes[k] if k in fresh else prototypes[k].copy()
-        fresh.discard(k)
+        built = prototypes[k] if k in unused else prototypes[k].copy()
+        unused.discard(k)
         stage.put(built, (x, y, 0.1), rng.uniform(0, 360), scale=scale)
 
     for _ in range(46):

@@ -15,7 +15,9 @@ from scope_studio.kit.vehicles import tram
 
 FOUNTAIN = (1.2, 6.2)
 MAST = (4.0, -8.0)
+"""Positions (x, y) of the fountain and the camera mast in metres."""
 PLATFORM_TOP_M = 0.16
+"""Height of the tram platform in metres."""
 BENCHES = [
     (1.2, 1.6, 180.0, "bench by the fountain"),
     (5.8, 6.2, 90.0, "bench by the fountain"),
@@ -26,6 +28,7 @@ BENCHES = [
     (-8.5, 22.0, 180.0, "bench before the station"),
     (7.6, -9.6, 0.0, "bench by the street"),
 ]
+"""x, y, bearing and name of each bench."""
 TREES = [
     (16.6, 15.8),
     (20.3, 12.2),
@@ -38,6 +41,7 @@ TREES = [
     (-29.5, 16.0),
     (-28.0, 22.5),
 ]
+"""Positions (x, y) of the trees."""
 
 
 def build(stage: Stage) -> None:

@@ -9,7 +9,7 @@ from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import cafe, produce, stalls
 
-FACING = 150.0
+FRONT_BEARING_DEG = 150.0
 """Bearing in degrees that the fronts of the stalls face."""
 
 Goods = tuple[str, str | None]
@@ -102,12 +102,14 @@ STALLS: list[Stall] = [
 """Name board, canvas colours, position and goods of each stall."""
 
 EMPTY_STALL = (-5.8, 15.8)
+"""Position (x, y) of the stall without goods."""
 BLOOMS = ("red", "yellow", "pink", "white", "purple", "orange")
 TERRACE_ROWS = (-7.4, -4.4, -1.4, 1.6)
 TERRACE_COLUMNS = (-32.2, -28.9)
+"""y coordinates of the rows, and x coordinates of the columns, of café tables."""
 
 
-def at_front(place: tuple[float, float], right: float, out: float, bearing: float = FACING) -> tuple[float, float]:
+def at_front(place: tuple[float, float], right: float, out: float, bearing: float = FRONT_BEARING_DEG) -> tuple[float, float]:
     """Return the world position of a point that is given relative to a front.
 
     ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
@@ -128,13 +130,18 @@ def build(stage: Stage) -> None:
         "market stall",
         "empty market stall",
         (x, y, 0),
-        FACING,
+        FRONT_BEARING_DEG,
         state="closed",
         canopy="rolled up",
     )
     cx, cy = at_front(EMPTY_STALL, 0.4, 0.5)
     stage.place(
-        produce.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
+        produce.price_card("BACK AT\nNOON", cap=0.09),
+        "notice",
+        "notice on the empty stall",
+        (cx, cy, 0.82),
+        FRONT_BEARING_DEG,
+        parent=empty,
     )
     for k, (right, out) in enumerate(((-2.2, -0.6), (-2.2, 0.1), (2.3, -0.9))):
         x, y = at_front(EMPTY_STALL, right, out)
@@ -144,7 +151,7 @@ def build(stage: Stage) -> None:
                 "crate",
                 "empty crate",
                 (x, y, 0.165 * level),
-                FACING + 7 * level,
+                FRONT_BEARING_DEG + 7 * level,
                 state="empty",
                 material="timber",
             )
@@ -163,7 +170,7 @@ def _stall(
         "market stall",
         f"{colour} market stall",
         (*place, 0.0),
-        FACING,
+        FRONT_BEARING_DEG,
         colour=colour,
         pattern="striped" if striped else "plain",
         state="open",
@@ -179,13 +186,21 @@ def _stall(
             f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: produce.produce_crate(kind, seed=k % 2, colour=colour)
         )
         crate = stage.place(
-            built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=stall_id, contents=kind, state="full"
+            built,
+            "crate",
+            f"crate of {kind}",
+            (x, y, z),
+            FRONT_BEARING_DEG,
+            lean_deg=(-14, 0),
+            parent=stall_id,
+            contents=kind,
+            state="full",
         )
         if card:
             cx, cy = at_front(place, right, out - 0.19)
             stage.place(
                 produce.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
-                f"price card for {card.split(chr(10))[0].lower()}", (cx, cy, z + 0.06), FACING, parent=crate,
+                f"price card for {card.split(chr(10))[0].lower()}", (cx, cy, z + 0.06), FRONT_BEARING_DEG, parent=crate,
             )  # fmt: skip
     for k, right in enumerate((-1.0, 0.2, 1.1)):  # goods under and behind the counter
         if (k + len(sign)) % 2:
@@ -195,7 +210,7 @@ def _stall(
                 "crate",
                 "empty crate",
                 (x, y, 0.0),
-                FACING + 20 * right,
+                FRONT_BEARING_DEG + 20 * right,
                 parent=stall_id,
                 state="empty",
                 material="timber",
@@ -217,7 +232,7 @@ def _goods_of(sign: str) -> str:
 
 
 def _flowers(stage: Stage, prototypes: Prototypes) -> None:
-    place = STALLS[3][2]
+    place = STALLS[3][2]  # PETAL & STEM
     for k in range(14):
         bloom = BLOOMS[(k * 5 + k // 6) % 6]
         row, column = divmod(k, 5)
@@ -233,7 +248,7 @@ def _flowers(stage: Stage, prototypes: Prototypes) -> None:
             "price card",
             f"price card for {text.split(chr(10))[0].lower()}",
             (x, y, 0.84),
-            FACING,
+            FRONT_BEARING_DEG,
         )
 
 

@@ -11,7 +11,7 @@ from scope_studio.kit.people import characters, luggage, poses, prams, seated, s
 from scope_studio.kit.people.poses import Pose, walking
 from scope_studio.scenes.station_square import traffic
 from scope_studio.scenes.station_square.fixtures import BENCHES, PLATFORM_TOP_M
-from scope_studio.scenes.station_square.market import FACING, STALLS, at_front, seat_place
+from scope_studio.scenes.station_square.market import FRONT_BEARING_DEG, STALLS, at_front, seat_place
 
 CASE_GRIP: tuple[float, float, float] = (0.24, -0.16, 0.86)
 """Position in metres of the right hand of a walking person who pulls a suitcase."""
@@ -88,11 +88,18 @@ def _market(stage: Stage) -> None:
         x, y = at_front(STALLS[k][2], (-0.5, 0.6, 0.0)[k % 3], -0.85)
         trade = STALLS[k][0].split()[-1].lower()
         _person(
-            stage, (x, y, 0), FACING + (12, -15, 0)[k % 3], f"stallholder in {top}", top, 300 + k, role="stallholder", stall=trade
+            stage,
+            (x, y, 0),
+            FRONT_BEARING_DEG + (12, -15, 0)[k % 3],
+            f"stallholder in {top}",
+            top,
+            300 + k,
+            role="stallholder",
+            stall=trade,
         )
     for k, (stall, right, out, top, pose, held) in enumerate(CUSTOMERS):
         x, y = at_front(STALLS[stall][2], right, out)
-        turn = FACING + 180 + (-14, 10, 22, -8)[k % 4]
+        turn = FRONT_BEARING_DEG + 180 + (-14, 10, 22, -8)[k % 4]
         _person(stage, (x, y, 0), turn, f"customer in {top}", top, 340 + k, pose=pose, holding=held, role="customer")
 
 

@@ -76,7 +76,7 @@ def _trees(stage: Stage, rng: random.Random) -> None:
     species = (vegetation.OAK, vegetation.LIME, vegetation.POPLAR)
     far = [vegetation.tree(sp, 7 + k, detail=0.16) for k, sp in enumerate(species)]
     used: set[int] = set()
-    for k in range(150):
+    for _ in range(150):
         a, r = rng.uniform(0, 2 * math.pi), rng.uniform(70, 420)
         x, y = r * math.cos(a), r * math.sin(a)
         if (abs(y + 18) < 26 and abs(x) < 112) or (abs(x) < 48 and -95 < y < 74):
@@ -85,7 +85,6 @@ def _trees(stage: Stage, rng: random.Random) -> None:
         built = far[index].copy() if index in used else far[index]
         used.add(index)
         stage.put(built, (x, y, -0.4), rng.uniform(0, 360), scale=rng.uniform(0.8, 1.3))
-        del k
 
 
 def church(stage: Stage) -> None:
