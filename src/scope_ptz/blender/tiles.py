@@ -217,8 +217,10 @@ def _needed(targets: Sequence[Target]) -> Mask:
 
 
 def _outlines(ids: NDArray[np.uint16], projection: Equirectangular) -> NDArray[np.float64]:
-    """Return the length of the instance outlines in each grid square, on the grid of ``_needed``. The panorama must span 360
-    degrees."""
+    """Return the length of the instance outlines in each grid square, on the grid of ``_needed``.
+
+    The panorama must span 360 degrees.
+    """
     edge = np.zeros(ids.shape, dtype=bool)
     edge[:, 1:] = ids[:, 1:] != ids[:, :-1]
     edge[1:] |= ids[1:] != ids[:-1]

@@ -86,8 +86,10 @@ class SceneDescription(_Model):
 
 @dataclass(frozen=True, slots=True)
 class WindowPreset:
-    """A preset: a pose at a viewpoint. ``saved`` is True if it was saved through SCOPE, and can therefore be replaced and
-    removed."""
+    """A preset: a pose at a viewpoint.
+
+    ``saved`` is True if it was saved through SCOPE, and can therefore be replaced and removed.
+    """
 
     info: PresetInfo
     viewpoint: str

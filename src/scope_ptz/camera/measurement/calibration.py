@@ -161,8 +161,10 @@ class _Response:
 
 
 async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response:
-    """Measure, at the widest zoom, how far the view turns for each reported degree. The focal length comes from the pictures
-    alone."""
+    """Measure, at the widest zoom, how far the view turns for each reported degree.
+
+    The focal length comes from the pictures alone.
+    """
     stated = camera.info.optics.hfov_deg(base.zoom)
     centre, here = await _move_and_take(camera, base)
     focal = r.focal_px(stated, centre.shape[1])

@@ -80,8 +80,10 @@ def api_application(site: Site, access: Access) -> FastAPI:
 
 
 def application(site: Site, access: Access, *routes: BaseRoute) -> ASGIApp:
-    """Return the API behind its access checks, for a server without the console. ``routes`` are further routes, such as that of
-    MCP."""
+    """Return the API behind its access checks, for a server without the console.
+
+    ``routes`` are further routes, such as that of MCP.
+    """
 
     async def root(_: Request) -> Response:
         return PlainTextResponse(f"SCOPE {__version__}. The API is at {API_PREFIX}{VERSION_PREFIX}.\n")

@@ -80,8 +80,9 @@ class PoseModel(BaseModel):
 
 
 class ArrivalModel(BaseModel):
-    """The result of a move. ``pose`` is the pose at which the camera arrived. ``clamped`` names the axes that were stopped by a
-    limit of the device.
+    """The result of a move.
+
+    ``pose`` is the pose at which the camera arrived. ``clamped`` names the axes that were stopped by a limit of the device.
     ``limited_by`` describes any other limit that stopped the camera; it is empty if there was none.
     """
 
@@ -410,8 +411,9 @@ class SignIn(Body):
 
 
 class ClientInfo(BaseModel):
-    """The client that sent the request. ``client`` is its key, as in ``ControlRequestModel``. ``signs_in`` is true if the server
-    requires clients to sign in with a token.
+    """The client that sent the request.
+
+    ``client`` is its key, as in ``ControlRequestModel``. ``signs_in`` is true if the server requires sign-in with a token.
     """
 
     name: str

@@ -30,8 +30,9 @@ MAX_SESSIONS = 200
 
 @asynccontextmanager
 async def serve_mcp(site: Site, access: Access) -> AsyncIterator[Route]:
-    """Serve MCP while the context is open, and yield the route, which must be mounted behind an ``AccessMiddleware``. The
-    middleware checks ``Host``, ``Origin`` and the token of each request, so the transport's own checks are not used.
+    """Serve MCP while the context is open, and yield the route, which must be mounted behind an ``AccessMiddleware``.
+
+    The middleware checks ``Host``, ``Origin`` and the token of each request, so the transport's own checks are not used.
 
     Args:
         site: The site, whose context the caller must enter.

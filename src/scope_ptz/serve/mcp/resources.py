@@ -46,8 +46,10 @@ class ScenePresetModel(BaseModel):
 
 
 class SceneModel(BaseModel):
-    """A scene that a simulated camera shows. It does not list the objects in the scene, because the agent must find them with the
-    camera."""
+    """A scene that a simulated camera shows.
+
+    It does not list the objects in the scene, because the agent must find them with the camera.
+    """
 
     name: str
     title: str

@@ -1,2 +1,1 @@
-"""The services of a server, independent of HTTP: cameras and control of them, pairs of models, runs, conversations and
-evaluations."""
+"""The services of a server, independent of HTTP: cameras and their control, models, runs, conversations and evaluations."""

@@ -175,8 +175,10 @@ PETALS = {
 def blooms(
     s: Solid, colours: Sequence[str], spread_m: float, low: float, high: float, count: int, seed: int, *, trailing: bool = False
 ) -> None:
-    """Add flower heads and leaves between two heights. They stand upright or, with ``trailing``, hang over the edge of a
-    container."""
+    """Add flower heads and leaves between two heights.
+
+    They stand upright or, with ``trailing``, hang over the edge of a container.
+    """
     rng = Random(f"blooms {seed} {colours}")
     green = [plain("flower leaf 0", (0.085, 0.190, 0.040), 0.6), plain("flower leaf 1", (0.15, 0.27, 0.07), 0.6)]
     for k in range(count * 6):

@@ -22,8 +22,10 @@ MAX_CACHED_RUNS = 4
 
 
 class Trajectories:
-    """Reads runs of evaluations. The most recently read runs are cached, because clients request each picture of a run
-    separately."""
+    """Reads runs of evaluations.
+
+    The most recently read runs are cached, because clients request each picture of a run separately.
+    """
 
     def __init__(self) -> None:
         self._open: OrderedDict[tuple[str, str, float], SampleFiles] = OrderedDict()
