@@ -184,6 +184,21 @@ async def test_processes_that_an_agent_started_end_with_it(tmp_path: Path, endin
     assert len(pids) == 2 and not any(map(is_running, pids))
 
 
+@pytest.mark.parametrize("number", ["SIGKILL", "SIGSTOP"])
+async def test_an_agent_that_attacks_its_keeper(tmp_path: Path, number: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pipe, "KEEPER_S", 3.0)
+    body = f"""
+    ctypes.CDLL(None).prctl(1, 0, 0, 0, 0)
+    open(f"pid-{{os.getpid()}}", "w").close()
+    os.kill(os.getppid(), signal.{number})
+    time.sleep(60)
+    """
+    error = await failure_of(tmp_path, body, imports="import ctypes, os, signal, time")
+    assert error.kind in ("agent-timeout", "agent-exited")
+    (pid,) = pids_in(tmp_path)
+    wait_for_end(pid)
+
+
 async def test_a_cancelled_run_ends_the_agent(tmp_path: Path) -> None:
     body = """
     open(f"pid-{os.getpid()}", "w").close()

@@ -40,6 +40,9 @@ async def test_an_agent_works_as_outside(tmp_path: Path) -> None:
     assert reply.text == f"4 helped 3 {tmp_path}"
 
 
+WRITE_ATTEMPTS = ("/usr/x", "/x", "new.txt", "/etc/passwd", "/proc/sys/kernel/core_pattern", "/proc/sys/vm/drop_caches")
+
+
 @needs_sandbox
 async def test_what_is_out_of_reach(tmp_path: Path) -> None:
     (tmp_path / "home").mkdir()
@@ -61,7 +64,7 @@ async def test_what_is_out_of_reach(tmp_path: Path) -> None:
         "processes": sum(name.isdigit() for name in os.listdir("/proc")),
         "home": os.path.exists({str(Path.home())!r} + "/.bashrc"),
         "tmp": os.listdir("/tmp"),
-        "write": [attempt(lambda place=place: open(place, "w")) for place in ("/usr/x", "/x", "new.txt", "/etc/passwd")],
+        "write": [attempt(lambda place=place: os.open(place, os.O_WRONLY | os.O_CREAT)) for place in {WRITE_ATTEMPTS}],
         "kill": attempt(lambda: os.kill({1 + 2**21}, 0)),
         "environment": sorted(os.environ),
     }})

@@ -51,7 +51,7 @@ def test_failures_of_the_agent_are_scored(scope: Scope, tasks_file: Path, folder
     }  # fmt: skip
     assert {trials[name].outcome for name in trials if trials[name].headline == "incorrect"} == {"planner_error"}
     assert all(trials[name].error_mode for name in trials if trials[name].headline == "incorrect")
-    trials["counting-001"].reason.startswith("the agent failed (agent-exited): ")
+    assert trials["counting-001"].reason.startswith("the agent failed (agent-exited): ")
     assert "SIGABRT" in trials["counting-001"].answer
     assert trials["counting-002"].reason.startswith("the agent failed (agent-timeout): ")
     assert "ZeroDivisionError: after the work" in trials["single-call-001"].reason

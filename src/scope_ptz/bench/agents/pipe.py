@@ -40,6 +40,8 @@ WRITE_S = 0.5
 KEEPER_S = keeper.TERMINATE_S + keeper.GIVE_UP_S + GRACE_S + 5.0
 """Seconds after which the keeper itself is killed."""
 CHUNK_BYTES = 65_536
+_NO_GROUP = 2**31 - 1
+"""Id of a process group that does not exist. The group 0 would be this process's own."""
 _PIPE_ERRORS = (anyio.EndOfStream, anyio.ClosedResourceError, anyio.BrokenResourceError)
 
 
@@ -189,8 +191,11 @@ class PipeChannel(AgentChannel):
 def _read_report(status: int) -> ExitReport:
     """Read the keeper's report, and close the pipe. The keeper has ended, so that reading does not block."""
     with os.fdopen(status, "rb") as pipe:
-        data = pipe.read()
+        pid, _, data = pipe.read().partition(b"\n")
     if not data:
+        # The agent has killed its keeper, which can end it no more.
+        with suppress(OSError):
+            os.killpg(int(pid or 0) or _NO_GROUP, signal.SIGKILL)
         return ExitReport()
     fields = json.loads(data)
     lines = [line for line in fields["stderr"].splitlines() if line.strip()]

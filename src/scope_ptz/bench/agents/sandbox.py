@@ -30,6 +30,10 @@ _INSTALLATIONS = (
 _ISOLATED = ("--unshare-all", "--die-with-parent", "--new-session", "--cap-drop", "ALL")
 
 
+# If SCOPE runs as root, so does the agent, and /proc has files that root can write without any capability.
+_KERNEL = ("--proc", "/proc", "--remount-ro", "/proc", "--dev", "/dev")
+
+
 @dataclass(frozen=True, slots=True)
 class SandboxContents:
     """What a sandbox shows and hides.
@@ -90,18 +94,7 @@ def sandboxed(command: Sequence[str], contents: SandboxContents) -> tuple[str, .
     folder = contents.folder
     if folder is not None:
         _check_folder(folder.resolve(), contents.hidden)
-    options = [
-        "bwrap",
-        *_ISOLATED,
-        "--hostname",
-        "agent",
-        "--proc",
-        "/proc",
-        "--dev",
-        "/dev",
-        *_scratch(SHARED_MEMORY),
-        *_scratch(SCRATCH),
-    ]
+    options = ["bwrap", *_ISOLATED, "--hostname", "agent", *_KERNEL, *_scratch(SHARED_MEMORY), *_scratch(SCRATCH)]
     options += _system()
     mounts = [Path("/usr")]
     for path in (*contents.shown, *([folder] if folder is not None else [])):

@@ -75,6 +75,10 @@ def local_agent(agent: str, options: AgentOptions, hidden: tuple[Path, ...] = ()
         ConfigError: The options contradict each other, or name something that does not exist.
     """
     name, folder = agent_name(agent, options), Path.cwd()
+    if sys.platform == "win32" and not options.in_process:
+        raise ConfigError(
+            "External agents need Linux or macOS. On Windows, use --agent-in-process or the Windows Subsystem for Linux."
+        )
     if options.command:
         return _program(name, options, folder, hidden)
     if options.in_process:
