@@ -26,6 +26,7 @@ _SYSTEM_FILES = (
 _PACKAGES = ("scope_ptz", "scope_studio", "scope_addon")
 _INSTALLATIONS = (
     "", "*/", "src/", "*/src/", "lib*/python*/*-packages/", "local/lib*/python*/*-packages/", "*/lib*/python*/*-packages/",
+    "envs/*/lib*/python*/*-packages/",
 )  # fmt: skip
 _ISOLATED = ("--unshare-all", "--die-with-parent", "--new-session", "--cap-drop", "ALL")
 
