@@ -147,7 +147,7 @@ echo "{\"type\": \"reply\", \"text\": \"There are $count $1.\"}"
 async def test_a_shell_script(tmp_path: Path) -> None:
     (tmp_path / "their agent.sh").write_text(SHELL)
     agent = started_in(tmp_path, "scope", AgentOptions(command="sh 'their agent.sh' '$HOME; balls'"))
-    assert (agent.name, agent.isolation) == ("command:sh", "isolated")
+    assert (agent.name, agent.isolation) == ("command:their agent.sh", "isolated")
     reply, steps = await play(agent, lambda _: {"count": 4})
     assert reply.text == "There are 4 $HOME; balls." and steps[0][0].arguments == {"description": "balls"}
     before = agent.source

@@ -79,6 +79,7 @@ async def failure_of(folder: Path, body: str, options: AgentOptions | None = Non
     [
         ("raise ZeroDivisionError('oops')", "agent-error", "ZeroDivisionError: oops"),
         ("os.kill(os.getpid(), 11)", "agent-exited", "SIGSEGV"),
+        ("os.kill(os.getpid(), 40)", "agent-exited", "signal 40"),
         ("os._exit(3)", "agent-exited", "exit code 3"),
         ("os._exit(0)", "agent-exited", "exit code 0"),
         ("sys.exit('I give up')", "agent-exited", "I give up"),
@@ -184,16 +185,28 @@ async def test_processes_that_an_agent_started_end_with_it(tmp_path: Path, endin
     assert len(pids) == 2 and not any(map(is_running, pids))
 
 
-@pytest.mark.parametrize("number", ["SIGKILL", "SIGSTOP"])
-async def test_an_agent_that_attacks_its_keeper(tmp_path: Path, number: str, monkeypatch: pytest.MonkeyPatch) -> None:
+GARBLE = """
+for name in os.listdir(f'/proc/{os.getppid()}/fd'):
+        if os.readlink(f'/proc/{os.getppid()}/fd/{name}').startswith('pipe'):
+            with contextlib.suppress(OSError):
+                descriptor = os.open(f'/proc/{os.getppid()}/fd/{name}', os.O_WRONLY | os.O_NONBLOCK)
+                os.write(descriptor, b'0\\n[1]\\n')
+"""
+
+
+@pytest.mark.parametrize(
+    "attack", ["os.kill(os.getppid(), signal.SIGKILL)", "os.kill(os.getppid(), signal.SIGSTOP)", GARBLE.strip()],
+    ids=["kills", "stops", "garbles"],
+)  # fmt: skip
+async def test_an_agent_that_attacks_its_keeper(tmp_path: Path, attack: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipe, "KEEPER_S", 3.0)
     body = f"""
     ctypes.CDLL(None).prctl(1, 0, 0, 0, 0)
     open(f"pid-{{os.getpid()}}", "w").close()
-    os.kill(os.getppid(), signal.{number})
+    {attack}
     time.sleep(60)
     """
-    error = await failure_of(tmp_path, body, imports="import ctypes, os, signal, time")
+    error = await failure_of(tmp_path, body, imports="import contextlib, ctypes, os, signal, time")
     assert error.kind in ("agent-timeout", "agent-exited")
     (pid,) = pids_in(tmp_path)
     wait_for_end(pid)

@@ -101,6 +101,7 @@ class Keeper:
         """Wait until the program has ended or must be ended, then end everything that is left."""
         readable: list[int] = [self.orders.control, self.wake, self.stderr]
         deadlines: list[tuple[float, int]] = []
+        next_check = 0.0
         while self.wait_status is None and self.exceeded is None:
             for descriptor in select.select(readable, [], [], CHECK_S)[0]:
                 if descriptor == self.stderr:
@@ -114,7 +115,9 @@ class Keeper:
             self._reap()
             while deadlines and time.monotonic() >= deadlines[-1][0] and self.wait_status is None:
                 self._signal_group(deadlines.pop()[1])
-            self._check_limits()
+            if time.monotonic() >= next_check:
+                self._check_limits()
+                next_check = time.monotonic() + CHECK_S
         self._end_all()
         while self.stderr in readable and select.select([self.stderr], [], [], 0)[0]:
             self._read_stderr(readable)
@@ -150,7 +153,7 @@ class Keeper:
             self.exceeded = "processes"
         elif self.stderr_bytes > self.orders.stderr_bytes:
             self.exceeded = "stderr"
-        elif self.orders.memory_mb is not None and memory_bytes(pids) > self.orders.memory_mb * 1_000_000:
+        elif self.orders.memory_mb is not None and exceeds_memory(pids, self.orders.memory_mb * 1_000_000):
             self.exceeded = "memory"
 
     def _end_all(self) -> None:
@@ -193,16 +196,31 @@ def descendants(root: int) -> list[int]:
     return found
 
 
-def memory_bytes(pids: list[int]) -> int:
-    """Return the memory of processes in bytes, without swapped pages. Pages that several of them share are counted once."""
-    total = 0
+def exceeds_memory(pids: list[int], limit_bytes: int) -> bool:
+    """Return whether processes together use more memory than a limit. Pages that several of them share are counted once."""
+    # The exact sum takes long for large processes, and is never above the simple one.
+    return simple_memory_bytes(pids) > limit_bytes and exact_memory_bytes(pids) > limit_bytes
+
+
+def simple_memory_bytes(pids: list[int]) -> int:
+    """Return the memory of processes in bytes. Shared pages are counted once for each process."""
+    page_bytes = os.sysconf("SC_PAGE_SIZE")
+    return sum(int(text.split()[1]) * page_bytes for text in _readable(pids, "statm") if text)
+
+
+def exact_memory_bytes(pids: list[int]) -> int:
+    """Return the memory of processes in bytes. Shared pages are counted once."""
+    lines = [line for text in _readable(pids, "smaps_rollup") for line in text.splitlines()]
+    return sum(int(line.split()[1]) * 1024 for line in lines if line.startswith("Pss:"))
+
+
+def _readable(pids: list[int], name: str) -> list[str]:
+    """Return the texts of a file of each process. Processes that have ended are left out."""
+    texts = []
     for pid in pids:
-        try:
-            lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
-        except OSError:
-            continue  # the process has ended
-        total += sum(int(line.split()[1]) * 1024 for line in lines if line.startswith("Pss:"))
-    return total
+        with suppress(OSError):
+            texts.append(Path(f"/proc/{pid}/{name}").read_text())
+    return texts
 
 
 def control_process(option: int, value: int) -> None:
