@@ -10,6 +10,8 @@ from scope_ptz.bench.engine.context import Watcher
 from scope_ptz.factory.models import ModelOptions
 
 if TYPE_CHECKING:
+    from scope_ptz.bench.agents.channel import Isolation
+    from scope_ptz.bench.agents.launch import AgentOptions
     from scope_ptz.bench.engine.estimate import Estimate, Price
     from scope_ptz.bench.judging.judgement_tally import JudgementTally
     from scope_ptz.bench.scoring.trials import Evaluation, Trial
@@ -61,6 +63,7 @@ class EvaluationOptions:
         epochs: Number of runs of each task.
         seed: Seed for every random choice.
         agent: "scope", or ``module:Class`` of an external agent.
+        agent_options: How an external agent is started and limited; None for the defaults. Its command replaces ``agent``.
         max_steps: Number of planner steps after which a run ends.
         time_s: Number of wall-clock seconds after which a run ends; None for no limit.
         concurrency: Number of concurrent runs; None for a default that depends on the models.
@@ -82,6 +85,7 @@ class EvaluationOptions:
     epochs: int = 1
     seed: int = 1
     agent: str = BUILT_IN_AGENT
+    agent_options: AgentOptions | None = None
     max_steps: int = 60
     time_s: float | None = None
     concurrency: int | None = None
@@ -107,6 +111,7 @@ class EvaluationPlan:
         finished: Trials from the log that is resumed.
         estimate: Estimate of duration and cost.
         asks_planner_server: Whether the planner calls a model server. Otherwise planning costs nothing.
+        isolation: How an external agent is separated from tasks, ground truth and checks; None for the built-in agent loop.
         origin: A sentence that names the log that is resumed, or the reason for a new evaluation; may be empty.
     """
 
@@ -118,6 +123,7 @@ class EvaluationPlan:
     finished: tuple[Trial, ...]
     estimate: Estimate
     asks_planner_server: bool
+    isolation: Isolation | None = None
     origin: str = ""
 
     @property

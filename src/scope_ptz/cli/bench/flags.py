@@ -135,15 +135,6 @@ class SingleRunFlags(EvaluationFlags):
             rich_help_panel=RUN_PANEL,
         ),
     ] = None
-    agent: Annotated[
-        str,
-        typer.Option(
-            "--agent",
-            metavar="MODULE:CLASS",
-            help="External agent to run instead of the built-in loop; see docs/evaluation.md.",
-            rich_help_panel="Models",
-        ),
-    ] = "scope"
 
 
 def evaluation_options(selection: SelectionFlags, running: EvaluationFlags, models: ModelOptions) -> EvaluationOptions:
