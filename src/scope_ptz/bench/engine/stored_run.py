@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from scope_ptz.agent.records import RECORD, Called, Decided, Ended, Started
 from scope_ptz.agent.trace import FILE_NAME, Trace
+from scope_ptz.agent.trace_faults import record_faults
 from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints, episode_of
 from scope_ptz.errors import TraceError
 
@@ -89,6 +90,8 @@ def trace_of(text: str, folder: Path) -> Trace | None:
     first, last = records[0], records[-1]
     if not isinstance(first, Started):
         raise TraceError(f"The trace of a run in {folder} is damaged: it does not begin with the header of a {FILE_NAME}.")
+    if fault := next(record_faults(records), None):
+        raise TraceError(f"The trace of a run in {folder} is damaged: {fault}.")
     return Trace(
         folder=folder,
         started=first,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.bench.flags import published_tasks
+from scope_ptz.cli.bench.reading import print_findings, read_log
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, command
 from scope_ptz.errors import InputError
@@ -91,11 +92,12 @@ def gate(
     from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
-    from scope_ptz.bench.engine.logs import read_evaluation
     from scope_ptz.bench.engine.regression.gate import gate as compare
     from scope_ptz.bench.engine.regression.text import comparison_lines, judge_change_note
 
-    now, before = read_evaluation(log), read_evaluation(baseline)
+    now, before = read_log(log), read_log(baseline)
+    for evaluation in (now, before):
+        print_findings(evaluation)
     comparison = compare(now, before, alpha)
     if as_json:
         rows = [asdict(comparison.overall), *(asdict(c) for c in comparison.categories)]
@@ -192,9 +194,7 @@ def _read(path: Path) -> Evaluation:
         from scope_ptz.bench.human_runs import read_result
 
         return read_result(path)
-    from scope_ptz.bench.engine.logs import read_evaluation
-
-    return with_labels(read_evaluation(path), read_labels(labels_file(path)))
+    return with_labels(read_log(path), read_labels(labels_file(path)))
 
 
 def _split(name: str | None) -> Sequence[Task] | None:
