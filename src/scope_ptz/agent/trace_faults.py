@@ -23,7 +23,7 @@ _FINISHED = frozenset({"answered", "clarification", "refused"})
 
 
 def record_faults(records: Sequence[Started | Decided | Called | Ended]) -> Iterator[str]:
-    """Yield the faults of the order of records: a trace has one header, which comes first, and at most one end, which comes last."""
+    """Yield faults in the order of records. A trace has one header, which comes first, and at most one end, which comes last."""
     if sum(isinstance(record, Started) for record in records) > 1:
         yield "the trace contains the headers of several runs"
     if any(isinstance(record, Ended) for record in records[:-1]):
@@ -132,7 +132,9 @@ def _count_faults(trace: Trace, ended: Ended) -> Iterator[str]:
             used += failed_usage(decided.decision.served.attempts)
     stated = ended.usage
     missing = used.input_tokens > stated.input_tokens or used.output_tokens > stated.output_tokens
-    if missing or (ended.outcome in _FINISHED and (used.input_tokens, used.output_tokens) != (stated.input_tokens, stated.output_tokens)):
+    if missing or (
+        ended.outcome in _FINISHED and (used.input_tokens, used.output_tokens) != (stated.input_tokens, stated.output_tokens)
+    ):
         yield "the tokens at the end differ from those of the decisions"
 
 

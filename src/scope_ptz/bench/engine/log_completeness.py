@@ -15,6 +15,7 @@ from scope_ptz.bench.engine.entries import Entry, digest
 from scope_ptz.bench.engine.stored_run import sample_name
 from scope_ptz.bench.engine.traced_trials import TracedTrial, entry_of_published, unscored
 from scope_ptz.bench.scoring.trials import LogFinding, RunCard, Trial
+from scope_ptz.builtin_names import DETERMINISTIC, NOISY_SOURCE
 
 
 def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> tuple[list[Trial], tuple[LogFinding, ...]]:
@@ -35,6 +36,7 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
         first = by_name[name][0]
         trials[name] = unscored(first.entry, first.trial.epoch, detail, first.trial.judgements)
         findings.append(LogFinding(kind="sample-repeated", sample=name, detail=detail))
+    findings += _card_findings(traced, card)
     if header.status != "success":
         return list(trials.values()), tuple(findings)
     detail = "the log of a finished evaluation lacks this run"
@@ -53,6 +55,18 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
         findings.insert(0, LogFinding(kind="tasks-changed", detail=detail))
         trials = {name: _without_score(trial, entries[trial.task.id], detail) for name, trial in trials.items()}
     return list(trials.values()), tuple(findings)
+
+
+def _card_findings(traced: Sequence[TracedTrial], card: RunCard) -> list[LogFinding]:
+    """Return a finding for each role in which the card names a model and traces name a built-in component, or the reverse."""
+    findings = []
+    for index, (role, model) in enumerate((("planner", card.planner), ("perception", card.perception))):
+        names = [one.models[index] for one in traced if one.models[index]]
+        others = [name for name in names if (name in (*DETERMINISTIC, NOISY_SOURCE)) is not model.deterministic]
+        if others:
+            detail = f"the {role} is {model.name} on the card, but {others[0]} in {len(others)} traces"
+            findings.append(LogFinding(kind="card-differs", detail=detail))
+    return findings
 
 
 def _without_score(trial: Trial, entry: Entry, reason: str) -> Trial:

@@ -49,7 +49,9 @@ def read_evaluation(path: Path, progress: Callable[[int, int], None] | None = No
             first = first or stored_run_in(sample)
             if progress is not None:
                 progress(number, total)
-        card = card_of(header, trace_of(first.trace, path) if first is not None and CARD not in (header.eval.metadata or {}) else None)
+        card = card_of(
+            header, trace_of(first.trace, path) if first is not None and CARD not in (header.eval.metadata or {}) else None
+        )
         scored, findings = completed(traced, header, card)
         trials = decided_by_one_judge(scored, (header.eval.metadata or {}).get(DECIDES, ""))
         expected_trials = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)

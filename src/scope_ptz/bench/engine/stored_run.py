@@ -17,6 +17,8 @@ from scope_ptz.errors import TraceError
 
 STORE = "scope"
 """Key of SCOPE's data in the store of a sample."""
+FRAME_WIDTH_PX, FRAME_HEIGHT_PX = 1280, 720
+"""Size of the frames of every evaluation. How large things must be in a frame is defined for this size."""
 
 
 def sample_name(task: str, epoch: int) -> str:

@@ -20,7 +20,7 @@ from scope_ptz.agent.trace_faults import trace_faults
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.judgement_scores import judgements_in
 from scope_ptz.bench.engine.sample_files import stored_run_in
-from scope_ptz.bench.engine.stored_run import StoredRun, sample_name, trace_of
+from scope_ptz.bench.engine.stored_run import FRAME_HEIGHT_PX, FRAME_WIDTH_PX, StoredRun, sample_name, trace_of
 from scope_ptz.bench.engine.trial_records import trial_of
 from scope_ptz.bench.scoring.trials import Judgement, LogFault, LogFinding, Trial
 from scope_ptz.bench.tasks.files import digest_of
@@ -36,8 +36,8 @@ MAX_CACHED = 4096
 TIME_TOLERANCE_S = 1e-6
 """Tolerance for the scene time at the start of a run, in seconds."""
 _COMPARED = (
-    "headline", "error_mode", "checks", "collateral", "outcome", "answer", "steps", "tool_calls", "bad_calls", "perception_failures",
-    "server_events", "input_tokens", "output_tokens", "timings", "looks",
+    "headline", "error_mode", "checks", "collateral", "outcome", "answer", "steps", "tool_calls", "bad_calls",
+    "perception_failures", "server_events", "input_tokens", "output_tokens", "timings", "looks",
 )  # fmt: skip
 """Fields of a stored trial that are compared with the recomputed one, the most important first."""
 _VALUES = {"correct": "C", "incorrect": "I", "unscored": "N"}
@@ -54,12 +54,14 @@ class TracedTrial:
         findings: The contradictions that were found.
         entry: The entry of the trial. For a published task, it contains the published task.
         trace_digest: Digest of the trace; empty if there is none.
+        models: The planner and the perception that the trace names; empty if there is none.
     """
 
     trial: Trial
     findings: tuple[LogFinding, ...]
     entry: Entry
     trace_digest: str = ""
+    models: tuple[str, str] = ("", "")
 
 
 def published_entry(entry: Entry) -> tuple[Entry, bool]:
@@ -138,13 +140,13 @@ def traced_trial(sample: Mapping[str, Any], path: Path, split: str) -> TracedTri
     Raises:
         TraceError: The sample contains no task.
     """
-    stored_entry, scores = Entry.of_metadata(sample["metadata"]), sample.get("scores") or {}
-    entry, differs = published_entry(stored_entry)
+    scores = sample.get("scores") or {}
+    entry, differs = _entry_of(sample)
     judgements, epoch = judgements_in(scores), int(sample["epoch"])
     name = sample_name(entry.facts.id, epoch)
     findings = []
     if differs:
-        findings.append(LogFinding(kind="task-differs", sample=name, detail="its task differs from the published task, which is used"))
+        findings.append(LogFinding(kind="task-differs", sample=name, detail="its task is not the published one"))
     stored_run = published_run(stored_run_in(sample) or StoredRun("", {}, ""), entry.world)
     digest = hashlib.sha256(stored_run.trace.encode()).hexdigest() if stored_run.trace else ""
     unknown = split in SPLITS and entry.task is not None and published_digest(entry.facts.id) is None
@@ -161,7 +163,27 @@ def traced_trial(sample: Mapping[str, Any], path: Path, split: str) -> TracedTri
         findings.append(fault)
     else:
         findings += _score_findings(trial, scores)
-    return TracedTrial(trial, tuple(findings), entry, digest)
+    return TracedTrial(trial, tuple(findings), entry, digest, _models(stored_run))
+
+
+def _entry_of(sample: Mapping[str, Any]) -> tuple[Entry, bool]:
+    """Return ``published_entry`` of a sample. The published task also replaces a copy that cannot be read."""
+    try:
+        return published_entry(Entry.of_metadata(sample["metadata"]))
+    except TraceError:
+        published = entry_of_published(str(sample.get("id")))
+        if published is None:
+            raise
+        return published, True
+
+
+def _models(stored_run: StoredRun) -> tuple[str, str]:
+    """Return the names of planner and perception in the first line of a trace."""
+    try:
+        started = json.loads(stored_run.trace.partition("\n")[0])
+        return str(started["planner"]), str(started["perception"])
+    except (ValueError, KeyError, TypeError):
+        return "", ""
 
 
 def _cached_trial(
@@ -170,7 +192,8 @@ def _cached_trial(
     """Return ``scored_trial``. Trials without a fault are kept in memory, under a digest of everything that determines them."""
     content = (
         entry.metadata(), stored_run.trace, sorted(stored_run.presets.items()), stored_run.home, stored_run.sees,
-        bool(stored_run.pictures), sorted(stored_run.truths.items()), epoch, failed, [j.model_dump(mode="json") for j in judgements],
+        bool(stored_run.pictures), sorted(stored_run.truths.items()), epoch, failed,
+        [judgement.model_dump(mode="json") for judgement in judgements],
     )  # fmt: skip
     key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
     if key in _CACHE:
@@ -190,6 +213,8 @@ def _faults(trace: Trace, entry: Entry, stored_run: StoredRun) -> Iterator[str]:
         yield "the trace is of another instruction"
     if started.simulated and (started.scene, started.viewpoint) != (entry.world, facts.viewpoint):
         yield f"the trace begins at {started.viewpoint} of {started.scene}, and not at {facts.viewpoint} of {entry.world}"
+    if (started.frame_width, started.frame_height) != (FRAME_WIDTH_PX, FRAME_HEIGHT_PX):
+        yield f"the frames have {started.frame_width}x{started.frame_height} pixels, and not {FRAME_WIDTH_PX}x{FRAME_HEIGHT_PX}"
     if abs(started.scene_time_s - entry.time_s) > TIME_TOLERANCE_S:
         yield f"the trace begins at {started.scene_time_s:g} s of scene time, and not at {entry.time_s:g} s"
     if stored_run.pictures and stored_run.sees and not any(decided.view for decided in trace.decisions):
@@ -197,9 +222,7 @@ def _faults(trace: Trace, entry: Entry, stored_run: StoredRun) -> Iterator[str]:
     yield from trace_faults(trace)
 
 
-def _unusable(
-    entry: Entry, epoch: int, judgements: tuple[Judgement, ...], kind: LogFault, detail: str
-) -> tuple[Trial, LogFinding]:
+def _unusable(entry: Entry, epoch: int, judgements: tuple[Judgement, ...], kind: LogFault, detail: str) -> tuple[Trial, LogFinding]:
     """Return an unscored trial and the finding about it."""
     name = sample_name(entry.facts.id, epoch)
     return unscored(entry, epoch, detail, judgements), LogFinding(kind=kind, sample=name, detail=detail)

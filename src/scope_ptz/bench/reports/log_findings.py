@@ -12,6 +12,7 @@ MAX_NAMED = 5
 """Maximum number of samples that one line names."""
 _MEANINGS: dict[LogFault, str] = {
     "tasks-changed": "The tasks of this log were changed after it was written. None of its scores is used",
+    "card-differs": "The run card does not name the models of the traces. The scores are not those of the named pair",
     "task-differs": "The log contains other versions of published tasks. The published tasks are used",
     "task-unknown": "The log contains tasks that its split does not have. They do not count as correct",
     "score-differs": "The scores in the log are not used, because they differ from the checks executed on its traces",
@@ -47,6 +48,6 @@ def stored_verdict_lines(evaluations: Sequence[Evaluation]) -> list[str]:
     if not judged:
         return []
     return [
-        f"{judged} of {len(trials)} verdicts are stored verdicts of a judge. They cannot be recomputed from traces: they are as the logs "
-        "state them."
+        f"{judged} of {len(trials)} verdicts are stored verdicts of a judge. They cannot be recomputed from traces, so they are as "
+        "the logs state them."
     ]

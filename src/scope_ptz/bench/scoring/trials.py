@@ -208,8 +208,8 @@ class RunCard(_Record):
 
 
 LogFault = Literal[
-    "score-differs", "trace-missing", "trace-damaged", "task-differs", "task-unknown", "tasks-changed", "sample-missing",
-    "sample-repeated",
+    "score-differs", "trace-missing", "trace-damaged", "task-differs", "task-unknown", "tasks-changed", "card-differs",
+    "sample-missing", "sample-repeated",
 ]  # fmt: skip
 """Kinds of contradictions between a log and its own traces."""
 

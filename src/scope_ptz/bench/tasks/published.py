@@ -5,15 +5,14 @@ Logs and submissions contain copies of their tasks. Scores use the published tas
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from functools import lru_cache
 
 from scope_ptz.bench.tasks.files import digest_of
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.errors import InputError
-from scope_ptz.simulator.pack import find_scenes, variation_of
+from scope_ptz.errors import InputError, PackError, UnknownNameError
+from scope_ptz.simulator.pack import load_scene
 
 PUBLISHED_SPLITS = ("core", "paraphrase", "reaction", "unseen")
 """The splits that contain every published task once."""
@@ -43,14 +42,11 @@ def preset_viewpoints(world: str) -> tuple[Mapping[str, str], str] | None:
     """Return the viewpoints of the presets of a scene in the package, and of its home preset; None for other scenes.
 
     Args:
-        world: Name of the scene or of its variation. A variation has the presets of its scene.
+        world: Name of the scene or of its variation, which has presets of its own.
     """
-    folder = find_scenes().get(variation_of(world)[0])
     try:
-        content = json.loads((folder / "scene.json").read_text("utf-8")) if folder is not None else None
-        if content is None:
-            return None
-        presets = {preset["name"]: preset["viewpoint"] for preset in content["presets"]}
-        return presets, presets[content["home_preset"]]
-    except (OSError, ValueError, KeyError, TypeError):
+        file = load_scene(world).file
+    except (UnknownNameError, PackError):
         return None
+    presets = {preset.name: preset.viewpoint for preset in file.presets}
+    return presets, presets[file.home_preset]
