@@ -9,7 +9,7 @@ from scope_ptz.factory.evaluation import MAX_CACHED_VIEWS, eval_context
 from scope_ptz.simulator.library import Library
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.verification import VerificationContext
+    from scope_ptz.bench.engine.traces.verification import VerificationContext
     from scope_ptz.perception.base import Perception
 
 
@@ -19,7 +19,7 @@ def verification_context() -> VerificationContext:
     Raises:
         ConfigError: SCOPE_SCENES_DIR is not a folder.
     """
-    from scope_ptz.bench.engine.verification import VerificationContext
+    from scope_ptz.bench.engine.traces.verification import VerificationContext
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.factory.validation_perception import CachedTruth
     from scope_ptz.perception.ground_truth import GroundTruthPerception

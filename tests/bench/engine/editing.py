@@ -43,7 +43,7 @@ def edited(log: Path, out: Path, change: Change, only: Iterable[str]) -> Path:
 def records_of(sample: Json) -> list[Json]:
     stored = stored_run_in(sample)
     assert stored is not None
-    return [json.loads(line) for line in stored.trace.splitlines()]
+    return [json.loads(line) for line in stored.trace.split("\n") if line]
 
 
 def set_trace(sample: Json, records: Iterable[Json] | str) -> None:

@@ -223,6 +223,22 @@ def test_a_missing_or_unreadable_trace_is_not_correct(honest: Evaluation, tmp_pa
     assert {trial.headline for trial in found.trials} == {"unscored"}
 
 
+def test_unusual_line_separators_in_an_answer_do_not_damage_a_trace(honest: Evaluation, tmp_path: Path) -> None:
+    def unusual(sample: Json) -> None:
+        records = records_of(sample)
+        for record in records:
+            if record["event"] == "end":
+                record["text"] = "One\u2028two\x85three."
+            elif record["event"] == "decision" and record["decision"]["kind"] == records[-1]["outcome"]:
+                record["decision"]["text"] = "One\u2028two\x85three."
+        set_trace(sample, "".join(json.dumps(record, ensure_ascii=False) + "\n" for record in records))
+
+    names = [trial.sample for trial in honest.trials]
+    found = read_evaluation(edited(PUBLISHED, tmp_path / "unusual.eval", unusual, names))
+    assert {trial.answer for trial in found.trials} == {"One\u2028two\x85three."}
+    assert "unscored" not in {trial.headline for trial in found.trials}
+
+
 def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path) -> None:
     gone = set(failures(honest))
     files = {n: c for n, c in files_of(PUBLISHED).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)}

@@ -11,10 +11,10 @@ import cv2
 import numpy as np
 import pytest
 
-from scope_ptz.bench.engine.frame_comparison import compare_frames
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.sample_files import open_sample
 from scope_ptz.bench.engine.stored_run import STORE
+from scope_ptz.bench.engine.traces.frame_comparison import compare_frames
 from tests.bench.engine.editing import Json, edited, trace_change
 from tests.bench.engine.making import SCENE
 from tests.cli.conftest import Scope

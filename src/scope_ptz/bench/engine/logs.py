@@ -11,11 +11,12 @@ from inspect_ai.log import EvalLog  # also registers the compression of logs wit
 from pydantic_core import from_json
 
 from scope_ptz.bench.engine.inspect_internals import header_context
-from scope_ptz.bench.engine.log_completeness import completed
-from scope_ptz.bench.engine.run_cards import CARD, card_of, cost_usd
+from scope_ptz.bench.engine.run_cards import CARD, card_of
 from scope_ptz.bench.engine.sample_files import reading, sample_count, samples, stored_run_in
 from scope_ptz.bench.engine.stored_run import trace_of
-from scope_ptz.bench.engine.traced_trials import traced_trial
+from scope_ptz.bench.engine.token_costs import cost_usd
+from scope_ptz.bench.engine.traces.log_completeness import completed
+from scope_ptz.bench.engine.traces.traced_trials import traced_trial
 from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError

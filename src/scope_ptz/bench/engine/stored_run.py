@@ -84,7 +84,8 @@ def trace_of(text: str, folder: Path) -> Trace | None:
         TraceError: The trace is damaged.
     """
     try:
-        records = [RECORD.validate_json(line) for line in text.splitlines() if line]
+        # Strings in JSON may contain other line separators, which ``splitlines`` would split.
+        records = [RECORD.validate_json(line) for line in text.split("\n") if line]
     except ValidationError as error:
         raise TraceError(f"The trace of a run in {folder} is damaged: {error.errors(include_url=False)[0]['msg']}.") from error
     if not records:

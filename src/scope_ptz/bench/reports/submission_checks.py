@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from scope_ptz.bench.engine.verification import RunToVerify
+from scope_ptz.bench.engine.traces.verification import RunToVerify
 from scope_ptz.bench.reports.submission import LINE, Evaluated, Header, TrialLine, secrets_in, tasks_digest, totals_of
 from scope_ptz.bench.reports.submission_evaluated import EvaluatedBy, Verifier, evaluated_by
 from scope_ptz.bench.reports.submission_traces import copied_traces, runs_in, trace_line_faults

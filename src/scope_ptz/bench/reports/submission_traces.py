@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.run_cards import cost_usd
 from scope_ptz.bench.engine.stored_run import StoredRun, sample_name
-from scope_ptz.bench.engine.traced_trials import entry_of_published, published_run, scored_trial
-from scope_ptz.bench.engine.verification import RunToVerify
+from scope_ptz.bench.engine.token_costs import cost_usd
+from scope_ptz.bench.engine.traces.traced_trials import entry_of_published, published_run, scored_trial
+from scope_ptz.bench.engine.traces.verification import RunToVerify
 from scope_ptz.bench.reports.submission import Header, Places, Run, TrialLine, public_settings, trial_line, without_secrets
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.tasks.task import Task
@@ -83,7 +83,7 @@ def public_runs(evaluation: Evaluation, stored: Iterable[RunToVerify]) -> Public
 
 def public_trace(text: str) -> str:
     """Return a trace without secrets, addresses, reasoning and details for debugging. The checks need none of them."""
-    return "".join(json.dumps(_public_record(json.loads(line)), ensure_ascii=False) + "\n" for line in text.splitlines() if line)
+    return "".join(json.dumps(_public_record(json.loads(line))) + "\n" for line in text.split("\n") if line)
 
 
 def _public_record(record: dict[str, Any]) -> dict[str, Any]:

@@ -136,7 +136,8 @@ def submission_make(
 
     evaluation = _read(log)
     print_findings(evaluation)
-    header, lines = _lines_with_traces(log, evaluation) if traces else submission_lines(evaluation)
+    with_traces = traces and log.suffix != HUMAN_RESULT_SUFFIX
+    header, lines = _lines_with_traces(log, evaluation) if with_traces else submission_lines(evaluation)
     skip = partial and tasks is None and header.card.split not in SPLITS
     missing = [] if skip else _missing(header, lines, tasks)
     if missing and not partial:
@@ -186,7 +187,7 @@ def submission_validate(
 
 
 def _lines_with_traces(log: Path, evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
-    from scope_ptz.bench.engine.log_runs import runs_of_log
+    from scope_ptz.bench.engine.traces.log_runs import runs_of_log
     from scope_ptz.bench.reports.submission import submission_lines
     from scope_ptz.bench.reports.submission_traces import public_runs
 

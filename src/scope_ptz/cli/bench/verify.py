@@ -14,7 +14,7 @@ from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.verification import RunToVerify, VerificationResult
+    from scope_ptz.bench.engine.traces.verification import RunToVerify, VerificationResult
 
 MAX_RUNS_LISTED = 50
 
@@ -32,7 +32,7 @@ def verify(
     from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
-    from scope_ptz.bench.engine.log_runs import runs_of_log
+    from scope_ptz.bench.engine.traces.log_runs import runs_of_log
 
     results: dict[str, VerificationResult] = {}
     for log in logs:
@@ -57,7 +57,7 @@ def verify_and_show(runs: Iterable[RunToVerify], total: int, name: str, *, quiet
     """
     import anyio
 
-    from scope_ptz.bench.engine.verification import verify_runs
+    from scope_ptz.bench.engine.traces.verification import verify_runs
     from scope_ptz.factory.verification import verification_context
 
     context = verification_context()

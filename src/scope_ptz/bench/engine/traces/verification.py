@@ -18,9 +18,9 @@ from scope_ptz.agent.store import NoImages
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.engine.context import TrueCount
 from scope_ptz.bench.engine.entries import Entry, OpenScene
-from scope_ptz.bench.engine.frame_comparison import compare_frames
 from scope_ptz.bench.engine.recording.picture_store import PictureStore, jpeg_of
 from scope_ptz.bench.engine.stored_run import StoredRun, sample_name, trace_of
+from scope_ptz.bench.engine.traces.frame_comparison import compare_frames
 from scope_ptz.bench.program_runner import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import PackError, ScopeError, TraceError, UnknownNameError

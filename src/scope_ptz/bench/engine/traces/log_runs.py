@@ -10,8 +10,8 @@ from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.recording.picture_store import jpeg_of
 from scope_ptz.bench.engine.sample_files import ATTACHMENT, reading, samples, stored_run_in
 from scope_ptz.bench.engine.stored_run import StoredRun
-from scope_ptz.bench.engine.traced_trials import published_entry
-from scope_ptz.bench.engine.verification import RunToVerify
+from scope_ptz.bench.engine.traces.traced_trials import published_entry
+from scope_ptz.bench.engine.traces.verification import RunToVerify
 
 
 def runs_of_log(path: Path) -> Iterator[RunToVerify]:
