@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -209,7 +210,7 @@ def test_a_trace_that_contradicts_itself_is_named_and_not_correct(honest: Evalua
 def test_a_missing_or_unreadable_trace_is_not_correct(honest: Evaluation, tmp_path: Path) -> None:
     names = [trial.sample for trial in honest.trials]
     for number, text in enumerate(("", "nothing", '{"event": "start"}\n', "[]\n" * 5)):
-        path = edited(PUBLISHED, tmp_path / f"{number}.eval", lambda sample, text=text: set_trace(sample, text), names)
+        path = edited(PUBLISHED, tmp_path / f"{number}.eval", partial(set_trace, records=text), names)
         found = read_evaluation(path)
         assert not correct(found)
         assert len(found.trials) == len(honest.trials)

@@ -13,7 +13,8 @@ from inspect_ai.log import EvalLog
 
 from scope_ptz.bench.engine.entries import Entry, digest
 from scope_ptz.bench.engine.stored_run import sample_name
-from scope_ptz.bench.engine.traces.traced_trials import TracedTrial, entry_of_published, unscored
+from scope_ptz.bench.engine.traces.scored_trials import entry_of_published, unscored
+from scope_ptz.bench.engine.traces.traced_trials import TracedTrial
 from scope_ptz.bench.scoring.trials import LogFinding, RunCard, Trial
 from scope_ptz.builtin_names import DETERMINISTIC, NOISY_SOURCE
 
