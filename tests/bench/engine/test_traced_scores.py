@@ -10,10 +10,12 @@ from typing import Any
 
 import pytest
 
+from scope_ptz import load_results
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.stored_run import STORE
 from scope_ptz.bench.reports.log_findings import finding_lines
 from scope_ptz.bench.scoring.trials import Evaluation
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from tests.bench.engine.editing import Change, Json, edited, files_of, records_of, set_trace, trace_change, write_log
 from tests.cli.conftest import Scope
 
@@ -114,7 +116,14 @@ def no_task(sample: Json) -> None:
     sample["scores"]["judge"] = {"value": "C", "metadata": {"judgement": verdict}}
 
 
-@pytest.mark.parametrize("change", [accept_every_answer, other_category, no_task])
+def imported_task(sample: Json) -> None:
+    """An imported task with the id of the published one, which only a judge can score."""
+    facts = {name: sample["metadata"][name] for name in TaskFacts.model_fields}
+    no_task(sample)
+    sample["metadata"]["imported"] = {"imported": 1, "facts": facts, "line": 1, "raw": {}}
+
+
+@pytest.mark.parametrize("change", [accept_every_answer, other_category, no_task, imported_task])
 def test_the_published_task_decides(honest: Evaluation, tmp_path: Path, change: Change) -> None:
     attacked = failures(honest)
     found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", change, attacked))
@@ -249,12 +258,14 @@ def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path
     assert {finding.sample for finding in found.findings if finding.kind == "sample-missing"} == gone
 
 
-def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluation, tmp_path: Path) -> None:
+@pytest.mark.parametrize("status", ["success", "cancelled", "error"])
+def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluation, tmp_path: Path, status: str) -> None:
     gone = set(failures(honest))
     files = {n: c for n, c in files_of(PUBLISHED).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)}
     dataset = files["header.json"]["eval"]["dataset"]
     dataset["sample_ids"] = [name for name in dataset["sample_ids"] if f"{name}#1" not in gone]
     dataset["samples"] = len(dataset["sample_ids"])
+    files["header.json"]["status"] = status
     found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
     assert not correct(found)
     assert found.findings[0].kind == "tasks-changed"
@@ -329,6 +340,15 @@ def test_the_report_and_the_terminal_name_an_edited_log(scope: Scope, evaluated:
     assert rescored.code == 0 and names[0] in rescored.err
     again = read_evaluation(log)
     assert again.findings == () and failures(again) == names
+
+
+def test_results_in_python_are_recomputed_and_an_edited_log_is_named(
+    evaluated: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    names = failures(read_evaluation(evaluated))
+    results = load_results(edited(evaluated, tmp_path / "attacked.eval", claim_everything, names))
+    assert [trial.sample for trial in results.trials if trial.headline == "incorrect"] == names
+    assert names[0] in caplog.text
 
 
 def test_an_unedited_log_has_no_findings(scope: Scope, evaluated: Path) -> None:

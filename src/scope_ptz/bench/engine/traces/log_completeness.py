@@ -38,7 +38,8 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
         trials[name] = unscored(first.entry, first.trial.epoch, detail, first.trial.judgements)
         findings.append(LogFinding(kind="sample-repeated", sample=name, detail=detail))
     findings += _card_findings(traced, card)
-    if header.status != "success":
+    wanted = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
+    if header.status != "success" and len(by_name) < wanted:  # an unfinished evaluation, which reports name
         return list(trials.values()), tuple(findings)
     detail = "the log of a finished evaluation lacks this run"
     for task in map(str, header.eval.dataset.sample_ids or entries):

@@ -32,9 +32,9 @@ def published_entry(entry: Entry) -> tuple[Entry, bool]:
     An entry whose task is not published is returned unchanged.
     """
     found = entry_of_published(entry.facts.id, entry.facts.viewpoint)
-    if found is None or entry.imported is not None:
+    if found is None:
         return entry, False
-    same_task = entry.task is not None and digest_of([entry.task]) == published_digest(entry.facts.id)
+    same_task = entry.task is not None and entry.imported is None and digest_of([entry.task]) == published_digest(entry.facts.id)
     same_start = (entry.facts, entry.world, entry.time_s) == (found.facts, found.world, found.time_s)
     return found, not (same_task and same_start)
 
