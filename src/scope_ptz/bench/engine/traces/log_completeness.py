@@ -53,7 +53,7 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
                 entries[task] = entry
                 trials[name] = unscored(entry, epoch, detail)
     if card.dataset_digest and digest(entries.values()) != card.dataset_digest:
-        detail = "the tasks of the log are not those of its run card, so none of its scores is used"
+        detail = "the digest of the tasks is not the one on the run card"
         findings.insert(0, LogFinding(kind="tasks-changed", detail=detail))
         trials = {name: _without_score(trial, entries[trial.task.id], detail) for name, trial in trials.items()}
     return list(trials.values()), tuple(findings)
