@@ -291,6 +291,23 @@ def test_copies_of_a_success_do_not_count(honest: Evaluation, tmp_path: Path) ->
     assert correct(found) <= correct(honest)
 
 
+def test_further_runs_of_a_task_do_not_count(honest: Evaluation, tmp_path: Path) -> None:
+    """A success is run once more than the card states, which would give its task more weight."""
+    files = files_of(PUBLISHED)
+    name = sorted(correct(honest))[0]
+    again = next(
+        json.loads(json.dumps(c)) for n, c in files.items() if n.startswith("samples/") and f"{c['id']}#{c['epoch']}" == name
+    )
+    again["epoch"] = 2
+    records = records_of(again)
+    records[0]["started"] = "2026-11-23T00:00:00Z"
+    set_trace(again, records)
+    found = read_evaluation(write_log({**files, "samples/again.json": again}, tmp_path / "attacked.eval"))
+    assert correct(found) == correct(honest)
+    assert [finding.kind for finding in found.findings] == ["sample-repeated"]
+    assert "repeat 2, but the card states 1" in found.findings[0].detail
+
+
 def test_a_card_with_other_models_is_named(tmp_path: Path) -> None:
     files = files_of(PUBLISHED)
     files["header.json"]["eval"]["metadata"]["card"]["perception"] |= {"name": "moondream3", "deterministic": False}

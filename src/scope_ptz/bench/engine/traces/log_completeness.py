@@ -33,7 +33,7 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
         by_name[one.trial.sample].append(one)
     trials = {name: same[0].trial for name, same in by_name.items()}
     entries = {one.entry.facts.id: one.entry for one in traced}
-    for name, detail in _repeated(by_name):
+    for name, detail in _repeated(by_name, card.epochs):
         first = by_name[name][0]
         trials[name] = unscored(first.entry, first.trial.epoch, detail, first.trial.judgements)
         findings.append(LogFinding(kind="sample-repeated", sample=name, detail=detail))
@@ -76,12 +76,14 @@ def _without_score(trial: Trial, entry: Entry, reason: str) -> Trial:
     return unscored(entry, trial.epoch, reason, trial.judgements)
 
 
-def _repeated(by_name: dict[str, list[TracedTrial]]) -> Iterator[tuple[str, str]]:
-    """Yield the names of samples that occur several times, and of samples whose trace is a copy of another sample's trace."""
+def _repeated(by_name: dict[str, list[TracedTrial]], epochs: int) -> Iterator[tuple[str, str]]:
+    """Yield the names of samples that occur several times or too often, and of those whose trace is a copy of another trace."""
     for name, same in by_name.items():
         if len(same) > 1:
             yield name, f"the log contains {len(same)} samples of this run"
+        elif same[0].trial.epoch > epochs:
+            yield name, f"this is repeat {same[0].trial.epoch}, but the card states {epochs}"
     uses = Counter(one.trace_digest for same in by_name.values() for one in same[:1] if one.trace_digest)
     for name, same in by_name.items():
-        if len(same) == 1 and uses[same[0].trace_digest] > 1:
+        if len(same) == 1 and same[0].trial.epoch <= epochs and uses[same[0].trace_digest] > 1:
             yield name, "its trace is also the trace of another run"
