@@ -1,0 +1,164 @@
+"""Compute the trials of a log from its traces. Nothing that a score of the log states is used, except the verdicts of judges.
+
+Each trial is compared with the score that the log stores; differences are findings. A trace that is missing, damaged or
+contradicts itself gives an unscored trial, which counts as not correct.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.engine.judgement_scores import judgements_in
+from scope_ptz.bench.engine.sample_files import stored_run_in
+from scope_ptz.bench.engine.stored_run import StoredRun, sample_name
+from scope_ptz.bench.engine.traces.scored_trials import entry_of_published, published_entry, published_run, scored_trial, unusable
+from scope_ptz.bench.scoring.trials import Judgement, LogFinding, Trial
+from scope_ptz.bench.tasks.published import published_digest
+from scope_ptz.bench.tasks.splits import SPLITS
+from scope_ptz.errors import TraceError
+
+TRIAL = "trial"
+"""Metadata key under which a score stores the trial."""
+MAX_CACHED = 4096
+"""Maximum number of trials that are kept in memory, so that reading a log again does not execute its checks again."""
+_COMPARED = (
+    "headline", "error_mode", "checks", "collateral", "outcome", "answer", "steps", "tool_calls", "bad_calls",
+    "perception_failures", "server_events", "input_tokens", "output_tokens", "timings", "looks",
+)  # fmt: skip
+"""Fields of a stored trial that are compared with the recomputed one, the most important first."""
+_VALUES = {"correct": "C", "incorrect": "I", "unscored": "N"}
+
+_CACHE: dict[str, Trial] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class TracedTrial:
+    """A trial computed from a trace.
+
+    Attributes:
+        trial: The trial.
+        findings: The contradictions that were found.
+        entry: The entry of the trial. For a published task, it contains the published task.
+        trace_digest: Digest of the trace; empty if there is none.
+        models: The planner and the perception that the trace names; empty if there is none.
+    """
+
+    trial: Trial
+    findings: tuple[LogFinding, ...]
+    entry: Entry
+    trace_digest: str = ""
+    models: tuple[str, str] = ("", "")
+
+
+def traced_trial(sample: Mapping[str, Any], path: Path, split: str) -> TracedTrial:
+    """Compute the trial of a sample from its trace, with all judgements, and compare it with the score in the log.
+
+    Args:
+        sample: The sample as JSON data.
+        path: The log.
+        split: The split on the run card. Every task of a published split must be a published task.
+
+    Raises:
+        TraceError: The sample contains no task.
+    """
+    scores = sample.get("scores") or {}
+    entry, differs = _entry_of(sample)
+    judgements, epoch = judgements_in(scores), int(sample["epoch"])
+    name = sample_name(entry.facts.id, epoch)
+    findings = []
+    if differs:
+        findings.append(LogFinding(kind="task-differs", sample=name, detail="its task is not the published one"))
+    stored_run = published_run(stored_run_in(sample) or StoredRun("", {}, ""), entry.world)
+    digest = hashlib.sha256(stored_run.trace.encode()).hexdigest() if stored_run.trace else ""
+    unknown = split in SPLITS and entry.task is not None and published_digest(entry.facts.id) is None
+    fault: LogFinding | None
+    if str(sample.get("id")) != entry.facts.id:
+        trial, fault = unusable(entry, epoch, judgements, "task-differs", "the sample contains the task of another sample")
+    elif unknown:
+        detail = f"it is not a task of the published split {split}"
+        trial, fault = unusable(entry, epoch, judgements, "task-unknown", detail)
+    else:
+        failed = sample.get("error") is not None
+        trial, fault = _cached_trial(entry, stored_run, epoch, path, judgements, failed=failed)
+    if fault is not None:
+        findings.append(fault)
+    else:
+        findings += _score_findings(trial, scores)
+    return TracedTrial(trial, tuple(findings), entry, digest, _models(stored_run))
+
+
+def _entry_of(sample: Mapping[str, Any]) -> tuple[Entry, bool]:
+    """Return ``published_entry`` of a sample. The published task also replaces a copy that cannot be read."""
+    try:
+        return published_entry(Entry.of_metadata(sample["metadata"]))
+    except TraceError:
+        published = entry_of_published(str(sample.get("id")))
+        if published is None:
+            raise
+        return published, True
+
+
+def _models(stored_run: StoredRun) -> tuple[str, str]:
+    """Return the names of planner and perception in the first line of a trace."""
+    try:
+        started = json.loads(stored_run.trace.partition("\n")[0])
+        return str(started["planner"]), str(started["perception"])
+    except (ValueError, KeyError, TypeError):
+        return "", ""
+
+
+def _cached_trial(
+    entry: Entry, stored_run: StoredRun, epoch: int, path: Path, judgements: tuple[Judgement, ...], *, failed: bool
+) -> tuple[Trial, LogFinding | None]:
+    """Return ``scored_trial``. Trials without a fault are kept in memory, under a digest of everything that determines them."""
+    content = (
+        entry.metadata(), stored_run.trace, sorted(stored_run.presets.items()), stored_run.home, stored_run.sees,
+        bool(stored_run.pictures), sorted(stored_run.truths.items()), epoch, failed,
+        [judgement.model_dump(mode="json") for judgement in judgements],
+    )  # fmt: skip
+    key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    if key in _CACHE:
+        return _CACHE[key], None
+    trial, fault = scored_trial(entry, stored_run, epoch, path, judgements, failed=failed)
+    if fault is None:
+        while len(_CACHE) >= MAX_CACHED:
+            _CACHE.pop(next(iter(_CACHE)), None)
+        _CACHE[key] = trial
+    return trial, fault
+
+
+def _score_findings(trial: Trial, scores: Mapping[str, Any]) -> Iterator[LogFinding]:
+    """Yield a finding if the latest score of the checks in the log differs from the recomputed trial."""
+    score = next((s for s in reversed(list(scores.values())) if TRIAL in (s.get("metadata") or {})), None)
+    if score is None or trial.scored_by == "judge":
+        return
+    try:
+        stored = Trial.model_validate({**score["metadata"][TRIAL], "task": trial.task})
+    except (ValidationError, TypeError):
+        yield LogFinding(kind="score-differs", sample=trial.sample, detail="its stored score is damaged")
+        return
+    found = _difference(stored, trial)
+    if not found and trial.headline in _VALUES and score.get("value") != _VALUES[trial.headline]:
+        found = f"its stored score has the value {score.get('value')}, but the checks give {trial.headline}"
+    if found:
+        yield LogFinding(kind="score-differs", sample=trial.sample, detail=found)
+
+
+def _difference(stored: Trial, trial: Trial) -> str:
+    """Describe the first difference between a stored trial and the recomputed one; empty if there is none."""
+    for name in _COMPARED:
+        before, now = getattr(stored, name), getattr(trial, name)
+        if name == "checks":
+            before, now = ({check.name: check.passed for check in checks} for checks in (before, now))
+        if before != now:
+            long = len(f"{before}{now}") > 200
+            return f"its stored score differs in {name}" + ("" if long else f": stored {before}, recomputed {now}")
+    return ""
