@@ -9,6 +9,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from scope_ptz.bench.agents.planner import ChannelPlanner
 from scope_ptz.bench.engine.entries import Entry, OpenScene
 from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.bench.scoring.episode import Observation
@@ -36,6 +37,8 @@ class ModelRequest:
 
 TrueCount = Callable[[str, Observation], Awaitable[int | None]]
 """Returns the true count for a perception call in the scene with the given name; None if the ground truth does not define it."""
+OpenAgent = Callable[[], Awaitable[ChannelPlanner]]
+"""Starts or connects an external agent for one run."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
 """Returns the entries of a split, given by its name, or of a task file, given by its path."""
 
@@ -62,6 +65,7 @@ class EvalContext:
         load_tasks: Loads the entries of a split or a task file.
         true_count: Returns the true counts for perception calls; None if there is no ground truth.
         watcher: Notified when a run begins or ends.
+        open_agent: Starts or connects the external agent for a run; None to start the agent that the task names.
         perception_note: Note for the trace about the origin of the perception backend.
         perception: A perception backend that was created in advance, if any. Its creator closes it.
     """
@@ -73,5 +77,6 @@ class EvalContext:
     load_tasks: LoadTasks
     true_count: TrueCount | None = None
     watcher: Watcher = field(default_factory=Watcher)
+    open_agent: OpenAgent | None = None
     perception_note: str = ""
     perception: Perception | None = None

@@ -8,15 +8,19 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from scope_ptz.agent.timing import Timings
+from scope_ptz.bench.agents.channel import Isolation
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.verdict import Headline
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 
 Count = Annotated[int, Field(ge=0)]
 Seconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+OWN_AGENT = "scope"
+"""Name of SCOPE's own agent loop."""
 
 
 class _Record(BaseModel):
@@ -153,7 +157,8 @@ class RunCard(_Record):
     """Under what conditions an evaluation ran. ``contended``: runs shared the machine or servers, so that latency is not its own.
 
     ``split``: "core", "lite", "paraphrase", "reaction", "unseen" or a file's name; ``dataset_digest``: of the tasks that were run;
-    ``agent``: "scope" for our own loop, else module and class of another; ``variant``: which prompt or setting was varied, if any.
+    ``agent``: "scope" for our own loop, else module and class of another; ``variant``: which prompt or setting was varied, if any;
+    ``isolation``: how an external agent was separated from tasks, ground truth and checks; null for our own loop.
     """
 
     run_id: str
@@ -165,7 +170,8 @@ class RunCard(_Record):
     split: str
     planner: ModelCard
     perception: ModelCard
-    agent: str = "scope"
+    agent: str = OWN_AGENT
+    isolation: Isolation | None = None
     variant: str = ""
     sampling: dict[str, Any] = {}
     seed: int | None = None
@@ -175,6 +181,20 @@ class RunCard(_Record):
     concurrency: Annotated[int, Field(ge=1)] = 1
     contended: bool = True
     host: str = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _isolation_of_older_logs(cls, fields: Any) -> Any:
+        """Label the external agents of logs without the label as "in-process": older versions ran them in the scorer's process."""
+        if isinstance(fields, dict) and "isolation" not in fields and fields.get("agent", OWN_AGENT) != OWN_AGENT:
+            return fields | {"isolation": "in-process"}
+        return fields
+
+    @model_serializer(mode="wrap")
+    def _without_empty_isolation(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out the label of SCOPE's own loop, so that its cards can also be read by older versions."""
+        fields: dict[str, Any] = serialize(self)
+        return {name: value for name, value in fields.items() if name != "isolation" or value is not None}
 
     @property
     def pair(self) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from scope_ptz.bench.agents.faults import AGENT_FAULTS
 from scope_ptz.bench.answers import ParsedValue, parse_answer
 from scope_ptz.bench.scoring.checks import CheckResult, changes, run_checks
 from scope_ptz.bench.scoring.episode import Episode
@@ -21,8 +22,8 @@ Headline = Literal["correct", "incorrect", "unscored", "infrastructure"]
 """The categories of results. "unscored": a check could not decide; "infrastructure": a failure outside the agent."""
 MOVING_TOOLS = TOOLS.moving
 """Names of the tools that can move the camera."""
-AGENT_FAILURES = frozenset({"empty", "context-overflow"})
-"""Kinds of planner failures that count against the agent: an empty reply and a context overflow."""
+AGENT_FAILURES = frozenset({"empty", "context-overflow", *AGENT_FAULTS})
+"""Kinds of planner failures that count against the agent: an empty reply, a context overflow, and faults of external agents."""
 
 
 @dataclass(frozen=True, slots=True)
